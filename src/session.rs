@@ -23,6 +23,7 @@ mod minimizing;
 mod overlaps;
 mod overlay;
 mod planning;
+mod python;
 mod rerunning;
 mod resolution;
 mod restarting;

@@ -7,6 +7,7 @@ use super::reference::Against;
 use super::{Bench, Measure, PROGRAM};
 use crate::heads::{self, Headed};
 use crate::session::axes::Axis;
+use crate::sweep::starter::Starter;
 use crate::sweep::{Deck, Settings, Sweep, lammps};
 use perigrain_base::diag::Result;
 use serde::Deserialize;
@@ -91,7 +92,7 @@ pub struct Manner {
     /// A LAMMPS that runs the decks too.
     pub lammps: Option<PathBuf>,
     /// This program.
-    pub program: PathBuf,
+    pub program: Starter,
     /// Whether runs tell how far they are.
     pub telling: bool,
 }

@@ -40,15 +40,20 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the program with the words of the command line.
 pub fn main() -> ExitCode {
-    let words = std::env::args_os().skip(1).map(|w| w.to_string_lossy().into_owned()).collect();
-    let code = match tasks::parse(words).and_then(perform) {
+    ExitCode::from(work())
+}
+
+/// The same for a program that hosts this one and has told so: the exit code.
+pub fn work() -> u8 {
+    let words =
+        crate::sweep::starter::words().into_iter().map(|w| w.to_string_lossy().into_owned()).collect();
+    match tasks::parse(words).and_then(perform) {
         Ok(code) => code,
         Err(usage) => {
             complain(&usage);
             USAGE
         }
-    };
-    ExitCode::from(code)
+    }
 }
 
 fn perform(task: Task) -> Result<u8, Usage> {

@@ -2,12 +2,13 @@
 
 use super::args::{Deck, Options, Target, Usage};
 use super::{FAILED, INTERRUPTED, OK};
+use crate::sweep::starter::{self, Starter};
 use crate::sweep::worker::live_with;
 use perigrain_lang::{Partition, Turn};
 use std::fs::File;
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -148,8 +149,8 @@ fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
 
 /// This program again, with the same words and its place among the partitions.
 fn start(number: usize, turns: &Path) -> std::io::Result<Child> {
-    let mut command = Command::new(std::env::current_exe()?);
-    command.args(std::env::args_os().skip(1)).arg("-world").arg(number.to_string());
+    let mut command = Starter::itself()?.command();
+    command.args(starter::words()).arg("-world").arg(number.to_string());
     command.arg(std::process::id().to_string()).arg(turns);
     command.stdin(Stdio::null()).spawn()
 }

@@ -46,7 +46,11 @@ pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args
     }
     if elsewhere::STYLES.contains(&(kind, word.text.as_str())) {
         let text = format!("{kind} style `{}` is LAMMPS', but perigrain does not have it yet", word.text);
-        return fail(Code::NOT_SUPPORTED, word.span, text);
+        let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+        return Err(match word.text.starts_with("python/") {
+            true => d.help("where Python hosts the run, `fix external … pf/callback` calls a function in steps, and variables of style python do").into(),
+            false => d.into(),
+        });
     }
     let d =
         Diagnostic::error(Code::UNKNOWN_STYLE, word.span, format!("unknown {kind} style `{}`", word.text));

@@ -341,6 +341,10 @@ impl Env for DeckEnv<'_> {
         !self.blind()
     }
 
+    fn only_looks(&self) -> bool {
+        self.blind()
+    }
+
     fn may_be_written(&self, path: &str) -> bool {
         self.w.parts.promised.may_come(path)
     }

@@ -107,7 +107,7 @@ fn depends(text: &str, span: Span, vars: &Vars) -> Result<Vec<Dep>> {
 
 fn of_variable(name: &str, vars: &Vars) -> Vec<Dep> {
     let name = vars.formatted(name).unwrap_or(name);
-    vars.expr(name).map_or(vec![], |e| e.depends(vars))
+    vars.depends(name)
 }
 
 /// The text up to the parenthesis that closes one already open.

@@ -282,7 +282,7 @@ impl<'a> Sealer<'a> {
         }
         self.ask(r.span);
         self.enter(format!("v_{}", r.name), r.span)?;
-        let deps = vars.expr(&r.name).map_or(vec![], |e| e.depends(&vars));
+        let deps = vars.depends(&r.name);
         let mut from = BTreeMap::new();
         for dep in deps {
             let (name, slot) = match dep {

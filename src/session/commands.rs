@@ -36,7 +36,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "pair_write",
     "plugin",
     "prd",
-    "python",
     "server",
     "tad",
     "temper",
@@ -140,6 +139,7 @@ impl Session {
                 self.world.regions.values_mut().for_each(|region| region.open_holds_all(lammps));
                 self.world.touch();
             }
+            "python" => self.python(&mut args, cmd.span)?,
             "shell" => self.shell(cmd)?,
             "info" => self.info(&mut args)?,
             "timer" => self.timer(&mut args)?,

@@ -5,7 +5,7 @@ use super::{Outcome, Running, Sweep};
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::time::Instant;
 
 /// Those at work.
@@ -49,7 +49,7 @@ impl Crew {
         let mut command = match &task.settings.lammps {
             Some(lammps) => super::lammps::command(lammps, &task.deck, &task.settings.vars, task.threads),
             None => {
-                let mut command = Command::new(&sweep.program);
+                let mut command = sweep.program.command();
                 command.arg(WORD).stdin(Stdio::piped());
                 command
             }

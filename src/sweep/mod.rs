@@ -10,11 +10,13 @@ pub mod lammps;
 mod outcome;
 mod record;
 pub mod series;
+pub mod starter;
 pub mod table;
 pub mod worker;
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_world::Compat;
+use starter::Starter;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -116,7 +118,7 @@ pub struct Sweep {
     /// How often a run that has failed is tried again.
     pub retry: usize,
     /// The program that works off a run when called with [`worker::WORD`]: this one, as a rule.
-    pub program: PathBuf,
+    pub program: Starter,
     /// Whether runs tell how far they are.
     pub telling: bool,
 }

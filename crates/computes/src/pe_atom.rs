@@ -21,8 +21,8 @@ impl Style for PeAtom {
             syntax: "compute ID group pe/atom [pair fix bond angle dihedral improper kspace …]",
             summary: "Potential energy of each particle.",
             text: "Per-atom vector, in energy units (energy density for peridynamic particles in LAMMPS' convention): \
-                   half of the energy of each pair goes to either particle. No fix of perigrain tallies energies per \
-                   particle, so `fix` adds nothing; 0 outside the group.",
+                   half of the energy of each pair goes to either particle. `fix` is what `fix external` was told of each \
+                   particle; no other fix has energies per particle. 0 outside the group.",
             example: "compute w all pe/atom",
         }
     }
@@ -48,14 +48,14 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, Terms { pair, bond, .. }) = (self.group, self.terms);
-        if pair || bond {
+        let (group, Terms { pair, bond, fix }) = (self.group, self.terms);
+        let any = pair || bond || fix;
+        if any {
             cx.ask_atom_energy(when);
         }
         Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY | MASK, move |w, t, out| {
             let tally = &w.tally;
-            if (pair || bond)
-                && (tally.step.is_some_and(|s| s != t.step) || (tally.step.is_some() && !tally.with_atoms))
+            if any && (tally.step.is_some_and(|s| s != t.step) || (tally.step.is_some() && !tally.with_atoms))
             {
                 return fail(
                     Code::WRONG_ORDER,
@@ -66,7 +66,8 @@ impl Compute for Declared {
             let of = |yes: bool, list: &[f64], i: usize| {
                 if yes { list.get(i).copied().unwrap_or(0.0) } else { 0.0 }
             };
-            per_particle(w, group, out, |i| of(pair, &tally.atom, i) + of(bond, &tally.bond_atom, i));
+            let bonded = |i: usize| of(pair, &tally.atom, i) + of(bond, &tally.bond_atom, i);
+            per_particle(w, group, out, |i| bonded(i) + of(fix, &tally.fix_atom, i));
             Ok(())
         }))
     }
@@ -87,9 +88,13 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
         b.world.tally.clear(0, false, true, 2);
         b.world.tally.atom = vec![1.5, 2.5];
+        b.world.tally.fix_atom[1] = 4.0;
         b.world.particles.mask[0] = 0;
+        for (words, second) in [("", 6.5), ("pair", 2.5), ("fix", 4.0)] {
+            let c = b.compute(&PeAtom, words).unwrap();
+            assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, second], "{words}");
+        }
         let c = b.compute(&PeAtom, "").unwrap();
-        assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 2.5]);
         b.world.tally.clear(0, false, false, 2);
         assert!(b.evaluate(&*c).is_err());
     }

@@ -8,8 +8,8 @@ use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
-use perigrain_world::outside::{Asked, Told};
-use perigrain_world::{GroupId, Key, Outside, Vectors, World};
+use perigrain_world::outside::{Asked, Each, Told};
+use perigrain_world::{GroupId, Key, Numbers, Outside, Vectors, World};
 
 /// The style.
 pub struct External;
@@ -17,6 +17,63 @@ pub struct External;
 /// Under which name the world keeps a fix's forces and the program it talks to.
 pub fn name(id: &str) -> String {
     format!("external/{id}")
+}
+
+/// The columns that keep what was told of each particle: energies, and virials as two vectors.
+#[derive(Clone, Copy)]
+pub struct Kept {
+    energy: Numbers,
+    virial: [Vectors; 2],
+}
+
+impl Kept {
+    /// Those of a fix.
+    pub fn new(id: &str) -> Self {
+        let key = Key::<()>::new(&name(id));
+        Self { energy: key.with("/energy"), virial: ["/normal", "/shear"].map(|part| key.with(part)) }
+    }
+
+    /// Keeps what was said; what stands behind the last particle is left out.
+    ///
+    /// # Errors
+    /// Fewer values than particles.
+    pub fn keep(self, w: &mut World, id: &str, each: Each) -> Result<()> {
+        let n = w.n();
+        let lengths = [each.energy.as_ref().map(Vec::len), each.virial.as_ref().map(Vec::len)];
+        if let Some(few) = lengths.into_iter().flatten().find(|length| *length < n) {
+            let text = format!("fix external `{id}` was told of {few} particles, and there are {n}");
+            return Err(Diagnostic::error(Code::OUTSIDE, None, text).into());
+        }
+        if let Some(energy) = each.energy {
+            w.columns.scalar(self.energy, n).copy_from_slice(&energy[..n]);
+        }
+        if let Some(virial) = each.virial {
+            for (part, key) in self.virial.into_iter().enumerate() {
+                let three = |v: &[f64; 6]| [v[3 * part], v[3 * part + 1], v[3 * part + 2]];
+                *w.columns.vector(key, n) = virial[..n].iter().map(three).collect();
+            }
+        }
+        Ok(())
+    }
+
+    fn remove(self, w: &mut World) {
+        w.columns.remove(self.energy);
+        self.virial.into_iter().for_each(|key| w.columns.remove(key));
+    }
+
+    /// Adds energies and virials where they are asked for.
+    fn add(self, w: &mut World, (energy, virial): (bool, bool)) {
+        let World { columns, tally, .. } = w;
+        if let Some(own) = columns.get_scalar(self.energy).filter(|_| energy) {
+            tally.fix_atom.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        }
+        for (part, key) in self.virial.into_iter().enumerate() {
+            let Some(own) = columns.get_vector(key).filter(|_| virial) else { continue };
+            for (sum, own) in tally.atom_fixes.iter_mut().zip(own) {
+                (0..3).for_each(|k| sum[3 * part + k] += own[k]);
+            }
+        }
+    }
 }
 
 impl Style for External {
@@ -34,7 +91,9 @@ impl Style for External {
                    (`lmp.numpy.fix_external_get_force(ID)`). Forces stay with their particles until they are written anew; \
                    those of new particles are 0. In minimizations the function is called at every evaluation and must say the energy of its forces. \
                    Scalar (extensive): the energy the program says (`fix_external_set_energy_global`), part of the potential \
-                   energy unless `fix_modify ID energy no`. The virial it says (`fix_external_set_virial_global`) counts in \
+                   energy unless `fix_modify ID energy no`. Energies and virials that it says of each particle \
+                   (`fix_external_set_energy_peratom`, `fix_external_set_virial_peratom`) count in `compute pe/atom` and \
+                   `stress/atom`, in no sum; they stay with their particles as forces do (LAMMPS forgets them with every step). The virial it says (`fix_external_set_virial_global`) counts in \
                    pressures, unless `fix_modify ID virial no`. `fix_modify ID vector N`: the fix offers N values of the program (intensive), which \
                    `fix_external_set_vector` sets. Forces and functions do not come back from a restart file. In a terminal nobody hosts the run: \
                    `pf/array` adds nothing there, and `pf/callback` is refused where it would be called.",
@@ -54,8 +113,8 @@ impl FixStyle for External {
         };
         let apply = args.integer_from(1, "how many steps lie between two additions of the forces")?;
         let key = Key::new(&name(cx.id));
-        let id = cx.id.to_string();
-        Ok(Box::new(Declared { id, group: cx.group, key, call, apply, virial: true, length: 0 }))
+        let (id, kept) = (cx.id.to_string(), Kept::new(cx.id));
+        Ok(Box::new(Declared { id, group: cx.group, key, kept, call, apply, virial: true, length: 0 }))
     }
 }
 
@@ -64,6 +123,7 @@ struct Declared {
     id: String,
     group: GroupId,
     key: Vectors,
+    kept: Kept,
     /// Steps between calls, if there are calls.
     call: Option<i64>,
     /// Steps between additions.
@@ -84,6 +144,7 @@ impl Fix for Declared {
 
     fn remove(&self, w: &mut World) {
         w.columns.remove(self.key);
+        self.kept.remove(w);
         w.parts.outside.remove(self.key.of());
     }
 
@@ -91,6 +152,7 @@ impl Fix for Declared {
         let (span, own) = (cx.span(), self.clone());
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
+        let counted = cx.energy_fixes().contains(&format!("f_{}", self.id));
         let access = Needs::new().read(X | MASK | FACTS).add(F | TALLY).write(SLOTS);
         let access = match self.call {
             Some(_) => access.read(TAG).write(COLUMNS),
@@ -111,6 +173,7 @@ impl Fix for Declared {
                 });
             }
             let mut told = outside.map_or_else(Told::default, |program| program.told());
+            own.kept.add(w, (t.atom_energy && counted, t.atom_virial && own.virial));
             if own.virial && t.virial {
                 (0..6).for_each(|k| w.tally.fixes[k] += told.virial[k]);
             }
@@ -157,7 +220,10 @@ impl Declared {
         let answer = outside.and_then(|program| program.call(asked));
         *w.columns.vector(self.key, n) = f;
         match answer {
-            Some(Ok(())) => Ok(()),
+            Some(Ok(())) => match outside {
+                Some(program) => self.kept.keep(w, &self.id, program.each()),
+                None => Ok(()),
+            },
             Some(Err(words)) => {
                 let text =
                     format!("the function of fix external `{}` failed in step {}: {words}", self.id, t.step);
@@ -196,6 +262,11 @@ mod tests {
 
         fn told(&self) -> Told {
             Told { energy: 2.5, virial: [1.0; 6], vector: vec![7.0] }
+        }
+
+        fn each(&self) -> Each {
+            let virial = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+            Each { energy: Some(vec![0.5, 1.5, 9.0]), virial: Some(vec![virial; 2]) }
         }
     }
 
@@ -247,5 +318,26 @@ mod tests {
         for words in ["", "pf/array", "pf/array 0", "pf/callback 1", "pf/callback 0 1", "pf/file 1"] {
             assert!(b.fix(&External, words).is_err(), "{words}");
         }
+    }
+
+    #[test]
+    fn energies_and_virials_of_particles_stay_until_they_are_told_anew() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
+        let fix = b.fix(&External, "pf/callback 2 2").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
+        let kept = Kept::new("f");
+        let few = kept.keep(&mut b.world, "f", Each { energy: Some(vec![1.0]), virial: None }).unwrap_err();
+        assert!(few.to_string().contains("told of 1 particles, and there are 2"), "{few}");
+        kept.keep(&mut b.world, "f", Program.each()).unwrap();
+        b.world.tally.clear(0, true, true, 2);
+        b.world.tally.clear_atom_virial(true, 2);
+        kept.add(&mut b.world, (true, true));
+        assert_eq!(b.world.tally.fix_atom, [0.5, 1.5]);
+        assert_eq!(b.world.tally.atom_fixes[1], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        kept.add(&mut b.world, (false, false));
+        assert_eq!(b.world.tally.fix_atom, [0.5, 1.5]);
+        fix.remove(&mut b.world);
+        assert!(b.world.columns.names().is_empty());
     }
 }

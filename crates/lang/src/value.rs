@@ -82,6 +82,10 @@ pub trait Env {
     fn sees_particles(&self) -> bool {
         true
     }
+    /// Whether the deck is only looked at: no function of another program is called then.
+    fn only_looks(&self) -> bool {
+        false
+    }
     /// Whether a file may be there in a run that is not there, or is another one, where a deck is only looked at.
     fn may_be_written(&self, _path: &str) -> bool {
         false

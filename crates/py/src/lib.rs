@@ -3,9 +3,11 @@
 //! The types that matter most: [`Scene`], a session behind a lock; [`Memory`], a column of particles that Python looks into.
 
 mod errors;
+mod functions;
 mod looking;
 mod memory;
 mod outside;
+mod program;
 mod scene;
 mod screen;
 mod values;
@@ -26,6 +28,8 @@ mod _core {
     use super::memory::Memory;
     #[pymodule_export]
     use super::outside::Handle;
+    #[pymodule_export]
+    use super::program::main;
     #[pymodule_export]
     use super::scene::{Scene, styles};
 

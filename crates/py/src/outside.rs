@@ -3,7 +3,7 @@
 use super::values;
 use perigrain::session::Rows;
 use perigrain::world::Outside;
-use perigrain::world::outside::{Asked, Told};
+use perigrain::world::outside::{Asked, Each, Told};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
@@ -19,6 +19,8 @@ pub struct Hook(Mutex<State>);
 struct State {
     function: Option<Py<PyAny>>,
     told: Told,
+    /// What was said of each particle and nobody has asked for yet.
+    each: Each,
     /// What the function has ended with.
     raised: Option<PyErr>,
 }
@@ -69,6 +71,10 @@ impl Outside for Hook {
     fn told(&self) -> Told {
         self.state().told.clone()
     }
+
+    fn each(&self) -> Each {
+        std::mem::take(&mut self.state().each)
+    }
 }
 
 /// Hands Python copies, and takes the forces over if it ends well.
@@ -84,6 +90,18 @@ fn called(py: Python<'_>, function: &Py<PyAny>, asked: Asked<'_>) -> PyResult<()
         }
         _ => Err(PyValueError::new_err("there are more or fewer forces than particles")),
     }
+}
+
+/// Energies and virials of particles from bytes.
+pub fn each_of(energy: Option<&[u8]>, virial: Option<&[u8]>) -> PyResult<Each> {
+    let reals = |bytes: &[u8]| match values::taken(bytes, false)? {
+        Rows::Reals(list) => Ok(list),
+        Rows::Wholes(_) => Err(PyValueError::new_err("whole numbers are no energies")),
+    };
+    let energy = energy.map(reals).transpose()?;
+    let virial = virial.map(reals).transpose()?;
+    let six = |c: &[f64]| [c[0], c[1], c[2], c[3], c[4], c[5]];
+    Ok(Each { energy, virial: virial.map(|list| list.chunks_exact(6).map(six).collect()) })
 }
 
 /// What a fix external talks to, as the package has it in hand.
@@ -106,6 +124,21 @@ impl Handle {
     /// Says their virial.
     fn virial(&self, virial: [f64; 6]) {
         self.0.state().told.virial = virial;
+    }
+
+    /// Says energies and virials of particles, for the call that is under way.
+    #[pyo3(signature = (energy, virial))]
+    fn each(&self, energy: Option<&[u8]>, virial: Option<&[u8]>) -> PyResult<()> {
+        let said = each_of(energy, virial)?;
+        let mut state = self.0.state();
+        let own = &mut state.each;
+        if said.energy.is_some() {
+            own.energy = said.energy;
+        }
+        if said.virial.is_some() {
+            own.virial = said.virial;
+        }
+        Ok(())
     }
 
     /// Sets one of the values, from 1.

@@ -1,8 +1,9 @@
 //! A session behind a lock, as the package `perigrain` drives it.
 
 use super::errors;
+use super::functions::Library;
 use super::memory::{Looked, Memory};
-use super::outside::{Handle, Hook};
+use super::outside::{Handle, Hook, each_of};
 use super::screen::Screen;
 use super::values;
 use super::working::{at_once, beside, words};
@@ -30,6 +31,8 @@ struct Inner {
     session: Option<Session>,
     looked: Looked,
     screen: Screen,
+    /// The functions of variables of style python.
+    library: Arc<Library>,
     /// What fixes external talk to, by their ids.
     hooks: BTreeMap<String, Arc<Hook>>,
     why: &'static str,
@@ -66,7 +69,7 @@ impl Scene {
     /// Something short, done at once; `lent` says whether columns that are looked at must be kept from moving.
     fn ask<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
         let mut inner = self.lock(py)?;
-        let Inner { session, looked, screen, why, .. } = &mut *inner;
+        let Inner { session, looked, screen, library, why, .. } = &mut *inner;
         let Some(session) = session else { return Err(errors::closed(py, why)) };
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             if !lent {
@@ -77,6 +80,9 @@ impl Scene {
             outcome
         }));
         screen.show(py);
+        if let Some(e) = library.raised() {
+            return Err(e);
+        }
         match outcome {
             Ok(outcome) => outcome.map_err(|e| {
                 let e = session.sources.adopt(e);
@@ -94,7 +100,7 @@ impl Scene {
         job: impl FnOnce(&mut Session) -> Deck<Heard> + Send,
     ) -> PyResult<Option<i32>> {
         let mut inner = self.lock(py)?;
-        let Inner { session, looked, screen, hooks, why } = &mut *inner;
+        let Inner { session, looked, screen, hooks, library, why } = &mut *inner;
         let Some(session) = session else { return Err(errors::closed(py, why)) };
         let lent = looked.lend(session, !light);
         if let Err(e) = lent {
@@ -114,7 +120,9 @@ impl Scene {
         looked.give_back(session);
         screen.show(py);
         // What a function of Python raised is raised on, as Python does.
-        if let Some(e) = ended.raised.or_else(|| hooks.values().find_map(|hook| hook.raised())) {
+        let raised = |library: &Library| library.raised().filter(|_| outcome.is_err());
+        let raised = ended.raised.or_else(|| raised(library));
+        if let Some(e) = raised.or_else(|| hooks.values().find_map(|hook| hook.raised())) {
             return Err(e);
         }
         outcome.map(|heard| heard.quit).map_err(|e| {
@@ -142,12 +150,15 @@ impl Scene {
     #[new]
     fn new(py: Python<'_>, words: Vec<String>) -> PyResult<Self> {
         let screen = Screen::default();
-        let session = host(words, Box::new(screen.clone())).map_err(|usage| {
+        let mut session = host(words, Box::new(screen.clone())).map_err(|usage| {
             let help = usage.help.map_or(String::new(), |help| format!(" ({help})"));
             PyValueError::new_err(format!("{}{help}", usage.message))
         })?;
         screen.show(py);
+        let library = Arc::new(Library::default());
+        session.set_functions(library.clone());
         Ok(Self(Mutex::new(Inner {
+            library,
             session: Some(session),
             looked: Looked::default(),
             screen,
@@ -355,6 +366,19 @@ impl Scene {
         })?;
         self.lock(py)?.hooks.insert(id.to_string(), hook.clone());
         Ok(Handle(hook))
+    }
+
+    /// Says energies and virials of particles to a fix external, between commands.
+    #[pyo3(signature = (id, energy, virial))]
+    fn external_each(
+        &self,
+        py: Python<'_>,
+        id: &str,
+        energy: Option<&[u8]>,
+        virial: Option<&[u8]>,
+    ) -> PyResult<()> {
+        let each = each_of(energy, virial)?;
+        self.ask(py, false, |session| session.told_each(id, each))
     }
 
     /// Refuses an index behind the values that a fix offers.

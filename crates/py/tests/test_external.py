@@ -54,6 +54,35 @@ def test_forces_stay_with_their_particles(make):
     assert lmp.fix_external_get_force("array")[0][:3] == [0.0, 2.0, 0.0]
 
 
+def test_energies_and_virials_of_particles(make):
+    lmp = make(FREE + "fix pull all external pf/callback 1 1\ncompute e all pe/atom\ncompute s all stress/atom NULL virial\n")
+    lmp.command("compute sum all reduce sum c_e c_s[1]\nthermo_style custom step pe c_sum[1] c_sum[2]")
+
+    def pull(caller, step, n, ids, x, f):
+        f[:] = 0.0
+        # More than there are: as in LAMMPS, what stands behind the last particle is left out.
+        lmp.fix_external_set_energy_peratom("pull", [float(k) for k in ids] + [9.0])
+        lmp.numpy.fix_external_set_virial_peratom("pull", np.outer(ids, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
+
+    lmp.set_fix_external_callback("pull", pull)
+    lmp.command("run 1")
+    assert lmp.numpy.extract_compute("e", 1, 1).tolist() == [1.0, 2.0]
+    assert lmp.numpy.extract_compute("s", 1, 2)[1].tolist() == [-2.0, -4.0, -6.0, -8.0, -10.0, -12.0]
+    # they count in no sum of the scene
+    assert lmp.get_thermo("pe") == 0.0
+    lmp.command("fix_modify pull energy no virial no")
+    lmp.command("run 0")
+    assert lmp.numpy.extract_compute("e", 1, 1).tolist() == [0.0, 0.0]
+    assert not lmp.numpy.extract_compute("s", 1, 2).any()
+
+
+def test_what_was_said_between_runs_stays_with_the_particles(make):
+    lmp = make(FREE + "fix array all external pf/array 1\ncompute e all pe/atom fix\ncompute m all reduce max c_e\nthermo_style custom step c_m\n")
+    lmp.fix_external_set_energy_peratom("array", np.array([3.0, 4.0]))
+    lmp.commands_string("group first id 1\ndelete_atoms group first compress no\nrun 1")
+    assert lmp.numpy.extract_compute("e", 1, 1).tolist() == [4.0]
+
+
 def test_an_exception_ends_the_run_and_is_raised(make):
     lmp = make(FREE + "fix pull all external pf/callback 1 1\n")
 
@@ -97,10 +126,14 @@ def test_mistakes_are_named(make):
     for call, words in [
         (lambda: lmp.set_fix_external_callback("pull", 3), "a function is needed"),
         (lambda: lmp.fix_external_set_virial_global("pull", [1.0]), "six numbers"),
-        (lambda: lmp.fix_external_set_energy_peratom("pull", [1.0]), "energy_global"),
+        (lambda: lmp.fix_external_set_energy_peratom("pull", [[1.0], [2.0]]), "shape"),
+        (lambda: lmp.fix_external_set_virial_peratom("pull", [1.0, 2.0]), "shape"),
+        (lambda: lmp.fix_external_set_virial_peratom("pull", [[1.0] * 6, [1.0]]), "as many for each"),
     ]:
         with pytest.raises(perigrain.DataError, match=words):
             call()
+    with pytest.raises(perigrain.DeckError, match="told of 1 particles, and there are 2"):
+        lmp.fix_external_set_energy_peratom("pull", [1.0])
     with pytest.raises(perigrain.DeckError, match="has 0 values"):
         lmp.fix_external_set_vector("pull", 1, 1.0)
     # another fix of this name has no function any more

@@ -26,6 +26,15 @@ pub struct Told {
     pub vector: Vec<f64>,
 }
 
+/// What the program says of each particle, in the order in which they stand; what stays unsaid stays as it was.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Each {
+    /// Potential energies [energy].
+    pub energy: Option<Vec<f64>>,
+    /// Virials [energy]: xx yy zz xy xz yz.
+    pub virial: Option<Vec<[f64; 6]>>,
+}
+
 /// A program that hosts the session, as one fix sees it.
 ///
 /// It is no state of the scene: copies of a scene talk to the same program, and no file holds it.
@@ -38,4 +47,9 @@ pub trait Outside: Debug + Send + Sync {
 
     /// What it says at the moment.
     fn told(&self) -> Told;
+
+    /// What it has said of each particle since this was asked last.
+    fn each(&self) -> Each {
+        Each::default()
+    }
 }

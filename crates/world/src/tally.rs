@@ -43,6 +43,9 @@ pub struct Tally {
     /// Of fixes that were told to add theirs.
     #[serde(default)]
     pub atom_fixes: Vec<[f64; 6]>,
+    /// Energy per particle of fixes that have such; empty when not asked for.
+    #[serde(default)]
+    pub fix_atom: Vec<f64>,
 }
 
 /// Adds what two `ends`, `d` apart, have in a virial by the force `f` on the first of them: d ⊗ f, and half of it to each of
@@ -70,8 +73,10 @@ impl Tally {
         self.bond_atom.clear();
         self.styles.clear();
         self.atom.clear();
+        self.fix_atom.clear();
         if atoms {
             self.atom.resize(n, 0.0);
+            self.fix_atom.resize(n, 0.0);
         }
         self.clear_atom_virial(false, n);
     }
@@ -89,7 +94,7 @@ impl Tally {
 
     /// Keeps what belongs to particle `old[k]` at each new index `k`.
     pub fn gather(&mut self, old: &[usize]) {
-        for list in [&mut self.atom, &mut self.bond_atom] {
+        for list in [&mut self.atom, &mut self.bond_atom, &mut self.fix_atom] {
             pick(list, old);
         }
         for list in [&mut self.atom_virial, &mut self.atom_bonds, &mut self.atom_fixes] {

@@ -9,6 +9,7 @@ use crate::cli::sweeping::listen;
 use crate::cli::sweeping::show::Show;
 use crate::cli::{FAILED, INTERRUPTED, OK, cases, deck, show};
 use crate::sweep;
+use crate::sweep::starter::Starter;
 use perigrain_base::diag::Sources;
 use perigrain_out::file::replace;
 use std::io::IsTerminal;
@@ -106,7 +107,7 @@ fn manner(wanted: &Wanted) -> Result<Manner, Usage> {
             .help("give the path of its program"));
     }
     let program =
-        std::env::current_exe().map_err(|e| Usage::new(format!("the program does not find itself: {e}")))?;
+        Starter::itself().map_err(|e| Usage::new(format!("the program does not find itself: {e}")))?;
     Ok(Manner {
         folder: wanted.out.clone().unwrap_or_else(|| "bench.suite".into()),
         threads: wanted.threads.unwrap_or(1).max(1),

@@ -9,6 +9,7 @@ use super::progress::Tally;
 use super::{FAILED, INTERRUPTED, OK, deck, signals};
 use crate::session::axes::{Axis, combined, zip};
 use crate::session::{Mode, Swept, folder_of};
+use crate::sweep::starter::Starter;
 use crate::sweep::{self, Job, Results, Settings, Standing, Sweep, table};
 use args::{List, Request};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail};
@@ -137,7 +138,7 @@ pub(super) fn prepared(request: &Request, swept: Swept, text: String) -> Result<
         Deck::File(path) => folder_of(path),
     };
     let beside = if beside.as_os_str().is_empty() { Path::new(".").to_owned() } else { beside };
-    let program = match std::env::current_exe() {
+    let program = match Starter::itself() {
         Ok(program) => program,
         Err(e) => return fail(Code::NO_FILE, None, format!("the program does not find itself: {e}")),
     };

@@ -78,8 +78,9 @@ pub(super) const VARIABLE: Entry = (
             a name that exists does nothing: that is how `-var NAME value` on the command line wins over the deck, and how \
             a loop does not start over. The other styles replace a variable of the same style and refuse to replace one of \
             another style.\n\n\
-            A formula may stand in quotes or, unlike LAMMPS, as several words. `variable … python` is refused: there is no \
-            Python inside.",
+            A formula may stand in quotes or, unlike LAMMPS, as several words. `variable NAME python FUNCTION` is what a function in \
+            Python gives, called at each use; only where Python hosts the run, with the command `python` before it \
+            ([Drive it from Python](../python.md)). In a terminal it is refused: there is no Python inside.",
         example: "variable v index 35 70 160\n\
             variable n loop 3 pad\n\
             variable energy equal 0.5*mass(ball)*v_v^2\n\

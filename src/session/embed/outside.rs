@@ -3,6 +3,7 @@
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_fixes::external;
+use perigrain_world::outside::Each;
 use perigrain_world::{Key, Outside};
 use std::sync::Arc;
 
@@ -24,6 +25,15 @@ impl Session {
     /// Whether a fix external talks to this program.
     pub fn talks(&self, id: &str, program: &Arc<dyn Outside>) -> bool {
         self.world.parts.outside.look_up(&external::name(id)).is_some_and(|now| Arc::ptr_eq(now, program))
+    }
+
+    /// Tells a fix external of each particle, in the order in which they stand.
+    ///
+    /// # Errors
+    /// No such fix, or fewer values than particles.
+    pub fn told_each(&mut self, id: &str, each: Each) -> Result<()> {
+        self.known_fix(id)?;
+        external::Kept::new(id).keep(&mut self.world, id, each)
     }
 
     /// Refuses an index behind the values that a fix offers.

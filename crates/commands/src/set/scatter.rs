@@ -128,8 +128,8 @@ mod tests {
         assert_eq!(strength(&w)[6], 0.5);
     }
 
-    /// Neighbours at 1/8 of the length have nearly one normal number: they differ by √(2 (1 − exp(−1/128))) = 0.12 deviations; a
-    /// hundredth of a deviation of 0.1 is less than most differ without it.
+    /// Neighbours at 1/8 of the length differ by √(2 (1 − exp(−1/128))) = 0.12 deviations, others by √2: a tenth. Every eighth
+    /// particle begins a row, and is farther from the one before.
     #[test]
     fn correlated_factors_are_a_field_over_places() {
         let mut w = solid();

@@ -219,16 +219,7 @@ impl Expr {
                 _ => {}
             }
         }
-        for name in names {
-            if seen.contains(&name) {
-                continue;
-            }
-            let formula = vars.expr(&name);
-            seen.push(name.clone());
-            if let Some(e) = formula {
-                e.collect(vars, out, seen);
-            }
-        }
+        names.iter().for_each(|name| collect_of(name, vars, out, seen));
     }
 
     fn place(&self, range: &Range<usize>) -> Span {
@@ -238,6 +229,27 @@ impl Expr {
     /// Names with their places in the deck.
     fn words(&self, names: &[Name]) -> Vec<Word> {
         names.iter().map(|n| Word::new(n.text.as_str(), self.place(&n.range))).collect()
+    }
+}
+
+/// What a variable needs from outside, through its formula or what its function in Python is given.
+fn collect_of(name: &str, vars: &Vars, out: &mut Vec<Dep>, seen: &mut Vec<String>) {
+    if seen.iter().any(|known| known == name) {
+        return;
+    }
+    seen.push(name.to_string());
+    if let Some(e) = vars.expr(name) {
+        e.collect(vars, out, seen);
+    }
+    vars.inputs(name).for_each(|input| collect_of(input, vars, out, seen));
+}
+
+impl Vars {
+    /// What a variable's value needs from outside, also through other variables.
+    pub fn depends(&self, name: &str) -> Vec<Dep> {
+        let mut out = vec![];
+        collect_of(name, self, &mut out, &mut vec![]);
+        out
     }
 }
 

@@ -27,6 +27,7 @@ const STYLES: &[(&str, Kind)] = &[
     ("vector", Kind::Vector),
     ("timer", Kind::Timer),
     ("internal", Kind::Internal),
+    ("python", Kind::Python),
 ];
 
 /// What `timer` variables count from.
@@ -47,6 +48,9 @@ impl Vars {
             return Ok(());
         }
         let kind = kind_of(style)?;
+        if kind == Kind::Python && self.functions().is_none() {
+            return Err(no_python(style).into());
+        }
         let old = self.find(&name.text);
         if old.is_some_and(|v| !v.adrift) && kind.stays() {
             return Ok(());
@@ -139,6 +143,7 @@ impl Vars {
                 let (text, span) = joined(args.rest());
                 Data::Formula(self.formula(&text, span)?)
             }
+            Kind::Python => Data::Python(args.expect("the function's name")?.text.clone()),
             Kind::Timer => Data::Number(BIRTH.elapsed().as_secs_f64()),
             Kind::Internal => Data::Number(args.number("the value")?),
         };
@@ -201,14 +206,18 @@ impl Vars {
     }
 }
 
+/// The refusal of Python where no Python hosts the session.
+pub fn no_python(word: &Word) -> Diagnostic {
+    let text = "perigrain has no Python inside, so no python variables";
+    blame(word, Code::NOT_SUPPORTED, text)
+        .help("a deck that Python works off has them: `perigrain.lammps().file(…)`")
+        .help("or compute the value outside and pass it by `-var NAME value`")
+}
+
 /// The kind a style word names.
 fn kind_of(style: &Word) -> Result<Kind> {
     if let Some((_, kind)) = STYLES.iter().find(|(name, _)| *name == style.text) {
         return Ok(*kind);
-    }
-    if style.text == "python" {
-        let d = blame(style, Code::NOT_SUPPORTED, "perigrain has no Python inside, so no python variables");
-        return Err(d.help("compute the value outside and pass it by `-var NAME value`").into());
     }
     let d = blame(style, Code::UNKNOWN_STYLE, format!("`{}` is no style of variable", style.text));
     let names: Vec<&str> = STYLES.iter().map(|(n, _)| *n).chain(["delete"]).collect();

@@ -11,7 +11,7 @@ impl Variable {
         match &self.data {
             Data::List { values, .. } => values.hash(&mut h),
             Data::Range { last, width, .. } => (last, width).hash(&mut h),
-            Data::Text(t) | Data::Getenv(t) => t.hash(&mut h),
+            Data::Text(t) | Data::Getenv(t) | Data::Python(t) => t.hash(&mut h),
             Data::Lines(l) => l.path().hash(&mut h),
             Data::Atoms(a) => a.path().hash(&mut h),
             Data::Format { name, format } => (name, format).hash(&mut h),

@@ -5,6 +5,7 @@ mod files;
 mod hash;
 mod moving;
 mod partition;
+pub mod python;
 mod text;
 
 use super::expr::Expr;
@@ -53,6 +54,8 @@ pub enum Kind {
     Timer,
     /// `internal`: a number that commands set.
     Internal,
+    /// `python`: what a function of the program that hosts the session gives.
+    Python,
 }
 
 impl Kind {
@@ -74,6 +77,7 @@ impl Kind {
             Kind::Vector => "vector",
             Kind::Timer => "timer",
             Kind::Internal => "internal",
+            Kind::Python => "python",
         }
     }
 
@@ -119,6 +123,7 @@ enum Data {
     Format { name: String, format: String },
     Formula(Arc<Expr>),
     Number(f64),
+    Python(String),
 }
 
 #[derive(Clone, Debug)]
@@ -159,6 +164,10 @@ pub struct Vars {
     environment: Arc<BTreeMap<String, String>>,
     /// Which of several partitions works the deck off, if there are several.
     partition: Option<Partition>,
+    /// The program that has functions in Python, if one hosts the session.
+    program: Option<Arc<dyn python::Functions>>,
+    /// Which of its functions are known, and what they are given.
+    known: Arc<BTreeMap<String, python::Function>>,
     /// The sum of all variables' hashes.
     state: u64,
     /// Counts changes of names and styles.

@@ -1,5 +1,6 @@
 //! A variable's value: as text in a line, as a value in a formula.
 
+use super::python::Given;
 use super::{Data, Kind, Variable, Vars};
 use crate::expr::{Trail, Yields, element};
 use crate::number::{self, printf, value_text};
@@ -24,7 +25,7 @@ impl Vars {
         self.text_below(name, longer, span, env, &mut Trail::default())
     }
 
-    fn text_below(
+    pub(super) fn text_below(
         &self,
         name: &str,
         longer: &str,
@@ -83,6 +84,10 @@ impl Vars {
                     _ => None,
                 }
             }
+            Data::Python(function) => {
+                let run = |trail: &mut Trail| self.called(function, Some(name), span, env, trail);
+                trail.inside(&below(name), Yields::Any, run)?.map(Given::text)
+            }
             Data::Format { name: of, format } => {
                 let own = below(name);
                 let value =
@@ -107,6 +112,9 @@ impl Vars {
             Data::List { values, .. } => values.join(" "),
             Data::Range { now, last, .. } => format!("{now} … {last}"),
             Data::Text(t) | Data::Getenv(t) => t.clone(),
+            Data::Python(function) => {
+                self.inputs(name).fold(function.clone(), |text, input| text + " v_" + input)
+            }
             Data::Lines(l) => format!("{} (now {})", l.path(), l.now()),
             Data::Atoms(a) => a.path().to_owned(),
             Data::Format { name, format } => format!("{name} {format}"),
@@ -145,6 +153,15 @@ impl Vars {
                     other => other,
                 };
                 picked_particle(all, r, env)
+            }
+            Data::Python(function) if r.index.is_empty() => {
+                let run = |trail: &mut Trail| self.called(function, Some(&r.name), r.span, env, trail);
+                match trail.inside(r, Yields::Any, run)? {
+                    None => Ok(Value::Unknown),
+                    Some(Given::Whole(k)) => Ok(Value::Number(k as f64)),
+                    Some(Given::Real(a)) => Ok(Value::Number(a)),
+                    Some(other) => no_text(&r.name, &other.text(), r.span),
+                }
             }
             Data::Atoms(file) => picked_particle(file.values(r.span, env)?, r, env),
             Data::Number(v) if r.index.is_empty() => Ok(Value::Number(env.control(&r.name).unwrap_or(*v))),
@@ -188,6 +205,14 @@ impl Trail {
         self.yields = outer;
         self.leave();
         Ok(v)
+    }
+}
+
+/// The number that a function gave as a text.
+fn no_text(name: &str, text: &str, span: Span) -> Result<Value> {
+    match number::parse(text.trim()) {
+        Some(a) => Ok(Value::Number(a)),
+        None => fail(Code::WRONG_KIND, span, format!("variable `{name}` is `{text}`, which is no number")),
     }
 }
 

@@ -50,7 +50,8 @@ impl Style for PeriPmb {
                 still pushes with c s w V_j while it is shorter than at the start, so that crushed parts do not pass through \
                 each other; bonds of `peri_crack` too, and under state-based laws with c = 18K/(πδ⁴). `nofail region` makes \
                 bonds last whose one end lies in the region at the start. `repulsion no` leaves the short-range force out, \
-                where contact laws keep particles apart (`group … surface`). Of those laws `family exclude` keeps members of one \
+                where contact laws keep particles apart (`group … surface`). Strength and stiffness may differ from particle to particle, also at random: `set … peri/strength` and \
+                `peri/stiffness`. Of those laws `family exclude` keeps members of one \
                 family out for good, whether their bond lives or not; `family broken` as long as it lives: surfaces that were \
                 torn apart meet again from the step after. Spheres of bonded neighbours must then not overlap \
                 (`set … peri/radius half`).",

@@ -5,6 +5,7 @@
 """
 
 from ._core import VERSION as __version__
+from .benching import BenchError, bench
 from .constants import *  # noqa: F403  LAMMPS' module has them at its top, too
 from .errors import BusyError, ClosedError, DataError, DeckError, InternalError, PerigrainError, StaleError
 from .lmp import lammps
@@ -13,6 +14,7 @@ from .reading import Frame, Table, read_dump, read_log, read_restart
 from .scene import Picture, Scene, calibrate
 
 __all__ = [
+    "BenchError",
     "BusyError",
     "ClosedError",
     "DataError",
@@ -26,6 +28,7 @@ __all__ = [
     "Scene",
     "StaleError",
     "Table",
+    "bench",
     "calibrate",
     "check",
     "lammps",

@@ -8,6 +8,21 @@ from .errors import DataError
 from .views import pointer
 
 
+def _columns(given: Any, width: int, what: str) -> bytes:
+    """Numbers as bytes, so many for each particle."""
+    import numpy
+
+    try:
+        numbers = numpy.ascontiguousarray(given, dtype=numpy.float64)
+    except (TypeError, ValueError) as e:
+        raise DataError(f"{what} of particles are numbers, as many for each: {e}") from None
+    wanted = (width,) if width > 1 else ()
+    if numbers.ndim != 1 + len(wanted) or numbers.shape[1:] != wanted:
+        shape = "(n,)" if width == 1 else f"(n, {width})"
+        raise DataError(f"{what} of particles have the shape {shape}, not {numbers.shape}")
+    return numbers.tobytes()
+
+
 class External:
     """The methods of a scene that concern its fixes external."""
 
@@ -60,12 +75,19 @@ class External:
         self._outside(fix_id).value(max(int(idx), 0), float(val))
 
     def fix_external_set_energy_peratom(self, fix_id: str, eng: Any) -> None:
-        """No fix here has energies per particle."""
-        raise DataError("a fix external has no energies per particle here: say their sum by fix_external_set_energy_global")
+        """Says the energy of each particle for `compute pe/atom`, in the order in which they stand; it counts in no sum."""
+        self._external_each(fix_id, _columns(eng, 1, "energies"), None)
 
     def fix_external_set_virial_peratom(self, fix_id: str, virial: Any) -> None:
-        """A fix external has no virials per particle here."""
-        raise DataError("a fix external has no virials per particle here: say their sum by fix_external_set_virial_global")
+        """Says the virial of each particle for `compute stress/atom`: six numbers each, xx, yy, zz, xy, xz, yz."""
+        self._external_each(fix_id, None, _columns(virial, 6, "virials"))
+
+    def _external_each(self, fix_id: str, energy: Optional[bytes], virial: Optional[bytes]) -> None:
+        outside = self._outside(fix_id)
+        if self._scene.at_work:
+            outside.each(energy, virial)
+        else:
+            self._scene.external_each(fix_id, energy, virial)
 
     def _external_forces(self, fix_id: str) -> Any:
         self._outside(fix_id)

@@ -52,6 +52,14 @@ class numpy_wrapper:
         """The forces that a fix external adds, `(n, 3)`: looks into the scene's memory as `extract_atom` does."""
         return view(self.lmp._external_forces(fix_id))
 
+    def fix_external_set_energy_peratom(self, fix_id: str, eng: Any) -> None:
+        """Says the energy of each particle, as the method of the scene."""
+        self.lmp.fix_external_set_energy_peratom(fix_id, eng)
+
+    def fix_external_set_virial_peratom(self, fix_id: str, virial: Any) -> None:
+        """Says the virial of each particle, as the method of the scene."""
+        self.lmp.fix_external_set_virial_peratom(fix_id, virial)
+
     def gather_bonds(self) -> Any:
         """Type and two ids of each bond."""
         _, flat = self.lmp.gather_bonds()

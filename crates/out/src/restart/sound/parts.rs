@@ -60,10 +60,10 @@ pub fn regions(w: &World) -> Outcome {
 /// since.
 pub fn stand(w: &World) -> bool {
     let (t, r) = (w.tally.past(), w.rebuild.past());
-    let energies =
-        [t.atom.len(), t.bond_atom.len(), t.atom_virial.len(), t.atom_bonds.len(), t.atom_fixes.len()];
+    let energies = [t.atom.len(), t.bond_atom.len(), t.fix_atom.len()];
+    let virials = [t.atom_virial.len(), t.atom_bonds.len(), t.atom_fixes.len()];
     let places = [r.held.len(), r.kept.x.len()];
-    energies.into_iter().chain(places).all(|len| len == 0 || len == w.n())
+    energies.into_iter().chain(virials).chain(places).all(|len| len == 0 || len == w.n())
 }
 
 pub fn rebuild(w: &World) -> Outcome {

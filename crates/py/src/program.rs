@@ -1,0 +1,15 @@
+//! The whole program, for `python -m perigrain`.
+
+use perigrain::sweep::starter::started_by;
+use pyo3::prelude::*;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Works off a command line; the exit code. `start` are the program and its words that start this one again.
+#[pyfunction]
+pub fn main(py: Python<'_>, start: Vec<OsString>, words: Vec<OsString>) -> u8 {
+    let mut own = start.into_iter();
+    let program = own.next().map(PathBuf::from).unwrap_or_default();
+    started_by(program, own.collect(), words);
+    py.detach(perigrain::cli::work)
+}
