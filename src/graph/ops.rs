@@ -97,7 +97,8 @@ fn corners_moved(w: &World) -> f64 {
     for (a, b) in domain.corners().into_iter().zip(before.corners()) {
         let way = apart(a, b);
         if way > ways[0] {
-            ways = [way, ways[0]];
+            // LAMMPS forgets the one that was farthest so far, and makes its lists at these times.
+            ways = [way, if w.settings.lammps() { ways[1] } else { ways[0] }];
         } else if way > ways[1] {
             ways[1] = way;
         }
