@@ -63,6 +63,11 @@ fn all_ways_of_tilts_agree() {
 }
 
 #[test]
+fn grains_between_faces_that_do_not_repeat_agree() {
+    agrees("open", &[]);
+}
+
+#[test]
 fn boxes_made_and_changed_agree() {
     agrees("boxes", &[]);
 }

@@ -157,17 +157,17 @@ fn check_tilt(cx: &BuildCx, word: &Word, k: usize) -> Result<()> {
         let text = format!("the tilt {} of a flat scene must stay 0", word.text);
         return fail(Code::CONFLICT, word.span, text);
     }
-    if domain.boundary.0[lean::ACROSS[k]].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
-        let axis = ["x", "y", "z"][lean::ACROSS[k]];
-        let text = format!("the faces of `{axis}`, which {} tilts, follow the particles", word.text);
-        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-        return Err(d.help("use `boundary` p or f for this dimension").into());
-    }
     if domain.tilt.is_none() {
         let d = Diagnostic::error(Code::CONFLICT, word.span, "an orthogonal box cannot lean");
         return Err(d
             .help("make it triclinic: `change_box all triclinic`, or `create_box` with a `region prism`")
             .into());
+    }
+    if domain.boundary.0[lean::ACROSS[k]].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
+        let axis = ["x", "y", "z"][lean::ACROSS[k]];
+        let text = format!("the faces of `{axis}`, which {} tilts, follow the particles", word.text);
+        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+        return Err(d.help("use `boundary` p or f for this dimension").into());
     }
     Ok(())
 }
