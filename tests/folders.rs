@@ -8,6 +8,8 @@ mod fixes;
 mod manual;
 #[path = "common/threads.rs"]
 mod threads;
+#[path = "tilted/main.rs"]
+mod tilted;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -41,7 +41,7 @@ fn steps_do_not_allocate() {
     let (kind, volume, mut f) = (vec![1; n], vec![dx * dx * dx; n], vec![[0.0; 3]; n]);
     let mut table = PmbTable::new(1);
     table.set(1, 1, PmbCoeff { c: 1e21, horizon: 3.015 * dx, s00: 0.01, alpha: 0.25 }).unwrap();
-    let bounds = Bounds { lo: [-1.0; 3], hi: [1.0; 3], periodic: [false; 3] };
+    let bounds = Bounds { lo: [-1.0; 3], hi: [1.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
     for layout in [Layout::Auto, Layout::List] {
         let options = FamilyOptions { layout, ..FamilyOptions::new(dx) };
         let view = PeriView { x: &x0, x0: &x0, kind: &kind, volume: &volume, bounds, excluded: None };

@@ -233,7 +233,7 @@ impl Thermo {
                     no_effect(cx, word, "without effect: every warning is said once here");
                 }
                 "triclinic/general" if args.flag("triclinic/general")? => {
-                    let text = "there are no triclinic boxes in perigrain";
+                    let text = "there are no general triclinic boxes in perigrain";
                     return fail(Code::NOT_SUPPORTED, word.span, text);
                 }
                 "triclinic/general" => {}

@@ -43,7 +43,7 @@ impl Session {
         self.check_surfaces(&mut found);
         self.check_breaking(&mut found);
         self.check_box(&mut found);
-        self.check_orthogonal(span, &mut found);
+        self.check_orthogonal(&mut found);
         self.check_variables(&mut found);
         self.check_lattice_units(&mut found);
         found.0.extend(self.graph.thermo.forgotten());
@@ -225,7 +225,7 @@ impl Session {
     }
 
     /// What does not know that boxes may lean is not let into one that may.
-    fn check_orthogonal(&self, span: Span, found: &mut Diagnostics) {
+    fn check_orthogonal(&self, found: &mut Diagnostics) {
         if self.world.domain.as_ref().is_none_or(|d| d.tilt.is_none()) {
             return;
         }
@@ -242,21 +242,6 @@ impl Session {
                     Diagnostic::error(Code::NOT_SUPPORTED, f.span, text).label(deform.span, "changed here"),
                 );
             }
-            if let Some(node) = &self.graph.bond {
-                let text = "bonds do not go with a box whose tilts change";
-                found.push(
-                    Diagnostic::error(Code::NOT_SUPPORTED, node.span, text)
-                        .label(deform.span, "changed here"),
-                );
-            }
-        }
-        let solids = |pair: &dyn Pair| !pair.facts().solids.is_empty();
-        if let Some(node) = &self.graph.pair
-            && (solids(node.pair.as_ref()) || node.pair.parts().into_iter().any(solids))
-        {
-            found.append(orthogonal("a peridynamic solid").at(node.span));
-        } else if self.world.families.is_some() {
-            found.append(orthogonal("a peridynamic solid").at(span));
         }
     }
 

@@ -202,7 +202,7 @@ fn rules_of_volumes_and_breaking_agree_with_the_textbook() {
 fn drifting_through_the_faces_of_a_box_agrees_with_the_textbook() {
     for name in ["bcc", "hcp"] {
         let mut scene = crystal(name, anyhow()).impact(1);
-        scene.bounds = Bounds { lo: [-4.0 * DX; 3], hi: [26.0 * DX; 3], periodic: [true; 3] };
+        scene.bounds = Bounds { lo: [-4.0 * DX; 3], hi: [26.0 * DX; 3], periodic: [true; 3], tilt: [0.0; 3] };
         assert_eq!(families(&scene, Layout::Auto).lattices.len(), 2);
         scene.v.iter_mut().for_each(|v| v[1] += 2000.0);
         check_in(Layout::Auto, "drift", &scene, 70);
@@ -218,7 +218,7 @@ fn bodies_that_go_on_through_the_faces_of_a_box_stay_lists() {
     fcc.fill(&mut scene, [0.0; 3], [side - 0.1, side - 0.1, 4.0]);
     let lo = [scene.x.iter().map(|x| x[0]).fold(f64::INFINITY, f64::min) - 0.1 * DX; 3];
     let hi = lo.map(|lo| lo + side * DX);
-    scene.bounds = Bounds { lo, hi, periodic: [true, true, false] };
+    scene.bounds = Bounds { lo, hi, periodic: [true, true, false], tilt: [0.0; 3] };
     let mut scatter = Scatter(5);
     scene.v.iter_mut().for_each(|v| *v = [0, 1, 2].map(|_| 60.0 * (scatter.next() - 0.5) + 100.0));
     scene.table.set(1, 1, coeff(15e9, 0.004, 0.25)).unwrap();
@@ -276,7 +276,7 @@ fn layouts_say_the_same_while_bonds_break() {
         near(rows.heat, list.heat, all[1].energy.abs());
         let critical = [rows, list].map(|f| f.critical_stretches(&view));
         for i in 0..n {
-            let [a, b] = [rows, list].map(|f| f.neighbours_apart(i, [f64::INFINITY; 3]));
+            let [a, b] = [rows, list].map(|f| f.neighbours_apart(i, Default::default()));
             assert_eq!(a.len(), b.len(), "{name}");
             for ((p, length), (q, other)) in a.iter().zip(&b) {
                 assert_eq!(p, q, "{name}");

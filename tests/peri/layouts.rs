@@ -74,8 +74,12 @@ pub fn rubble() -> Scene {
 pub fn periodic(cells: [i32; 3], jitter: f64) -> Scene {
     let mut s = Scene::new(DX, 4e-8, 1);
     s.fill(DX, cells.map(|n| [0, n - 1]), 1, 2200.0, |_| true);
-    s.bounds =
-        Bounds { lo: [-0.5 * DX; 3], hi: cells.map(|n| (f64::from(n) - 0.5) * DX), periodic: [true; 3] };
+    s.bounds = Bounds {
+        lo: [-0.5 * DX; 3],
+        hi: cells.map(|n| (f64::from(n) - 0.5) * DX),
+        periodic: [true; 3],
+        tilt: [0.0; 3],
+    };
     let mut scatter = Scatter(5);
     for i in 0..s.x.len() {
         s.v[i] = [0, 1, 2].map(|_| 40.0 * (scatter.next() - 0.5) + 200.0);
@@ -201,7 +205,7 @@ fn periodic_bodies_agree_with_the_textbook() {
 #[test]
 fn a_lattice_in_a_periodic_box_may_drift_through_its_faces() {
     let mut scene = impact(1);
-    scene.bounds = Bounds { lo: [-4.0 * DX; 3], hi: [26.0 * DX; 3], periodic: [true; 3] };
+    scene.bounds = Bounds { lo: [-4.0 * DX; 3], hi: [26.0 * DX; 3], periodic: [true; 3], tilt: [0.0; 3] };
     let families = Families::build(&scene.view(), &scene.table, scene.options).unwrap();
     assert_eq!(families.lattices.len(), 2);
     scene.v.iter_mut().for_each(|v| v[1] += 2000.0);

@@ -9,7 +9,8 @@ const PI: f64 = std::f64::consts::PI;
 fn bar(n: [i32; 3], periodic: bool, law: LawKind, layout: Layout, volume: VolumeRule, horizon: f64) -> Scene {
     let mut s = Scene::new(1.0, 1.0, 1);
     s.fill(1.0, n.map(|n| [0, n - 1]), 1, 1.0, |_| true);
-    s.bounds = Bounds { lo: [-0.5; 3], hi: n.map(|n| f64::from(n) - 0.5), periodic: [periodic; 3] };
+    s.bounds =
+        Bounds { lo: [-0.5; 3], hi: n.map(|n| f64::from(n) - 0.5), periodic: [periodic; 3], tilt: [0.0; 3] };
     let c = 18.0 / (PI * horizon.powi(4));
     s.table.set(1, 1, PmbCoeff { c, horizon, s00: f64::INFINITY, alpha: 0.0 }).unwrap();
     (s.options.volume, s.options.layout) = (volume, layout);

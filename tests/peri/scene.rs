@@ -34,7 +34,7 @@ impl Scene {
             volume: vec![],
             density: vec![],
             dt,
-            bounds: Bounds { lo: [-1.0; 3], hi: [1.0; 3], periodic: [false; 3] },
+            bounds: Bounds { lo: [-1.0; 3], hi: [1.0; 3], periodic: [false; 3], tilt: [0.0; 3] },
             table: PmbTable::new(types),
             options: FamilyOptions::new(dx),
             law: Law { dt, ..Law::default() },

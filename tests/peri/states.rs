@@ -391,7 +391,7 @@ impl Sample {
         scene.fill(DX, [[0, long - 1], [0, wide - 1], [0, wide - 1]], 1, 2200.0, |_| true);
         let side = f64::from(wide) * DX;
         let (lo, hi) = ([-1.0, -0.5 * DX, -0.5 * DX], [1.0, side - 0.5 * DX, side - 0.5 * DX]);
-        scene.bounds = Bounds { lo, hi, periodic: [false, true, true] };
+        scene.bounds = Bounds { lo, hi, periodic: [false, true, true], tilt: [0.0; 3] };
         let coeff = PmbCoeff { c: 0.0, horizon: 3.015 * DX, s00: f64::INFINITY, alpha: 0.0 };
         scene.table.set(1, 1, coeff).unwrap();
         scene.options.volume = VolumeRule::Full;

@@ -41,7 +41,8 @@ fn measured(m: f64, rule: VolumeRule, waves: i32, axis: usize) -> f64 {
     let mut s = Scene::new(DX, 2e-8, 1);
     s.fill(DX, [[0, LONG - 1], [0, WIDE - 1], [0, WIDE - 1]], 1, RHO, |_| true);
     let size = [LONG, WIDE, WIDE].map(|n| f64::from(n) * DX);
-    s.bounds = Bounds { lo: [-0.5 * DX; 3], hi: size.map(|l| l - 0.5 * DX), periodic: [true; 3] };
+    s.bounds =
+        Bounds { lo: [-0.5 * DX; 3], hi: size.map(|l| l - 0.5 * DX), periodic: [true; 3], tilt: [0.0; 3] };
     s.table.set(1, 1, PmbCoeff { c: micromodulus(delta), horizon: delta, s00: 1.0, alpha: 0.0 }).unwrap();
     s.options.volume = rule;
     s.setup();

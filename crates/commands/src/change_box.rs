@@ -3,7 +3,7 @@
 use super::boundary::pair_of_faces;
 use super::replicate::say_box;
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, on_particles, scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
@@ -98,6 +98,10 @@ impl CommandStyle for ChangeBox {
                         let text = format!("the tilt {} of a flat scene must be 0", keyword.text);
                         return fail(Code::CONFLICT, keyword.span, text);
                     }
+                    let made = steps.iter().any(|s| matches!(s, Step::Triclinic));
+                    if !made && cx.world.domain.as_ref().is_some_and(|d| d.tilt.is_none()) {
+                        return Err(cannot_lean(keyword.span));
+                    }
                     let delta = a.choice("change", &["final", "delta"])? == "delta";
                     steps.push(Step::Tilt { k, by: a.number("the tilt")?, delta, span: keyword.span });
                 }
@@ -121,6 +125,12 @@ impl CommandStyle for ChangeBox {
         }
         Ok(on_particles(vec![], move |cx| change(cx, group, &steps, scale, span)))
     }
+}
+
+fn cannot_lean(span: Span) -> Diagnostics {
+    Diagnostic::error(Code::CONFLICT, span, "an orthogonal box cannot lean")
+        .help("`triclinic` before this makes it one that may")
+        .into()
 }
 
 fn edge(word: &Word, a: &mut Args, steps: &mut Vec<Step>) -> Result<()> {
@@ -173,11 +183,9 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
                 refit(&mut domain);
             }
             Step::Tilt { k, by, delta, span } => {
-                let Some(tilt) = &mut domain.tilt else {
-                    let d = Diagnostic::error(Code::CONFLICT, *span, "an orthogonal box cannot lean");
-                    return Err(d.help("`triclinic` before this makes it one that may").into());
-                };
+                let Some(tilt) = &mut domain.tilt else { return Err(cannot_lean(*span)) };
                 tilt[*k] = scale[*k / 2] * by + if *delta { tilt[*k] } else { 0.0 };
+                refit(&mut domain);
                 boxes.push(domain.clone());
             }
             Step::Ortho(span) => {

@@ -33,7 +33,9 @@ impl Style for CreateBox {
             syntax: "create_box N REGION [bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N]",
             summary: "Creates the simulation box from a bounded region, for N particle types.",
             text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and \
-                   `side in`. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS. `bond/types` \
+                   `side in`. A prism becomes a triclinic box: its edges lean as those of the prism (tilts xy, xz and yz), and may lean \
+                   otherwise later (`change_box`, `fix deform`). Where a tilt is more than half of the length along which it leads, a \
+                   warning says so. General triclinic boxes (`NULL`) are refused. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS. `bond/types` \
                    gives the number of bond types, for atom styles with bonds; room for bonds per particle is not limited, \
                    `extra/…` only has to be said for LAMMPS.",
             example: "create_box 3 world",

@@ -58,7 +58,7 @@ mod tests {
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.2, s00: 1.0, alpha: 0.0 }).unwrap();
         let p = &b.world.particles;
-        let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let view = PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds, excluded: None };
         let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
         // Only 1-2 and 1-3 are within 1.2; without particle 2 they end: 2 of 8 volumes lost.

@@ -153,7 +153,7 @@ mod tests {
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 5.0, horizon: 1.2, s00: 1.0, alpha: 0.0 }).unwrap();
         let p = &b.world.particles;
-        let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let view = PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds, excluded: None };
         let options = FamilyOptions { unit: ForceUnit::Newton, ..FamilyOptions::new(1.0) };
         // |ξ| = 1 is within half a spacing of the horizon: weight (1.2 + 0.5 − 1)/1 = 0.7.

@@ -34,6 +34,7 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     `format N %…` (one column), `format none`, `header yes|no`, `time yes|no` and `units yes|no` (further header lines). \
     `balance buffer flush` and `types numeric` are read and without effect; `at sfactor tfactor precision \
     unwrap triclinic/general` are refused by name.\n\n\
+    Of a triclinic box the header has the faces of the upright box around it, with a tilt behind each pair (`BOX BOUNDS xy xz yz …`).\n\n\
     Rows are sorted by id unless told otherwise (LAMMPS: unsorted). The file is made, or emptied, when the first run begins. \
     A `*` in the file name becomes the step, and each \
     snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed \

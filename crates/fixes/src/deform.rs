@@ -15,8 +15,8 @@ use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
-use perigrain_world::field::{BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, X, X0};
-use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, X, X0};
+use perigrain_world::{Face, Fields, GroupId, Key, Numbers, RATES, World};
 use pressure::{Controls, Pressed};
 use track::{Track, tracks};
 
@@ -177,6 +177,12 @@ fn check_tilt(cx: &BuildCx, word: &Word, k: usize) -> Result<()> {
             .help("make it triclinic: `change_box all triclinic`, or `create_box` with a `region prism`")
             .into());
     }
+    if domain.boundary.0[lean::ACROSS[k]].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
+        let axis = ["x", "y", "z"][lean::ACROSS[k]];
+        let text = format!("the faces of `{axis}`, which {} tilts, follow the particles", word.text);
+        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+        return Err(d.help("use `boundary` p or f for this dimension").into());
+    }
     Ok(())
 }
 
@@ -288,11 +294,12 @@ impl Fix for Declared {
         // Forces of the setup see the flow already; a variable's rate is known from the first change on.
         let t = Tick::between_runs(&w.clock);
         let now = Shape::at(&tracks, &leans, w, &t)?;
-        let (stretch, flips) = (self.rates(), self.flips);
+        let leans_now = w.domain.as_ref().is_some_and(|d| d.tilt.is_some());
+        let (stretch, flips) = (self.rates(), self.flips && leans_now);
         tell(w, stretch, now.streaming(&tracks, &leans, w, true), remap);
         if remap == Remap::Velocities {
-            let Shape { rate, turning: tilt, .. } = now;
-            w.domain.iter_mut().for_each(|d| d.flow = Some(Flow { rate, tilt, group }));
+            let flow = now.flow(&tracks, &leans, (w, group), true);
+            w.domain.iter_mut().for_each(|d| d.flow = Some(flow));
         }
         let name = format!("fix {} {}", self.id, self.style());
         Ok(vec![Box::new(Move { name, stretch, tracks, leans, flips, remap, group, when })])
@@ -334,9 +341,25 @@ impl Shape {
         Ok(Self { lo, hi, tilt, rate, turning })
     }
 
+    /// How fast images are that particles see or become. LAMMPS takes what compute temp/deform takes.
+    fn flow(
+        &self,
+        tracks: &[Track; 3],
+        leans: &[Lean; 3],
+        (w, group): (&World, GroupId),
+        first: bool,
+    ) -> Flow {
+        if w.settings.lammps() {
+            let [rate, _, tilt] = self.streaming(tracks, leans, w, first);
+            return Flow { rate, tilt, group };
+        }
+        Flow { rate: self.rate, tilt: self.turning, group }
+    }
+
     /// How fast lengths grow, lower faces move and tilts grow, as compute temp/deform asks for it.
     fn streaming(&self, tracks: &[Track; 3], leans: &[Lean; 3], w: &World, first: bool) -> [[f64; 3]; 3] {
-        let [rate, low] = track::streaming(tracks, w, self.rate, first);
+        let lengths = [0, 1, 2].map(|d| self.hi[d] - self.lo[d]);
+        let [rate, low] = track::streaming(tracks, w, (self.rate, lengths), first);
         [rate, low, lean::streaming(leans, w, self.turning, first)]
     }
 }
@@ -363,6 +386,11 @@ struct Move {
 }
 
 impl Move {
+    /// Whether images move otherwise than particles, along edges that lean more and more.
+    fn turns_images(&self) -> bool {
+        self.remap == Remap::Velocities && self.leans.iter().any(Lean::moves)
+    }
+
     /// Which edges are changed.
     fn changes(&self) -> [bool; 3] {
         let mut changes = self.tracks.each_ref().map(Track::moves);
@@ -381,20 +409,33 @@ impl Op for Move {
             ..About::new(
                 &self.name,
                 Stage::EndOfStep,
-                Needs::new().read(MASK | SLOTS | FAMILIES | X0).write(X | BOX | LISTS).keep(MEMO),
+                Needs::new()
+                    .read(
+                        MASK | SLOTS | FAMILIES | X0 | if self.turns_images() { BONDS } else { Fields::NONE },
+                    )
+                    .write(X | BOX | if self.flips { LISTS } else { Fields::NONE })
+                    .keep(MEMO),
             )
         }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let shape = Shape::at(&self.tracks, &self.leans, w, t)?;
         tell(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
-        let Shape { lo, hi, tilt, rate, turning } = shape;
+        let flow = shape.flow(&self.tracks, &self.leans, (w, self.group), t.setup);
+        let Shape { lo, hi, tilt, .. } = shape;
         if self.remap == Remap::Velocities
             && let Some(domain) = &mut *w.domain
         {
-            domain.flow = Some(Flow { rate, tilt: turning, group: self.group });
+            domain.flow = Some(flow);
         }
         if t.setup {
+            if self.turns_images() && !w.bonds.is_empty() {
+                // Whose image a bond leads to, and how fast that one is, its damping does not know.
+                let text = "bonds do not go with tilts that change with `remap v`";
+                return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text)
+                    .help("`remap x` will do")
+                    .into());
+            }
             return bonds_allow(w, self.changes());
         }
         let Some(domain) = &mut *w.domain else { return Ok(()) };
@@ -406,7 +447,9 @@ impl Op for Move {
         }
         if self.flips {
             domain.flip = lean::flip(domain);
-            w.rebuild.due |= domain.flip.is_some();
+            if domain.flip.is_some() {
+                w.rebuild.due = true;
+            }
         }
         if self.remap == Remap::Positions && (before.tilted() || domain.tilted()) {
             let (p, bit) = (&mut w.particles, self.group.bit());

@@ -234,7 +234,7 @@ impl Fix for Depositing {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { makes_particles: true, orthogonal: true, ..Facts::default() }
+        Facts { makes_particles: true, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {

@@ -138,8 +138,10 @@ pub fn insert(v: &View, wanted: &Wanted, skin: f64, ends: &[[usize; 2]], list: &
 
 /// How many images of the box lie within `far`, along each axis.
 fn images(far: f64, period: &Periods) -> [i32; 3] {
+    // Along an edge that leans and does not repeat, particles may stand further off in those that do.
+    let further = f64::from(u8::from(period.tilted() && period.length.contains(&0.0)));
     period.heights().map(|height| match height {
-        l if l > 0.0 => (far / l).ceil().min(127.0) as i32,
+        l if l > 0.0 => ((far / l).ceil() + further).min(127.0) as i32,
         _ => 0,
     })
 }

@@ -12,6 +12,7 @@ use crate::families::list::ListBody;
 use crate::families::{Candidate, FamilyOptions, Measures};
 use crate::lanes::isa::Isa;
 use crate::law::series::stretch;
+use perigrain_base::math::periods::Periods;
 
 /// A layout, as breaking sees it. Sites are cells or records.
 pub trait Bonds: Sync + Sized {
@@ -92,13 +93,20 @@ pub fn banded(z: f64, length: f64, options: &FamilyOptions) -> f64 {
 
 impl ListBody {
     /// z of the bond between two records, from displacements of this step or of the last one, and |xi|.
-    pub(super) fn z(&self, last: bool, i: usize, j: usize, period: [f64; 3]) -> (f64, f64) {
+    pub(super) fn z(&self, last: bool, i: usize, j: usize, period: Periods) -> (f64, f64) {
         let (a, b) = (&self.record[i], &self.record[j]);
         let (mut q, mut square) = (0.0, 0.0);
+        let (tilted, mut nearest) = (period.tilted(), [0.0; 3]);
+        if tilted {
+            nearest = period.nearest(std::array::from_fn(|k| b.reference[k] - a.reference[k]));
+        }
         for k in 0..3 {
             let mut xi = b.reference[k] - a.reference[k];
-            if xi.abs() > 0.5 * period[k] {
-                xi -= period[k] * (xi / period[k]).round();
+            let length = period.length[k];
+            if tilted {
+                xi = nearest[k];
+            } else if length > 0.0 && xi.abs() > 0.5 * length {
+                xi -= length * (xi / length).round();
             }
             let eta = if last { self.last[j][k] - self.last[i][k] } else { b.u[k] - a.u[k] };
             q += eta * (2.0 * xi + eta);

@@ -59,7 +59,7 @@ mod tests {
         let x: Vec<[f64; 3]> = (0..10).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.5, s00: 1.0, alpha: 0.0 }).unwrap();
-        let bounds = Bounds { lo: [-20.0; 3], hi: [20.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-20.0; 3], hi: [20.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let view = PeriView { x: &x, x0: &x, kind: &[1; 10], volume: &[1.0; 10], bounds, excluded: None };
         for layout in [Layout::Auto, Layout::List] {
             let options = FamilyOptions { layout, ..FamilyOptions::new(1.0) };

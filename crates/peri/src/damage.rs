@@ -4,6 +4,7 @@ use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::list::ListBody;
 use crate::families::{Families, NearPair};
 use crate::lattice::sweep::extent;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par::{self, Shared};
 
 /// One partner of a particle.
@@ -24,8 +25,8 @@ enum Link<'a> {
 }
 
 impl Link<'_> {
-    /// Length at the start, by the shortest way where the box repeats in these `periods` (infinite where it does not).
-    fn length(&self, periods: [f64; 3]) -> f64 {
+    /// Length at the start, by the shortest way where the box repeats in these `periods`.
+    fn length(&self, periods: Periods) -> f64 {
         match self {
             Link::Lattice(body, e) => body.xi(*e).iter().map(|x| x * x).sum::<f64>().sqrt(),
             Link::List(list, [i, j]) => list.z(false, *i, *j, periods).1,
@@ -95,8 +96,8 @@ impl Families {
         found
     }
 
-    /// The same with the lengths of bonds at the start; the box repeats in these `periods`, infinite where it does not.
-    pub fn neighbours_apart(&self, i: usize, periods: [f64; 3]) -> Vec<(Neighbour, f64)> {
+    /// The same with the lengths of bonds at the start; the box repeats in these `periods`.
+    pub fn neighbours_apart(&self, i: usize, periods: Periods) -> Vec<(Neighbour, f64)> {
         let mut found = Vec::new();
         self.each_apart(i, periods, |n, length| found.push((n, length)));
         found.sort_unstable_by_key(|(n, _)| n.partner);
@@ -109,7 +110,7 @@ impl Families {
     }
 
     /// Calls `f` for all partners of a particle with the length of the bond at the start.
-    pub(super) fn each_apart(&self, i: usize, periods: [f64; 3], mut f: impl FnMut(Neighbour, f64)) {
+    pub(super) fn each_apart(&self, i: usize, periods: Periods, mut f: impl FnMut(Neighbour, f64)) {
         self.walk(i, |n, link| f(n, link.length(periods)));
     }
 
@@ -310,7 +311,7 @@ mod tests {
         let x: Vec<[f64; 3]> = (0..330).map(at).collect();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.1, s00: 1.0, alpha: 0.0 }).unwrap();
-        let bounds = Bounds { lo: [-20.0; 3], hi: [20.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-20.0; 3], hi: [20.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let various: Vec<f64> = (0..330).map(|i| 0.1 + 0.001 * f64::from(i % 7)).collect();
         for volume in [vec![0.1; 330], various] {
             let view = PeriView { x: &x, x0: &x, kind: &[1; 330], volume: &volume, bounds, excluded: None };
@@ -335,7 +336,7 @@ mod tests {
         let (kind, volume) = (vec![1; x.len()], vec![0.1; x.len()]);
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.5, s00: 1.0, alpha: 0.0 }).unwrap();
-        let bounds = Bounds { lo: [-500.0; 3], hi: [500.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-500.0; 3], hi: [500.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let view = PeriView { x: &x, x0: &x, kind: &kind, volume: &volume, bounds, excluded: None };
         let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
         families.cut(&view, |a, b| (a[0] - 1.5) * (b[0] - 1.5) < 0.0);

@@ -11,6 +11,7 @@ use crate::law::settle::{columns_of, moment};
 use crate::law::weighing::{Weighing, banded};
 use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
 use crate::list;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par::{self, Shared};
 
 /// Energy and virial of one row of cells or one record.
@@ -26,7 +27,7 @@ pub fn tally<K: Isa>(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
-    (advanced, period): (bool, [f64; 3]),
+    (advanced, period): (bool, Periods),
 ) {
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };

@@ -1,5 +1,6 @@
 //! Peridynamic families at work: building them, the forces of a step, breaking, damage.
 
+use perigrain_base::math::periods::Periods;
 use std::sync::Mutex;
 
 use crate::breaking::break_bonds;
@@ -278,7 +279,7 @@ impl Families {
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
-        period: [f64; 3],
+        period: Periods,
     ) {
         let Self { list, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
@@ -312,7 +313,7 @@ impl Families {
     }
 
     /// Breaks bonds and makes this step the previous one.
-    fn advance<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
+    fn advance<K: Isa>(&mut self, view: &PeriView, period: Periods) {
         if self.breaking_enabled {
             self.break_and_count::<K>(view, period);
         }
@@ -324,7 +325,7 @@ impl Families {
         list::breaking::roll(&mut self.list);
     }
 
-    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, period: Periods) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
@@ -353,15 +354,16 @@ impl Families {
     }
 }
 
-/// Lengths of the periodic directions; infinite in open ones.
-pub(super) fn periods(bounds: &Bounds) -> [f64; 3] {
-    [0, 1, 2].map(|k| if bounds.periodic[k] { bounds.hi[k] - bounds.lo[k] } else { f64::INFINITY })
+/// The edges along which the box repeats.
+pub(super) fn periods(bounds: &Bounds) -> Periods {
+    bounds.periods()
 }
 
 fn check_box(view: &PeriView, reach: f64) -> Result<()> {
     let bounds = &view.bounds;
+    let heights = bounds.edges().heights();
     for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
-        let length = bounds.hi[k] - bounds.lo[k];
+        let length = heights[k];
         if bounds.periodic[k] && length < 2.0 * reach {
             let message = format!(
                 "the periodic box is {length} long in {name}, less than twice the horizon {reach}: \

@@ -101,7 +101,7 @@ mod tests {
         let x: Vec<[f64; 3]> = x0.iter().map(moved).collect();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.015, s00: 1.0, alpha: 0.0 }).unwrap();
-        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let start =
             PeriView { x: &x0, x0: &x0, kind: &[1; 216], volume: &[1.0; 216], bounds, excluded: None };
         let options = FamilyOptions { layout, volume, ..FamilyOptions::new(1.0) };
@@ -166,7 +166,7 @@ mod tests {
         let x: Vec<[f64; 3]> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0]).collect();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.015, s00: 1.0, alpha: 0.0 }).unwrap();
-        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let view = PeriView { x: &x, x0: &x, kind: &[1; 25], volume: &[1.0; 25], bounds, excluded: None };
         let families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
         assert!((0..25).all(|i| families.gradient(&view, i).is_none()));

@@ -5,10 +5,11 @@ use crate::families::lattice::PAD;
 use crate::families::law::SiteState;
 use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 use crate::lanes::isa::Isa;
+use perigrain_base::math::periods::Periods;
 
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after.
-    pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, period: Periods) {
         if !self.counts_losses {
             return self.break_bonds::<K>(view, period);
         }
@@ -28,7 +29,7 @@ impl Families {
     /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
     /// energies before and after they flowed; what softening bonds have lost counts with that of broken ones; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
-    pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, period: Periods) {
         match self.law.kind {
             _ if self.options.compat_lammps => {}
             LawKind::ElasticPlastic | LawKind::Yield => {
@@ -122,7 +123,7 @@ impl Families {
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
-    fn living_energy<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) -> f64 {
+    fn living_energy<K: Isa>(&mut self, view: &PeriView, period: Periods) -> f64 {
         if !self.law.kind.bond_based() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
             self.sweep_lattices::<K>(view, &mut aside, (false, true));
@@ -132,7 +133,7 @@ impl Families {
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, with the dilatations of that.
-    fn bond_energy<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) -> f64 {
+    fn bond_energy<K: Isa>(&mut self, view: &PeriView, period: Periods) -> f64 {
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };

@@ -61,7 +61,7 @@ pub fn members(w: &World, s: &Surface) -> Vec<bool> {
 
 /// By the bonds that live.
 fn bonded(w: &World, families: &Families, of_solid: &[bool]) -> Vec<Around> {
-    let (volume, periods) = (&w.particles.volume, w.repeats());
+    let (volume, periods) = (&w.particles.volume, w.periods());
     let of = |i: usize| {
         let mut a = Around::default();
         for (b, length) in families.neighbours_apart(i, periods).into_iter().filter(|(b, _)| b.alive) {

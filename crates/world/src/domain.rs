@@ -146,15 +146,11 @@ impl Domain {
         Periods { length: self.lengths(), tilt: self.tilt.unwrap_or_default() }
     }
 
-    /// The edges along which particles see images of each other, zero elsewhere.
+    /// The edges along which particles see images of each other, of length zero elsewhere; these may lean too.
     pub fn periods(&self) -> Periods {
         let (lengths, periodic) = (self.lengths(), self.periodic());
-        let [xy, xz, yz] = self.tilt.unwrap_or_default();
-        let of = |d: usize, a: f64| if periodic[d] { a } else { 0.0 };
-        Periods {
-            length: std::array::from_fn(|k| of(k, lengths[k])),
-            tilt: [of(1, xy), of(2, xz), of(2, yz)],
-        }
+        let length = std::array::from_fn(|k| if periodic[k] { lengths[k] } else { 0.0 });
+        Periods { length, tilt: self.tilt.unwrap_or_default() }
     }
 
     /// Whether some edge leans now.

@@ -227,11 +227,6 @@ impl World {
         self.domain.as_ref().map_or_else(Periods::default, Domain::periods)
     }
 
-    /// The lengths of these edges, infinite where the box does not repeat.
-    pub fn repeats(&self) -> [f64; 3] {
-        self.periods().length.map(|length| if length > 0.0 { length } else { f64::INFINITY })
-    }
-
     /// Edges of the box, whether it repeats or not; zero without one.
     pub fn edges(&self) -> Periods {
         self.domain.as_ref().map_or_else(Periods::default, Domain::edges)

@@ -90,8 +90,9 @@ impl<'r, 'a> Reader<'r, 'a> {
         Ok(match (word.text == "INF", upper) {
             (true, true) => INFINITE,
             (true, false) => -INFINITE,
-            (false, true) => domain.hi[d],
-            (false, false) => domain.lo[d],
+            // Of a leaning box, the upright one around it.
+            (false, true) => domain.bounds()[d][1],
+            (false, false) => domain.bounds()[d][0],
         })
     }
 

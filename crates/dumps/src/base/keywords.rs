@@ -41,7 +41,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("precision", "is for dump xtc, which perigrain does not have"),
     ("unwrap", "is for dumps dcd and xtc, which perigrain does not have: dump xu yu zu"),
     ("thermo", "is for dump yaml"),
-    ("triclinic/general", "is for tilted boxes, which perigrain does not have"),
+    ("triclinic/general", "is for general triclinic boxes, which perigrain does not have"),
     ("header", "is for text dumps"),
     ("label", "is for dump local"),
 ];

@@ -108,9 +108,19 @@ pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track
     Ok(start.map(|start| Track { start, way: ways.next().unwrap_or(Way::Still) }))
 }
 
-/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps` it knows nothing of
-/// lengths that keep the volume, and before the first change of a run (`first`) of those alone that grow evenly.
-pub fn streaming(tracks: &[Track; 3], w: &World, rate: [f64; 3], first: bool) -> [[f64; 3]; 2] {
+/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps` a length that keeps the
+/// volume counts with its rate over itself, and before the first change of a run (`first`) those alone do that grow evenly.
+pub fn streaming(
+    tracks: &[Track; 3],
+    w: &World,
+    (rate, lengths): ([f64; 3], [f64; 3]),
+    first: bool,
+) -> [[f64; 3]; 2] {
+    let lammps = w.settings.lammps();
+    let rate: [f64; 3] = std::array::from_fn(|d| match tracks[d].way {
+        Way::Volume { .. } if lammps => rate[d] / lengths[d],
+        _ => rate[d],
+    });
     let clock = &w.clock;
     let time = (clock.stop - clock.start) as f64 * clock.dt;
     // Of all ways but those to given faces the middle stays.
@@ -120,8 +130,7 @@ pub fn streaming(tracks: &[Track; 3], w: &World, rate: [f64; 3], first: bool) ->
     });
     let known = |d: usize| match tracks[d].way {
         Way::Linear(_) => true,
-        Way::Volume { .. } => !w.settings.lammps(),
-        _ => !(first && w.settings.lammps()),
+        _ => !(first && lammps),
     };
     [rate, low].map(|v| std::array::from_fn(|d| if known(d) { v[d] } else { 0.0 }))
 }

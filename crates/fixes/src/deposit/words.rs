@@ -131,10 +131,14 @@ fn region(word: &Word, cx: &BuildCx) -> Result<Bounded> {
             .into());
     };
     let domain = domain(cx)?;
-    if !cx.checking && (0..3).any(|d| lo[d] < domain.lo[d] || hi[d] > domain.hi[d]) {
+    // Of a leaning box, the upright one around it: beyond faces that repeat, places are those of images.
+    let faces = domain.bounds();
+    if !cx.checking && (0..3).any(|d| lo[d] < faces[d][0] || hi[d] > faces[d][1]) {
         let text = format!(
             "region `{}` from {lo:?} to {hi:?} leaves the box from {:?} to {:?}",
-            word.text, domain.lo, domain.hi
+            word.text,
+            faces.map(|f| f[0]),
+            faces.map(|f| f[1])
         );
         let d = Diagnostic::error(Code::BAD_VALUE, word.span, text);
         return Err(d.help("let the region lie inside the box").into());

@@ -150,10 +150,15 @@ fn gathered(
 /// Records in slabs no thinner than the longest family reaches; within a slab, neighbours near each other.
 fn order(view: &PeriView, members: &[u32], wraps: bool, far: f64) -> ListBody {
     let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    // Rings close in the upright box.
+    let place = |p: u32| if wraps { view.bounds.upright(view.x[p as usize]) } else { view.x[p as usize] };
+    let far =
+        if wraps { view.bounds.wider().into_iter().fold(far, |most, w| most.max(far * w)) } else { far };
     for &p in members {
+        let x = place(p);
         for k in 0..3 {
-            lo[k] = lo[k].min(view.x[p as usize][k]);
-            hi[k] = hi[k].max(view.x[p as usize][k]);
+            lo[k] = lo[k].min(x[k]);
+            hi[k] = hi[k].max(x[k]);
         }
     }
     let closed = [0, 1, 2].map(|k| wraps && view.bounds.periodic[k]);
@@ -175,7 +180,7 @@ fn order(view: &PeriView, members: &[u32], wraps: bool, far: f64) -> ListBody {
     let (b, c) = if length[b] > length[c] { (b, c) } else { (c, b) };
     let fine = far / 3.0;
     let key = |p: u32| {
-        let x = view.x[p as usize];
+        let x = place(p);
         let s = ((x[axis] - lo[axis]) / length[axis].max(f64::MIN_POSITIVE) * slabs as f64) as usize;
         let layer = |k: usize| ((x[k] - lo[k]) / fine).round() as i64;
         (s.min(slabs - 1), layer(c), layer(axis), layer(b), p)

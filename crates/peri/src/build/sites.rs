@@ -296,7 +296,7 @@ mod tests {
 
     /// What carries points.
     fn carrier_of(x: &[Vec3]) -> Carrier {
-        let bounds = Bounds { lo: [-1e3; 3], hi: [1e3; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-1e3; 3], hi: [1e3; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let (kind, volume) = (vec![1; x.len()], vec![1.0; x.len()]);
         let view = PeriView { x, x0: x, kind: &kind, volume: &volume, bounds, excluded: None };
         let members: Vec<u32> = (0..x.len() as u32).collect();

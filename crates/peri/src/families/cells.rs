@@ -17,7 +17,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Sorts the points `which` of `x` into cells no smaller than `reach`; memory of an earlier use is kept.
+    /// Sorts the points `which` of `x` into cells no smaller than `reach`, of the upright box if it leans; memory of an earlier use is kept.
     pub fn fill(
         &mut self,
         x: &[[f64; 3]],
@@ -26,11 +26,13 @@ impl Cells {
         reach: f64,
     ) {
         let (mut lo, mut hi, mut n) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0usize);
+        let (at, wider) = (|i: u32| bounds.upright(x[i as usize]), bounds.wider());
         for i in which.clone() {
             n += 1;
+            let at = at(i);
             for k in 0..3 {
-                lo[k] = lo[k].min(x[i as usize][k]);
-                hi[k] = hi[k].max(x[i as usize][k]);
+                lo[k] = lo[k].min(at[k]);
+                hi[k] = hi[k].max(at[k]);
             }
         }
         // Few large cells are as right as many small ones: no more than two cells per point and direction.
@@ -40,7 +42,7 @@ impl Cells {
                 (lo[k], hi[k]) = (bounds.lo[k], bounds.hi[k]);
             }
             let length = if n > 0 { hi[k] - lo[k] } else { 0.0 };
-            self.count[k] = (length / reach).floor().clamp(1.0, most.min(1024.0)) as usize;
+            self.count[k] = (length / (reach * wider[k])).floor().clamp(1.0, most.min(1024.0)) as usize;
             self.wraps[k] = bounds.periodic[k];
             self.lo[k] = lo[k];
             self.edge[k] = if length > 0.0 { length / self.count[k] as f64 } else { 1.0 };
@@ -56,7 +58,7 @@ impl Cells {
         self.start.resize(cells + 1, 0);
         self.cell.clear();
         for i in which.clone() {
-            let c = self.at(&x[i as usize]);
+            let c = self.at(&at(i));
             self.cell.push(self.index(c) as u32);
         }
         for &c in &self.cell {
@@ -177,7 +179,7 @@ mod tests {
         };
         let x: Vec<[f64; 3]> = (0..400).map(|_| [4.0 * next(), 3.0 * next(), 5.0 * next()]).collect();
         for periodic in [[false; 3], [true; 3], [true, false, true]] {
-            let bounds = Bounds { lo: [0.0; 3], hi: [4.0, 3.0, 5.0], periodic };
+            let bounds = Bounds { lo: [0.0; 3], hi: [4.0, 3.0, 5.0], periodic, tilt: [0.0; 3] };
             let mut cells = Cells::default();
             cells.fill(&x, 0..400, &bounds, 0.9);
             let mut found = Vec::new();

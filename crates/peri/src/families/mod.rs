@@ -3,6 +3,7 @@
 use std::sync::Mutex;
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::SIX;
 
 mod cells;
@@ -214,7 +215,7 @@ impl FamilyOptions {
     }
 }
 
-/// An orthogonal box.
+/// A box, whose edges may lean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Low corner.
@@ -223,12 +224,56 @@ pub struct Bounds {
     pub hi: [f64; 3],
     /// Which directions repeat.
     pub periodic: [bool; 3],
+    /// How it leans: xy, xz, yz.
+    pub tilt: [f64; 3],
 }
 
 impl Bounds {
+    /// Whether some edge leans.
+    #[inline]
+    pub fn tilted(&self) -> bool {
+        self.tilt != [0.0; 3]
+    }
+
+    /// The edges along which it repeats, zero elsewhere.
+    pub fn periods(&self) -> Periods {
+        let of = |k: usize, a: f64| if self.periodic[k] { a } else { 0.0 };
+        let [xy, xz, yz] = self.tilt;
+        Periods {
+            length: std::array::from_fn(|k| of(k, self.hi[k] - self.lo[k])),
+            tilt: [of(1, xy), of(2, xz), of(2, yz)],
+        }
+    }
+
+    /// All edges.
+    pub fn edges(&self) -> Periods {
+        Periods { length: std::array::from_fn(|k| self.hi[k] - self.lo[k]), tilt: self.tilt }
+    }
+
+    /// Where a place would be were the box upright.
+    pub fn upright(&self, x: [f64; 3]) -> [f64; 3] {
+        if !self.tilted() {
+            return x;
+        }
+        let ([_, ly, lz], [xy, xz, yz]) = (self.edges().length, self.tilt);
+        let z = (x[2] - self.lo[2]) / lz;
+        let y = (x[1] - self.lo[1] - z * yz) / ly;
+        [x[0] - y * xy - z * xz, x[1] - z * yz, x[2]]
+    }
+
+    /// By how much upright places along an axis are farther apart at most than the places themselves.
+    pub fn wider(&self) -> [f64; 3] {
+        let edges = self.edges();
+        let heights = edges.heights();
+        std::array::from_fn(|k| if self.tilted() { edges.length[k] / heights[k] } else { 1.0 })
+    }
+
     /// The shortest of `d` and its images.
     #[inline]
     pub fn nearest(&self, mut d: [f64; 3]) -> [f64; 3] {
+        if self.tilted() {
+            return self.periods().nearest(d);
+        }
         for k in 0..3 {
             let length = self.hi[k] - self.lo[k];
             if self.periodic[k] && d[k].abs() > 0.5 * length {

@@ -401,7 +401,7 @@ mod tests {
     fn slackest_bonds_change_nothing() {
         let x0: Vec<[f64; 3]> =
             (0..540).map(|i| [f64::from(i % 18), f64::from(i / 18 % 6), f64::from(i / 108)]).collect();
-        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let (kind, volume) = (vec![1; x0.len()], vec![1.0; x0.len()]);
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 3.01, s00: 0.01, alpha: 0.25 }).unwrap();

@@ -8,6 +8,7 @@ use crate::lattice::chunk::constant;
 use crate::lattice::kernels::{FROM_TERM, TWICE_XI};
 use crate::law::series::SERIES;
 use crate::law::weighing::Weighing;
+use perigrain_base::math::periods::Periods;
 
 /// √(1 + z) − 1 = Σ `STRETCH[k]` z^(k + 1): the binomial series.
 pub const STRETCH: [f64; 8] = [
@@ -119,7 +120,7 @@ pub fn weigh_lattice(body: &mut LatticeBody, view: &PeriView, options: &FamilyOp
 }
 
 /// Weighs the families of the list as they are now.
-pub fn weigh_list(body: &mut ListBody, period: [f64; 3], law: &Law) {
+pub fn weigh_list(body: &mut ListBody, period: Periods, law: &Law) {
     let mut state = columns(body.record.len(), body.partner.len() * law.kind.memory());
     for i in 0..body.record.len() {
         for b in body.own(i).filter(|&b| body.lives(b)) {

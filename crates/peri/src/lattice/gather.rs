@@ -136,6 +136,11 @@ fn range_of_change(now: &[f64], last: &[f64]) -> (f64, f64) {
 /// The displacement among its periodic images that is nearest to the one before.
 #[inline(always)]
 fn unwrap(now: [f64; 3], before: [f64; 3], view: &PeriView) -> [f64; 3] {
+    if view.bounds.tilted() {
+        let edges = view.bounds.periods();
+        let by = edges.shift(edges.turns([0, 1, 2].map(|k| now[k] - before[k])));
+        return [0, 1, 2].map(|k| now[k] - by[k]);
+    }
     [0, 1, 2].map(|k| {
         if !view.bounds.periodic[k] {
             return now[k];

@@ -13,6 +13,7 @@ pub mod states;
 pub mod sweep;
 pub mod tables;
 
+use perigrain_base::math::periods::Periods;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::families::lattice::{LatticeBody, PAD};
@@ -27,7 +28,7 @@ use states::{States, Sum, find_active};
 
 impl Families {
     /// Weighs all families: at their building.
-    pub(crate) fn weigh(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(crate) fn weigh(&mut self, view: &PeriView, period: Periods) {
         for body in &mut self.lattices {
             constants::weigh_lattice(body, view, &self.options, &self.law);
         }

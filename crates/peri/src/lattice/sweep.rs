@@ -375,7 +375,7 @@ mod tests {
     fn slow_pressing_passes_through_all_forms() {
         let x0: Vec<[f64; 3]> =
             (0..432).map(|i| [f64::from(i % 12), f64::from(i / 12 % 6), f64::from(i / 72)]).collect();
-        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let (kind, volume) = (vec![1; x0.len()], vec![1.0; x0.len()]);
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 3.01, s00: 10.0, alpha: 0.0 }).unwrap();

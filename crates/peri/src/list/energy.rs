@@ -1,5 +1,6 @@
 //! Energy and virial of the list's bonds under any law: asked for at some steps only, so a pass of its own.
 
+use perigrain_base::math::periods::Periods;
 use std::marker::PhantomData;
 
 use crate::energy::{ROWS, Sums, collect, shares};
@@ -26,7 +27,7 @@ struct Energies<'a> {
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
-pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, period): (bool, [f64; 3])) {
+pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, period): (bool, Periods)) {
     let (law, options, n) = (&families.law, &families.options, families.list.record.len());
     let (kind, compat) = (law.kind, options.compat_lammps);
     let rules = Rules::new(period, options, law);

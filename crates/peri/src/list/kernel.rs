@@ -3,6 +3,7 @@
 //! A record's bonds are taken [`MOST`] at a time, in steps that leave their results in a [`Block`]: the processor then has
 //! many independent bonds to work on, polynomials are chosen once for all of them, and a law is a short loop of its own.
 
+use perigrain_base::math::periods::Periods;
 use std::ptr::{null, null_mut};
 
 use crate::families::list::{GROUP, ListBody};
@@ -116,11 +117,19 @@ impl Block {
     }
 }
 
+/// How images are sought: not at all, along the axes, along edges that lean.
+const NONE: u8 = 0;
+const UPRIGHT: u8 = 1;
+const LEANING: u8 = 2;
+
 /// What is the same for all bonds.
 #[derive(Clone, Copy)]
 pub struct Rules {
-    /// Periods of the box; infinite where it is open.
-    pub period: [f64; 3],
+    /// Lengths of the box; infinite where it is open.
+    length: [f64; 3],
+    /// Edges that lean, from that of z on, and whether some do.
+    edges: [[f64; 3]; 3],
+    images: u8,
     /// |z| below which there is no force: the first number plus the second over |xi|.
     dead: [f64; 2],
     influence: Influence,
@@ -134,11 +143,19 @@ pub struct Rules {
 
 impl Rules {
     /// Those of a scene.
-    pub fn new(period: [f64; 3], options: &FamilyOptions, law: &Law) -> Self {
+    pub fn new(period: Periods, options: &FamilyOptions, law: &Law) -> Self {
         let band = options.dead_band(1.0);
+        let length = period.length.map(|l| if l > 0.0 { l } else { f64::INFINITY });
+        let images = match period.length {
+            [0.0, 0.0, 0.0] => NONE,
+            _ if period.tilted() => LEANING,
+            _ => UPRIGHT,
+        };
         let dead = if options.compat_lammps { [0.0, band] } else { [band, 0.0] };
         Self {
-            period,
+            length,
+            edges: period.vectors(),
+            images,
             dead,
             influence: law.shape(),
             microelastic: law.kind.bond_based(),
@@ -190,9 +207,10 @@ impl Row<'_> {
     pub unsafe fn shape<K: Isa, const WHAT: u8>(&self, b: &mut Block) {
         // SAFETY: passed on to the caller.
         unsafe {
-            match self.rules.period.iter().any(|p| p.is_finite()) {
-                false => K::call(Shapes::<false, WHAT>(self, b)),
-                true => K::call(Shapes::<true, WHAT>(self, b)),
+            match self.rules.images {
+                NONE => K::call(Shapes::<NONE, WHAT>(self, b)),
+                UPRIGHT => K::call(Shapes::<UPRIGHT, WHAT>(self, b)),
+                _ => K::call(Shapes::<LEANING, WHAT>(self, b)),
             }
         }
     }
@@ -207,7 +225,7 @@ impl Block {
 }
 
 #[inline(always)]
-unsafe fn shapes<L: Rows, const PERIODIC: bool, const WHAT: u8>(row: &Row, b: &mut Block) {
+unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut Block) {
     // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
     unsafe {
         let (body, rules) = (row.body, row.rules);
@@ -241,10 +259,13 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const WHAT: u8>(row: &Row, b: &m
                     [u, v, w]
                 };
                 let mut xi = [xj.sub(x[0]), yj.sub(x[1]), zj.sub(x[2])];
-                if PERIODIC {
-                    xi[0] = nearest(xi[0], rules.period[0]);
-                    xi[1] = nearest(xi[1], rules.period[1]);
-                    xi[2] = nearest(xi[2], rules.period[2]);
+                if IMAGES == UPRIGHT {
+                    xi[0] = nearest(xi[0], rules.length[0]);
+                    xi[1] = nearest(xi[1], rules.length[1]);
+                    xi[2] = nearest(xi[2], rules.length[2]);
+                }
+                if IMAGES == LEANING {
+                    xi = nearest_leaning(xi, rules);
                 }
                 let eta = [to[0].sub(u[0]), to[1].sub(u[1]), to[2].sub(u[2])];
                 let y = [xi[0].add(eta[0]), xi[1].add(eta[1]), xi[2].add(eta[2])];
@@ -331,6 +352,24 @@ unsafe fn nearest<L: Lanes>(d: L, period: f64) -> L {
     }
 }
 
+/// The same where edges lean: along z, then y, then x.
+#[inline(always)]
+unsafe fn nearest_leaning<L: Lanes>(mut d: [L; 3], rules: &Rules) -> [L; 3] {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        let zero = L::splat(0.0);
+        for k in [2, 1, 0] {
+            let half = L::splat(0.5 * rules.length[k]);
+            let (over, under) = (d[k].ge(half), zero.sub(half).ge(d[k]));
+            for j in 0..=k {
+                let edge = L::splat(rules.edges[k][j]);
+                d[j] = d[j].sub(edge.keep(over)).add(edge.keep(under));
+            }
+        }
+        d
+    }
+}
+
 /// Fills in s/(1 + s), or s with `S`, by the cheapest way that is exact for all bonds in hand.
 #[inline(always)]
 pub unsafe fn stretch<L: Lanes, const S: bool>(b: &mut Block) {
@@ -408,13 +447,13 @@ pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) ->
 }
 
 /// See [`Row::shape`].
-struct Shapes<'a, 'b, const PERIODIC: bool, const WHAT: u8>(&'a Row<'b>, &'a mut Block);
+struct Shapes<'a, 'b, const IMAGES: u8, const WHAT: u8>(&'a Row<'b>, &'a mut Block);
 
-impl<const PERIODIC: bool, const WHAT: u8> Kernel for Shapes<'_, '_, PERIODIC, WHAT> {
+impl<const IMAGES: u8, const WHAT: u8> Kernel for Shapes<'_, '_, IMAGES, WHAT> {
     type Out = ();
     #[inline(always)]
     unsafe fn run<L: Isa>(self) {
         // SAFETY: the caller's promise.
-        unsafe { shapes::<L, PERIODIC, WHAT>(self.0, self.1) }
+        unsafe { shapes::<L, IMAGES, WHAT>(self.0, self.1) }
     }
 }

@@ -11,6 +11,7 @@ mod tests;
 use crate::families::lattice::RowMotion;
 use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{FamilyOptions, ForceUnit, Influence, Law, PeriView, PmbCoeff, PmbTable, VolumeRule};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par::{self, Shared};
 
 /// Fills constants, types and volumes; bonds with types of their own have the coefficients of those.
@@ -20,7 +21,7 @@ pub fn refresh(
     table: &PmbTable,
     options: &FamilyOptions,
     (law, of_bonds): (&Law, &[PmbCoeff]),
-    period: [f64; 3],
+    period: Periods,
 ) {
     let n = body.kinds.len();
     body.pairs.clear();
@@ -42,7 +43,7 @@ pub fn refresh(
 }
 
 /// Keeps the lengths of bonds, and what takes an exponential of them.
-pub fn measure(body: &mut ListBody, law: &Law, period: [f64; 3]) {
+pub fn measure(body: &mut ListBody, law: &Law, period: Periods) {
     let places = body.partner.len();
     body.inverse.resize(places, 0.0);
     body.influence.resize(if law.shape() == Influence::Gaussian { places } else { 0 }, 0.0);
@@ -74,6 +75,7 @@ fn constants(k: &PmbCoeff, yields: f64, (options, law): (&FamilyOptions, &Law)) 
 pub fn gather(body: &mut ListBody, view: &PeriView, short_range: bool) -> RowMotion {
     let (record, moving) = (Shared::new(&mut body.record), Shared::new(&mut body.moving));
     let (slab, particle, last) = (&body.slab, &body.particle, &body.last);
+    let (tilted, edges) = (view.bounds.tilted(), view.bounds.periods());
     par::for_rows(moving.len(), |s| {
         let range = slab[s] as usize..slab[s + 1] as usize;
         // SAFETY: slabs do not share records.
@@ -81,6 +83,13 @@ pub fn gather(body: &mut ListBody, view: &PeriView, short_range: bool) -> RowMot
         *moving = short_range;
         for (record, i) in record.iter_mut().zip(range) {
             let Some(x) = view.x.get(particle[i] as usize) else { continue };
+            if tilted {
+                let u: [f64; 3] = std::array::from_fn(|k| x[k] - record.reference[k]);
+                let by = edges.shift(edges.turns(std::array::from_fn(|k| u[k] - last[i][k])));
+                record.u = std::array::from_fn(|k| u[k] - by[k]);
+                *moving |= record.u != [0.0; 3];
+                continue;
+            }
             for k in 0..3 {
                 record.u[k] = x[k] - record.reference[k];
                 if view.bounds.periodic[k] {

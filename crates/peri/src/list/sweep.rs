@@ -3,6 +3,7 @@
 //! Slabs, groups, partners and lengths of columns are as `build::list` makes them; of lists from restart files `families::sound` has
 //! looked at each of them.
 
+use perigrain_base::math::periods::Periods;
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Mutex;
@@ -30,7 +31,7 @@ pub fn forces<K: Isa>(
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
     settling: &Settling,
-    (windows, period): (&[Mutex<Window>], [f64; 3]),
+    (windows, period): (&[Mutex<Window>], Periods),
 ) {
     let n = list.record.len();
     if n == 0 {

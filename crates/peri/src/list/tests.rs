@@ -30,7 +30,8 @@ fn shaken<K: Isa>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
     let x0: Vec<[f64; 3]> = (0..SIDE.pow(3)).map(|i| near(place(i), 0.3)).collect();
     let n = x0.len();
     let (kind, volume) = ((0..n).map(|i| 1 + (i % 3 / 2) as u16).collect::<Vec<_>>(), vec![1.0; n]);
-    let bounds = Bounds { lo: [-0.5; 3], hi: [f64::from(SIDE) - 0.5; 3], periodic: [periodic; 3] };
+    let bounds =
+        Bounds { lo: [-0.5; 3], hi: [f64::from(SIDE) - 0.5; 3], periodic: [periodic; 3], tilt: [0.0; 3] };
     let mut table = PmbTable::new(2);
     for (a, b, c) in [(1, 1, 1.0), (1, 2, 0.7), (2, 2, 1.3)] {
         table.set(a, b, PmbCoeff { c, horizon: 3.01, s00: 0.02 * c, alpha: 0.25 }).unwrap();

@@ -54,6 +54,10 @@ pub fn domain(w: &World) -> Outcome {
         "its lower faces are not the lower ones",
     )?;
     must(d.tilt.iter().flatten().all(|x| x.is_finite()), "it leans beyond all numbers")?;
+    must(
+        d.flip.is_none_or(|f| d.tilt.is_some() && f.tilt.iter().all(|x| x.is_finite())),
+        "what it will be flipped to is no box",
+    )?;
     must(lengths(&d.small), "the room at its faces is no length")?;
     must(
         d.flow.is_none_or(|f| known(f.group) && f.rate.iter().chain(&f.tilt).all(|r| r.is_finite())),
