@@ -1,6 +1,6 @@
 //! Contact history by pair: what grains remember while they touch each other or a wall.
 
-use super::named::Constant;
+use super::named::{Constant, Named};
 
 /// Contacts of the last step in the order of their keys, with what each remembers.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -109,7 +109,46 @@ impl Contacts {
     }
 }
 
-/// The springs of a particle's contact with a wall, as compute dt/critical asks for them.
+/// Every so many steps walls tell the springs of their contacts, whether somebody asks or not.
+const LOOK: i64 = 1000;
+
+/// What walls have told of the springs of their contacts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallSprings {
+    /// Whether they tell at each step (compute and fix dt/critical).
+    pub always: bool,
+    /// By the fix's ID.
+    pub lists: Named<ToldSprings>,
+}
+
+/// What a wall has told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ToldSprings {
+    /// When.
+    pub step: i64,
+    /// Of each contact.
+    pub list: Vec<WallSpring>,
+}
+
+impl WallSprings {
+    /// Whether a wall tells at this step: before a run's first step, now and then, and at its last one at least.
+    pub fn wanted(&self, step: i64, setup: bool, last: i64) -> bool {
+        self.always || setup || step == last || step % LOOK == 0
+    }
+}
+
+/// The last look at how contacts are pressed, and at the step they stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressed {
+    /// When.
+    pub step: i64,
+    /// The time step then.
+    pub dt: f64,
+    /// Whether the user has been told that it is too long.
+    pub told: bool,
+}
+
+/// The springs of a particle's contact with a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallSpring {
     /// The particle's tag.

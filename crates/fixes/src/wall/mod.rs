@@ -108,9 +108,7 @@ impl<F: Form> Fix for Declared<F> {
         let contacts: Key<Contacts> = Key::new(&self.common.id);
         w.wall_contacts.remove(contacts);
         w.wall_contacts.remove(plastic::key(&self.common.id));
-        if let Some(all) = &mut w.parts.wall_springs {
-            all.remove(contacts.of());
-        }
+        w.parts.wall_springs.lists.remove(contacts.of());
     }
 
     fn shape(&self) -> Shape {
