@@ -137,6 +137,27 @@ impl WallSprings {
     }
 }
 
+/// A particle's contact with a wall, as the ledger of energy books it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallTouch {
+    /// Which particle.
+    pub grain: u32,
+    /// Unit vector from the wall to its centre.
+    pub normal: [f64; 3],
+    /// How the wall moves there [length/time].
+    pub velocity: [f64; 3],
+    /// Force on the particle [force].
+    pub force: [f64; 3],
+    /// Torque on it.
+    pub torque: [f64; 3],
+    /// Elastic and cohesive force along the normal, without damping [force].
+    pub push: f64,
+    /// Energy of the overlap and of the tangential spring [energy].
+    pub stored: [f64; 2],
+    /// Whether what the push takes besides is flow.
+    pub flows: bool,
+}
+
 /// The last look at how contacts are pressed, and at the step they stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pressed {

@@ -165,6 +165,8 @@ pub struct Parts {
     pub deep: Option<contacts::Deep>,
     /// Springs of the contacts with each wall, when they were told last.
     pub wall_springs: contacts::WallSprings,
+    /// Contacts with each wall at the last step, by the fix's ID; nothing where nobody keeps a ledger of energy.
+    pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
     /// The last look at the step that contacts stand.
     pub pressed: Option<contacts::Pressed>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.

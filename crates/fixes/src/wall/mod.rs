@@ -109,6 +109,9 @@ impl<F: Form> Fix for Declared<F> {
         w.wall_contacts.remove(contacts);
         w.wall_contacts.remove(plastic::key(&self.common.id));
         w.parts.wall_springs.lists.remove(contacts.of());
+        if let Some(all) = &mut w.parts.wall_touches {
+            all.remove(contacts.of());
+        }
     }
 
     fn shape(&self) -> Shape {

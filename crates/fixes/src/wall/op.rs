@@ -402,8 +402,13 @@ impl Op for WallOp {
         self.sweep.act(&grains, &self.law, &mut memory, step);
         let asked = w.parts.wall_springs.wanted(t.step, t.setup, t.last);
         let springs = asked.then(|| self.sweep.springs(&grains, &self.law));
+        let booked = w.parts.wall_touches.is_some();
+        let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
         if let Some(list) = springs {
             w.parts.wall_springs.lists.insert(self.key.of(), ToldSprings { step: t.step, list });
+        }
+        if let Some((all, touches)) = w.parts.wall_touches.as_mut().zip(touches) {
+            all.insert(self.key.of(), touches);
         }
         give(w, self.key, self.kept.take().unwrap_or(memory));
         let p = &mut w.particles;
