@@ -33,7 +33,11 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     let name = format!("fix {} dt/guard", node.id);
     let look = Box::new(move |w: &perigrain_world::World| {
         let sheet = ledger::sheet(w, &mut probes)?;
-        Ok(Energy { residual: sheet.residual(), held: sheet.held(), turnover: sheet.turnover() })
+        Ok(Energy {
+            residual: sheet.residual(),
+            held: sheet.held() - sheet.walls,
+            turnover: sheet.turnover(),
+        })
     });
     s.plan.guard = Some(Guard { name, rule: *rule, when, look, say: Box::new(move |line| log.line(line)) });
     Ok(())

@@ -17,6 +17,7 @@ mod offered;
 pub mod ops;
 mod pair_modify;
 pub mod pairs;
+pub mod pressed;
 pub mod record;
 pub mod regions;
 pub mod restarts;

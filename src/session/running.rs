@@ -294,6 +294,7 @@ impl Session {
             // Behind the guard, whose blocks end where others act.
             let rows = self.graph.thermo.when(&mut s)?;
             crate::graph::runaway::seal(&mut s, &rows);
+            crate::graph::pressed::seal(&mut s)?;
         }
         s.say_what_is_missing();
         s.plan.settle();
@@ -366,8 +367,11 @@ impl Session {
 
     fn steps(&mut self, plan: &mut StepPlan, unchanged: bool, pace: &Pace) -> Result<verlet::Outcome> {
         let timed = self.timer.tables() || self.options.mode == Mode::Measure;
+        pace.setup(plan, &mut self.world, unchanged)?;
+        // What is wrong from the first step on is told before it.
+        self.notes.append(std::mem::take(&mut self.world.parts.notes));
+        self.say_notes()?;
         let (w, watch) = (&mut self.world, self.watch.as_mut());
-        pace.setup(plan, w, unchanged)?;
         plan.reset_meters(timed);
         watch.begins(w);
         w.clock.began = Some(Instant::now());

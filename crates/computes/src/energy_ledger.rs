@@ -25,9 +25,9 @@ impl Style for EnergyLedger {
             syntax: "compute ID all energy/ledger",
             summary: "Energy by channel: what the scene holds, what has become heat and cracks, what came in, what is missing.",
             text: "Global vector, in energy units (joules in `units si`), true energies whatever forces are called: 1 kinetic, 2 \
-                   rotational, 3 strain of all bonds, 4 elastic energy of contacts between particles (normal and tangential \
+                   rotational, 3 strain of all bonds, 4 elastic energy of contacts of particles with each other and with granular walls (normal and tangential \
                    springs), 5 taken up by dashpots along the normal, 6 by friction and everything else across it, 7 set free \
-                   by peridynamic bonds where they broke, 8 work of walls on particles, 9 of gravity, 10 of all else that a \
+                   by peridynamic bonds where they broke, 8 work of walls on particles, of granular ones by how they move (walls that stand do none), 9 of gravity, 10 of all else that a \
                    deck imposes (other fixes, driven particles), 11 the residual, 12 … the strain of the bonds of each type, and last \
                    the heat of bonds that relax or flow (peri/ves, peri/eps, peri/pmb/plastic). \
                    Scalar: the residual.\n\n\
@@ -35,7 +35,7 @@ impl Style for EnergyLedger {
                    In an elastic scene it falls with the square of the time step; dashpots, friction and bonds that break leave \
                    errors of first order. 5 to 10 are sums since the first run with a ledger, by the trapezoidal rule over the \
                    powers at every step; 3 and 12 … are tallied at the steps at which somebody reads them. What a deck changes \
-                   between runs does not count. Walls give back in 8 what they store; springs of rolling and twisting count \
+                   between runs does not count. Walls that are no granular ones give back in 8 what they store; springs of rolling and twisting count \
                    as friction. The heat of bonds is 2/τ times the energy of relaxing springs, and for plastic bonds what they lose when they \
                    flow, of first order in the step; under `compat lammps`, whose forces of such bonds have no energy, it is in \
                    the residual.\n\n\

@@ -215,7 +215,7 @@ impl ContactLaw for Granular {
         let a = self.normal.radius(g);
         let normal = self.normal.energy(g, &memory);
         let push = self.normal.push(g, a, &mut memory).force;
-        Stored { push, normal, across: self.spring.energy(a, history) }
+        Stored { push, normal, across: self.spring.energy(a, history), flows: self.normal.flows() }
     }
 
     #[inline(always)]

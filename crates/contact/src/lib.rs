@@ -113,6 +113,8 @@ pub struct Stored {
     pub normal: f64,
     /// Energy of the tangential spring [energy].
     pub across: f64,
+    /// Whether what the force takes besides that is flow and torn surfaces.
+    pub flows: bool,
 }
 
 impl Wrench {

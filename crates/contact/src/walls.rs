@@ -1,12 +1,13 @@
 //! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
 
 mod together;
+mod told;
 
 use super::fast::Form;
 use super::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_base::par;
-use perigrain_world::contacts::{Contacts, WallSpring};
+use perigrain_world::contacts::Contacts;
 pub use perigrain_world::region::Near;
 use together::Together;
 
@@ -261,17 +262,6 @@ impl WallSweep {
     /// The contacts of the last evaluation and what they do.
     pub fn contacts(&self) -> impl Iterator<Item = (&Touch, &Wrench)> {
         self.touching.iter().zip(&self.wrenches)
-    }
-
-    /// The springs of the contacts of the last evaluation.
-    pub fn springs<L: ContactLaw>(&self, grains: &Spheres, law: &L) -> Vec<WallSpring> {
-        let spring = |t: &Touch| {
-            let i = t.grain as usize;
-            let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
-            let (tag, arm) = (grains.tag[i], t.near.distance);
-            WallSpring { tag, normal: g.normal, stiffness: law.springs(&g), arm }
-        };
-        self.touching.iter().map(spring).collect()
     }
 
     /// The contacts that were found, and their keys.

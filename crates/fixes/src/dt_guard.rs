@@ -26,6 +26,8 @@ impl Style for DtGuard {
                    step is multiplied by F (0.5), and the log says so in one line. After K good blocks in a row (`recover`; \
                    never unless given) the step becomes longer by 1/F, up to the longest that the deck has set. Below T \
                    (1e-6 of the first step) the run ends with an error.\n\n\
+                   Contacts with granular walls count like those between particles, but what they hold is no part of the energy that is \
+                   held: it counts as what goes in and out. \
                    What is put out belongs to good blocks only. A run makes its number of steps, so that it covers less time \
                    when steps became shorter (`fix halt` with the variable `time` ends at a time). The tolerance must leave room \
                    for the errors of dashpots, friction and breaking bonds, which are of first order in the step: some per \

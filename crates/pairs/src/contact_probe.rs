@@ -200,6 +200,10 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
                 let (along, central) = (dot(v, n), dot(f, n));
                 let turning =
                     dot(c.wrench.torque_i, grains.omega[i]) + dot(c.wrench.torque_j, grains.omega[j]);
+                if stored.flows {
+                    sum.flowing[0] += c.share * stored.normal;
+                    sum.flowing[1] -= c.share * stored.push * along;
+                }
                 sum.stored[0] += c.share * stored.normal;
                 sum.stored[1] += c.share * stored.across;
                 sum.damping -= (central - c.share * stored.push) * along;

@@ -5,9 +5,9 @@ use crate::probe::Probe;
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
-use perigrain_peri::families::ForceUnit;
+use perigrain_peri::families::{Families, ForceUnit};
+use perigrain_world::World;
 use perigrain_world::contacts::WallSpring;
-use perigrain_world::{Named, World};
 
 /// How the step of peridynamic solids is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,15 +59,16 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
 
 /// Asks walls for the springs of their contacts, from the next step on.
 pub fn ask_walls(w: &mut World) {
-    if w.parts.wall_springs.is_none() {
-        w.parts.wall_springs = Some(Named::default());
+    if !w.parts.wall_springs.always {
+        w.parts.wall_springs.always = true;
         w.touch();
     }
 }
 
-/// Goes through the contacts with walls at the last step.
-fn add_walls(w: &World, mut each: impl FnMut(usize, &WallSpring)) {
-    let springs = || w.parts.wall_springs.iter().flat_map(Named::values).flatten();
+/// Goes through the contacts with walls, as they were told last; only those that `fresh` takes by their step.
+pub(crate) fn add_walls(w: &World, fresh: impl Fn(i64) -> bool, mut each: impl FnMut(usize, &WallSpring)) {
+    let told = || w.parts.wall_springs.lists.values().filter(|told| fresh(told.step));
+    let springs = || told().flat_map(|told| &told.list);
     if springs().next().is_none() {
         return;
     }
@@ -77,6 +78,19 @@ fn add_walls(w: &World, mut each: impl FnMut(usize, &WallSpring)) {
         if let Ok(at) = places.binary_search_by_key(&spring.tag, |p| p.0) {
             each(places[at].1, spring);
         }
+    }
+}
+
+/// The families of a particle of a solid.
+pub(crate) fn solid(w: &World, i: usize) -> Option<&Families> {
+    w.families.as_ref().filter(|f| f.place.get(i).is_some_and(|p| *p != u32::MAX))
+}
+
+/// The mass of a particle, given those that contacts see [mass].
+pub(crate) fn true_mass(w: &World, masses: &[f64], i: usize) -> f64 {
+    match solid(w, i) {
+        Some(f) if f.options.unit == ForceUnit::Density => masses[i] * w.volumes()[i],
+        _ => masses[i],
     }
 }
 
@@ -101,26 +115,26 @@ pub fn grains(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<f64> {
             }
         }
     }
-    add_walls(w, |i, spring| {
-        add(&mut straight[i], spring.normal, spring.stiffness);
-        add(&mut turning[i], spring.normal, [0.0, spring.arm * spring.arm * spring.stiffness[1]]);
-    });
+    add_walls(
+        w,
+        |_| true,
+        |i, spring| {
+            add(&mut straight[i], spring.normal, spring.stiffness);
+            add(&mut turning[i], spring.normal, [0.0, spring.arm * spring.arm * spring.stiffness[1]]);
+        },
+    );
     let (p, masses, ftm2v) = (&w.particles, w.contact_masses(), w.settings.units.constants().ftm2v);
-    let solid = |i: usize| w.families.as_ref().filter(|f| f.place.get(i).is_some_and(|p| *p != u32::MAX));
     let most = |k: Vec3| k.into_iter().fold(0.0, f64::max);
     let mut least = f64::INFINITY;
     for i in 0..n {
-        let mass = match solid(i) {
-            Some(f) if f.options.unit == ForceUnit::Density => masses[i] * w.volumes()[i],
-            _ => masses[i],
-        };
+        let mass = true_mass(w, &masses, i);
         let k = ftm2v * most(straight[i]);
         if k > 0.0 {
             least = least.min((mass / k).sqrt());
         }
         // Particles of solids do not turn.
         let k = ftm2v * most(turning[i]);
-        if k > 0.0 && solid(i).is_none() {
+        if k > 0.0 && solid(w, i).is_none() {
             least = least.min((0.4 * mass * p.radius[i] * p.radius[i] / k).sqrt());
         }
     }

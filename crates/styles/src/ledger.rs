@@ -2,11 +2,11 @@
 
 use crate::probe::{Balance, Probe};
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_base::math::vec3::{Vec3, dot};
+use perigrain_base::math::vec3::{Vec3, dot, sub};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
-use perigrain_world::{Constant, World};
+use perigrain_world::{Constant, Named, World};
 
 /// What does work on particles besides their mutual forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,31 +33,96 @@ static BEFORE: [Constant<Vec<Vec3>>; 2] = [Constant::new("ledger/force"), Consta
 /// The name of the book in the world's memory.
 static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 
+/// How many powers the ledger follows.
+const POWERS: usize = 7;
+/// How many numbers the book has.
+const NUMBERS: usize = 2 * POWERS + 12;
+
 /// The channels' sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Book {
-    /// Power of walls, gravity and what else is imposed, of dashpots, of everything across the normal, and of all forces
-    /// on driven particles, at the last step.
-    power: [f64; 6],
+    /// Power of walls, gravity and what else is imposed, of dashpots, of everything across the normal, of all forces on driven
+    /// particles, and against the elastic forces of laws that flow, at the last step.
+    power: [f64; POWERS],
     /// Work of the same since the ledger was opened.
-    work: [f64; 6],
+    work: [f64; POWERS],
     /// Kinetic energy of driven particles at the last step, and what has come in besides forces.
     driven: [f64; 2],
     /// Residual less energies, at the last opening.
     base: f64,
+    /// What flow has taken so far, and what laws that flow held at the last opening less what had gone into them.
+    flow: [f64; 2],
+    /// What walls do and hold.
+    walls: Walls,
+}
+
+/// What contacts with granular walls hold and do at a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Walls {
+    /// Energy of overlaps and of tangential springs [energy].
+    stored: [f64; 2],
+    /// The part of that which is of laws that flow.
+    held: f64,
+    /// Power on particles as the wall sees them move, which is what contacts take and give back.
+    taken: f64,
+    /// Power of dashpots, across the normal, and against the elastic forces of laws that flow.
+    damping: f64,
+    across: f64,
+    pressing: f64,
+}
+
+impl Walls {
+    /// At the present velocities.
+    fn now(w: &World) -> Self {
+        let (p, mut sum) = (&w.particles, Self::default());
+        for c in w.parts.wall_touches.iter().flat_map(Named::values).flatten() {
+            let i = c.grain as usize;
+            let (true_one, v) = (scale(w, i), sub(p.v[i], c.velocity));
+            let (along, central) = (dot(v, c.normal), dot(c.force, c.normal));
+            let turning = p.omega.get(i).map_or(0.0, |o| dot(c.torque, *o));
+            (0..2).for_each(|k| sum.stored[k] += true_one * c.stored[k]);
+            sum.taken += true_one * dot(c.force, v) + turning;
+            sum.damping -= true_one * (central - c.push) * along;
+            sum.across -= true_one * (dot(c.force, v) - central * along) + turning;
+            if c.flows {
+                sum.held += true_one * c.stored[0];
+                sum.pressing -= true_one * c.push * along;
+            }
+        }
+        sum
+    }
+
+    fn numbers(&self) -> [f64; 7] {
+        let [normal, springs] = self.stored;
+        [normal, springs, self.held, self.taken, self.damping, self.across, self.pressing]
+    }
+
+    fn of([normal, springs, held, taken, damping, across, pressing]: [f64; 7]) -> Self {
+        Self { stored: [normal, springs], held, taken, damping, across, pressing }
+    }
 }
 
 impl Book {
     fn read(w: &World) -> Option<Self> {
-        let m = w.memo.get(*BOOK).filter(|m| m.len() == 15)?;
-        let six = |k: usize| std::array::from_fn(|i| m[k + i]);
-        Some(Self { power: six(0), work: six(6), driven: [m[12], m[13]], base: m[14] })
+        let m = w.memo.get(*BOOK).filter(|m| m.len() == NUMBERS)?;
+        let powers = |k: usize| std::array::from_fn(|i| m[k + i]);
+        let rest = &m[2 * POWERS..];
+        Some(Self {
+            power: powers(0),
+            work: powers(POWERS),
+            driven: [rest[0], rest[1]],
+            base: rest[2],
+            flow: [rest[3], rest[4]],
+            walls: Walls::of(std::array::from_fn(|i| rest[5 + i])),
+        })
     }
 
     fn write(&self, w: &mut World) {
         let mut m = [self.power, self.work].concat();
         m.extend(self.driven);
         m.push(self.base);
+        m.extend(self.flow);
+        m.extend(self.walls.numbers());
         w.memo.insert(*BOOK, m);
     }
 }
@@ -78,12 +143,14 @@ pub fn open(w: &mut World) -> Result<()> {
         families.counts_losses = true;
     }
     w.bonds.counts_losses |= w.memo.contains(*BOOK);
+    w.parts.wall_touches.get_or_insert_default();
     Ok(())
 }
 
 /// Forgets the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
+    w.parts.wall_touches = None;
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 
@@ -167,6 +234,7 @@ fn balance(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Balance> {
     for probe in probes {
         let b = probe.balance(w)?;
         (0..2).for_each(|k| sum.stored[k] += b.stored[k]);
+        (0..2).for_each(|k| sum.flowing[k] += b.flowing[k]);
         sum.damping += b.damping;
         sum.across += b.across;
     }
@@ -193,13 +261,21 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
     let driven = par::sum(p.len(), forces);
     let damping = contacts.damping + w.bonds.power.iter().sum::<f64>();
-    let now = [power(0), power(1), power(2), damping, contacts.across, driven];
-    let moving: f64 = kinetic(w, held).iter().sum();
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();
+    // Where nothing has changed since the last run walls have nothing new to tell.
+    let walls = if t.unchanged && known.is_some() { book.walls } else { Walls::now(w) };
+    book.walls = walls;
+    let pressing = contacts.flowing[1] + walls.pressing;
+    let (damping, across) = (damping + walls.damping, contacts.across + walls.across);
+    // What contacts with walls take they hold or turn into heat: work is what walls do by moving.
+    let now = [power(0) - walls.taken, power(1), power(2), damping, across, driven, pressing];
+    let moving: f64 = kinetic(w, held).iter().sum();
+    let springs = contacts.flowing[0] + walls.held;
     if t.setup || known.is_none() {
         (book.power, book.driven[0]) = (now, moving);
         book.base = 0.0;
+        book.flow[1] = book.flow[0] + springs - book.work[6];
         book.write(w);
         if w.tally.step == Some(t.step) {
             book.base = -sheet(w, probes)?.residual();
@@ -208,8 +284,10 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
         return Ok(());
     }
     let half = 0.5 * t.dt;
-    let done: [f64; 6] = std::array::from_fn(|k| half * (book.power[k] + now[k]));
-    (0..6).for_each(|k| book.work[k] += done[k]);
+    let done: [f64; POWERS] = std::array::from_fn(|k| half * (book.power[k] + now[k]));
+    (0..POWERS).for_each(|k| book.work[k] += done[k]);
+    // Flow never gives back: what seems so was made from nothing, and stays in the residual.
+    book.flow[0] = book.flow[0].max(book.work[6] - springs + book.flow[1]);
     // What moves driven particles against the forces on them.
     book.driven[1] += moving - book.driven[0] - done[5];
     (book.power, book.driven[0]) = (now, moving);
@@ -226,6 +304,8 @@ pub struct Sheet {
     pub heat: f64,
     /// Strain energy by type.
     pub strain: Vec<f64>,
+    /// The part of the contact energy that contacts with walls hold.
+    pub walls: f64,
     base: f64,
 }
 
@@ -241,9 +321,10 @@ impl Sheet {
         self.held() + sum(4..7) + self.heat - sum(7..10) + self.base
     }
 
-    /// What has gone in and out: the measure of errors where nothing is held.
+    /// What has gone in and out, walls' contacts too: the measure of errors where nothing is held. What walls press particles with is no
+    /// measure: it may be a million times what these move with.
     pub fn turnover(&self) -> f64 {
-        self.channels[4..10].iter().map(|e| e.abs()).sum::<f64>() + self.heat.abs()
+        self.channels[4..10].iter().map(|e| e.abs()).sum::<f64>() + self.heat.abs() + self.walls.abs()
     }
 }
 
@@ -265,14 +346,14 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
     let contacts = balance(w, probes)?;
     let bonds = strain.iter().sum::<f64>() + w.tally.bond;
     let released = w.bonds.released + w.families.as_ref().map_or(0.0, |f| f.released);
-    let [walls, gravity, imposed, damping, across, _] = book.work;
-    let [normal, springs] = contacts.stored;
+    let [walls, gravity, imposed, damping, across, ..] = book.work;
+    let [normal, springs] = [0, 1].map(|k| contacts.stored[k] + book.walls.stored[k]);
     let channels = [
         straight,
         turning,
         bonds,
         normal + springs,
-        damping,
+        damping + book.flow[0],
         across - springs,
         released,
         walls,
@@ -280,5 +361,6 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
         imposed + book.driven[1],
     ];
     let heat = w.families.as_ref().map_or(0.0, |f| f.heat);
-    Ok(Sheet { channels, heat, strain, base: book.base })
+    let walls = book.walls.stored.iter().sum();
+    Ok(Sheet { channels, heat, strain, walls, base: book.base })
 }

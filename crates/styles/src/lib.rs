@@ -24,6 +24,7 @@ pub mod near;
 pub mod newcomers;
 pub mod pair;
 pub mod peri_view;
+pub mod pressed;
 pub mod probe;
 pub mod pull;
 pub mod rigid_bodies;

@@ -92,6 +92,8 @@ pub struct Balance {
     /// Power of everything across the normal and of torques, springs included: what these do not keep is friction
     /// [force length/time].
     pub across: f64,
+    /// Of laws that flow: the energy of overlaps [energy], and the power against their elastic force [force length/time].
+    pub flowing: [f64; 2],
 }
 
 /// A pair style's answer about single pairs. It reads the world as it is after forces are computed: contact history

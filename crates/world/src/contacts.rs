@@ -1,6 +1,6 @@
 //! Contact history by pair: what grains remember while they touch each other or a wall.
 
-use super::named::Constant;
+use super::named::{Constant, Named};
 
 /// Contacts of the last step in the order of their keys, with what each remembers.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -109,7 +109,67 @@ impl Contacts {
     }
 }
 
-/// The springs of a particle's contact with a wall, as compute dt/critical asks for them.
+/// Every so many steps walls tell the springs of their contacts, whether somebody asks or not.
+const LOOK: i64 = 1000;
+
+/// What walls have told of the springs of their contacts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallSprings {
+    /// Whether they tell at each step (compute and fix dt/critical).
+    pub always: bool,
+    /// By the fix's ID.
+    pub lists: Named<ToldSprings>,
+}
+
+/// What a wall has told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ToldSprings {
+    /// When.
+    pub step: i64,
+    /// Of each contact.
+    pub list: Vec<WallSpring>,
+}
+
+impl WallSprings {
+    /// Whether a wall tells at this step: before a run's first step, now and then, and at its last one at least.
+    pub fn wanted(&self, step: i64, setup: bool, last: i64) -> bool {
+        self.always || setup || step == last || step % LOOK == 0
+    }
+}
+
+/// A particle's contact with a wall, as the ledger of energy books it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallTouch {
+    /// Which particle.
+    pub grain: u32,
+    /// Unit vector from the wall to its centre.
+    pub normal: [f64; 3],
+    /// How the wall moves there [length/time].
+    pub velocity: [f64; 3],
+    /// Force on the particle [force].
+    pub force: [f64; 3],
+    /// Torque on it.
+    pub torque: [f64; 3],
+    /// Elastic and cohesive force along the normal, without damping [force].
+    pub push: f64,
+    /// Energy of the overlap and of the tangential spring [energy].
+    pub stored: [f64; 2],
+    /// Whether what the push takes besides is flow.
+    pub flows: bool,
+}
+
+/// The last look at how contacts are pressed, and at the step they stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressed {
+    /// When.
+    pub step: i64,
+    /// The time step then.
+    pub dt: f64,
+    /// Whether the user has been told that it is too long.
+    pub told: bool,
+}
+
+/// The springs of a particle's contact with a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallSpring {
     /// The particle's tag.

@@ -164,8 +164,12 @@ pub struct Parts {
     pub cleared: bool,
     /// The first grains seen to overlap by more than a tenth of a radius during a run.
     pub deep: Option<contacts::Deep>,
-    /// Springs of the contacts with each wall, by the fix's ID, at the last step; nothing where nobody has asked.
-    pub wall_springs: Option<Named<Vec<contacts::WallSpring>>>,
+    /// Springs of the contacts with each wall, when they were told last.
+    pub wall_springs: contacts::WallSprings,
+    /// Contacts with each wall at the last step, by the fix's ID; nothing where nobody keeps a ledger of energy.
+    pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
+    /// The last look at the step that contacts stand.
+    pub pressed: Option<contacts::Pressed>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Option<(String, GroupId)>,
     /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.

@@ -41,6 +41,8 @@ pub trait NormalLaw: Copy + Debug + PartialEq {
     const STICKS: bool = false;
     /// Whether the law may be asked for several contacts at once.
     const IN_LANES: bool = true;
+    /// Whether what the force takes besides [`NormalLaw::energy`] is flow and torn surfaces, which the ledger books as such.
+    const FLOWS: bool = false;
     /// How many numbers a contact remembers for it; they begin as zeros and are the same seen from j.
     const MEMORY: usize = 0;
 
@@ -115,6 +117,11 @@ macro_rules! normal_laws {
             /// See [`NormalLaw::IN_LANES`].
             pub fn in_lanes(&self) -> bool {
                 match self { $(Self::$Law(_) => $module::$Law::IN_LANES,)* }
+            }
+
+            /// See [`NormalLaw::FLOWS`].
+            pub fn flows(&self) -> bool {
+                match self { $(Self::$Law(_) => $module::$Law::FLOWS,)* }
             }
 
             /// See [`NormalLaw::MEMORY`].

@@ -108,7 +108,8 @@ impl<F: Form> Fix for Declared<F> {
         let contacts: Key<Contacts> = Key::new(&self.common.id);
         w.wall_contacts.remove(contacts);
         w.wall_contacts.remove(plastic::key(&self.common.id));
-        if let Some(all) = &mut w.parts.wall_springs {
+        w.parts.wall_springs.lists.remove(contacts.of());
+        if let Some(all) = &mut w.parts.wall_touches {
             all.remove(contacts.of());
         }
     }

@@ -12,7 +12,7 @@ use perigrain_contact::{Advance, Granular};
 use perigrain_plan::{About, Needs, Op, Room, Stage, Tick, Way, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::contacts::Contacts;
+use perigrain_world::contacts::{Contacts, ToldSprings};
 use perigrain_world::field::{
     self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL, V,
     WALL_CONTACTS, X,
@@ -400,9 +400,15 @@ impl Op for WallOp {
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
         let step = Advance { dt: t.dt, history: !t.setup };
         self.sweep.act(&grains, &self.law, &mut memory, step);
-        let springs = w.parts.wall_springs.is_some().then(|| self.sweep.springs(&grains, &self.law));
-        if let (Some(all), Some(own)) = (&mut w.parts.wall_springs, springs) {
-            all.insert(self.key.of(), own);
+        let asked = w.parts.wall_springs.wanted(t.step, t.setup, t.last);
+        let springs = asked.then(|| self.sweep.springs(&grains, &self.law));
+        let booked = w.parts.wall_touches.is_some();
+        let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
+        if let Some(list) = springs {
+            w.parts.wall_springs.lists.insert(self.key.of(), ToldSprings { step: t.step, list });
+        }
+        if let Some((all, touches)) = w.parts.wall_touches.as_mut().zip(touches) {
+            all.insert(self.key.of(), touches);
         }
         give(w, self.key, self.kept.take().unwrap_or(memory));
         let p = &mut w.particles;
@@ -419,7 +425,7 @@ impl Op for WallOp {
             && !t.unchanged
             && self.peace.lasts(*w.travel)
             && self.generation == Some(w.rebuild.generation)
-            && w.parts.wall_springs.is_none();
+            && !w.parts.wall_springs.always;
         if rests {
             w.slots.get_mut(self.slot).step = Some(t.step);
             debug_assert!(self.room(w) > 0.0, "{} rests and is touched", self.name);

@@ -1,0 +1,38 @@
+//! What walls tell of their contacts: springs, for the time step, and what each holds and does, for the ledger of energy.
+
+use super::{Spheres, Touch, WallSweep, geometry};
+use crate::ContactLaw;
+use perigrain_world::contacts::{Contacts, WallSpring, WallTouch};
+
+impl WallSweep {
+    /// The springs of the contacts of the last evaluation.
+    pub fn springs<L: ContactLaw>(&self, grains: &Spheres, law: &L) -> Vec<WallSpring> {
+        let spring = |t: &Touch| {
+            let i = t.grain as usize;
+            let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
+            let (tag, arm) = (grains.tag[i], t.near.distance);
+            WallSpring { tag, normal: g.normal, stiffness: law.springs(&g), arm }
+        };
+        self.touching.iter().map(spring).collect()
+    }
+
+    /// The contacts of the last evaluation with what they hold and do; `memory` is that of this evaluation.
+    pub fn touches<L: ContactLaw>(&self, grains: &Spheres, law: &L, memory: &Contacts) -> Vec<WallTouch> {
+        let rows = (0..).map(|k| memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]));
+        let touch = |((t, wrench), history): ((&Touch, &crate::Wrench), &[f64])| {
+            let i = t.grain as usize;
+            let stored = law.stored(&geometry(&t.near, grains.radius[i], grains.mass[i]), history);
+            WallTouch {
+                grain: t.grain,
+                normal: t.near.normal,
+                velocity: t.near.velocity,
+                force: wrench.force,
+                torque: wrench.torque_i,
+                push: stored.push,
+                stored: [stored.normal, stored.across],
+                flows: stored.flows,
+            }
+        };
+        self.contacts().zip(rows).map(touch).collect()
+    }
+}
