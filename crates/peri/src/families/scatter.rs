@@ -95,7 +95,7 @@ mod tests {
     use perigrain_base::math::rng::ParkMiller;
     use perigrain_base::math::scatter::{Distribution, gaussian};
 
-    const BOUNDS: Bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+    const BOUNDS: Bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
 
     /// A brick that is drawn and shaken in so many steps: bonds that live, by their ends, and the last forces.
     fn shaken(
