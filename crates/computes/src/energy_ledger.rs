@@ -26,7 +26,7 @@ impl Style for EnergyLedger {
             summary: "Energy by channel: what the scene holds, what has become heat and cracks, what came in, what is missing.",
             text: "Global vector, in energy units (joules in `units si`), true energies whatever forces are called: 1 kinetic, 2 \
                    rotational, 3 strain of all bonds, 4 elastic energy of contacts of particles with each other and with granular walls (normal and tangential \
-                   springs), 5 taken up by dashpots along the normal, 6 by friction and everything else across it, 7 set free \
+                   springs), 5 taken up by dashpots along the normal and by flow in contacts `mdr`, 6 by friction and everything else across it, 7 set free \
                    by peridynamic bonds where they broke, 8 work of walls on particles, of granular ones by how they move (walls that stand do none), 9 of gravity, 10 of all else that a \
                    deck imposes (other fixes, driven particles), 11 the residual, 12 … the strain of the bonds of each type, and last \
                    the heat of bonds that relax or flow (peri/ves, peri/eps, peri/pmb/plastic). \
@@ -36,7 +36,10 @@ impl Style for EnergyLedger {
                    errors of first order. 5 to 10 are sums since the first run with a ledger, by the trapezoidal rule over the \
                    powers at every step; 3 and 12 … are tallied at the steps at which somebody reads them. What a deck changes \
                    between runs does not count. Walls that are no granular ones give back in 8 what they store; springs of rolling and twisting count \
-                   as friction. The heat of bonds is 2/τ times the energy of relaxing springs, and for plastic bonds what they lose when they \
+                   as friction. Plastic grains (`mdr`) hold what their contacts would give back if they unloaded now; what goes into such contacts \
+                   besides (flow, growth of grains, torn surfaces) is booked in 5 as far as it grows, since flow gives nothing back: what seems to come back was \
+                   made from nothing and stays in the residual. Where the bulk answers (`psi_b`) that law has no energy: half of its force times its depth \
+                   counts as held. The heat of bonds is 2/τ times the energy of relaxing springs, and for plastic bonds what they lose when they \
                    flow, of first order in the step; under `compat lammps`, whose forces of such bonds have no energy, it is in \
                    the residual.\n\n\
                    Contacts are evaluated a second time in each step, so that a bed of grains takes up to twice as long, and so do \

@@ -138,9 +138,10 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
             if own == Own::Mdr {
-                // The last of what such contacts are told.
+                // The area stands before the energy at the end of what such contacts are told.
                 let rows = memory.history.chunks_exact(memory.width.max(1));
-                all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = row.last().copied().unwrap_or(0.0));
+                let area = |row: &[f64]| row.iter().rev().nth(1).copied().unwrap_or(0.0);
+                all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = area(row));
             }
             all
         })?;

@@ -45,6 +45,18 @@ pub fn force(
     (shape.force(plane, rim) + 2.0 * plane * (d - rim) * a, a)
 }
 
+/// Energy of the springs at elastic depth `d`, of which those inside the radius `stuck` are glued to the plane:
+/// U(d_a) + F(d_a) (d − d_a) + E_c a (d − d_a)² where the plane has gone back from d_a, the depth of the rim.
+pub fn energy(m: &Material, shape: &Ellipse, d: f64, stuck: f64) -> f64 {
+    let plane = m.plane();
+    if m.cohesion == 0.0 || shape.radius(d) >= stuck {
+        return shape.energy(plane, d);
+    }
+    let rim = shape.depth(stuck);
+    let back = d - rim;
+    shape.energy(plane, rim) + shape.force(plane, rim) * back + plane * stuck * back * back
+}
+
 /// The springs of a contact that unloads.
 struct Springs<'a> {
     shape: &'a Ellipse,

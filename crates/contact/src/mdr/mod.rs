@@ -60,6 +60,8 @@ pub struct Manner {
     pub lammps: bool,
     /// In the setup of a run.
     pub setup: bool,
+    /// Somebody keeps a ledger of energy.
+    pub booked: bool,
 }
 
 impl Manner {
@@ -75,8 +77,9 @@ pub const PAIR: usize = 2 * side::WIDTH + 1;
 /// How many numbers a contact with a wall remembers.
 pub const WALL: usize = side::WIDTH;
 
-/// What a contact does along its normal, for the rest of the law: force, stiffness that damping sees, area. These numbers stand at the end of what the contact remembers.
-pub const TOLD: usize = 3;
+/// What a contact does along its normal, for the rest of the law: force, stiffness that damping sees, area, energy that it can give back
+/// where somebody keeps a ledger. These numbers stand at the end of what the contact remembers.
+pub const TOLD: usize = 4;
 
 /// After a setup, in which forces are only evaluated: `rows` of `width` numbers are `before` again; but LAMMPS keeps the
 /// largest depths it has seen.

@@ -49,6 +49,8 @@ pub struct Deed {
     pub covered: f64,
     /// −F b/V, b the distance of the plane from the centre.
     pub stress: f64,
+    /// What the plane gets back if it goes, where somebody keeps a ledger [energy].
+    pub energy: f64,
 }
 
 /// What all contacts of a grain mean for it.
@@ -112,7 +114,10 @@ pub fn side(
     side.area *= open;
     let stress = -force * (g.first - side.first_depth) / g.volume;
     side.strain = stress / (3.0 * m.bulk());
+    // The bulk answers to all planes of the grain: of its force as much as a spring of its own would hold.
+    let held = || open * (side.energy(m, radius) + 0.5 * bulk * side.squeezing);
     let mut deed = Deed {
+        energy: if manner.booked { held() } else { 0.0 },
         strain: side.strain,
         cap: PI * depth * depth * (3.0 * radius - depth) / 3.0,
         area: side.area,
@@ -237,23 +242,38 @@ fn press(
     let largest = &mut memory[PAIR - 1];
     *largest = largest.max(seen.overlap);
     let damped = manner.damped(told[1], 2.0 * m.plane() * contact);
-    told.copy_from_slice(&[force, damped, area]);
+    let energy = if manner.booked { given_back(radii, memory, deeds) } else { 0.0 };
+    told.copy_from_slice(&[force, damped, area, energy]);
+}
+
+/// The work of the mean force of both sides on the way on which they unload, where each goes its part of the overlap.
+fn given_back(radii: [f64; 2], memory: &[f64], deeds: &[Deed; 2]) -> f64 {
+    let largest = memory[PAIR - 1];
+    let plastic = [memory[PLASTIC], memory[WIDTH + PLASTIC]];
+    let (most, way) = (cut(largest, radii), largest - plastic[0] - plastic[1]);
+    let part = |k: usize| {
+        let own = most[k] - plastic[k];
+        if own > 0.0 { deeds[k].energy * way / own } else { 0.0 }
+    };
+    0.5 * (part(0) + part(1))
+}
+
+/// The depths of the plane through the circle in which the spheres cut each other.
+fn cut(overlap: f64, radii: [f64; 2]) -> [f64; 2] {
+    let one = overlap * (2.0 * radii[1] - overlap) / (2.0 * (radii[0] + radii[1] - overlap));
+    [one, overlap - one]
 }
 
 /// The depth of the plane on each side: through the circle in which the spheres cut each other while the overlap grows;
 /// on the way back each side gives in proportion to what is elastic of it.
 fn split(overlap: f64, radii: [f64; 2], memory: &[f64]) -> [f64; 2] {
-    let cut = |overlap: f64| {
-        let one = overlap * (2.0 * radii[1] - overlap) / (2.0 * (radii[0] + radii[1] - overlap));
-        [one, overlap - one]
-    };
     let largest = memory[PAIR - 1];
     if overlap >= largest {
-        return cut(overlap);
+        return cut(overlap, radii);
     }
     let plastic = [memory[PLASTIC], memory[WIDTH + PLASTIC]];
     let rest = plastic[0] + plastic[1];
     let part = (overlap - rest) / (largest - rest);
-    let most = cut(largest);
+    let most = cut(largest, radii);
     std::array::from_fn(|k| plastic[k] + (most[k] - plastic[k]) * part)
 }

@@ -67,6 +67,12 @@ impl Ellipse {
         0.25 * plane * self.a * self.b * segment(x)
     }
 
+    /// Energy of the springs on a plane at depth `d`, ∫ F dd: E_c A² B/8 (sin θ − θ cos θ − sin³ θ/3), θ = acos(1 − 2x).
+    pub fn energy(&self, plane: f64, d: f64) -> f64 {
+        let x = (d / self.a).clamp(0.0, 1.0);
+        0.25 * plane * self.a * self.a * self.b * bowl(x)
+    }
+
     /// Force at the depth A/2, where all springs are pressed: π/8 E_c A B.
     fn whole_force(&self, plane: f64) -> f64 {
         0.125 * PI * plane * self.a * self.b
@@ -90,6 +96,16 @@ fn segment(x: f64) -> f64 {
         return 2.0 * x.sqrt().asin() - 2.0 * (1.0 - 2.0 * x) * (x * (1.0 - x)).sqrt();
     }
     SERIES.iter().rev().fold(0.0, |sum, c| c + x * sum) * x * x.sqrt()
+}
+
+/// ∫ [`segment`] from 0, without cancellation at small x.
+fn bowl(x: f64) -> f64 {
+    if x > SMALL {
+        let (theta, sine) = (2.0 * x.sqrt().asin(), 2.0 * (x * (1.0 - x)).sqrt());
+        return 0.5 * (sine - theta * (1.0 - 2.0 * x) - sine * sine * sine / 3.0);
+    }
+    let terms = SERIES.iter().zip(0..10u8).rev();
+    terms.fold(0.0, |sum, (c, k)| c / (f64::from(k) + 2.5) + x * sum) * x * x * x.sqrt()
 }
 
 /// Up to here the series leaves less than 1e-17 of its sum.
@@ -159,15 +175,36 @@ impl Side {
             self.offset = PI * (deepest * deepest - deepest * radius);
         }
         let (shape, lift) = self.shape(m, radius, hardness);
-        let most = if self.yielded { 0.5 * shape.a } else { deepest };
+        let most = self.most(&shape);
         self.area = self.contact_area(radius);
         self.plastic = deepest - (most + lift);
         if most <= 0.0 {
             return Pressed { flows, ..Pressed::default() };
         }
-        let elastic = (self.shearing - deepest + most + lift) / (1.0 + lift / most);
+        let elastic = self.elastic(most, lift);
         let (force, contact) = adhesion::force(m, &shape, elastic, &mut self.stuck, flows, manner.lammps);
         Pressed { force, radius: contact, flows }
+    }
+
+    /// What the plane gets back if it goes as it does when it unloads: the energy of the springs, spread over the way by which the rim rises
+    /// [energy].
+    pub fn energy(&self, m: &Material, radius: f64) -> f64 {
+        let (shape, lift) = self.shape(m, radius, m.hardness(self.deepest, radius));
+        let most = self.most(&shape);
+        if most <= 0.0 {
+            return 0.0;
+        }
+        (1.0 + lift / most) * adhesion::energy(m, &shape, self.elastic(most, lift), self.stuck)
+    }
+
+    /// The elastic depth at the largest depth.
+    fn most(&self, shape: &Ellipse) -> f64 {
+        if self.yielded { 0.5 * shape.a } else { self.deepest }
+    }
+
+    /// The elastic depth now.
+    fn elastic(&self, most: f64, lift: f64) -> f64 {
+        (self.shearing - self.deepest + most + lift) / (1.0 + lift / most)
     }
 
     /// The ellipse, and δ_R, by which the rim of the contact lies lower while it is loaded.

@@ -40,8 +40,9 @@ pub fn press(
     let mut one = Side::read(&memory[..WIDTH]);
     let (force, a, deed) = side(m, &s.grain(m, k), radius, depth, &mut one, 1.0, manner);
     one.write(memory);
-    let force = force * far_pushed(one.first_depth, s.first[k]);
+    let far = far_pushed(one.first_depth, s.first[k]);
+    let force = force * far;
     let damped = manner.damped(told[1], 0.5 * m.plane() * a);
-    told[..TOLD].copy_from_slice(&[force, damped, one.area]);
+    told[..TOLD].copy_from_slice(&[force, damped, one.area, deed.energy * far]);
     deed
 }

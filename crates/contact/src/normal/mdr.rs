@@ -74,6 +74,7 @@ pub struct Mdr {
 
 impl NormalLaw for Mdr {
     const IN_LANES: bool = false;
+    const FLOWS: bool = true;
     const MEMORY: usize = TOLD;
 
     #[inline(always)]
@@ -82,9 +83,9 @@ impl NormalLaw for Mdr {
         Push { force: memory[0], secant: memory[1], hold: zero }
     }
 
-    /// What plastic grains give back depends on all that has happened to them: nothing is counted on.
-    fn energy(&self, _g: &Geometry, _memory: &[f64]) -> f64 {
-        0.0
+    /// What both sides were told to give back if they unload now; told where somebody keeps a ledger of energy.
+    fn energy(&self, _g: &Geometry, memory: &[f64]) -> f64 {
+        memory[TOLD - 1]
     }
 
     /// As stiff as elastic grains of this overlap.

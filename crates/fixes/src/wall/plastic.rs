@@ -88,7 +88,8 @@ impl Plastic {
         let kept = t.setup.then(|| state.clone());
         let (touching, keys) = sweep.touching();
         memory.carry(keys, WALL, &mut self.spare);
-        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
+        let manner =
+            Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
         let width = contacts.width;
         let before = t.setup.then(|| memory.history.clone());
         let rows = memory.history.chunks_exact_mut(WALL).zip(contacts.history.chunks_exact_mut(width));

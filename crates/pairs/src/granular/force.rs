@@ -244,7 +244,8 @@ impl Force {
     fn run_plain(&mut self, w: &mut World, t: &Tick, period: Periods, store: bool) -> Result<()> {
         let mut memory = w.contacts.remove(self.key).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
-        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
+        let manner =
+            Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
         let (plain, press) = (&mut self.plain, &mut self.press);
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, period, &plain.body, &self.frozen)? };
