@@ -52,6 +52,7 @@ const EXAMPLES: &[Example] = examples![
     "rotating_drum": "in.rotating_drum";
     "rubber_cube": "in.rubber_cube";
     "rubber_sand_pack": "in.rubber_sand_pack";
+    "shear_cell": "in.shear_cell";
     "squeezed_block": "in.squeezed_block";
 ];
 

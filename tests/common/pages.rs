@@ -82,6 +82,7 @@ const CHANGED: &[(&str, &str, &str)] = &[
     ("fix enforce2d", "dimension", "dimension 2"),
     ("fix enforce2d", "boundary", "boundary s s p"),
     ("fix deform", "boundary", "boundary f s s"),
+    ("fix deform/pressure", "boundary", "boundary f s s"),
     ("fix enforce2d", "lattice", "lattice sq 0.001"),
     (
         "fix enforce2d",

@@ -171,7 +171,9 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
                 let [lo, hi] = at[d];
                 let grows = steering.rate(w, t)?;
                 let half = 0.5 * (hi - lo) * grows * steering.span(w, t);
-                (at[d], rate[d]) = ([lo - half, hi + half], (hi - lo) * grows);
+                // LAMMPS takes the rate of strain for that of the length.
+                let over = if w.settings.lammps() { 1.0 } else { hi - lo };
+                (at[d], rate[d]) = ([lo - half, hi + half], over * grows);
             }
         }
     }

@@ -96,7 +96,7 @@ fn lists_of_a_leaning_box_hold_what_the_double_loop_finds() {
     wanted.set(2, 2, Reach::Touch);
     for tilt in [[5.0, 0.0, 0.0], [-4.0, 3.0, 5.0]] {
         let period = Periods { length: [10.0; 3], tilt };
-        let mut s = scene(600);
+        let mut s = scene(1200);
         s.x.iter_mut().for_each(|x| *x = period.shift(x.map(|a| a / 10.0)));
         let v = View { period, ..s.view([10.0; 3]) };
         let list = pairs(&v, &wanted, 0.05, &|_, _| true);
