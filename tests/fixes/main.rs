@@ -14,10 +14,18 @@ use thermo::{run, run_in};
 /// some tens of steps that carry them on.
 const TOLERANCE: f64 = 1e-13;
 
+/// Of grains that are pressed hard at rest forces cancel to a thousandth and less: what is left of them carries that much more of
+/// their rounding.
+const CANCELLED: f64 = 1e-12;
+
 /// Compares a deck's thermo table with LAMMPS'; the files that the deck writes are in the folder returned.
 fn agrees(name: &str) -> tempfile::TempDir {
+    agrees_to(TOLERANCE, name)
+}
+
+fn agrees_to(tolerance: f64, name: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    thermo::agrees("fixes", name, TOLERANCE, |deck| {
+    thermo::agrees("fixes", name, tolerance, |deck| {
         let _alone = super::folder();
         std::env::set_current_dir(&folder).unwrap();
         let (_, ours) = run_in(folder.path(), name, deck, true);
@@ -54,12 +62,12 @@ fn wiggle_agrees() {
 
 #[test]
 fn grains_in_a_squeezed_box_agree() {
-    agrees("squeezed");
+    agrees_to(CANCELLED, "squeezed");
 }
 
 #[test]
 fn boxes_steered_by_pressures_agree() {
-    agrees("pressed");
+    agrees_to(CANCELLED, "pressed");
 }
 
 #[test]
