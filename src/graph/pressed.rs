@@ -16,8 +16,8 @@ use perigrain_world::{RunStyle, World};
 /// The interval in steps at which contacts are looked at; walls tell of themselves then.
 const INTERVAL: i64 = 1000;
 
-/// After so many steps a run that goes on is worth a look of its own at its beginning and end.
-const SOON: i64 = 100;
+/// After so many steps a run that goes on is worth a look of its own at its beginning and end: a look takes as long as some 15 steps.
+const SOON: i64 = INTERVAL;
 
 /// Equations of motion, and whether they turn particles. Rigid bodies are heavier than their particles, and what is led does not swing.
 const MOVING: [(&str, bool); 4] =
