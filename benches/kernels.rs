@@ -45,7 +45,7 @@ fn disc() -> Disc {
         f: vec![[0.0; 3]; n],
         kind: vec![1; n],
         volume: vec![1.25e-10; n],
-        bounds: Bounds { lo: [-0.018; 3], hi: [0.018; 3], periodic: [false; 3] },
+        bounds: Bounds { lo: [-0.018; 3], hi: [0.018; 3], periodic: [false; 3], tilt: [0.0; 3] },
         x0: x.clone(),
         x,
     }

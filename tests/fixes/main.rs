@@ -3,7 +3,7 @@
 //! `golden/NAME.txt` holds the thermo table that LAMMPS 22Jul2025 prints for `NAME.in`, 15 digits per number.
 
 #[path = "../common/thermo.rs"]
-mod thermo;
+pub mod thermo;
 
 use perigrain::session::set_threads;
 use std::fs;

@@ -3,13 +3,10 @@
 //! `golden/NAME.txt` holds the thermo table that LAMMPS 22Jul2025 prints for `NAME.in`, 15 digits per number, other files of that
 //! name what it writes.
 
-#[path = "../common/thermo.rs"]
-mod thermo;
-
+use super::fixes::thermo::{self, run, run_in};
 use perigrain::session::{Session, set_threads};
 use std::fs;
 use std::path::Path;
-use thermo::{run, run_in};
 
 /// LAMMPS turns places into fractions of the box and back at every rebuild of its lists: an ulp each time, which collisions
 /// make some hundred times larger in these decks.

@@ -60,7 +60,7 @@ pub fn next<'a>(lines: &mut Lines<'a>) -> Result<Option<Snapshot<'a>>> {
                 }
             }
             let (lo, hi, tilt) = inner(edges);
-            if let Some(d) = (0..3).find(|&d| !(lo[d] < hi[d])) {
+            if let Some(d) = (0..3).find(|&d| (hi[d] - lo[d]).is_nan() || lo[d] >= hi[d]) {
                 let text = format!("the box leans so far that nothing is left of {}", ["x", "y", "z"][d]);
                 return fail(Code::BAD_VALUE, line.span(), text);
             }

@@ -97,13 +97,16 @@ mod tests {
 
     const BOUNDS: Bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
 
+    /// Bonds that live, and vectors of particles.
+    type Shaken = (Vec<[u32; 2]>, Vec<[f64; 3]>, Vec<[f64; 3]>);
+
     /// A brick that is drawn and shaken in so many steps: bonds that live, by their ends, and the last forces.
     fn shaken(
         (layout, alpha): (Layout, f64),
         law: &Law,
         [strength, stiffness]: [&[f64]; 2],
         steps: usize,
-    ) -> (Vec<[u32; 2]>, Vec<[f64; 3]>, Vec<[f64; 3]>) {
+    ) -> Shaken {
         let x0: Vec<[f64; 3]> =
             (0..540).map(|i| [f64::from(i % 18), f64::from(i / 18 % 6), f64::from(i / 108)]).collect();
         let (kind, volume) = (vec![1; x0.len()], vec![1.0; x0.len()]);
