@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
+use perigrain_styles::matter::unwrapped;
 use perigrain_world::{GroupId, World};
 
 /// The particles of a group in storage order.
@@ -38,8 +39,8 @@ impl Members {
 
     /// Takes the rotation about the centre of mass away.
     pub fn stop_rotation(&self, w: &World, v: &mut [Vec3]) {
-        let Some(center) = self.mean(w, |_, i| unfolded(w, i)) else { return };
-        let arms: Vec<Vec3> = self.list.iter().map(|&i| sub(unfolded(w, i), center)).collect();
+        let Some(center) = self.mean(w, |_, i| unwrapped(w, i)) else { return };
+        let arms: Vec<Vec3> = self.list.iter().map(|&i| sub(unwrapped(w, i), center)).collect();
         let (mut l, mut inertia) = ([0.0; 3], [[0.0; 3]; 3]);
         for ((&i, r), v) in self.list.iter().zip(&arms).zip(v.iter()) {
             let m = w.particles.mass[i];
@@ -88,13 +89,6 @@ pub fn temperature(w: &World, members: &Members, v: &[Vec3]) -> f64 {
     }
     let c = w.settings.units.constants();
     sum * (c.mvv2e / (freedom * c.boltz))
-}
-
-/// Position with periodic images unfolded.
-fn unfolded(w: &World, i: usize) -> Vec3 {
-    let (x, image) = (w.particles.x[i], w.particles.image[i]);
-    let by = w.edges().shift(image.map(f64::from));
-    [0, 1, 2].map(|d| x[d] + by[d])
 }
 
 /// Angular velocity ω with I ω = L. A body on a line has no rotation about it: small moments are left out.

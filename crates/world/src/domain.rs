@@ -162,22 +162,12 @@ impl Domain {
     /// Where a place would be were the box upright: along each axis between the same faces `lo` and `hi`.
     #[inline]
     pub fn upright(&self, x: &[f64; 3]) -> [f64; 3] {
-        match self.tilt {
-            Some(tilt) if tilt != [0.0; 3] => {
-                let [_, y, z] = self.fractions(x);
-                let [xy, xz, yz] = tilt;
-                [x[0] - y * xy - z * xz, x[1] - z * yz, x[2]]
-            }
-            _ => *x,
-        }
+        self.edges().straightened(*x, self.lo)
     }
 
     /// Where in the box a place is along each edge, 0 at the lower face and 1 at the upper one.
     pub fn fractions(&self, x: &[f64; 3]) -> [f64; 3] {
-        let (l, [xy, xz, yz]) = (self.lengths(), self.tilt.unwrap_or_default());
-        let z = (x[2] - self.lo[2]) / l[2];
-        let y = (x[1] - self.lo[1] - z * yz) / l[1];
-        [(x[0] - self.lo[0] - y * xy - z * xz) / l[0], y, z]
+        self.edges().fractions([0, 1, 2].map(|d| x[d] - self.lo[d]))
     }
 
     /// The place at these fractions of the edges.

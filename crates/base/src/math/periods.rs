@@ -37,6 +37,25 @@ impl Periods {
         [n[0] * lx + n[1] * xy + n[2] * xz, n[1] * ly + n[2] * yz, n[2] * lz]
     }
 
+    /// Along each edge the part of it at which a place lies that is `d` away from the corner, 0 there and 1 at the other end.
+    pub fn fractions(&self, d: Vec3) -> Vec3 {
+        let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        let z = d[2] / lz;
+        let y = (d[1] - z * yz) / ly;
+        [(d[0] - y * xy - z * xz) / lx, y, z]
+    }
+
+    /// Where a place would be were the edges from the corner `lo` upright: between the same faces along each of them.
+    #[inline]
+    pub fn straightened(&self, x: Vec3, lo: Vec3) -> Vec3 {
+        if !self.tilted() {
+            return x;
+        }
+        let [_, y, z] = self.fractions([x[0] - lo[0], x[1] - lo[1], x[2] - lo[2]]);
+        let [xy, xz, yz] = self.tilt;
+        [x[0] - y * xy - z * xz, x[1] - z * yz, x[2]]
+    }
+
     /// The lengths in which the images are sought: the distance of each pair of faces, zero where the box does not repeat.
     pub fn heights(&self) -> Vec3 {
         let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
@@ -102,6 +121,18 @@ mod tests {
             }
         }
         assert!(met > 300, "{met}");
+    }
+
+    #[test]
+    fn fractions_are_the_way_back_from_a_shift() {
+        let edges = Periods { length: [4.0, 2.0, 8.0], tilt: [1.0, -2.0, 0.5] };
+        let part = [0.25, 0.5, 0.75];
+        assert_eq!(edges.fractions(edges.shift(part)), part);
+        let lo = [1.0, 2.0, 3.0];
+        let at = [0, 1, 2].map(|k| lo[k] + edges.shift(part)[k]);
+        assert_eq!(edges.straightened(at, lo), [2.0, 3.0, 9.0]);
+        let upright = Periods::upright(edges.length);
+        assert_eq!(upright.straightened(at, lo), at);
     }
 
     #[test]

@@ -92,9 +92,12 @@ fn single(lines: &mut Lines, what: &str) -> Result<i64> {
 /// Corners and tilts of a box from the faces around it.
 fn inner([x, y, z]: [[f64; 3]; 3]) -> ([f64; 3], [f64; 3], [f64; 3]) {
     let tilt = [x[2], y[2], z[2]];
-    let around = Domain { tilt: Some(tilt), ..Domain::new([0.0; 3], [0.0; 3], Boundary::default()) };
-    let [[low_x, high_x], [low_y, high_y], _] = around.bounds();
+    let [[low_x, high_x], [low_y, high_y], _] = boxed([0.0; 3], [0.0; 3], Some(tilt)).bounds();
     ([x[0] - low_x, y[0] - low_y, z[0]], [x[1] - high_x, y[1] - high_y, z[1]], tilt)
+}
+
+fn boxed(lo: [f64; 3], hi: [f64; 3], tilt: Option<[f64; 3]>) -> Domain {
+    Domain { tilt, ..Domain::new(lo, hi, Boundary::default()) }
 }
 
 fn edge(lines: &mut Lines, leans: bool) -> Result<[f64; 3]> {
@@ -115,15 +118,17 @@ fn edge(lines: &mut Lines, leans: bool) -> Result<[f64; 3]> {
 impl<'a> Snapshot<'a> {
     /// The corners of the upright box around the box.
     pub fn around(&self) -> [[f64; 3]; 2] {
-        let faces = Domain { tilt: self.tilt, ..Domain::new(self.lo, self.hi, Boundary::default()) }.bounds();
+        let faces = self.domain().bounds();
         [0, 1].map(|side| faces.map(|face| face[side]))
     }
 
     /// The place at these fractions of the box's edges.
     pub fn at(&self, f: [f64; 3]) -> [f64; 3] {
-        let [xy, xz, yz] = self.tilt.unwrap_or_default();
-        let along = |d: usize| self.lo[d] + f[d] * (self.hi[d] - self.lo[d]);
-        [along(0) + f[1] * xy + f[2] * xz, along(1) + f[2] * yz, along(2)]
+        self.domain().at(f)
+    }
+
+    fn domain(&self) -> Domain {
+        boxed(self.lo, self.hi, self.tilt)
     }
 
     /// Number of particles.

@@ -252,13 +252,7 @@ impl Bounds {
 
     /// Where a place would be were the box upright.
     pub fn upright(&self, x: [f64; 3]) -> [f64; 3] {
-        if !self.tilted() {
-            return x;
-        }
-        let ([_, ly, lz], [xy, xz, yz]) = (self.edges().length, self.tilt);
-        let z = (x[2] - self.lo[2]) / lz;
-        let y = (x[1] - self.lo[1] - z * yz) / ly;
-        [x[0] - y * xy - z * xz, x[1] - z * yz, x[2]]
+        self.edges().straightened(x, self.lo)
     }
 
     /// By how much upright places along an axis are farther apart at most than the places themselves.
