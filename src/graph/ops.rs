@@ -83,12 +83,11 @@ impl Op for Reneighbor {
 fn corners_moved(w: &World) -> f64 {
     let (Some(domain), Some([lo, hi])) = (&*w.domain, w.rebuild.corners) else { return 0.0 };
     let tilt = w.rebuild.tilt;
-    let now = domain.tilt.unwrap_or_default();
-    if (domain.lo, domain.hi, now) == (lo, hi, tilt) {
+    if (domain.lo, domain.hi) == (lo, hi) && domain.tilt.is_none_or(|now| now == tilt) {
         return 0.0;
     }
     let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
-    if (now, tilt) == ([0.0; 3], [0.0; 3]) {
+    if !domain.tilted() && tilt == [0.0; 3] {
         return apart(domain.lo, lo) + apart(domain.hi, hi);
     }
     // Of a leaning box all eight count, and the two that moved farthest.

@@ -76,11 +76,8 @@ impl View<'_> {
 #[inline]
 pub fn difference(x: &[[f64; 3]], period: &Periods, p: &Pair) -> [f64; 3] {
     let (a, b) = (&x[p.i as usize], &x[p.j as usize]);
-    if period.tilted() {
-        let by = period.shift(p.shift.map(f64::from));
-        return std::array::from_fn(|d| a[d] - (b[d] + by[d]));
-    }
-    std::array::from_fn(|d| a[d] - (b[d] + f64::from(p.shift[d]) * period.length[d]))
+    let by = period.shift(p.shift.map(f64::from));
+    std::array::from_fn(|d| a[d] - (b[d] + by[d]))
 }
 
 /// Two particles, the one of smaller tag first, and which image of the second is meant.
