@@ -29,7 +29,7 @@ fn pull(
     (delta, crumble(network, &held, field, limits, share))
 }
 
-const ALL: Limits = Limits { avalanche: Avalanche::One, until: 0.0, most: 10_000, tol: 1e-8 };
+const LAST: Limits = Limits { avalanche: Avalanche::One, until: 0.0, most: 10_000, tol: 1e-8 };
 
 /// `n` chains of `links` bonds side by side, none touching another one.
 fn bundle(n: usize, links: usize) -> Body {
@@ -50,7 +50,7 @@ fn bundles_of_chains() {
         };
         let mut sorted: Vec<f64> = (0..40).map(|k| weibull::strength(3.0, 5, [k, 1000])).collect();
         sorted.sort_by(f64::total_cmp);
-        let (delta, path) = pull(&body, body.network(|_, l| standard(l)), strength, &ALL);
+        let (delta, path) = pull(&body, body.network(|_, l| standard(l)), strength, &LAST);
         assert!(path.done && !path.whole && path.breaks.len() == 40);
         let wanted: Vec<f64> = sorted.iter().enumerate().map(|(k, f)| (40 - k) as f64 * f).collect();
         for (it, wanted) in path.breaks.iter().zip(&wanted) {
@@ -69,7 +69,7 @@ fn energies_add_up() {
     let body = block(true);
     let strength = |k: usize| 50.0 * weibull::strength(4.0, 11, body.bonds[k].0);
     let run = |limits: &Limits| pull(&body, body.network(|_, l| standard(l)), strength, limits);
-    let (delta, exact) = run(&Limits { until: 0.3, ..ALL });
+    let (delta, exact) = run(&Limits { until: 0.3, ..LAST });
     let (mut work, mut released, mut last) = (0.0, 0.0, [0.0; 2]);
     for it in &exact.breaks {
         let before = [it.load * delta, it.force(delta)];
@@ -86,13 +86,13 @@ fn energies_add_up() {
         exact.breaks.len(),
         exact.peak
     );
-    let (_, path) = run(&Limits { until: 0.3, tol: 1e-4, ..ALL });
+    let (_, path) = run(&Limits { until: 0.3, tol: 1e-4, ..LAST });
     let peak = |path: &Path| path.breaks[path.peak].force(delta);
     assert!((peak(&path) / peak(&exact) - 1.0).abs() < 1e-3, "{} {}", peak(&path), peak(&exact));
     let same = path.breaks.iter().zip(&exact.breaks).take_while(|(a, b)| a.bonds == b.bonds).count();
     assert!(same > exact.peak, "{same} of {}", exact.peak);
     // Ends that stand still while all that is beyond its strength breaks: never more, and never at a smaller load than before.
-    let (_, all) = run(&Limits { avalanche: Avalanche::All, until: 0.3, tol: 1e-4, ..ALL });
+    let (_, all) = run(&Limits { avalanche: Avalanche::All, until: 0.3, tol: 1e-4, ..LAST });
     assert!(peak(&all) <= peak(&path) * 1.0001 && all.breaks.len() < path.breaks.len());
     assert!(all.breaks.windows(2).all(|two| two[1].load >= two[0].load));
     // The field left behind is that of the peak.
@@ -102,7 +102,7 @@ fn energies_add_up() {
     // The same bits for any number of threads.
     let breaks = |threads: usize| {
         par::set_threads(threads);
-        let (_, path) = run(&Limits { until: 0.5, most: 10, tol: 1e-4, ..ALL });
+        let (_, path) = run(&Limits { until: 0.5, most: 10, tol: 1e-4, ..LAST });
         par::set_threads(1);
         path.breaks.iter().map(|b| (b.bonds.clone(), b.load.to_bits())).collect::<Vec<_>>()
     };

@@ -9,6 +9,7 @@ mod scene;
 mod setup;
 mod ste;
 mod strength;
+mod telling;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]

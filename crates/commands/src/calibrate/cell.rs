@@ -1,9 +1,9 @@
 //! `calibrate periodic`: the stiffness tensor of a cell without ends.
 
 use super::Line;
-use super::dsm::{percent, warn_loose, warn_unfinished};
 use super::found::lines;
 use super::scene::Scene;
+use super::telling::{percent, warn_loose, warn_unfinished};
 use super::words::Words;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::general;

@@ -4,6 +4,7 @@ use super::Line;
 use super::found::NUMBERS;
 use super::scene::Scene;
 use super::setup::{Response, Setup};
+use super::telling::{self, count, percent, warn_loose, warn_unfinished};
 use super::touch::Hertz;
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -79,10 +80,8 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
         }
     };
     cx.say(format!(
-        "calibrate dsm {}: {} particles, {} bonds{contacts}; ends held: {} + {}{without}",
-        line.id,
-        scene.places.len(),
-        scene.network.bonds(),
+        "{}{contacts}; ends held: {} + {}{without}",
+        telling::head("dsm", line, scene),
         end(0),
         end(1)
     ));
@@ -93,10 +92,9 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
         (None, _) => format!("within {} % (estimate)", percent(r.open)),
     };
     cx.say(format!(
-        "  K {}   {within}   E {}   nu {}   length {} (body {}), area {}",
+        "  K {}   {within}   {}   length {} (body {}), area {}",
         general(r.stiffness, 5),
-        general(r.young, 5),
-        general(r.poisson, 3),
+        telling::moduli(r.young, r.poisson),
         general(setup.ends.free_length(), 5),
         general(setup.lengths[1], 5),
         general(setup.area, 5)
@@ -139,36 +137,6 @@ fn refuse_bound(words: &Words, setup: &Setup) -> Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// Warns of a solution that has not come to an end.
-pub fn warn_unfinished(cx: &ActCx, done: bool) {
-    if !done {
-        let text = "the solution has not converged: the stiffness is an upper bound and may be far off";
-        let help =
-            "the stiffnesses of bonds differ by too many orders of magnitude, or `tol` is below rounding";
-        cx.note(Diagnostic::warning(Code::UNSTABLE, cx.span, text).help(help));
-    }
-}
-
-/// Tells of particles that can move without resistance.
-pub fn warn_loose(cx: &ActCx, loose: usize) {
-    if loose > 0 {
-        let text = format!(
-            "{loose} particles can move in some direction without resistance of their bonds; they are held there"
-        );
-        cx.note(Diagnostic::note(Code::NO_EFFECT, cx.span, text));
-    }
-}
-
-/// A part in percent with two digits; rounding is not worth any.
-pub fn percent(part: f64) -> String {
-    general(100.0 * part.max(1e-14), 2)
-}
-
-/// A number of things.
-pub fn count(n: usize, thing: &str) -> String {
-    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
 /// The shares of stretch, shear, bend and twist, of contacts and of walls.

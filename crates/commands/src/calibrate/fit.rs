@@ -4,9 +4,9 @@
 //! energy); of ν by the adjoint field.
 
 use super::Line;
-use super::dsm::{count, warn_unfinished};
 use super::model::Model;
 use super::scene::Scene;
+use super::telling::{count, warn_unfinished};
 use super::touch::Hertz;
 use super::words::{Quantity, Target, Words};
 use nalgebra::{DMatrix, DVector};

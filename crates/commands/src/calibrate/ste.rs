@@ -5,6 +5,7 @@ use super::cell::moduli;
 use super::found::{NUMBERS, lines};
 use super::scene::Scene;
 use super::setup::ends;
+use super::telling;
 use super::touch::{self, Hertz};
 use super::words::{Map, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -274,18 +275,12 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
         0 => String::new(),
         n => format!("; {n} particles with fewer than three independent bonds left out"),
     };
-    cx.say(format!(
-        "calibrate ste {}: {} particles, {} bonds{contacts}{without}",
-        line.id,
-        scene.places.len(),
-        scene.network.bonds()
-    ));
+    cx.say(format!("{}{contacts}{without}", telling::head("ste", line, scene)));
     lines(&e.tensor).for_each(|line| cx.say(line));
     cx.say(format!(
-        "  K {}   E {}   nu {}   length {}, area {}   order {}, {:.2} s",
+        "  K {}   {}   length {}, area {}   order {}, {:.2} s",
         general(e.stiffness, 5),
-        general(e.young, 5),
-        general(e.poisson, 3),
+        telling::moduli(e.young, e.poisson),
         general(body.length, 5),
         general(body.area, 5),
         words.order,

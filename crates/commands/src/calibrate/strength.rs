@@ -1,10 +1,10 @@
 //! `calibrate strength`: the largest force that a body of bonds bears, break by break and without a run.
 
 use super::Line;
-use super::dsm::{count, warn_loose, warn_unfinished};
 use super::found::NUMBERS;
 use super::scene::{Said, Scene};
 use super::setup::Setup;
+use super::telling::{self, count, warn_loose, warn_unfinished};
 use super::words::{BREAKING, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::general;
@@ -40,10 +40,8 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, style: &dyn BondForce) ->
         line.found.keep_motion(cx.world, &scene.places, &path.field);
     }
     cx.say(format!(
-        "calibrate strength {}: {} particles, {} bonds; ends held: {} + {}",
-        line.id,
-        scene.places.len(),
-        scene.network.bonds(),
+        "{}; ends held: {} + {}",
+        telling::head("strength", line, scene),
         setup.ends.members[0].len(),
         setup.ends.members[1].len()
     ));
@@ -56,10 +54,9 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, style: &dyn BondForce) ->
         general(numbers[9], 5)
     ));
     cx.say(format!(
-        "  K {}   E {}   nu {}   length {}, area {}",
+        "  K {}   {}   length {}, area {}",
         general(whole.stiffness, 5),
-        general(whole.young, 5),
-        general(whole.poisson, 3),
+        telling::moduli(whole.young, whole.poisson),
         general(setup.ends.free_length(), 5),
         general(setup.area, 5)
     ));
@@ -177,8 +174,7 @@ impl Tested {
     fn numbers(&self, [stiffness, young, poisson]: [f64; 3]) -> [f64; NUMBERS] {
         let strain = self.peak.load * self.delta / self.length;
         let force = self.peak.force(self.delta);
-        let counts = [self.before as f64, self.all as f64];
-        let [before, all] = counts;
+        let (before, all) = (self.before as f64, self.all as f64);
         [force, self.stress(), strain, stiffness, young, poisson, before, all, self.released, self.first]
     }
 }

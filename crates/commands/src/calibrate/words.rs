@@ -135,70 +135,25 @@ pub struct Words {
     pub curve: Option<(String, Span)>,
 }
 
-const DSM: &[&str] = &[
-    "axis",
-    "strain",
-    "low",
-    "high",
-    "thick",
-    "rotations",
-    "contacts",
-    "prestress",
-    "tol",
-    "bound",
-    "method",
-    "shape",
-    "length",
-    "fields",
-];
-const STE: &[&str] =
-    &["axis", "strain", "low", "high", "thick", "contacts", "order", "slabs", "map", "shape", "length"];
-const STRENGTH: &[&str] = &[
-    "axis",
-    "strain",
-    "low",
-    "high",
-    "thick",
-    "rotations",
-    "tol",
-    "shape",
-    "length",
-    "fields",
-    "until",
-    "most",
-    "avalanche",
-    "curve",
-];
-const PERIODIC: &[&str] = &["rotations", "tol"];
-const FIT: &[&str] = &[
-    "target",
-    "vary",
-    "method",
-    "tol",
-    "axis",
-    "strain",
-    "low",
-    "high",
-    "thick",
-    "rotations",
-    "contacts",
-    "prestress",
-    "shape",
-    "length",
-    "order",
-    "until",
-    "most",
-    "avalanche",
-];
+/// Of a body under a load.
+const LOAD: &[&str] = &["axis", "strain", "low", "high", "thick", "shape", "length"];
+/// Of breaks.
+const BREAKS: &[&str] = &["until", "most", "avalanche"];
 
 /// What of [`Words`] a kind of calibration has.
-pub fn keywords(kind: &str) -> &'static [&'static str] {
+pub fn keywords(kind: &str) -> Vec<&'static str> {
     match kind {
-        "dsm" => DSM,
-        "ste" => STE,
-        "periodic" => PERIODIC,
-        "strength" => STRENGTH,
-        _ => FIT,
+        "dsm" => {
+            let own = ["rotations", "contacts", "prestress", "tol", "bound", "method", "fields"];
+            [LOAD, &own].concat()
+        }
+        "ste" => [LOAD, &["contacts", "order", "slabs", "map"]].concat(),
+        "periodic" => vec!["rotations", "tol"],
+        "strength" => [LOAD, BREAKS, &["rotations", "tol", "fields", "curve"]].concat(),
+        _ => {
+            let own = ["target", "vary", "method", "tol", "rotations", "contacts", "prestress", "order"];
+            [&own, LOAD, BREAKS].concat()
+        }
     }
 }
 
@@ -274,7 +229,7 @@ impl Words {
                     .help(format!("`calibrate {other}` has it"))
                     .into()
             }
-            None => a.unknown(word, keywords(kind)),
+            None => a.unknown(word, &keywords(kind)),
         }
     }
 

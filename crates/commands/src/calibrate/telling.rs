@@ -1,0 +1,47 @@
+//! What the kinds of `calibrate` say in the same way.
+
+use super::Line;
+use super::scene::Scene;
+use perigrain_base::diag::{Code, Diagnostic};
+use perigrain_base::math::cformat::general;
+use perigrain_styles::ActCx;
+
+/// The beginning of the first line.
+pub fn head(kind: &str, line: &Line, scene: &Scene) -> String {
+    format!("calibrate {kind} {}: {} particles, {} bonds", line.id, scene.places.len(), scene.network.bonds())
+}
+
+/// Young's modulus [pressure] and Poisson's ratio.
+pub fn moduli(young: f64, poisson: f64) -> String {
+    format!("E {}   nu {}", general(young, 5), general(poisson, 3))
+}
+
+/// Warns of a solution that has not come to an end.
+pub fn warn_unfinished(cx: &ActCx, done: bool) {
+    if !done {
+        let text = "the solution has not converged: the stiffness is an upper bound and may be far off";
+        let help =
+            "the stiffnesses of bonds differ by too many orders of magnitude, or `tol` is below rounding";
+        cx.note(Diagnostic::warning(Code::UNSTABLE, cx.span, text).help(help));
+    }
+}
+
+/// Tells of particles that can move without resistance.
+pub fn warn_loose(cx: &ActCx, loose: usize) {
+    if loose > 0 {
+        let text = format!(
+            "{loose} particles can move in some direction without resistance of their bonds; they are held there"
+        );
+        cx.note(Diagnostic::note(Code::NO_EFFECT, cx.span, text));
+    }
+}
+
+/// A part in percent with two digits; rounding is not worth any.
+pub fn percent(part: f64) -> String {
+    general(100.0 * part.max(1e-14), 2)
+}
+
+/// A number of things.
+pub fn count(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
