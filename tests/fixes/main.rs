@@ -5,7 +5,7 @@
 #[path = "../common/thermo.rs"]
 pub mod thermo;
 
-use perigrain::session::set_threads;
+use perigrain::session::{Options, Session, set_threads};
 use std::fs;
 use std::path::Path;
 use thermo::{run, run_in};
@@ -68,6 +68,44 @@ fn grains_in_a_squeezed_box_agree() {
 #[test]
 fn boxes_steered_by_pressures_agree() {
     agrees_to(CANCELLED, "pressed");
+}
+
+/// The word to blame and the message of a line that is refused, behind a box with one sphere.
+fn refused(lines: &str) -> String {
+    let deck = format!(
+        "units lj\natom_style sphere\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\n\
+         pair_style gran/hooke 2000 NULL 5 NULL 0.4 1\npair_coeff * *\ncompute c all ke\n{lines}\n"
+    );
+    let mut session = Session::new(Options::default()).unwrap();
+    let d = session.run_text("in.refused", &deck).expect_err(lines).0.remove(0);
+    let span = d.span.unwrap();
+    format!("[{}] {}", &deck[span.start as usize..span.end as usize], d.message)
+}
+
+#[test]
+fn pressures_that_steer_nothing_are_refused() {
+    for (lines, said) in [
+        ("fix d all deform/pressure 1 x pressure 1 0.1 couple yz", "none of these lengths has the style"),
+        (
+            "fix d all deform/pressure 1 x pressure 1 0.1 y pressure 2 0.1 couple xy",
+            "`couple`: y is to follow another pressure than the rest",
+        ),
+        ("fix d all deform/pressure 1 x pressure 1 0.1 vol/balance/p yes", "[vol/balance/p] "),
+        ("fix d all deform/pressure 1 box volume", "[box] "),
+        ("fix d all deform/pressure 1 x pressure 1 0.1 normalize yes", "[normalize] "),
+        (
+            "fix d all deform/pressure 1 x pressure 1 0.1\nfix_modify d press c",
+            "[c] compute `c` is of style ke",
+        ),
+        (
+            "fix d all deform/pressure 1 x pressure 1 0.1\nfix_modify d temp c",
+            "[temp] fix deform/pressure takes its",
+        ),
+        ("fix d all deform/pressure 1 x pressure 1 0.1\nfix_modify d bodyforces no", "[bodyforces] "),
+    ] {
+        let got = refused(lines);
+        assert!(got.contains(said), "{lines}: {got}");
+    }
 }
 
 #[test]

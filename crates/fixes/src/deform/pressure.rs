@@ -20,8 +20,8 @@ impl Style for DeformPressure {
             syntax: "fix ID group deform/pressure N x|y|z|xy|xz|yz STYLE … [couple none|xyz|xy|yz|xz] [max/rate R] [normalize/pressure yes|no] and words of fix deform",
             summary: "A deforming box of which pressures steer lengths and tilts.",
             text: "As `fix deform`, with two more styles of `x`, `y`, `z` and one of `xy`, `xz`, `yz`:\n\n\
-                   - `pressure P K`: the length L grows as dL/dt = L K (p − P) with the component p of the pressure along it, as long as that is \
-                   above P; a tilt as dT/dt = L K (p − P) with the off-diagonal component p and the length L across which it leads.\n\
+                   - `pressure P K`: the length L changes as dL/dt = L K (p − P) with the component p of the pressure along it: it grows while \
+                   that is above P and shrinks while it is below; a tilt as dT/dt = L K (p − P) with the off-diagonal component p and the length L across which it leads.\n\
                    - `pressure/mean P K`: the same with the mean pressure.\n\n\
                    P is a number or an equal-style `v_name`, K a rate over a pressure, or with `normalize/pressure yes` a rate: (p − P)/|P| is taken. \
                    `max/rate R` keeps every such rate of strain between −R and R. `couple xy` takes the mean of both components and changes both lengths by \
@@ -79,6 +79,12 @@ pub struct Controls {
 }
 
 impl Controls {
+    /// The axes whose lengths go together: without z in a flat scene.
+    fn axes(&self, w: &World) -> Vec<usize> {
+        let flat = w.settings.two_dimensional;
+        (0..3).filter(|d| self.together[*d] && !(flat && *d == 2)).collect()
+    }
+
     /// Reads what stands behind a keyword of its own.
     ///
     /// # Errors
@@ -111,6 +117,13 @@ impl Controls {
     /// # Errors
     /// What is no compute of a pressure, other options.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if let Some(word) = args.peek().filter(|w| w.text == "temp") {
+            let text = "fix deform/pressure takes its temperature from its compute of the pressure";
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+            return Err(d
+                .help("say `compute ID all pressure T` with that temperature, and `fix_modify ID press` with it")
+                .into());
+        }
         if !args.eat("press") {
             return crate::no_option(args);
         }
@@ -162,8 +175,7 @@ impl Declared {
         let Some(controls) = self.controls.as_ref().filter(|c| c.together != [false; 3]) else {
             return Ok(());
         };
-        let flat = cx.world.settings.two_dimensional;
-        let axes: Vec<usize> = (0..3).filter(|d| controls.together[*d] && !(flat && *d == 2)).collect();
+        let axes = controls.axes(cx.world);
         let pressed = |d: &usize| match &self.motions[*d] {
             Some(Motion::Pressed(p)) if !p.mean => Some(p.clone()),
             _ => None,
@@ -206,10 +218,7 @@ impl Declared {
         };
         let elements: Vec<usize> = match aim {
             Aim::Length(_) if pressed.mean => vec![],
-            Aim::Length(d) if controls.together[d] => {
-                let flat = cx.world().settings.two_dimensional;
-                (0..3).filter(|d| controls.together[*d] && !(flat && *d == 2)).collect()
-            }
+            Aim::Length(d) if controls.together[d] => controls.axes(cx.world()),
             Aim::Length(d) => vec![d],
             Aim::Tilt(k) => vec![k + 3],
         };
