@@ -20,6 +20,7 @@ mod leveling;
 mod limits;
 mod measuring;
 mod minimizing;
+mod options;
 mod overlaps;
 mod overlay;
 mod planning;
@@ -49,80 +50,21 @@ pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
 pub use files::folder_of;
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
+pub use options::{Mode, Options};
 pub use overlay::{Overlay, absolute};
 use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fail};
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_commands::COMMANDS;
-use perigrain_lang::{Command, Flow, Line, Partition, Script, Vars};
+use perigrain_lang::{Command, Flow, Line, Script, Vars};
 use perigrain_out::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
-use perigrain_world::{Compat, Unseen, World};
+use perigrain_world::{Unseen, World};
 pub use spent::{Part, Spent};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 pub use sweeping::Swept;
 pub use timer::{Limit, time};
-
-/// What a session is asked to do with a deck.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
-    /// Work it off.
-    #[default]
-    Run,
-    /// Read it and report every problem; change nothing, write nothing.
-    Check,
-    /// Print each run's sealed plan instead of running it.
-    Plan,
-    /// Run, then print each run's plan with time and bytes per op.
-    Measure,
-}
-
-/// How a session is set up.
-#[derive(Clone)]
-pub struct Options {
-    /// What to do.
-    pub mode: Mode,
-    /// Where the session speaks.
-    pub log: Log,
-    /// LAMMPS' artefacts too.
-    pub compat: Compat,
-    /// The list layout for every peridynamic body.
-    pub force_list: bool,
-    /// Work also where everything is at rest.
-    pub no_skipping: bool,
-    /// The portable kernels only.
-    pub portable: bool,
-    /// Index variables from the command line.
-    pub vars: Vec<(String, Vec<String>)>,
-    /// The deck's folder, for files named in it.
-    pub folder: PathBuf,
-    /// Which of several partitions this is.
-    pub partition: Option<Partition>,
-    /// Texts that count in place of files, where lines are read.
-    pub overlay: Overlay,
-    /// How long runs may take in all.
-    pub limit: Option<Limit>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            mode: Mode::Run,
-            log: Log::silent(),
-            compat: Compat::Perigrain,
-            force_list: false,
-            no_skipping: false,
-            portable: false,
-            vars: vec![],
-            folder: PathBuf::new(),
-            partition: None,
-            overlay: Overlay::default(),
-            limit: None,
-        }
-    }
-}
 
 /// How a deck ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

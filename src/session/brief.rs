@@ -1,8 +1,14 @@
 //! What a line of a deck has made, in one line for a terminal: LAMMPS' blocks stay in the log.
 
 /// Parts of LAMMPS' blocks that tell nothing of what was made.
-const EMPTY: [&str; 5] =
-    ["MPI processor grid", " units in orthogonal box = ", "0 fragments", "0 bodies", " with max type 0"];
+const EMPTY: [&str; 6] = [
+    "MPI processor grid",
+    " units in orthogonal box = ",
+    " units in triclinic box = ",
+    "0 fragments",
+    "0 bodies",
+    " with max type 0",
+];
 
 /// The lines that a command says as one; nothing where they tell of nothing.
 pub(super) fn one_line(said: &[String]) -> Option<String> {
@@ -45,6 +51,11 @@ mod tests {
             "Setting atom values: 8 settings made for diameter, 8 settings made for density"
         );
         let made = ["Created 8 atoms", "  using lattice units in orthogonal box = (0 0 0) to (1 1 1)"];
+        assert_eq!(of(&made), "Created 8 atoms");
+        let made = [
+            "Created 8 atoms",
+            "  using box units in triclinic box = (0 0 0) to (1 1 1) with tilt (0.5 0 0)",
+        ];
         assert_eq!(of(&made), "Created 8 atoms");
         let made = ["Created orthogonal box = (0 0 0) to (1 1 1)", "  1 by 1 by 1 MPI processor grid"];
         assert_eq!(of(&made), "Created orthogonal box = (0 0 0) to (1 1 1)");
