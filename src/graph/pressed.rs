@@ -6,18 +6,12 @@ use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::SealCx;
 use perigrain_styles::pressed::Pressed;
 use perigrain_styles::probe::Probe;
-use perigrain_world::contacts::Pressed as Looked;
+use perigrain_world::contacts::{LOOK, Pressed as Looked};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
     TRAVEL, V, VOLUME, X, X0,
 };
 use perigrain_world::{RunStyle, World};
-
-/// The interval in steps at which contacts are looked at; walls tell of themselves then.
-const INTERVAL: i64 = 1000;
-
-/// After so many steps a run that goes on is worth a look of its own at its beginning and end: a look takes as long as some 15 steps.
-const SOON: i64 = INTERVAL;
 
 /// Equations of motion, and whether they turn particles. Rigid bodies are heavier than their particles, and what is led does not swing.
 const MOVING: [(&str, bool); 4] =
@@ -108,13 +102,14 @@ impl Op for Look {
         let reads = X | V | OMEGA | RADIUS | MASS | KIND | MASK | TAG | VOLUME | X0;
         let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | LISTS | MOLECULE | TRAVEL;
         let needs = Needs::new().read(reads | lists).write(FACTS);
-        let when = When::Every(INTERVAL).or(When::First).or(When::Last);
+        let when = When::Every(LOOK).or(When::First).or(When::Last);
         About { when, ..About::new("contact watch", Stage::Output, needs) }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let same = w.parts.pressed.filter(|p| p.dt == t.dt);
-        let soon = same.is_some_and(|p| (0..SOON).contains(&(t.step - p.step)));
+        // A look takes as long as some 15 steps: a run that goes on is worth one at its beginning and end only so long after the last.
+        let soon = same.is_some_and(|p| (0..LOOK).contains(&(t.step - p.step)));
         let goes_on = !t.setup || t.unchanged;
         if same.is_some_and(|p| p.told) || (soon && goes_on) {
             return Ok(());

@@ -52,17 +52,23 @@ def walls(r, sides, law):
     return lines
 
 
-def grains(r):
-    """A deck of grains."""
-    sides = "".join(r.choice(side) for side in ("pf", "pf", "fp"))
-    spheres = packing(r)
-    deck = ["units lj", "atom_style sphere 1", "atom_modify map array sort 0 0", f"boundary {' '.join(sides)}",
-            "newton off", "comm_modify vel yes", f"region b block 0 {EDGE} 0 {EDGE} 0 {EDGE} units box", "create_box 2 b"]
+def placed(r, sides, region, spheres):
+    """The lines that make a box of two types with spheres that move and spin."""
+    deck = ["units lj", "atom_style sphere 1", "atom_modify map array sort 0 0", f"boundary {sides}",
+            "newton off", "comm_modify vel yes", f"region b {region} units box", "create_box 2 b"]
     deck += [f"create_atoms {t} single {p[0]} {p[1]} {p[2]} units box" for p, _, t in spheres]
     for k, (_, d, _) in enumerate(spheres, 1):
         v, w = ([round(r.uniform(-s, s), 4) for _ in range(3)] for s in (1, 2))
         deck.append(f"set atom {k} diameter {d} density {round(r.uniform(0.5, 2), 3)} vx {v[0]} vy {v[1]} vz {v[2]}"
                     f" omega {w[0]} {w[1]} {w[2]}")
+    return deck
+
+
+def grains(r):
+    """A deck of grains."""
+    sides = "".join(r.choice(side) for side in ("pf", "pf", "fp"))
+    spheres = packing(r)
+    deck = placed(r, " ".join(sides), f"block 0 {EDGE} 0 {EDGE} 0 {EDGE}", spheres)
     if r.random() < 0.35:
         style = r.choice(["hooke", "hooke/history", "hertz/history"])
         numbers = f"2000 {r.choice(['NULL', '700'])} 5 {r.choice(['NULL', '2.0'])} 0.4 {r.choice([0, 1])}"

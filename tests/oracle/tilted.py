@@ -1,5 +1,5 @@
 """Random decks of some dozen grains in boxes that lean, at rest or sheared."""
-from grains import EDGE, contact_law
+from grains import EDGE, contact_law, placed
 
 
 def box(r):
@@ -40,13 +40,7 @@ def tilted(r):
     spheres = packing(r, lengths, tilt)
     sides = r.choice(["p p p", "p p p", "p p f", "p p s"])
     corners = " ".join(f"0 {l}" for l in lengths)
-    deck = ["units lj", "atom_style sphere 1", "atom_modify map array sort 0 0", f"boundary {sides}", "newton off", "comm_modify vel yes",
-            f"region b prism {corners} {' '.join(map(str, tilt))} units box", "create_box 2 b"]
-    deck += [f"create_atoms {t} single {p[0]} {p[1]} {p[2]} units box" for p, _, t in spheres]
-    for k, (_, d, _) in enumerate(spheres, 1):
-        v, w = ([round(r.uniform(-s, s), 4) for _ in range(3)] for s in (1, 2))
-        deck.append(f"set atom {k} diameter {d} density {round(r.uniform(0.5, 2), 3)} vx {v[0]} vy {v[1]} vz {v[2]}"
-                    f" omega {w[0]} {w[1]} {w[2]}")
+    deck = placed(r, sides, f"prism {corners} {' '.join(map(str, tilt))}", spheres)
     if r.random() < 0.4:
         numbers = f"2000 {r.choice(['NULL', '700'])} 5 NULL 0.4 {r.choice([0, 1])}"
         deck += [f"pair_style gran/{r.choice(['hooke', 'hooke/history', 'hertz/history'])} {numbers}", "pair_coeff * *"]

@@ -26,6 +26,12 @@ const CLOSED: &str = "the scene is closed";
 /// Why there is no scene, after a panic.
 const BROKEN: &str = "the scene is gone: perigrain failed in the middle of a command, which is its own fault";
 
+/// A box: its corners, tilts (xy, xz, yz) [length] and which axes repeat.
+type Edges = ([f64; 3], [f64; 3], [f64; 3], [bool; 3]);
+
+/// A row of the step table: the step, and the columns with their values.
+type Row = (i64, Vec<(String, Py<PyAny>)>);
+
 /// What a lock guards.
 struct Inner {
     session: Option<Session>,
@@ -298,8 +304,7 @@ impl Scene {
     }
 
     /// The box: corners, tilts (xy, xz, yz) and which axes repeat.
-    #[allow(clippy::type_complexity)]
-    fn domain(&self, py: Python<'_>) -> PyResult<Option<([f64; 3], [f64; 3], [f64; 3], [bool; 3])>> {
+    fn domain(&self, py: Python<'_>) -> PyResult<Option<Edges>> {
         self.ask(py, false, |session| {
             let domain = session.world.domain.as_ref();
             Ok(domain.map(|d| (d.lo, d.hi, d.edges().tilt, [0, 1, 2].map(|k| d.boundary.periodic(k)))))
@@ -314,7 +319,7 @@ impl Scene {
     }
 
     /// The latest row of the step table.
-    fn last_row(&self, py: Python<'_>) -> PyResult<Option<(i64, Vec<(String, Py<PyAny>)>)>> {
+    fn last_row(&self, py: Python<'_>) -> PyResult<Option<Row>> {
         let row = self.ask(py, false, |session| Ok(session.table_row().cloned()))?;
         let Some(row) = row else { return Ok(None) };
         let mut values = vec![];

@@ -109,8 +109,9 @@ impl Contacts {
     }
 }
 
-/// Every so many steps walls tell the springs of their contacts, whether somebody asks or not.
-const LOOK: i64 = 1000;
+/// Every so many steps contacts are looked at: whether the time step is within what they stand as they are pressed. Walls tell the
+/// springs of their contacts then.
+pub const LOOK: i64 = 1000;
 
 /// What walls have told of the springs of their contacts.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -7,6 +7,7 @@ use super::args::{Deck, Target, Usage};
 use super::pager::width;
 use super::progress::Tally;
 use super::{FAILED, INTERRUPTED, OK, deck, signals};
+use crate::human::duration;
 use crate::session::axes::{Axis, combined, zip};
 use crate::session::{Mode, Swept, folder_of};
 use crate::sweep::starter::Starter;
@@ -224,7 +225,7 @@ pub(super) fn status(folder: &Path) -> Result<u8> {
     let Standing { deck, jobs, report, results, running, left } = sweep::look(folder)?;
     let mut work = running.map_or("not at work".into(), |n| format!("at work on {n}"));
     if let Some(left) = left {
-        work += &format!(", {} to go", show::short(left));
+        work += &format!(", {} to go", duration(left.as_secs_f64()));
     }
     let mut text = table::text(&jobs, &report, &results.outcomes, width(WIDTH), SHOWN);
     text += &format!("{}: {deck}, {}, {work}\n", folder.display(), counts(&results));

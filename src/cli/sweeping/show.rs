@@ -2,10 +2,10 @@
 
 use crate::cli::deck;
 use crate::cli::progress::Tally;
+use crate::human::duration;
 use crate::sweep::{Job, Outcome, State, Watch};
 use perigrain_base::diag::{Diagnostics, Sources};
 use std::io::Write;
-use std::time::Duration;
 
 /// Shows what happens, unless it is to be quiet.
 pub struct Show<'a> {
@@ -41,7 +41,7 @@ impl Watch for Show<'_> {
         let mut text = format!("{:>width$}/{}  {title}  {}", job + 1, state.jobs, outcome.status());
         match &outcome.problem {
             Some(problem) => text += &format!("  {problem}"),
-            None => text += &format!("  {}", short(Duration::from_secs_f64(outcome.seconds))),
+            None => text += &format!("  {}", duration(outcome.seconds)),
         }
         self.say(&text);
         self.waited(state);
@@ -70,32 +70,19 @@ pub fn summary(state: &State) -> String {
         parts.push(format!("{} failed", state.failed));
     }
     if let Some(left) = state.left.filter(|_| state.ok + state.failed < state.jobs) {
-        parts.push(format!("{} left", short(left)));
+        parts.push(format!("{} left", duration(left.as_secs_f64())));
     }
     parts.join("  ")
-}
-
-/// A time in its two largest units.
-pub fn short(t: Duration) -> String {
-    let s = t.as_secs();
-    match s {
-        0..10 => format!("{:.2} s", t.as_secs_f64()),
-        10..60 => format!("{s} s"),
-        60..3600 => format!("{} min {} s", s / 60, s % 60),
-        3600..86400 => format!("{} h {} min", s / 3600, s % 3600 / 60),
-        _ => format!("{} d {} h", s / 86400, s % 86400 / 3600),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sweep::Running;
+    use std::time::Duration;
 
     #[test]
-    fn times_and_states_are_short() {
-        let said = [0.5, 30.0, 90.0, 7260.0, 90000.0].map(|s| short(Duration::from_secs_f64(s)));
-        assert_eq!(said, ["0.50 s", "30 s", "1 min 30 s", "2 h 1 min", "1 d 1 h"]);
+    fn states_are_short() {
         let running = vec![Running { job: 4, since: Duration::ZERO, steps: Some((40, 100)) }];
         let state = State { jobs: 9, ok: 3, failed: 1, running, left: Some(Duration::from_secs(180)) };
         assert_eq!(summary(&state), "running: 5 at 40 %  1 failed  3 min 0 s left");

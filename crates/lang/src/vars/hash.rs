@@ -1,6 +1,7 @@
 //! Hashes of variables, by which a loop without progress is known.
 
 use super::{Data, Variable};
+use perigrain_base::math::scatter::mixed;
 use std::hash::{Hash, Hasher};
 
 impl Variable {
@@ -47,13 +48,4 @@ impl Hasher for Words {
             self.0 = mixed(self.0 ^ u64::from_le_bytes(word) ^ (part.len() as u64) << 59);
         }
     }
-}
-
-/// A number whose bits all depend on all bits of `x` (the finaliser of SplitMix64), so that sums of such numbers do not
-/// agree by chance.
-pub(super) fn mixed(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
 }

@@ -10,9 +10,9 @@ mod text;
 
 use super::expr::Expr;
 use files::{AtomFile, Lines};
-use hash::mixed;
 use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Span, fail, nearest};
 use perigrain_base::math::rng::Marsaglia;
+use perigrain_base::math::scatter::mixed;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
