@@ -1,6 +1,7 @@
 //! Grains in the order of space: neighbours near each other in memory while a run lasts, and for how many rebuilds their
 //! lists and this order last.
 
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use perigrain_neigh::slabs::{Slabs, edges};
 use perigrain_world::{Domain, Kept, World};
@@ -12,7 +13,8 @@ const FEW: usize = 256;
 /// Puts the grains of a scene in the order of cells; peridynamic bodies keep theirs. The order is a function of positions
 /// and ids alone.
 pub fn line_up(w: &mut World) {
-    let order = order(w, &w.particles.x);
+    let Some(domain) = &*w.domain else { return };
+    let order = order(w, &w.particles.x, (domain.lo, domain.periods()));
     if let Some(order) = order {
         w.line_up(&order);
     }
@@ -21,7 +23,7 @@ pub fn line_up(w: &mut World) {
 /// The same from the positions that lists are made from: a run that continues one has the order that this one had.
 pub fn line_up_again(w: &mut World) {
     let made = w.made();
-    let order = if made.len() == w.n() { order(w, made) } else { None };
+    let order = if made.len() == w.n() { order(w, made, w.made_in()) } else { None };
     if let Some(order) = order {
         w.line_up(&order);
     }
@@ -36,11 +38,11 @@ fn cells(w: &World) -> Option<[f64; 2]> {
     Some(edges(&p.radius, w.rebuild.kept.reach(w.settings.neighbor.skin)))
 }
 
-fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
-    // Of a leaning box only the order is asked: whoever is beyond the upright box counts with its outermost cells.
-    let (domain, period) = (w.domain.as_ref()?, w.periods().length);
+/// The order of particles at `x` in a box of this corner and these edges.
+fn order(w: &World, x: &[[f64; 3]], (lo, period): ([f64; 3], Periods)) -> Option<Vec<usize>> {
+    let edges = cells(w).filter(|_| period.repeats_where_it_leans())?;
     let mut slabs = Slabs::default();
-    slabs.sort(x, &w.particles.tag, cells(w)?, &domain.lo, &period);
+    slabs.sort(x, &w.particles.tag, edges, &lo, &period);
     Some(slabs.order.iter().map(|&i| i as usize).collect())
 }
 
@@ -104,7 +106,7 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
     if !known || !rigid || !wide || edge != far || !s.check || w.rebuild.grown.is_some() {
         return None;
     }
-    let slabs = Slabs::laid_out(made, [edge, far], &domain.lo, &period);
+    let slabs = Slabs::laid_out(made, [edge, far], &domain.lo, &Periods::upright(period));
     let slabs_of = slabs.far();
     let of_layers = slabs_of.of_layers();
     let before = &w.rebuild.kept.turns;

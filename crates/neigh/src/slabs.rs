@@ -2,7 +2,9 @@
 
 use super::grid::extent;
 use super::list::small;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
@@ -15,7 +17,8 @@ const ALIKE: f64 = 4.0;
 const SPARSE: usize = 4;
 
 /// Points sorted by cell: along a fast axis, then a middle one, then a slow one; within a cell by tag. The order is a
-/// function of positions and tags alone.
+/// function of positions and tags alone. In a box that leans cells lean with it: they are counted in the box made upright, and as
+/// thick between their faces as they are long elsewhere.
 #[derive(Clone, Debug, Default)]
 pub struct Slabs {
     /// Fast, middle and slow axis.
@@ -24,6 +27,9 @@ pub struct Slabs {
     cells: [usize; 3],
     /// Whether these repeat.
     repeats: [bool; 3],
+    /// Lower corner of the box, and its edges: cells lean with it.
+    corner: [f64; 3],
+    period: Periods,
     lo: [f64; 3],
     per_length: [f64; 3],
     /// Layers of cells in a slab, so that pairs of cells reach into the next slab at most, and so that all pairs do.
@@ -68,20 +74,33 @@ pub fn shift_of(image: u32) -> [f64; 3] {
     [image % 3, image / 3 % 3, image / 9 % 3].map(|k| f64::from(k) - 1.0)
 }
 
+/// Points of the box made upright.
+fn straightened<'a>(x: &'a [[f64; 3]], lo: &[f64; 3], period: &Periods) -> Cow<'a, [[f64; 3]]> {
+    if !period.tilted() {
+        return Cow::Borrowed(x);
+    }
+    let mut straight = x.to_vec();
+    par::each(&mut straight[..], |_, points| {
+        points.iter_mut().for_each(|x| *x = period.straightened(*x, *lo));
+    });
+    Cow::Owned(straight)
+}
+
 impl Slabs {
     /// Sorts all points into cells of at least `edge`, for pairs that reach so far at most; `lo` and `period` describe the
-    /// box, `period` is zero where it does not repeat, and elsewhere at least the reach.
+    /// box, which leans only where it repeats; where it does, its height is at least the reach.
     pub fn sort(
         &mut self,
         x: &[[f64; 3]],
         tag: &[u32],
         [edge, reach]: [f64; 2],
         lo: &[f64; 3],
-        period: &[f64; 3],
+        period: &Periods,
     ) {
-        self.lay_out(x, [edge, reach], lo, period);
+        let straight = straightened(x, lo, period);
+        self.lay_out(&straight, [edge, reach], lo, period);
         let mut cell = vec![0; x.len()];
-        par::each((&mut cell[..], x), |_, (cell, x)| {
+        par::each((&mut cell[..], &straight[..]), |_, (cell, x)| {
             cell.iter_mut().zip(x).for_each(|(cell, x)| *cell = self.cell_of(x));
         });
         self.start.clear();
@@ -110,9 +129,9 @@ impl Slabs {
     }
 
     /// Cells and slabs for all points, as [`Slabs::sort`] makes them, into which nobody is sorted.
-    pub fn laid_out(x: &[[f64; 3]], edges: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) -> Self {
+    pub fn laid_out(x: &[[f64; 3]], edges: [f64; 2], lo: &[f64; 3], period: &Periods) -> Self {
         let mut slabs = Self::default();
-        slabs.lay_out(x, edges, lo, period);
+        slabs.lay_out(&straightened(x, lo, period), edges, lo, period);
         slabs
     }
 
@@ -133,16 +152,17 @@ impl Slabs {
 
     /// The layer of cells that a point lies in.
     pub fn layer_of(&self, x: &[f64; 3]) -> usize {
-        self.along(2, x)
+        self.along(2, &self.period.straightened(*x, self.corner))
     }
 
-    /// Which cell along one of the axes, of which 2 is the slow one.
+    /// Which cell along one of the axes, of which 2 is the slow one, for a point of the box made upright.
     fn along(&self, k: usize, x: &[f64; 3]) -> usize {
         // A float below zero becomes 0 in the cast.
         (((x[self.axes[k]] - self.lo[k]) * self.per_length[k]) as usize).min(self.cells[k] - 1)
     }
 
-    fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) {
+    /// For points of the box made upright.
+    fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &Periods) {
         let wider = |a: ([f64; 3], [f64; 3]), b: ([f64; 3], [f64; 3])| {
             let with =
                 |f: fn(f64, f64) -> f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|d| f(a[d], b[d]));
@@ -150,6 +170,8 @@ impl Slabs {
         };
         let of = |range: Range<usize>| extent(x, range.start as u32..range.end as u32);
         let (from, to) = par::reduce(x.len(), of, wider).unwrap_or_else(|| extent(x, 0..0));
+        (self.corner, self.period) = (*lo, *period);
+        let (period, spread) = (period.length, period.spread());
         let open = |d: usize| period[d] == 0.0;
         let origin: [f64; 3] = std::array::from_fn(|d| if open(d) { from[d] } else { lo[d] });
         let length: [f64; 3] =
@@ -157,7 +179,7 @@ impl Slabs {
         let room = (64 + SPARSE * x.len()) as f64;
         let mut size = edge.max(f64::MIN_POSITIVE);
         let count = loop {
-            let along = |d: usize| (length[d] / size).floor() + if open(d) { 1.0 } else { 0.0 };
+            let along = |d: usize| (length[d] / (size * spread[d])).floor() + if open(d) { 1.0 } else { 0.0 };
             let count = [0, 1, 2].map(|d| along(d).max(1.0));
             let all = count[0] * count[1] * count[2];
             if all <= room || x.is_empty() {
@@ -178,7 +200,9 @@ impl Slabs {
         self.cells = self.axes.map(|d| count[d]);
         self.repeats = self.axes.map(|d| !open(d));
         self.lo = self.axes.map(|d| origin[d]);
-        self.per_length = self.axes.map(|d| if open(d) { 1.0 / size } else { count[d] as f64 / length[d] });
+        let per_length =
+            |d: usize| if open(d) { 1.0 / (size * spread[d]) } else { count[d] as f64 / length[d] };
+        self.per_length = self.axes.map(per_length);
     }
 
     fn cell_of(&self, x: &[f64; 3]) -> u32 {
@@ -289,15 +313,16 @@ mod tests {
     }
 
     /// Pairs closer than `cut`, each with the image of the second, by looking at everything.
-    fn all(x: &[[f64; 3]], cut: f64, period: [f64; 3]) -> BTreeSet<(usize, usize, u32)> {
+    fn all(x: &[[f64; 3]], cut: f64, period: Periods) -> BTreeSet<(usize, usize, u32)> {
         let mut found = BTreeSet::new();
         for image in 0..27 {
             let s = shift_of(image);
-            if (0..3).any(|d| period[d] == 0.0 && s[d] != 0.0) {
+            if (0..3).any(|d| period.length[d] == 0.0 && s[d] != 0.0) {
                 continue;
             }
+            let by = period.shift(s);
             for (i, j) in (0..x.len()).flat_map(|i| (0..i).map(move |j| (i, j))) {
-                let square: f64 = (0..3).map(|d| (x[i][d] - x[j][d] - s[d] * period[d]).powi(2)).sum();
+                let square: f64 = (0..3).map(|d| (x[i][d] - x[j][d] - by[d]).powi(2)).sum();
                 if square < cut * cut {
                     found.insert((i, j, image));
                 }
@@ -309,9 +334,27 @@ mod tests {
     #[test]
     fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
         let edges = [8.0, 3.2, 5.0];
-        let x = points(300, edges);
+        let upright = points(300, edges);
         let tag: Vec<u32> = (0..300).map(|i| (i * 7919) % 300).collect();
-        for period in [[0.0; 3], edges, [8.0, 0.0, 0.0], [0.0, 3.2, 5.0]] {
+        let boxes = [
+            ([0.0; 3], [0.0; 3]),
+            (edges, [0.0; 3]),
+            ([8.0, 0.0, 0.0], [0.0; 3]),
+            ([0.0, 3.2, 5.0], [0.0; 3]),
+            (edges, [1.6, -4.0, 1.2]),
+            (edges, [-1.5, 3.0, -1.6]),
+            ([8.0, 3.2, 0.0], [1.6, 0.0, 0.0]),
+            ([8.0, 0.0, 5.0], [0.0, 3.9, 0.0]),
+            ([0.0, 3.2, 5.0], [1.6, 2.0, -1.0]),
+        ];
+        for period in boxes.map(|(length, tilt)| Periods { length, tilt }) {
+            assert!(period.repeats_where_it_leans());
+            let lean = |x: &[f64; 3]| {
+                let part = |d: usize| if period.length[d] > 0.0 { x[d] / period.length[d] } else { 0.0 };
+                let ([y, z], [xy, xz, yz]) = ([part(1), part(2)], period.tilt);
+                [x[0] + y * xy + z * xz, x[1] + z * yz, x[2]]
+            };
+            let x: Vec<[f64; 3]> = upright.iter().map(lean).collect();
             let mut slabs = Slabs::default();
             slabs.sort(&x, &tag, [1.0; 2], &[0.0; 3], &period);
             let (mut found, mut runs) = (BTreeSet::new(), vec![]);
@@ -346,7 +389,7 @@ mod tests {
     fn slabs_of_small_cells_are_as_thick_as_pairs_reach() {
         let x = points(3000, [9.0, 4.0, 3.0]);
         let tag: Vec<u32> = (0..3000).collect();
-        for period in [[0.0; 3], [9.0, 4.0, 3.0]] {
+        for period in [[0.0; 3], [9.0, 4.0, 3.0]].map(Periods::upright) {
             let mut slabs = Slabs::default();
             slabs.sort(&x, &tag, [0.3, 1.1], &[0.0; 3], &period);
             let count = slabs.far().count();
@@ -368,7 +411,7 @@ mod tests {
     fn pairs_may_reach_beyond_all_numbers() {
         let (x, tag) = (points(20, [4.0; 3]), (0..20).collect::<Vec<u32>>());
         let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag, [1.0, 1e308], &[0.0; 3], &[0.0; 3]);
+        slabs.sort(&x, &tag, [1.0, 1e308], &[0.0; 3], &Periods::default());
         assert_eq!(slabs.far().count(), 1);
     }
 
@@ -378,7 +421,7 @@ mod tests {
         let tag: Vec<u32> = (0..200).collect();
         let sorted = |x: &[[f64; 3]], tag: &[u32]| {
             let mut s = Slabs::default();
-            s.sort(x, tag, [1.0; 2], &[0.0; 3], &[0.0; 3]);
+            s.sort(x, tag, [1.0; 2], &[0.0; 3], &Periods::default());
             s.order.iter().map(|&i| tag[i as usize]).collect::<Vec<_>>()
         };
         let (back, mixed): (Vec<_>, Vec<_>) = x.iter().copied().zip(tag.iter().copied()).rev().unzip();
@@ -386,7 +429,7 @@ mod tests {
         assert_eq!(sorted(&[], &[]), []);
         // Far points do not cost memory.
         let mut s = Slabs::default();
-        s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], [1.0; 2], &[0.0; 3], &[0.0; 3]);
+        s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], [1.0; 2], &[0.0; 3], &Periods::default());
         assert!(s.start.len() < 200);
     }
 }

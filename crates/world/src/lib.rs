@@ -265,6 +265,18 @@ impl World {
         if !kept.is_empty() && kept.len() == self.n() { kept } else { self.held() }
     }
 
+    /// The box that those positions were in: its lower corner, and its edges as [`World::periods`] tells them.
+    pub fn made_in(&self) -> ([f64; 3], Periods) {
+        let Some(now) = &*self.domain else { return Default::default() };
+        match self.rebuild.corners {
+            Some([lo, hi]) if self.made().len() == self.n() => {
+                let tilt = now.tilt.map(|_| self.rebuild.tilt);
+                (lo, Domain { lo, hi, tilt, ..now.clone() }.periods())
+            }
+            _ => (now.lo, now.periods()),
+        }
+    }
+
     /// Keeps the particle `old[k]` at each new index `k`, with all that belongs to it; bonds of those
     /// left out are gone.
     pub fn gather(&mut self, old: &[usize]) {

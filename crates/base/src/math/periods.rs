@@ -45,25 +45,38 @@ impl Periods {
         [(d[0] - y * xy - z * xz) / lx, y, z]
     }
 
-    /// Where a place would be were the edges from the corner `lo` upright: between the same faces along each of them.
+    /// Where a place would be were the edges from the corner `lo` upright: between the same faces along each of them. Edges that do
+    /// not repeat must be upright ([`Periods::repeats_where_it_leans`]).
     #[inline]
     pub fn straightened(&self, x: Vec3, lo: Vec3) -> Vec3 {
         if !self.tilted() {
             return x;
         }
-        let [_, y, z] = self.fractions([x[0] - lo[0], x[1] - lo[1], x[2] - lo[2]]);
-        let [xy, xz, yz] = self.tilt;
+        let ([_, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        let z = over(x[2] - lo[2], lz);
+        let y = over(x[1] - lo[1] - z * yz, ly);
         [x[0] - y * xy - z * xz, x[1] - z * yz, x[2]]
+    }
+
+    /// Whether the edges that lean are among those that repeat, as LAMMPS asks for.
+    pub fn repeats_where_it_leans(&self) -> bool {
+        let ([_, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        (xy == 0.0 || ly > 0.0) && ([xz, yz] == [0.0; 2] || lz > 0.0)
+    }
+
+    /// How much farther along each axis two places may be from each other in the box made upright than they are, at most.
+    pub fn spread(&self) -> Vec3 {
+        let ([_, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        // By how much one goes along x and y where one goes along y and z within the faces.
+        let (by_y, by_z) = (over(xy, ly), over(yz, lz));
+        let x_by_z = over(xz, lz) - by_y * by_z;
+        [(1.0 + by_y * by_y + x_by_z * x_by_z).sqrt(), (1.0 + by_z * by_z).sqrt(), 1.0]
     }
 
     /// The lengths in which the images are sought: the distance of each pair of faces, zero where the box does not repeat.
     pub fn heights(&self) -> Vec3 {
-        let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
-        let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
-        // By how much one goes along x and y where one goes along y and z within the faces.
-        let (by_y, by_z) = (over(xy, ly), over(yz, lz));
-        let x_by_z = over(xz, lz) - by_y * by_z;
-        [lx / (1.0 + by_y * by_y + x_by_z * x_by_z).sqrt(), ly / (1.0 + by_z * by_z).sqrt(), lz]
+        let (length, spread) = (self.length, self.spread());
+        [0, 1, 2].map(|k| length[k] / spread[k])
     }
 
     /// How many edges away the image is that brings a difference near the shortest one: along z, then y, then x, as LAMMPS.
@@ -88,6 +101,12 @@ impl Periods {
         let by = self.shift(self.turns(d));
         [d[0] - by[0], d[1] - by[1], d[2] - by[2]]
     }
+}
+
+/// A part of an edge; none of one that does not repeat.
+#[inline]
+fn over(a: f64, edge: f64) -> f64 {
+    if edge > 0.0 { a / edge } else { 0.0 }
 }
 
 #[cfg(test)]

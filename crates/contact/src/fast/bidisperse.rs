@@ -7,7 +7,6 @@ use crate::ContactLaw;
 use crate::driver::Grains;
 use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::math::periods::Periods;
-use perigrain_base::math::vec3::Vec3;
 use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs_of_large};
 use perigrain_neigh::slabs::{HERE, Slabs};
 
@@ -16,7 +15,7 @@ impl<L: ContactLaw> Fast<L> {
     pub(super) fn find_large(
         &self,
         grains: &Grains,
-        (period, skin): (Vec3, f64),
+        (period, skin): (Periods, f64),
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) -> Vec<Pair> {
         let types = self.laws.types as u16;
@@ -27,7 +26,6 @@ impl<L: ContactLaw> Fast<L> {
             }
         }
         let Grains { x, tag, kind, radius, .. } = *grains;
-        let period = Periods::upright(period);
         pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep)
     }
 

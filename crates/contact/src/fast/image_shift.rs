@@ -4,24 +4,37 @@ use super::lists::Slab;
 use super::{FAR, Fast, NOWHERE};
 use crate::ContactLaw;
 use perigrain_base::math::lanes::{PLACE_BITS, place};
-use perigrain_base::math::vec3::Vec3;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use perigrain_neigh::slabs::shift_of;
 
 impl<L: ContactLaw> Fast<L> {
     /// Images of a box that repeats after these periods.
-    pub(super) fn see_images(&mut self, period: Vec3) {
+    pub(super) fn see_images(&mut self, period: Periods) {
         self.period = period;
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
-            let s = shift_of(image as u32);
-            (0..3).for_each(|d| shift[d] = s[d] * period[d]);
+            let [x, y, z] = period.shift(shift_of(image as u32));
+            *shift = [x, y, z, 0.0];
         }
         self.shifts[NOWHERE as usize][0] = FAR;
     }
 
+    /// How far images have moved since all short lists were made, at most [length].
+    pub(super) fn images_moved(&self) -> f64 {
+        if self.listed == self.period {
+            return 0.0;
+        }
+        let way = |image: u32| {
+            let n = shift_of(image);
+            let (a, b) = (self.period.shift(n), self.listed.shift(n));
+            (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>()
+        };
+        (0..27).map(way).fold(0.0, f64::max).sqrt()
+    }
+
     /// Lists see grains where they are after as many `turns` of each since the lists were made, that is after they were moved by
-    /// so many `period`s; empty where nobody was.
-    pub fn turn(&mut self, turns: &[[i8; 3]], period: Vec3) {
+    /// so many edges of the box; empty where nobody was.
+    pub fn turn(&mut self, turns: &[[i8; 3]], period: &Periods) {
         if turns == self.turns {
             return;
         }

@@ -7,7 +7,7 @@ use super::has_avx2;
 use crate::driver::Grains;
 use perigrain_base::math::four::{Four, Plain};
 use perigrain_base::math::lanes::Lanes;
-use perigrain_base::math::vec3::Vec3;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use perigrain_neigh::slabs::Slabs;
 use perigrain_world::Seen;
@@ -135,11 +135,14 @@ impl ListValidity {
     }
 
     /// Grains have been moved by so many periods: that is not a way.
-    pub fn turn(&mut self, turns: &[[i16; 3]], period: Vec3) {
+    pub fn turn(&mut self, turns: &[[i16; 3]], period: &Periods) {
         for at in 0..self.own.len() {
             let turns = turns[self.grain(at)];
-            for place in [&mut self.own[at], &mut self.before[at]] {
-                (0..3).filter(|d| turns[*d] != 0).for_each(|d| place[d] += f64::from(turns[d]) * period[d]);
+            if turns != [0; 3] {
+                let by = period.shift(turns.map(f64::from));
+                for place in [&mut self.own[at], &mut self.before[at]] {
+                    (0..3).for_each(|d| place[d] += by[d]);
+                }
             }
         }
     }
@@ -173,8 +176,8 @@ impl ListValidity {
         if self.order.is_empty() { place } else { self.order[place] as usize }
     }
 
-    /// The slabs whose grains may have come closer than their short lists reach, or `all`, and some that are near that; their
-    /// lists are taken to be made from the present positions.
+    /// The slabs whose grains may have come closer by `thin`, or `all`, and some that are near that; their lists are taken to be made
+    /// from the present positions.
     pub fn strayed(&mut self, grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
         if thin == f64::INFINITY {
             // Nobody gets out of lists that are the long ones.
@@ -289,7 +292,7 @@ mod tests {
         let x: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let tag: Vec<u32> = (0..9).collect();
         let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag, [2.8; 2], &[0.0; 3], &[0.0; 3]);
+        slabs.sort(&x, &tag, [2.8; 2], &[0.0; 3], &Periods::default());
         assert_eq!(slabs.near().count(), 3);
         (slabs, x, tag)
     }
@@ -340,7 +343,7 @@ mod tests {
         x[0][2] = f64::NAN;
         assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
         let mut around = Slabs::default();
-        around.sort(&x[..8], &tag[..8], [2.8; 2], &[0.0; 3], &[8.0, 0.0, 0.0]);
+        around.sort(&x[..8], &tag[..8], [2.8; 2], &[0.0; 3], &Periods::upright([8.0, 0.0, 0.0]));
         assert_eq!([0, 1, 2].map(|k| slabs.near().next(k)), [Some(1), Some(2), None]);
         assert_eq!([0, 1].map(|k| around.near().next(k)), [Some(1), Some(0)]);
     }

@@ -8,9 +8,10 @@ use crate::driver::Grains;
 use crate::{Advance, ContactLaw, Loop};
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::four::Four;
-use perigrain_base::math::lanes::{Lanes, place};
+use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
+use perigrain_neigh::slabs::shift_of;
 use std::ops::Range;
 
 /// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
@@ -42,6 +43,49 @@ pub(super) struct Cx<'a, L> {
     pub frozen: bool,
     /// How far apart surfaces of grains that stick together can be [length].
     pub span: f64,
+    /// How images move, where they do.
+    pub drift: Option<Drift<'a>>,
+}
+
+/// Images that a growing box carries along.
+pub(super) struct Drift<'a> {
+    /// How much faster each image is than its grain [length/time].
+    by: [Vec3; 27],
+    /// Ids of the grains.
+    tag: &'a [u32],
+    /// Their groups, and the bit of the one whose images move.
+    mask: &'a [u32],
+    group: u32,
+}
+
+impl<'a> Drift<'a> {
+    /// That of these grains, where there is one.
+    fn of(grains: &Grains<'a>) -> Option<Self> {
+        let (flow, mask) = grains.flow?;
+        let by = std::array::from_fn(|image| flow.velocity(shift_of(image as u32)));
+        Some(Self { by, tag: grains.tag, mask, group: flow.group.bit() })
+    }
+
+    /// What is added to the velocities of these as `i` see them, coordinate by coordinate: out of line, so that boxes at rest do
+    /// not carry it. Of two grains the one of larger id is the image, as in the plain loop.
+    ///
+    /// # Safety
+    /// There must be `N` pairs of grains, the second ones in images.
+    #[inline(never)]
+    pub unsafe fn added<const N: usize>(&self, i: *const u32, w: *const u32) -> [[f64; N]; 3] {
+        let mut added = [[0.0; N]; 3];
+        for lane in 0..N {
+            // SAFETY: the caller's promise.
+            let (i, w) = unsafe { (*i.add(lane) as usize, *w.add(lane)) };
+            let j = place(w);
+            let image = if self.tag[i] < self.tag[j] { j } else { i };
+            if self.mask[image] & self.group != 0 {
+                let by = self.by[(w >> PLACE_BITS) as usize];
+                (0..3).for_each(|d| added[d][lane] = by[d]);
+            }
+        }
+        added
+    }
 }
 
 impl<L> Cx<'_, L> {
@@ -116,6 +160,7 @@ impl<L: ContactLaw> Fast<L> {
             virial,
             frozen: !self.signed.is_empty(),
             span: self.span,
+            drift: Drift::of(grains),
         };
         let contacts = |k: usize| {
             // SAFETY: each part writes its own slab.

@@ -9,7 +9,8 @@ use perigrain_base::math::lanes::place;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
-use perigrain_world::{Compat, Travel};
+use perigrain_world::domain::Flow;
+use perigrain_world::{Compat, GroupId, Travel};
 
 #[derive(Clone)]
 struct Scene {
@@ -21,7 +22,10 @@ struct Scene {
     kind: Vec<u16>,
     tag: Vec<u32>,
     frozen: Vec<bool>,
-    period: [f64; 3],
+    period: Periods,
+    /// How the box changes, and which images move with it.
+    flow: Option<Flow>,
+    mask: Vec<u32>,
 }
 
 const SKIN: f64 = 0.2;
@@ -48,10 +52,27 @@ fn scene(period: [f64; 3]) -> Scene {
         kind: (0..n).map(|k| 1 + u16::from(k % 3 == 0)).collect(),
         tag: (0..n as u32).map(|k| (k * 7) % n as u32 + 1).collect(),
         frozen: (0..n).map(|k| k % 11 == 0).collect(),
+        mask: (0..n as u32).map(|k| k % 4).collect(),
+        flow: None,
+        period: Periods::upright(period),
         v,
         x,
-        period,
     }
+}
+
+/// The same in a box that leans, and further while it grows: across its faces images pass by.
+fn sheared(length: [f64; 3]) -> Scene {
+    let mut s = scene(length);
+    let tilt = if length[2] > 0.0 { [3.0, -2.0, 4.0] } else { [3.0, 0.0, 0.0] };
+    s.period.tilt = tilt;
+    for x in &mut s.x {
+        let part = |d: usize| if length[d] > 0.0 { x[d] / length[d] } else { 0.0 };
+        let lean = s.period.shift([0.0, part(1), part(2)]);
+        *x = [x[0] + lean[0], x[1] + part(2) * tilt[2], x[2]];
+    }
+    let rate = [0.0, 0.1, 0.0];
+    s.flow = Some(Flow { rate, tilt: tilt.map(|t| if t == 0.0 { 0.0 } else { 2.0 }), group: GroupId(1) });
+    s
 }
 
 /// The same with some grains that are four to seven times as large as the smallest, and no others inside them.
@@ -76,7 +97,8 @@ fn bidisperse(period: [f64; 3]) -> Scene {
     let [radius, mass] = [&s.radius, &s.mass].map(|c| kept.iter().map(|&i| c[i]).collect());
     let (kind, tag) = (kept.iter().map(|&i| s.kind[i]).collect(), kept.iter().map(|&i| s.tag[i]).collect());
     let frozen = kept.iter().map(|&i| s.frozen[i]).collect();
-    Scene { x, v, omega, radius, mass, kind, tag, frozen, period }
+    let mask = kept.iter().map(|&i| s.mask[i]).collect();
+    Scene { x, v, omega, radius, mass, kind, tag, frozen, mask, ..s }
 }
 
 /// The law of two types: there are three, one of them with all that contacts can remember.
@@ -128,7 +150,7 @@ type Table = fn(u16, u16) -> Granular;
 
 impl Scene {
     fn grains(&self) -> Grains<'_> {
-        let Self { x, v, omega, radius, mass, kind, tag, frozen, period } = self;
+        let Self { x, v, omega, radius, mass, kind, tag, frozen, period, flow, mask } = self;
         let travel = Travel::default();
         Grains {
             x,
@@ -138,8 +160,8 @@ impl Scene {
             mass,
             kind,
             tag,
-            period: Periods::upright(*period),
-            flow: None,
+            period: *period,
+            flow: flow.map(|flow| (flow, &mask[..])),
             body: &[],
             frozen,
             travel,
@@ -162,17 +184,24 @@ impl Scene {
                 self.x[i][d] += DT * self.v[i][d];
             }
         }
+        if let Some(flow) = self.flow {
+            (0..3).for_each(|d| self.period.length[d] += DT * flow.rate[d]);
+            (0..3).for_each(|d| self.period.tilt[d] += DT * flow.tilt[d]);
+        }
     }
 
     /// Whether two do not touch.
     fn apart(&self, p: &perigrain_neigh::list::Pair) -> bool {
-        let d = perigrain_neigh::list::difference(&self.x, &Periods::upright(self.period), p);
+        let d = perigrain_neigh::list::difference(&self.x, &self.period, p);
         perigrain_base::math::vec3::length(d) >= self.radius[p.i as usize] + self.radius[p.j as usize]
     }
 
     fn wrap(&mut self) {
         for x in &mut self.x {
-            (0..3).filter(|d| self.period[*d] > 0.0).for_each(|d| x[d] = x[d].rem_euclid(self.period[d]));
+            let (length, at) = (self.period.length, self.period.straightened(*x, [0.0; 3]));
+            let turns = |d: usize| if length[d] > 0.0 { (at[d] / length[d]).floor() } else { 0.0 };
+            let by = self.period.shift([0, 1, 2].map(turns));
+            (0..3).for_each(|d| x[d] -= by[d]);
         }
     }
 
@@ -216,19 +245,13 @@ impl Loop for PlainLoop {
             rules.set(a, b, Rule { law: (self.law)(a, b), average, curvature });
         }
         if k.is_multiple_of(7) {
-            let view = View {
-                x: &s.x,
-                tag: &s.tag,
-                kind: &s.kind,
-                radius: &s.radius,
-                period: Periods::upright(s.period),
-            };
+            let view = View { x: &s.x, tag: &s.tag, kind: &s.kind, radius: &s.radius, period: s.period };
             self.list = pairs(&view, &wanted, SKIN, &|i, j| s.keep(i, j));
         }
         self.sweep.run(&self.list, &s.grains(), &rules, &mut self.memory, Advance { dt: DT, history: true });
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         self.sweep.scatter(&mut f, &mut torque);
-        let (mut heat, virial) = (vec![0.0; s.x.len()], self.sweep.virial(&s.x, &Periods::upright(s.period)));
+        let (mut heat, virial) = (vec![0.0; s.x.len()], self.sweep.virial(&s.x, &s.period));
         self.sweep.conduct(&s.temperatures(), &mut heat);
         Got { f, torque, heat, contacts: self.memory.clone(), virial }
     }
@@ -289,7 +312,8 @@ fn the_numbers_of_the_plain_driver() {
         PERIODS.into_iter().flat_map(|p| [between as Table, sticky, plastic].map(|law| (scene(p), law)));
     // With large grains reaching farther, only boxes that do not repeat or are wide enough.
     let large = [bidisperse(PERIODS[0]), bidisperse([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
-    for (mut s, law) in scenes.chain(large) {
+    let leaning = PERIODS[1..].iter().map(|p| (sheared(*p), between as Table));
+    for (mut s, law) in scenes.chain(large).chain(leaning) {
         let mut plain = PlainLoop { law, list: vec![], sweep: Sweep::default(), memory: Contacts::default() };
         let mut fast = FastLoop::new(false, law);
         let mut beyond = 0;
@@ -325,7 +349,10 @@ fn the_numbers_of_the_plain_driver() {
 #[test]
 fn the_same_bits_for_threads_and_across_the_world() {
     let dense = [sticky as Table, plastic].map(|law| (scene(PERIODS[2]), law));
-    for (first, law) in dense.into_iter().chain([(bidisperse([10.45, 0.0, 0.0]), between as Table)]) {
+    let leaning = [(sheared(PERIODS[2]), between as Table)];
+    for (first, law) in
+        dense.into_iter().chain(leaning).chain([(bidisperse([10.45, 0.0, 0.0]), between as Table)])
+    {
         same_bits(&first, law);
     }
 }
@@ -390,8 +417,8 @@ fn end(first: &Scene, mut fast: FastLoop) -> (Vec<Vec3>, Vec<Vec3>, Got) {
 
 #[test]
 fn all_forms_have_the_same_bits() {
-    let first = scene(PERIODS[1]);
-    for law in [between as Table, sticky, plastic] {
+    let scenes = [between as Table, sticky, plastic].map(|law| (scene(PERIODS[1]), law));
+    for (first, law) in scenes.into_iter().chain([(sheared(PERIODS[1]), between as Table)]) {
         let run = |form| {
             let mut fast = FastLoop::new(false, law);
             fast.fast.form = form;

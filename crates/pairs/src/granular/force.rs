@@ -98,13 +98,13 @@ impl Force {
     /// for that, from which all lists reach far enough until the next rebuild.
     fn renew(&mut self, w: &mut World) -> Result<()> {
         let before = self.generation.replace(w.rebuild.generation);
-        let (period, kept) = (w.periods(), &w.rebuild.kept);
+        let ((lo, period), kept) = (w.made_in(), &w.rebuild.kept);
         if let Some(fast) = self.fast.as_mut().filter(|fast| self.is_fast && fast.len() == w.n())
             && kept.outlasted > 0
             && before == Some(kept.last[0])
             && w.rebuild.generation == kept.last[1]
         {
-            fast.turn(&kept.turns, period.length);
+            fast.turn(&kept.turns, &period);
             return Ok(());
         }
         let skin = w.settings.neighbor.skin;
@@ -114,7 +114,7 @@ impl Force {
             let index = Index::new(&w.particles.tag);
             let ends: Vec<usize> =
                 pairs.iter().flatten().filter_map(|id| index.find(*id, &w.particles.tag)).collect();
-            let frame = Frame { lo: w.domain()?.lo, period: period.length, reach: kept.reach(skin), skin };
+            let frame = Frame { lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             if fast.admit(&grains, &frame, &ends, &|i, j| allowed.pair(i, j)) {
@@ -123,11 +123,11 @@ impl Force {
         }
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
             let known = if self.is_fast { None } else { w.contacts.remove(self.key) };
-            let frame = Frame { lo: w.domain()?.lo, period: period.length, reach: kept.reach(skin), skin };
+            let frame = Frame { lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
-            fast.turn(&kept.turns, period.length);
+            fast.turn(&kept.turns, &period);
             self.is_fast = true;
             return Ok(());
         }
@@ -399,23 +399,22 @@ fn suits(w: &World, period: Periods, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
     let most = par::best(&p.radius, 0.0, f64::max);
     let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
-    // A box that may lean is for the other loop even while it stands upright: a run can tilt it between two rebuilds.
-    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none() && d.tilt.is_none());
-    let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
-    fits && !meet_twice(w, period.length, most, more)
+    let fits =
+        period.repeats_where_it_leans() && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
+    fits && !meet_twice(w, period, most, more)
 }
 
 /// Most grains whose images are looked at one by one.
 const FEW: usize = 64;
 
 /// Whether two grains might meet in two images at once, with surfaces up to `more` apart, or one meets itself.
-fn meet_twice(w: &World, period: Vec3, most: f64, more: f64) -> bool {
+fn meet_twice(w: &World, period: Periods, most: f64, more: f64) -> bool {
     let (radius, x) = (&w.particles.radius, made_at(w));
-    let shortest = period.into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    let shortest = period.heights().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
     if 2.0 * (2.0 * most + more) <= shortest {
         return false;
     }
-    // In two images the larger distance is half a period at least.
+    // In two images the larger distance is half a height of the box at least.
     let large: Vec<usize> =
         (0..radius.len()).filter(|&i| 2.0 * (radius[i] + most + more) > shortest).collect();
     let [edge, reach] = edges(radius, more);
@@ -426,8 +425,9 @@ fn meet_twice(w: &World, period: Vec3, most: f64, more: f64) -> bool {
         let reach = radius[i] + radius[j] + more;
         let near = |image: &u32| {
             let shift = shift_of(*image);
-            let d: Vec3 = std::array::from_fn(|d| x[i][d] - (x[j][d] + shift[d] * period[d]));
-            let absent = (0..3).any(|d| period[d] == 0.0 && shift[d] != 0.0);
+            let by = period.shift(shift);
+            let d: Vec3 = std::array::from_fn(|d| x[i][d] - (x[j][d] + by[d]));
+            let absent = (0..3).any(|d| period.length[d] == 0.0 && shift[d] != 0.0);
             !absent && d.iter().map(|d| d * d).sum::<f64>() < reach * reach
         };
         (0..27).filter(near).count() > 1
