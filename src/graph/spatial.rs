@@ -2,9 +2,10 @@
 //! lists and this order last.
 
 use perigrain_base::math::periods::Periods;
+use perigrain_base::math::vec3::{add, length, sub};
 use perigrain_base::par;
 use perigrain_neigh::slabs::{Slabs, edges};
-use perigrain_world::{Domain, Kept, World};
+use perigrain_world::{Kept, World};
 use std::ops::Range;
 
 /// Fewer than these fit the fastest memory in any order.
@@ -77,6 +78,8 @@ pub fn stays(w: &mut World) -> bool {
     };
     if w.rebuild.kept.ample && drift.near.max(drift.far) <= SURE * skin {
         if w.rebuild.kept.x.is_empty() {
+            let rebuild = &mut w.rebuild;
+            (rebuild.kept.corners, rebuild.kept.tilt) = (rebuild.corners.unwrap_or_default(), rebuild.tilt);
             w.rebuild.kept.x = w.held().to_vec();
         }
         let kept = &mut w.rebuild.kept;
@@ -92,21 +95,24 @@ pub fn stays(w: &mut World) -> bool {
 
 /// None where lists cannot stay, or it is not known; more than `enough` is not told exactly.
 fn drift(w: &World, enough: f64) -> Option<Drift> {
-    let (domain, period, s) = (w.domain.as_ref()?, w.periods().length, &w.settings.neighbor);
+    let (period, s) = (w.periods(), &w.settings.neighbor);
     let [edge, far] = cells(w)?;
     let (x, made, held) = (&w.particles.x, w.made(), w.held());
-    let known = made.len() == w.n() && held.len() == w.n();
-    let rigid = domain.flow.is_none()
-        && !domain.tilted()
-        && w.rebuild.tilt == [0.0; 3]
-        && w.rebuild.corners.is_some_and(|c| same_box(domain, c));
+    let known = made.len() == w.n() && held.len() == w.n() && w.rebuild.corners.is_some();
+    let (lo, then) = w.made_in();
     // Lists of two skins have to fit between a grain and its image, with room to spare.
     let most = far - w.rebuild.kept.reach(s.skin) + 2.0 * s.skin;
-    let wide = period.iter().all(|l| *l == 0.0 || *l > 4.0 * most);
-    if !known || !rigid || !wide || edge != far || !s.check || w.rebuild.grown.is_some() {
+    let wide = |period: &Periods| period.heights().iter().all(|l| *l == 0.0 || *l > 4.0 * most);
+    let same = follows(&period, &then) && wide(&period) && wide(&then);
+    if !known || !same || edge != far || !s.check || w.rebuild.grown.is_some() {
         return None;
     }
-    let slabs = Slabs::laid_out(made, [edge, far], &domain.lo, &Periods::upright(period));
+    let slabs = Slabs::laid_out(made, [edge, far], &lo, &then);
+    let [fast, middle, slow] = slabs.axes();
+    if !stands_across(&then, slow) || !stands_across(&period, slow) {
+        return None;
+    }
+    let moved = [fast, middle, slow].map(|d| sub(period.vectors()[d], then.vectors()[d]));
     let slabs_of = slabs.far();
     let of_layers = slabs_of.of_layers();
     let before = &w.rebuild.kept.turns;
@@ -115,18 +121,17 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
         for i in range {
             let mut turns = before.get(i).copied().unwrap_or_default();
             // Who is half around the box from where it was at the last rebuild has been moved by a period.
-            for d in (0..3).filter(|d| period[*d] > 0.0) {
-                let way = x[i][d] - held[i][d];
-                if way.abs() > 0.5 * period[d] {
-                    turns[d] = turns[d].saturating_add((way / period[d]).round() as i8);
-                    gone.turned.push((i, turns));
-                }
+            let around = period.turns(sub(x[i], held[i]));
+            if around != [0.0; 3] {
+                (0..3).for_each(|d| turns[d] = turns[d].saturating_add(around[d] as i8));
+                gone.turned.push((i, turns));
             }
             let ways = &mut gone.ways[of_layers[slabs.layer_of(&made[i])]];
             let so_far = *ways;
             let [least, most] = ways;
+            let away = if turns == [0; 3] { [0.0; 3] } else { period.shift(turns.map(f64::from)) };
             for d in 0..3 {
-                let way = x[i][d] - f64::from(turns[d]) * period[d] - made[i][d];
+                let way = x[i][d] - away[d] - made[i][d];
                 (least[d], most[d]) = (least[d].min(way), most[d].max(way));
             }
             // Those that come may go farther still. Where turns are known they have to be counted to the end.
@@ -149,11 +154,17 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
             return None;
         }
     }
-    let with_next = |k: usize| slabs_of.next(k).map_or(ways[k], |next| both(ways[k], ways[next]));
-    let near = (0..ways.len()).map(|k| across(with_next(k))).fold(0.0, f64::max);
+    // Across a face that repeats, the next slab is seen in an image that may have moved.
+    let with_next = |k: usize| match slabs_of.next(k) {
+        Some(next) if next > k => both(ways[k], ways[next]),
+        Some(next) => both(ways[k], ways[next].map(|bound| add(bound, moved[2]))),
+        None => ways[k],
+    };
+    let within = length(moved[0]) + length(moved[1]);
+    let near = (0..ways.len()).map(|k| across(with_next(k))).fold(0.0, f64::max) + within;
     let [least, most] = ways.iter().copied().fold(STILL, both);
-    let slow = slabs.slow_axis();
-    Some(Drift { near, far: most[slow] - least[slow], turns })
+    let far = most[slow] - least[slow] + moved[2][slow].abs();
+    Some(Drift { near, far, turns })
 }
 
 /// More turns around the box are not counted.
@@ -194,7 +205,17 @@ impl Gone {
     }
 }
 
-/// Whether the faces that repeat are where they were.
-fn same_box(domain: &Domain, [lo, hi]: [[f64; 3]; 2]) -> bool {
-    (0..3).all(|d| !domain.boundary.periodic(d) || (domain.lo[d], domain.hi[d]) == (lo[d], hi[d]))
+/// Whether a box is the one it was, perhaps deformed: not one that has been flipped, or repeats otherwise.
+fn follows(now: &Periods, then: &Periods) -> bool {
+    let repeats = |p: &Periods| p.length.map(|l| l > 0.0);
+    // Of x in xy and in xz, of y in yz.
+    let flipped = |k: usize| (now.tilt[k] - then.tilt[k]).abs() > 0.25 * then.length[[0, 0, 1][k]];
+    let leans = now.repeats_where_it_leans() && then.repeats_where_it_leans();
+    leans && repeats(now) == repeats(then) && (now.tilt == then.tilt || !(0..3).any(flipped))
+}
+
+/// Whether the faces that this edge leads across stand at right angles to its axis.
+fn stands_across(period: &Periods, edge: usize) -> bool {
+    let [xy, xz, yz] = period.tilt;
+    [xy == 0.0 && xz == 0.0, yz == 0.0, true][edge]
 }

@@ -135,9 +135,9 @@ impl Slabs {
         slabs
     }
 
-    /// The axis along which slabs follow each other.
-    pub fn slow_axis(&self) -> usize {
-        self.axes[2]
+    /// Fast, middle and slow axis; along the last one slabs follow each other.
+    pub fn axes(&self) -> [usize; 3] {
+        self.axes
     }
 
     /// Slabs for pairs that reach into neighbouring cells.
@@ -171,7 +171,7 @@ impl Slabs {
         let of = |range: Range<usize>| extent(x, range.start as u32..range.end as u32);
         let (from, to) = par::reduce(x.len(), of, wider).unwrap_or_else(|| extent(x, 0..0));
         (self.corner, self.period) = (*lo, *period);
-        let (period, spread) = (period.length, period.spread());
+        let (period, tilt, spread) = (period.length, period.tilt, period.spread());
         let open = |d: usize| period[d] == 0.0;
         let origin: [f64; 3] = std::array::from_fn(|d| if open(d) { from[d] } else { lo[d] });
         let length: [f64; 3] =
@@ -191,10 +191,12 @@ impl Slabs {
         let layers = (reach / size).ceil().min(FARTHEST) as usize;
         let far = if reach > size { LAYERS.max(layers) } else { LAYERS };
         self.layers = [LAYERS, far];
-        // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin.
+        // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin. A box that leans along x
+        // with y alone is mostly sheared so: grains of a slab across y go the same way.
         let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
         let thin = |d: &usize| count[*d] < 4 * far;
-        let slowest = slow(true).filter(|d| !thin(d)).or(slow(false)).unwrap_or(2);
+        let sheared = Some(1).filter(|_| tilt[0] != 0.0 && tilt[1..] == [0.0; 2]);
+        let slowest = sheared.or(slow(true)).filter(|d| !thin(d)).or(slow(false)).unwrap_or(2);
         let mut rest = [0, 1, 2].into_iter().filter(|&d| d != slowest);
         self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
         self.cells = self.axes.map(|d| count[d]);

@@ -268,12 +268,18 @@ impl World {
     /// The box that those positions were in: its lower corner, and its edges as [`World::periods`] tells them.
     pub fn made_in(&self) -> ([f64; 3], Periods) {
         let Some(now) = &*self.domain else { return Default::default() };
-        match self.rebuild.corners {
-            Some([lo, hi]) if self.made().len() == self.n() => {
-                let tilt = now.tilt.map(|_| self.rebuild.tilt);
+        let kept = &self.rebuild.kept;
+        let then = match self.rebuild.corners {
+            _ if !kept.x.is_empty() && kept.x.len() == self.n() => Some((kept.corners, kept.tilt)),
+            Some(corners) if self.held().len() == self.n() => Some((corners, self.rebuild.tilt)),
+            _ => None,
+        };
+        match then {
+            Some(([lo, hi], tilt)) => {
+                let tilt = now.tilt.map(|_| tilt);
                 (lo, Domain { lo, hi, tilt, ..now.clone() }.periods())
             }
-            _ => (now.lo, now.periods()),
+            None => (now.lo, now.periods()),
         }
     }
 

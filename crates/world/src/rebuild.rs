@@ -57,6 +57,12 @@ pub struct Rebuild {
 pub struct Kept {
     /// Positions that lists are made from, if not those of the last rebuild; read them by [`World::made`](super::World::made).
     pub x: Vec<[f64; 3]>,
+    /// The box that those positions were in: its corners, and how it leaned.
+    #[serde(default)]
+    pub corners: [[f64; 3]; 2],
+    /// See `corners`.
+    #[serde(default)]
+    pub tilt: [f64; 3],
     /// How many periods each particle has been moved since then to be in the box; empty where nobody was.
     pub turns: Vec<[i8; 3]>,
     /// Whether lists reach twice as far as one rebuild needs.

@@ -9,7 +9,7 @@ use perigrain_base::par;
 use perigrain_neigh::slabs::shift_of;
 
 impl<L: ContactLaw> Fast<L> {
-    /// Images of a box that repeats after these periods.
+    /// Images of a box that repeats after these periods, in which lists were made.
     pub(super) fn see_images(&mut self, period: Periods) {
         self.period = period;
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
@@ -19,22 +19,19 @@ impl<L: ContactLaw> Fast<L> {
         self.shifts[NOWHERE as usize][0] = FAR;
     }
 
-    /// How far images have moved since all short lists were made, at most [length].
-    pub(super) fn images_moved(&self) -> f64 {
-        if self.listed == self.period {
-            return 0.0;
+    /// The box has changed since: images stand elsewhere, and who was far from one may be near.
+    pub(super) fn follow(&mut self, period: &Periods) {
+        if *period != self.period {
+            self.validity.follow(&self.period, period);
+            self.validity_of_large.follow(&self.period, period);
+            self.see_images(*period);
         }
-        let way = |image: u32| {
-            let n = shift_of(image);
-            let (a, b) = (self.period.shift(n), self.listed.shift(n));
-            (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>()
-        };
-        (0..27).map(way).fold(0.0, f64::max).sqrt()
     }
 
     /// Lists see grains where they are after as many `turns` of each since the lists were made, that is after they were moved by
     /// so many edges of the box; empty where nobody was.
     pub fn turn(&mut self, turns: &[[i8; 3]], period: &Periods) {
+        self.follow(period);
         if turns == self.turns {
             return;
         }
@@ -61,8 +58,8 @@ impl<L: ContactLaw> Fast<L> {
                 i.iter().zip(w).for_each(|(i, w)| follow(i, w));
             }
         });
-        self.validity.turn(&more, period);
-        self.validity_of_large.turn(&more, period);
+        self.validity.turn(turns, &more, period);
+        self.validity_of_large.turn(turns, &more, period);
         self.turns = turns.to_vec();
     }
 }

@@ -8,8 +8,9 @@ use crate::driver::Grains;
 use perigrain_base::math::four::{Four, Plain};
 use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::periods::Periods;
+use perigrain_base::math::vec3::{Vec3, add, length, sub};
 use perigrain_base::par;
-use perigrain_neigh::slabs::Slabs;
+use perigrain_neigh::slabs::{Slabs, shift_of};
 use perigrain_world::Seen;
 use std::ops::Range;
 
@@ -26,6 +27,14 @@ pub(super) struct ListValidity {
     members: Vec<Range<usize>>,
     /// The slab that each one reaches into, if it is a slab's list.
     next: Vec<Option<usize>>,
+    /// Fast, middle and slow axis of slabs; none where pairs of a list may be seen in any image.
+    axes: Option<[usize; 3]>,
+    /// The box in which each list was made.
+    listed: Vec<Periods>,
+    /// The box at the last look.
+    looked: Periods,
+    /// Places of grains that have been moved around the box, and by how many periods since lists were made.
+    turned: Vec<(usize, [f64; 3])>,
     /// The grain at each place; none where it is the place itself.
     order: Vec<u32>,
     /// Who is at each place, when the list of its own slab was made.
@@ -62,11 +71,30 @@ impl Ways {
         all
     }
 
+    /// Those of images that have moved by so much.
+    fn seen_from(self, moved: Vec3) -> Self {
+        Self { least: add(self.least, moved), most: add(self.most, moved), ..self }
+    }
+
     /// By how much two surfaces can have come closer at most [length].
     fn closer(self) -> f64 {
         let square: f64 = (0..3).map(|d| (self.most[d] - self.least[d]).max(0.0).powi(2)).sum();
         square.sqrt() + 2.0 * self.grown
     }
+}
+
+/// How far an edge of the box has moved between two times.
+fn edge_moved(edge: usize, now: &Periods, then: &Periods) -> Vec3 {
+    sub(now.vectors()[edge], then.vectors()[edge])
+}
+
+/// How far images have moved between two times, at most [length].
+fn farthest(now: &Periods, then: &Periods) -> f64 {
+    if now == then {
+        return 0.0;
+    }
+    let way = |image: u32| length(sub(now.shift(shift_of(image)), then.shift(shift_of(image))));
+    (0..27).map(way).fold(0.0, f64::max)
 }
 
 /// [`Ways`] as they are gathered, vector by vector.
@@ -134,16 +162,32 @@ impl ListValidity {
         self.members[slab].clone()
     }
 
-    /// Grains have been moved by so many periods: that is not a way.
-    pub fn turn(&mut self, turns: &[[i16; 3]], period: &Periods) {
+    /// Grains have been moved by so many periods since lists were made, by `more` of them now: that is not a way.
+    pub fn turn(&mut self, turns: &[[i8; 3]], more: &[[i16; 3]], period: &Periods) {
+        self.turned.clear();
         for at in 0..self.own.len() {
-            let turns = turns[self.grain(at)];
-            if turns != [0; 3] {
-                let by = period.shift(turns.map(f64::from));
-                for place in [&mut self.own[at], &mut self.before[at]] {
-                    (0..3).for_each(|d| place[d] += by[d]);
-                }
+            let grain = self.grain(at);
+            if more[grain] != [0; 3] {
+                self.shift(at, period.shift(more[grain].map(f64::from)));
             }
+            if let Some(turns) = turns.get(grain).filter(|turns| **turns != [0; 3]) {
+                self.turned.push((at, turns.map(f64::from)));
+            }
+        }
+    }
+
+    /// The box has changed: who has been moved around it would be elsewhere.
+    pub fn follow(&mut self, before: &Periods, now: &Periods) {
+        let turned = std::mem::take(&mut self.turned);
+        for (at, turns) in &turned {
+            self.shift(*at, sub(now.shift(*turns), before.shift(*turns)));
+        }
+        self.turned = turned;
+    }
+
+    fn shift(&mut self, at: usize, by: Vec3) {
+        for place in [&mut self.own[at], &mut self.before[at]] {
+            (0..3).for_each(|d| place[d] += by[d]);
         }
     }
 
@@ -152,6 +196,7 @@ impl ListValidity {
         let near = slabs.near();
         self.members = (0..near.count()).map(|k| near.members(k)).collect();
         self.next = (0..near.count()).map(|k| near.next(k)).collect();
+        self.axes = Some(slabs.axes());
         let same = slabs.order.iter().zip(0..).all(|(grain, place)| *grain == place);
         self.order = if same { vec![] } else { slabs.order.clone() };
         self.make_room(slabs.order.len());
@@ -162,6 +207,7 @@ impl ListValidity {
         let end_of = |k: usize| lists[..k].iter().map(Vec::len).sum();
         self.members = (0..lists.len()).map(|k| end_of(k)..end_of(k + 1)).collect();
         self.next = vec![None; lists.len()];
+        self.axes = None;
         self.order = lists.concat();
         self.make_room(self.order.len());
     }
@@ -169,6 +215,7 @@ impl ListValidity {
     fn make_room(&mut self, places: usize) {
         self.own.resize(places, [0.0; 4]);
         self.before.resize(places, [0.0; 4]);
+        self.listed.resize(self.members.len(), Periods::default());
     }
 
     /// The grain at a place.
@@ -183,8 +230,9 @@ impl ListValidity {
             // Nobody gets out of lists that are the long ones.
             return if all { (0..self.members.len()).collect() } else { vec![] };
         }
-        // Whatever way two grains have gone since, they came closer by twice that at most.
-        if !all && self.since.within(grains.travel, 0.5 * thin) {
+        // Whatever way two grains have gone since, they came closer by twice that at most, and by what images have moved.
+        let moved = farthest(&grains.period, &self.looked);
+        if !all && self.since.within(grains.travel, 0.5 * (thin - moved)) {
             // The box around all ways may be longer than the two longest of them.
             let limit = 3.0_f64.sqrt() * thin;
             debug_assert!(
@@ -204,6 +252,7 @@ impl ListValidity {
         for &k in &worn {
             self.see(grains, k);
         }
+        self.looked = grains.period;
         let left = self.nearer.iter().copied().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
         self.since = Seen::now(grains.travel, 0.5 * left);
         worn
@@ -225,12 +274,24 @@ impl ListValidity {
             // SAFETY: each part writes its own slab.
             unsafe { shared.get(k..k + 1)[0] = ways };
         });
-        let both = |(own, next): (&[Ways; 2], &Option<usize>)| match next {
-            Some(next) => own[0].join(ways[*next][1]).closer(),
-            None => own[0].closer(),
+        let closer = |k: usize| {
+            let (own, changed) = (ways[k][0], self.listed[k] != grains.period);
+            match (self.next[k], self.axes) {
+                (Some(next), Some(axes)) if changed => {
+                    let [fast, middle, slow] = axes.map(|d| edge_moved(d, &grains.period, &self.listed[k]));
+                    let around = if next > k { [0.0; 3] } else { slow };
+                    own.join(ways[next][1].seen_from(around)).closer() + length(fast) + length(middle)
+                }
+                (Some(next), _) => own.join(ways[next][1]).closer(),
+                (None, Some(axes)) if changed => {
+                    let [fast, middle, _] = axes.map(|d| edge_moved(d, &grains.period, &self.listed[k]));
+                    own.closer() + length(fast) + length(middle)
+                }
+                (None, _) => own.closer() + farthest(&grains.period, &self.listed[k]),
+            }
         };
         self.nearer.clear();
-        self.nearer.extend(ways.iter().zip(&self.next).map(both));
+        self.nearer.extend((0..ways.len()).map(closer));
         self.ways = ways;
         &self.nearer
     }
@@ -272,6 +333,7 @@ impl ListValidity {
 
     /// Keeps the present places for the list of slab `k`.
     fn see(&mut self, grains: &Grains, k: usize) {
+        self.listed[k] = grains.period;
         let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
         for at in self.members[k].clone() {
             self.own[at] = place(self.grain(at));

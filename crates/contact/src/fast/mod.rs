@@ -40,8 +40,6 @@ const SMALL: usize = 1 << 15;
 pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
 /// The second skin in units of the first.
 const THIN: f64 = 0.15;
-/// The part of it that images of a box that changes may use up before all short lists are made anew.
-const MOVED: f64 = 0.25;
 /// The image of what fills lists up, and how far it is away: so far that squares are infinite.
 const NOWHERE: u32 = 31;
 const FAR: f64 = 1e200;
@@ -164,8 +162,6 @@ pub struct Fast<L> {
     shifts: [[f64; 4]; 32],
     /// The periods of these.
     period: Periods,
-    /// Those of the time at which all short lists were made.
-    listed: Periods,
     /// The second skin [length]; infinite where short lists are the long ones.
     thin: f64,
     /// What the second skin costs.
@@ -207,7 +203,6 @@ impl<L: ContactLaw> Fast<L> {
             lists: vec![],
             shifts: [[0.0; 4]; 32],
             period: Periods::default(),
-            listed: Periods::default(),
             thin: 0.0,
             upkeep: Upkeep::default(),
             span: 0.0,
@@ -344,27 +339,18 @@ impl<L: ContactLaw> Fast<L> {
 
     /// Makes short lists where they are due.
     pub(super) fn begin(&mut self, grains: &Grains) {
-        // In a box that has changed since, images stand elsewhere, and who was far from one may be near.
-        if grains.period != self.period {
-            self.see_images(grains.period);
-        }
-        let new = std::mem::take(&mut self.stale);
-        let moved = if new { 0.0 } else { self.images_moved() };
-        let stale = new || moved > MOVED * self.thin;
-        let thin = if stale { self.thin } else { self.thin - moved };
-        if stale {
-            self.listed = self.period;
-        }
+        self.follow(&grains.period);
+        let stale = std::mem::take(&mut self.stale);
         let looks = self.validity.looks + self.validity_of_large.looks;
-        let mut strayed = self.validity.strayed(grains, thin, stale);
+        let mut strayed = self.validity.strayed(grains, self.thin, stale);
         let mut due = std::mem::take(&mut self.due);
         due.retain(|k| !strayed.contains(k));
         self.validity.renew(grains, &due);
         strayed.extend(due);
-        let of_large = self.validity_of_large.strayed(grains, thin, stale);
+        let of_large = self.validity_of_large.strayed(grains, self.thin, stale);
         strayed.extend(of_large.into_iter().map(|k| self.validity.lists() + k));
         let looks = self.validity.looks + self.validity_of_large.looks - looks;
-        let made = if new { 0 } else { strayed.iter().map(|k| self.lists[*k].long.i.len()).sum() };
+        let made = if stale { 0 } else { strayed.iter().map(|k| self.lists[*k].long.i.len()).sum() };
         self.upkeep.step(made, looks * grains.x.len());
         self.make_short(grains, &strayed);
     }

@@ -98,13 +98,13 @@ impl Force {
     /// for that, from which all lists reach far enough until the next rebuild.
     fn renew(&mut self, w: &mut World) -> Result<()> {
         let before = self.generation.replace(w.rebuild.generation);
-        let ((lo, period), kept) = (w.made_in(), &w.rebuild.kept);
+        let ((lo, period), now, kept) = (w.made_in(), w.periods(), &w.rebuild.kept);
         if let Some(fast) = self.fast.as_mut().filter(|fast| self.is_fast && fast.len() == w.n())
             && kept.outlasted > 0
             && before == Some(kept.last[0])
             && w.rebuild.generation == kept.last[1]
         {
-            fast.turn(&kept.turns, &period);
+            fast.turn(&kept.turns, &now);
             return Ok(());
         }
         let skin = w.settings.neighbor.skin;
@@ -127,7 +127,7 @@ impl Force {
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
-            fast.turn(&kept.turns, &period);
+            fast.turn(&kept.turns, &now);
             self.is_fast = true;
             return Ok(());
         }
