@@ -259,7 +259,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
             let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
             let mut other = Motion { velocity: V::vectors(v, w), spin: V::vectors(spin, w) };
-            if let Some(drift) = &cx.drift {
+            if let Some(drift) = cx.drift {
                 let added = drift.added::<N>(i, w);
                 for d in 0..3 {
                     other.velocity[d] = other.velocity[d] + V::of(added[d]);

@@ -31,8 +31,9 @@ pub(super) struct ListValidity {
     axes: Option<[usize; 3]>,
     /// The box in which each list was made.
     listed: Vec<Periods>,
-    /// The box at the last look.
+    /// The box at the last look, and whether it has changed since lists were made.
     looked: Periods,
+    changed: bool,
     /// Places of grains that have been moved around the box, and by how many periods since lists were made.
     turned: Vec<(usize, [f64; 3])>,
     /// The grain at each place; none where it is the place itself.
@@ -178,6 +179,7 @@ impl ListValidity {
 
     /// The box has changed: who has been moved around it would be elsewhere.
     pub fn follow(&mut self, before: &Periods, now: &Periods) {
+        self.changed = true;
         let turned = std::mem::take(&mut self.turned);
         for (at, turns) in &turned {
             self.shift(*at, sub(now.shift(*turns), before.shift(*turns)));
@@ -231,7 +233,7 @@ impl ListValidity {
             return if all { (0..self.members.len()).collect() } else { vec![] };
         }
         // Whatever way two grains have gone since, they came closer by twice that at most, and by what images have moved.
-        let moved = farthest(&grains.period, &self.looked);
+        let moved = if self.changed { farthest(&grains.period, &self.looked) } else { 0.0 };
         if !all && self.since.within(grains.travel, 0.5 * (thin - moved)) {
             // The box around all ways may be longer than the two longest of them.
             let limit = 3.0_f64.sqrt() * thin;

@@ -44,7 +44,7 @@ pub(super) struct Cx<'a, L> {
     /// How far apart surfaces of grains that stick together can be [length].
     pub span: f64,
     /// How images move, where they do.
-    pub drift: Option<Drift<'a>>,
+    pub drift: Option<&'a Drift<'a>>,
 }
 
 /// Images that a growing box carries along.
@@ -141,6 +141,7 @@ impl<L: ContactLaw> Fast<L> {
         let shared = only.is_none() && par::threads() > 1;
         let weights = if shared { weights(&lists) } else { vec![] };
         let slabs = par::Shared::new(&mut lists);
+        let drift = Drift::of(grains);
         let cx = Cx {
             laws: &self.laws,
             x: grains.x,
@@ -160,7 +161,7 @@ impl<L: ContactLaw> Fast<L> {
             virial,
             frozen: !self.signed.is_empty(),
             span: self.span,
-            drift: Drift::of(grains),
+            drift: drift.as_ref(),
         };
         let contacts = |k: usize| {
             // SAFETY: each part writes its own slab.
