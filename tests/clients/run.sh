@@ -24,6 +24,9 @@ if ! "$work/venv/bin/python" -c "$readers, pytest, IPython, maturin, playwright"
         skip "the packages do not start here ($(tail -n 1 "$work/import.log"))"
 fi
 
+# For browser.py, where the system has none.
+{ command -v chromium || command -v google-chrome; } >/dev/null || timeout 100 "$work/venv/bin/playwright" install --only-shell chromium >"$work/chromium.log" 2>&1 || true
+
 perigrain=${1:-}
 [ "$perigrain" != fetch ] || exit 0
 if [ -z "$perigrain" ]; then
