@@ -191,6 +191,8 @@ pub struct Parts {
     pub resume: Option<Arc<Resume>>,
     /// The program that hosts the session, as each fix external sees it, by the fix's ID.
     pub outside: Named<Arc<dyn Outside>>,
+    /// The program that hosts the session, if it has functions that can be called within steps.
+    pub host: Option<Arc<dyn outside::Host>>,
 }
 
 /// A row of the step table.
