@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import _core
 from . import constants as C
+from .absent import Absent
 from .arrays import array_of, as_bytes, pointer_to
 from .errors import DataError
 from .external import External
@@ -44,7 +45,7 @@ class _Commands:
         return say
 
 
-class lammps(External):
+class lammps(External, Absent):
     """A scene, with the methods of LAMMPS' Python class.
 
     ``cmdargs`` are the words of a command line (`-log`, `-screen`, `-var`, `-echo`, `-threads` …); what the scene says
