@@ -32,7 +32,11 @@ STYLES = ["atomic", "sphere", "peri", "bond", "molecular", "bpm/sphere", "hybrid
           "hybrid sphere bond", "hybrid bond peri", "hybrid peri bpm/sphere", "hybrid bond sphere peri"]
 # Columns of data files for MDAnalysis, which knows no style by name.
 COLUMNS = {"atomic": "id type x y z", "sphere": "id type diameter density x y z", "peri": "id type volume density x y z",
-           "bond": "id resid type x y z", "molecular": "id resid type x y z", "bpm/sphere": "id resid type diameter density x y z"}
+           "bond": "id resid type x y z", "molecular": "id resid type x y z", "bpm/sphere": "id resid type diameter density x y z",
+           "hybrid sphere peri": "id type x y z diameter density volume", "hybrid peri sphere": "id type x y z volume density diameter",
+           "hybrid sphere bond": "id type x y z diameter density resid", "hybrid bond peri": "id type x y z resid volume density",
+           "hybrid peri bpm/sphere": "id type x y z volume density resid diameter",
+           "hybrid bond sphere peri": "id type x y z resid diameter density volume"}
 done = {}
 
 
@@ -88,7 +92,7 @@ def flights():
     for box, tilt in BOXES.items():
         dumps = [f"custom 2 {box}.dump {every}", f"custom 2 {box}.dump.gz {every}", f"custom 2 {box}.bin {every}", f"atom 2 {box}.atom",
                  f"xyz 2 {box}.xyz", f"cfg 2 {box}.*.cfg mass type xs ys zs vx vy vz", f"yaml 2 {box}.yaml {every}",
-                 f"vtk 2 {box}_*.vtu id type vx vy vz radius"]
+                 f"vtk 2 {box}_*.vtu id type vx vy vz radius", f"atom/gz 2 {box}.atom.gz"]
         run(box, deck("sphere", tilt) + [
             "comm_modify vel yes", "fix 1 all nve/sphere", f"timestep {DT}", "compute ke all ke", "variable t equal time",
             f"fix mean all ave/time 1 1 1 c_ke v_t file mean.{box}", *(f"dump {k} all {words}" for k, words in enumerate(dumps)),
@@ -122,10 +126,11 @@ def dumps():
         everything = ["Particle Type", "Periodic Image", "Velocity", "Radius"]
         for end in ("dump", "dump.gz", "bin", "yaml"):
             of_ovito(f"{box}.{end}", tilt, import_file(FOLDER / f"{box}.{end}"), everything)
-        of_ovito(f"{box}.atom", tilt, import_file(FOLDER / f"{box}.atom"), ["Particle Type"])
+        for end in ("atom", "atom.gz"):
+            of_ovito(f"{box}.{end}", tilt, import_file(FOLDER / f"{box}.{end}"), ["Particle Type"])
         of_ovito(f"{box}.cfg", tilt, import_file(FOLDER / f"{box}.*.cfg"), ["Particle Type", "Velocity"])
         of_ovito(f"{box}.xyz", tilt, import_file(FOLDER / f"{box}.xyz", columns=["Particle Type", "Position.X", "Position.Y", "Position.Z"]), ["Particle Type"], False)
-        for end, form in (("dump", "LAMMPSDUMP"), ("atom", "LAMMPSDUMP"), ("xyz", "XYZ")):
+        for end, form in (("dump", "LAMMPSDUMP"), ("dump.gz", "LAMMPSDUMP"), ("atom", "LAMMPSDUMP"), ("xyz", "XYZ")):
             told = {"dt": 1.0} if form == "LAMMPSDUMP" else {}
             universe = MDAnalysis.Universe(FOLDER / f"{box}.{end}", format=form, to_guess=(), **told)
             same(f"MDAnalysis, snapshots of {box}.{end}", universe.trajectory.n_frames, len(STEPS))
@@ -193,15 +198,14 @@ def data_files():
             if bonds:
                 ends = p["Particle Identifier"][...][p.bonds.topology[...]]
                 same(f"ovito, bonds of {name}", sorted(map(sorted, ends.tolist())), [[1, 2], [3, 4]])
-            if style in COLUMNS:
-                universe = MDAnalysis.Universe(FOLDER / name, format="DATA", atom_style=COLUMNS[style], to_guess=())
-                same(f"MDAnalysis, places of {name}", universe.atoms.positions, X)
-                # It takes them for lengths per femtosecond and gives them per picosecond.
-                same(f"MDAnalysis, velocities of {name}", universe.atoms.velocities, 1000.0 * V)
-                same(f"MDAnalysis, types of {name}", universe.atoms.types.astype(int), TYPES)
-                same(f"MDAnalysis, box of {name}", universe.trajectory.ts.triclinic_dimensions, edges(tilt), 1e-5)
-                if bonds:
-                    same(f"MDAnalysis, bonds of {name}", sorted(b.atoms.ids.tolist() for b in universe.bonds), [[1, 2], [3, 4]])
+            universe = MDAnalysis.Universe(FOLDER / name, format="DATA", atom_style=COLUMNS[style], to_guess=())
+            same(f"MDAnalysis, places of {name}", universe.atoms.positions, X)
+            # It takes them for lengths per femtosecond and gives them per picosecond.
+            same(f"MDAnalysis, velocities of {name}", universe.atoms.velocities, 1000.0 * V)
+            same(f"MDAnalysis, types of {name}", universe.atoms.types.astype(int), TYPES)
+            same(f"MDAnalysis, box of {name}", universe.trajectory.ts.triclinic_dimensions, edges(tilt), 1e-5)
+            if bonds:
+                same(f"MDAnalysis, bonds of {name}", sorted(b.atoms.ids.tolist() for b in universe.bonds), [[1, 2], [3, 4]])
 
 
 def moving_bonds():
@@ -234,6 +238,19 @@ def logs():
         same("pandas, energies of log.yaml", table["KinEng"], np.full(3, ENERGY), 1e-5 * ENERGY)
 
 
+def swept():
+    """The table of many runs."""
+    lines = [*deck("sphere", BOXES["upright"]), "variable fast index 1 2", "velocity all set $(v_fast) 0 0", "compute ke all ke",
+             "thermo_style custom step c_ke", "run 0"]
+    (FOLDER / "in.swept").write_text("\n".join(lines) + "\n")
+    words = ["sweep", "in.swept", "-each", "fast", "1", "2", "-out", "swept", "-report", "c_ke", "-screen", "none"]
+    subprocess.run([PROGRAM, *words], cwd=FOLDER, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    table = pd.read_csv(FOLDER / "swept" / "table.csv")
+    energy = 0.5 * (1000.0 * 4.0 / 3.0 * np.pi * RADIUS**3).sum()
+    same("pandas, variables of a sweep", table["fast"], [1, 2])
+    same("pandas, energies of a sweep", table["c_ke"], [energy, 4 * energy], 1e-9 * energy)
+
+
 def main(program, folder):
     global PROGRAM, FOLDER
     PROGRAM, FOLDER = program, folder
@@ -242,5 +259,6 @@ def main(program, folder):
     data_files()
     moving_bonds()
     logs()
+    swept()
     print("ok: " + ", ".join(f"{client} {count}" for client, count in sorted(done.items())) + " comparisons")
 

@@ -18,5 +18,5 @@ exec "$(command -v cargo)" "\$@"
 END
 chmod +x "$tools/cargo"
 rm -rf "$folder"
-(cd "$top" && PATH="$tools:$PATH" "$python" -m maturin build --quiet --profile dev --strip false --out "$folder") >&2
+(cd "$top" && PATH="$tools:$PATH" "$python" -m maturin build --quiet --interpreter "$python" --profile dev --strip false --compression-level 1 --out "$folder") >&2
 ls "$folder"/*.whl
