@@ -90,6 +90,26 @@ def test_what_is_written_after_a_step_counts(make, known):
     assert x[0, 0] == pytest.approx(0.3 + 2 * 0.01)
 
 
+def test_who_is_moved_or_sped_up_meets_others_at_once(make, known):
+    """Lists of neighbours are looked after, whatever a function does to places and speeds."""
+
+    def jump(ptr):
+        perigrain.lammps(ptr=ptr).numpy.extract_atom("x")[1] = [0.38, 0.3, 0.3]
+
+    def dart(ptr):
+        perigrain.lammps(ptr=ptr).numpy.extract_atom("v")[1] = [-2000.0, 0.0, 0.0]
+
+    known(jump=jump, dart=dart)
+    lmp = make(SPHERES)
+    lmp.commands_string("fix 2 all python/invoke 40 end_of_step jump\nrun 41")
+    # they overlap by 0.02 at a stiffness of 1000, and part slowly
+    assert lmp.extract_atom("f")[1][0] == pytest.approx(20.0, rel=1e-6)
+    lmp = make(SPHERES)
+    lmp.commands_string("set atom 2 y 0.3 z 0.3\nthermo_modify energy ignore\nfix 2 all python/invoke 40 end_of_step dart\nrun 56")
+    # 0.3 apart, 0.02 nearer in each step: they meet in the sixteenth
+    assert lmp.extract_atom("f")[0][0] < -1000.0
+
+
 def test_an_exception_ends_the_run_and_is_raised(make, known):
     lmp = make(FREE)
 
