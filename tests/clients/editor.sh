@@ -23,7 +23,9 @@ if ! new_enough nvim; then
     if ! new_enough "$nvim"; then
         mkdir -p "$work"
         echo "$release" >"$work/nvim.txt"
-        timeout 100 python3 -m pip install -q --disable-pip-version-check --no-deps --no-compile --require-hashes -r "$work/nvim.txt" \
+        python=$work/venv/bin/python
+        [ -x "$python" ] || python=python3
+        timeout 100 "$python" -m pip install -q --disable-pip-version-check --no-deps --no-compile --require-hashes -r "$work/nvim.txt" \
             --upgrade --target "$work/nvim" >"$work/nvim.log" 2>&1 || true
     fi
 fi
