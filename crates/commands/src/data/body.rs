@@ -263,7 +263,7 @@ impl<'a> Reader<'a> {
 
     fn atoms(&mut self, title: &Line) -> Result<()> {
         let style = self.how.style;
-        if !title.comment.is_empty() && !style.is_laid_out_as(&title.comment) {
+        if !title.comment.is_empty() && !style.is_laid_out_as(title.comment) {
             let at = title.span();
             let comment = Span { end: at.end + title.comment.len() as u32 + 3, ..at };
             let text = format!(
