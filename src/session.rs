@@ -223,7 +223,9 @@ impl Session {
         let compat = self.options.compat;
         let promised = std::mem::take(&mut self.world.parts.promised);
         let read_files = std::mem::take(&mut self.world.read_files);
+        let host = self.world.parts.host.take();
         self.world = World::default();
+        self.world.parts.host = host;
         self.world.read_files = read_files;
         self.world.parts.promised = promised;
         self.world.parts.promised.instead = self.looking();

@@ -8,7 +8,7 @@ use perigrain::diag::render;
 use perigrain::graph::build::DECLARATIONS;
 use perigrain::out::log::Log;
 use perigrain::session::{Mode, OWN, Options, Session};
-use scene::{Folder, SCENE, deck, is_for_the_shell};
+use scene::{Folder, SCENE, deck, hosted, is_for_the_shell};
 use std::fmt::Write as _;
 use std::io::Write;
 use std::process::Command;
@@ -69,7 +69,7 @@ fn works(name: &str, deck: &str) -> Result<String, String> {
 fn works_in(mode: Mode, name: &str, deck: &str) -> Result<String, String> {
     let heard = Heard::default();
     let log = Log::new(Some(Box::new(heard.clone())));
-    let mut session = Session::new(Options { mode, log, ..Options::default() }).unwrap();
+    let mut session = hosted(Session::new(Options { mode, log, ..Options::default() }).unwrap());
     match session.run_text(name, deck) {
         Ok(_) => Ok(String::from_utf8_lossy(&heard.0.lock().unwrap()).into_owned()),
         Err(problems) => Err(render::plain(&problems, &session.sources)),

@@ -225,6 +225,7 @@ fn crates() -> Vec<String> {
 const OPENERS: &[(&str, &str)] = &[
     ("crates/base/src/gate.rs", "the gate itself"),
     ("crates/out/src/file.rs", "what the gate has let pass"),
+    ("crates/out/src/gzip.rs", "what the gate has let pass"),
     ("crates/out/src/sheet.rs", "what the gate has let pass"),
     ("crates/fixes/src/halt.rs", "what the gate has let pass"),
     ("src/session/shell.rs", "refused as a whole under -safe"),

@@ -15,7 +15,7 @@ use perigrain::diag::render;
 use perigrain::session::{Options, Session};
 use perigrain_plan::needs::{collect, collected, how};
 use perigrain_world::{Compat, field};
-use scene::{Folder, deck, is_for_the_shell};
+use scene::{Folder, deck, hosted, is_for_the_shell};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -152,7 +152,7 @@ fn run(path: &Path, text: &str, vars: &Vars, compat: bool) -> String {
     let here = std::env::current_dir().unwrap().to_string_lossy().into_owned();
     let vars = vars.iter().cloned().chain([("dir".to_string(), vec![here])]).collect();
     let compat = if compat { Compat::Lammps } else { Compat::Perigrain };
-    let mut session = Session::new(Options { vars, folder, compat, ..Options::default() }).unwrap();
+    let mut session = hosted(Session::new(Options { vars, folder, compat, ..Options::default() }).unwrap());
     match session.run_text(name, text) {
         Ok(_) => String::new(),
         Err(e) => format!("--- {name}\n{}\n", render::plain(&e, &session.sources)),

@@ -23,7 +23,6 @@ pub const STYLES: &[(&str, &str)] = &[
     ("fix", "heat"),
     ("fix", "nve/asphere"),
     ("fix", "oneway"),
-    ("fix", "python/invoke"),
     ("fix", "python/move"),
     ("fix", "restrain"),
     ("fix", "set"),

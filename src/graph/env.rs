@@ -233,7 +233,8 @@ impl DeckEnv<'_> {
         let mut wanted = t.clone();
         plan.ask(&mut wanted);
         let tally = &self.w.tally;
-        let stands = tally.step == Some(t.step) && !self.w.parts.changed;
+        // LAMMPS asks for the step alone, and tells what the last run has left of particles that were changed since.
+        let stands = tally.step == Some(t.step) && (!self.w.parts.changed || self.w.settings.lammps());
         let short = (wanted.energy && !stands)
             || (wanted.virial && !(stands && tally.with_virial))
             || (wanted.atom_energy && !(stands && tally.with_atoms))

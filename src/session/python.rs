@@ -5,12 +5,18 @@ use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::python::{Asked, Functions, Source, asked};
 use perigrain_lang::{Args, Word};
+use perigrain_world::outside::Host;
 use std::sync::Arc;
 
 impl Session {
     /// Has this program's functions serve variables and the command `python` from now on.
     pub fn set_functions(&mut self, program: Arc<dyn Functions>) {
         self.vars.set_functions(program);
+    }
+
+    /// Has this program's functions be called within steps (`fix python/invoke`) from now on.
+    pub fn set_host(&mut self, program: Arc<dyn Host>) {
+        self.world.parts.host = Some(program);
     }
 
     /// The command `python`.

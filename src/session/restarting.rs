@@ -170,6 +170,7 @@ impl Session {
         world.folder = std::mem::take(&mut old.folder);
         world.read_files = std::mem::take(&mut old.read_files);
         world.parts.promised = std::mem::take(&mut old.parts.promised);
+        world.parts.host = old.parts.host.take();
         (world.clock.running, world.clock.halt) = (false, Halt::No);
         let state = world.memo.keys().map(Key::text).chain(world.columns.names()).filter(|n| claimable(n));
         let names = world.regions.keys().map(|n| format!("region/{n}"));

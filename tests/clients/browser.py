@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Looks at the pages of runs with a browser: nothing on the console, curves and particles drawn, turned by a drag, played by a key, light and dark.
 
-Usage: tests/clients/browser.py [PATH OF perigrain] [FOLDER FOR PICTURES]. It needs Python with `playwright` and `axe-playwright-python` (pip), and a
-Chromium: playwright's own (`playwright install chromium`) or the system's. Without them it says so and succeeds. It is no part of CI.
+Usage: tests/clients/browser.py [PATH OF perigrain] [quick | FOLDER FOR PICTURES]. It needs Python with `playwright` and `axe-playwright-python` (pip,
+as `tests/clients/run.sh fetch` gets them), and a Chromium: playwright's own (`playwright install chromium`) or the system's. Without them it says so and
+succeeds. `quick`, as in CI: the page of the run by day, that of log and dump by night.
 """
 
 import os
@@ -143,7 +144,8 @@ def look(browser, url, name, scheme, pictures):
 
 def main():
     program = os.path.realpath(sys.argv[1] if len(sys.argv) > 1 else os.path.join(TOP, "target/debug/perigrain"))
-    pictures = sys.argv[2] if len(sys.argv) > 2 else None
+    quick = sys.argv[2:] == ["quick"]
+    pictures = sys.argv[2] if len(sys.argv) > 2 and not quick else None
     if pictures:
         os.makedirs(pictures, exist_ok=True)
     wrong = 0
@@ -158,9 +160,9 @@ def main():
         except Exception as e:
             print(f"browser: skipped, no Chromium starts here ({str(e).splitlines()[0]})")
             return 0
-        for name in ("run", "read"):
-            for scheme in ("light", "dark"):
-                wrong += look(browser, f"file://{home}/{name}.html", name, scheme, pictures)
+        both = [("run", "light"), ("read", "dark")]
+        for name, scheme in both if quick else [*both, ("run", "dark"), ("read", "light")]:
+            wrong += look(browser, f"file://{home}/{name}.html", name, scheme, pictures)
         browser.close()
     return 1 if wrong else 0
 

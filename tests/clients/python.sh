@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
-# Tests the Python module: pytest in crates/py/tests, with the module built from what `cargo test` has built already.
-# Needs python3 with numpy and pytest; without them it says so and succeeds. Usage: tests/clients/python.sh [PYTHON]
+# Tests the Python module as users get it: a wheel (wheel.sh), installed into a fresh environment, and pytest in crates/py/tests.
+# Needs python3 with numpy, pytest and maturin; without them it says so and succeeds. Usage: tests/clients/python.sh [PYTHON]
 set -euo pipefail
 top=$(cd "$(dirname "$0")/../.." && pwd)
 work=$top/target/clients
 python=${1:-python3}
 
 command -v "$python" >/dev/null || { echo "Python module: skipped, python3 is not installed"; exit 0; }
-"$python" -c 'import numpy, pytest' 2>/dev/null || { echo "Python module: skipped, numpy or pytest is missing"; exit 0; }
+"$python" -c 'import numpy, pytest, maturin' 2>/dev/null || { echo "Python module: skipped, numpy, pytest or maturin is missing"; exit 0; }
 
-# The profile and the features of `cargo test`: nothing below crates/py is built again. As maturin does, no libpython is linked.
-(cd "$top" && PYO3_BUILD_EXTENSION_MODULE=1 PYO3_NO_PYTHON=1 cargo build --quiet -p perigrain-py --lib --tests)
-rm -rf "$work/python"
-mkdir -p "$work/python"
-cp -r "$top/crates/py/python/perigrain" "$work/python/"
-cp "${CARGO_TARGET_DIR:-$top/target}/debug/lib_core.so" "$work/python/perigrain/_core.abi3.so"
-PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$work/python "$python" -m pytest -q -p no:cacheprovider "$top/crates/py/tests"
+wheel=$("$top/tests/clients/wheel.sh" "$python" "$work/wheel")
+echo "$(basename "$wheel"): $(($(stat -c %s "$wheel") / 1000)) kB"
+# perigrain is what the wheel brings there and nothing else; what it asks for, and pytest, are those of PYTHON. Nothing is fetched.
+rm -rf "$work/fresh"
+"$python" -m venv --without-pip "$work/fresh"
+fresh=$work/fresh/bin/python
+"$python" -c 'import numpy, pathlib; print(pathlib.Path(numpy.__file__).parents[1])' >"$("$fresh" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/others.pth"
+"$python" -m pip --python "$fresh" install --quiet --disable-pip-version-check --no-index --no-compile "$wheel"
+PYTHONDONTWRITEBYTECODE=1 "$fresh" -m pytest -q -p no:cacheprovider "$top/crates/py/tests"

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Reads perigrain's dump, .vtu, .pvd and log with the programs people use; any warning is a failure."""
+"""Reads what a run left with the programs people use, then every format (`formats.py`); any warning is a failure.
+
+Usage: tests/clients/read.py PERIGRAIN FOLDER
+"""
 import sys, warnings
 from pathlib import Path
 
@@ -9,7 +12,7 @@ import MDAnalysis
 import pyvista
 from ovito.io import import_file
 
-folder = Path(sys.argv[1])
+folder = Path(sys.argv[2])
 warnings.simplefilter("error")
 # Said of every file, good or bad: lammps-logfile never closes what it reads, MDAnalysis' dump reader
 # knows no masses.
@@ -48,3 +51,8 @@ series.set_active_time_value(series.time_values[-1])
 for name, grid in [("the .pvd", series.read()[0]), ("one .vtu", pyvista.read(sorted(folder.glob("*.vtu"))[-1]))]:
     check(f"pyvista, particles in {name}", grid.n_points, particles)
     check(f"pyvista, arrays in {name}", {"id", "type", "c_dmg"} <= set(grid.point_data.keys()), True)
+
+# In the same process: to import these packages takes longer than all that is asked of them.
+import formats
+
+formats.main(Path(sys.argv[1]).resolve(), folder.resolve())

@@ -1,8 +1,11 @@
 //! The small scene in which examples of the manual run.
 
 use perigrain::cli::manual::Page;
+use perigrain::session::Session;
+use perigrain::world::World;
+use perigrain::world::outside::{Host, Invoked};
 use std::fmt::Write as _;
-use std::sync::MutexGuard;
+use std::sync::{Arc, MutexGuard};
 
 /// A bonded plate of type 1 and a sphere of type 2 above it, with everything that examples name.
 ///
@@ -123,6 +126,25 @@ const FILES: &[(&str, &str)] = &[
 
 /// Files of bytes that examples read.
 const BYTES: &[(&str, &[u8])] = &[("stack.nrrd", include_bytes!("../geometry/files/raw8.nrrd"))];
+
+/// A program that hosts a session; its functions do nothing.
+#[derive(Debug)]
+struct Program;
+
+impl Host for Program {
+    fn has(&self, _: &str) -> bool {
+        true
+    }
+    fn invoke(&self, _: &str, _: Invoked, _: &mut World) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Has a program host a session, as `fix python/invoke` wants it.
+pub fn hosted(mut session: Session) -> Session {
+    session.set_host(Arc::new(Program));
+    session
+}
 
 /// A folder of its own as the working folder, with the files that examples read.
 pub struct Folder {

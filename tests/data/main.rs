@@ -119,6 +119,25 @@ fn mistakes_are_shown_in_the_file() {
     }
 }
 
+/// The columns of a hybrid stand in the order of its styles: read in another, a radius would be a molecule's number.
+#[test]
+fn the_styles_of_a_hybrid_are_named_in_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = "region b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\n";
+    let head = "units si\nboundary f s p\n";
+    world(folder.path(), &format!("{head}atom_style hybrid sphere bond\n{made}write_data DIR/x.data"));
+    let text = fs::read_to_string(folder.path().join("x.data")).unwrap();
+    assert!(text.contains("\nAtoms # hybrid sphere bond\n"), "{text}");
+    let (line, _, message) = refused("atom_style hybrid bond sphere", &text, Mode::Run);
+    assert!(
+        line > 0 && message.contains("of atom_style hybrid sphere bond, those of the deck of"),
+        "{message}"
+    );
+    // as LAMMPS writes it
+    fs::write(folder.path().join("x.data"), text.replace("# hybrid sphere bond", "# hybrid")).unwrap();
+    world(folder.path(), &format!("{head}atom_style hybrid sphere bond\nread_data DIR/x.data"));
+}
+
 #[test]
 fn styles_of_their_own_masses() {
     let sphere = GOOD.replace("# atomic", "# sphere");

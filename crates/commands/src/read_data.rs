@@ -69,8 +69,8 @@ impl Style for ReadData {
                    `extra/atom/types` and `extra/bond/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
                    none; `nocoeff` skips coefficients. `fix ID NULL SECTION` reads a section of that heading (`NULL`: the fix's ID) into the properties of a \
                    fix property/atom: a line for each particle, its id and then the values in the order of the fix's line; a \
-                   file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`), it must be the \
-                   deck's; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
+                   file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`, `Atoms # hybrid sphere peri`, \
+                   which LAMMPS takes and which `Atoms # hybrid` may leave out), it must be one with the deck's columns; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
                    are refused in the file itself. Refused by name: angles and other topology, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }

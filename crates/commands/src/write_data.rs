@@ -22,7 +22,7 @@ impl Style for WriteData {
         Doc {
             syntax: "write_data FILE [pair ii|ij] [nocoeff] [nofix] [nolabelmap]",
             summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
-            text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data) and \
+            text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data), names the styles of a hybrid, as OVITO wants it, and \
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
                    bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. No \
                    pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone): `pair` makes no difference; \

@@ -49,6 +49,7 @@ mod planeforce;
 mod pour;
 mod print;
 mod property_atom;
+mod python_invoke;
 mod recenter;
 mod resistance;
 pub mod rigid;
@@ -116,6 +117,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &pour::Pour,
     &print::Print,
     &property_atom::PropertyAtomFix,
+    &python_invoke::PythonInvoke,
     &recenter::Recenter,
     &rigid::Rigid,
     &rigid::RigidNve,

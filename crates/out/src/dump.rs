@@ -2,9 +2,11 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::path::Path;
 
 use super::file::{self, Pattern};
 use super::formats::Kind;
+use super::gzip::{self, Growing};
 use super::make;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
@@ -227,8 +229,24 @@ pub struct Target {
     pub append: bool,
     /// How tightly a packed file is packed, from 0 to 9; the usual level if not said.
     pub level: Option<u32>,
-    file: Option<BufWriter<File>>,
+    file: Option<Open>,
     started: bool,
+}
+
+/// A growing file.
+#[derive(Debug)]
+enum Open {
+    Plain(BufWriter<File>),
+    Packed(Growing),
+}
+
+impl Open {
+    fn add(&mut self, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> std::io::Result<()> {
+        match self {
+            Open::Plain(file) => write(file).and_then(|()| file.flush()),
+            Open::Packed(file) => file.add(write),
+        }
+    }
 }
 
 impl Target {
@@ -247,10 +265,15 @@ impl Target {
         if self.pattern.many() || self.started || self.file.is_some() {
             return Ok(());
         }
-        let (path, packed) = (self.pattern.at(0), self.packed());
-        let file = self.file.insert(file::open(&path, self.append)?);
-        let made = file::pack(file, packed, |_| Ok(())).and_then(|()| file.flush());
-        made.map_err(|e| file::trouble("write", &path, &e).into())
+        self.file = Some(self.open(&self.pattern.at(0))?);
+        Ok(())
+    }
+
+    fn open(&self, path: &Path) -> Result<Open> {
+        Ok(match self.packed() {
+            None => Open::Plain(file::open(path, self.append)?),
+            Some(level) => Open::Packed(Growing::open(path, self.append, level)?),
+        })
     }
 
     /// How tightly the file is packed, if it is.
@@ -266,10 +289,9 @@ impl Target {
         write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
     ) -> Result<()> {
         let path = self.pattern.at(step);
-        let packed = self.packed();
-        let write = |to: &mut dyn Write| file::pack(to, packed, write);
         if self.pattern.many() {
-            return file::replace(&path, write);
+            let packed = self.packed();
+            return file::replace(&path, |to| gzip::pack(to, packed, write));
         }
         let file = match &mut self.file {
             Some(file) => file,
@@ -281,10 +303,13 @@ impl Target {
                     format!("`{}` could not be written before", path.display()),
                 );
             }
-            None => self.file.insert(file::open(&path, self.append)?),
+            None => {
+                let open = self.open(&path)?;
+                self.file.insert(open)
+            }
         };
         self.started = true;
-        let outcome = write(file).and_then(|()| file.flush());
+        let outcome = file.add(write);
         if outcome.is_err() {
             self.file = None;
         }

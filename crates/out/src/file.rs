@@ -170,19 +170,6 @@ fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io
     })
 }
 
-/// Writes plainly, or as one gzip member packed at a level: a file of several members reads as one, and what a killed run has left of it
-/// reads up to the last whole one.
-pub fn pack(
-    to: &mut dyn Write,
-    level: Option<flate2::Compression>,
-    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-) -> std::io::Result<()> {
-    let Some(level) = level else { return write(to) };
-    let mut packer = flate2::write::GzEncoder::new(to, level);
-    write(&mut packer)?;
-    packer.finish().map(|_| ())
-}
-
 /// A new file `.NAME.PROCESS.part` in the same folder: no other process writes into it, even one of this number on another machine.
 fn beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
     let (process, mut more) = (std::process::id(), 0);

@@ -11,6 +11,7 @@ pub mod dump;
 pub mod file;
 pub mod formats;
 pub mod forms;
+mod gzip;
 pub mod image;
 pub mod log;
 pub mod restart;

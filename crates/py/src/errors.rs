@@ -22,6 +22,13 @@ pub fn busy(py: Python<'_>) -> PyErr {
     )
 }
 
+/// A function that is called within a step asks for something that only holds between commands.
+pub fn within(py: Python<'_>) -> PyErr {
+    let words = "a step is under way: a function of `fix python/invoke` is shown particles, box and settings; commands, \
+                 computes, fixes and variables wait until the run is over";
+    raised(py, "BusyError", (words,))
+}
+
 /// There is no scene any more.
 pub fn closed(py: Python<'_>, why: &str) -> PyErr {
     raised(py, "ClosedError", (why,))

@@ -7,7 +7,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString, PyTuple};
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// The names of `__main__`, and what has been raised there and is not told yet.
+/// The functions of `__main__`, and what has been raised there and is not told yet.
 #[derive(Default)]
 pub struct Library(Mutex<Option<PyErr>>);
 
@@ -17,7 +17,8 @@ impl fmt::Debug for Library {
     }
 }
 
-fn names(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+/// The names of `__main__`.
+pub fn names(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(py.import("__main__")?.dict())
 }
 
@@ -28,7 +29,7 @@ impl Library {
     }
 
     /// Keeps an exception; its words.
-    fn keep(&self, e: PyErr) -> String {
+    pub fn keep(&self, e: PyErr) -> String {
         let words = e.to_string();
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(e);
         words

@@ -4,8 +4,10 @@
 
 mod errors;
 mod functions;
+mod inner;
 mod looking;
 mod memory;
+mod moment;
 mod outside;
 mod program;
 mod scene;

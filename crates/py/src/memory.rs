@@ -224,6 +224,8 @@ fn put<T: Row>(list: &mut Vec<T>, own: &mut Vec<T>, same: bool) -> Option<u64> {
 #[derive(Default)]
 pub struct Looked {
     held: Vec<Weak<Held>>,
+    /// Handed out since the last command: what was written counts, even if nobody looks any more.
+    recent: Vec<Arc<Held>>,
     roster: [u64; 3],
 }
 
@@ -232,11 +234,18 @@ impl Looked {
     pub fn at(&mut self, session: &mut Session, name: &str) -> Option<Memory> {
         self.held.retain(|held| held.strong_count() > 0);
         let mut all = self.held.iter().filter_map(Weak::upgrade);
-        if let Some(held) = all.find(|held| held.name == name && held.state().stale.is_none()) {
-            return Some(Memory(held));
+        let known = all.find(|held| held.name == name && held.state().stale.is_none());
+        let held = match known {
+            Some(held) => held,
+            None => {
+                let held = Arc::new(Held::of(session, name)?);
+                self.held.push(Arc::downgrade(&held));
+                held
+            }
+        };
+        if !self.recent.iter().any(|own| Arc::ptr_eq(own, &held)) {
+            self.recent.push(held.clone());
         }
-        let held = Arc::new(Held::of(session, name)?);
-        self.held.push(Arc::downgrade(&held));
         Some(Memory(held))
     }
 
@@ -261,6 +270,7 @@ impl Looked {
         }
         let same = self.roster == session.roster();
         self.live().for_each(|held| held.give_back(session, same));
+        self.recent.clear();
     }
 
     /// The scene ends: what is looked at belongs to who looks. Also after a panic, when nothing of the scene is touched.
@@ -271,6 +281,7 @@ impl Looked {
         }
         self.live().for_each(|held| held.end(why));
         self.held.clear();
+        self.recent.clear();
     }
 
     fn live(&self) -> impl Iterator<Item = Arc<Held>> {

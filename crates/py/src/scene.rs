@@ -2,7 +2,8 @@
 
 use super::errors;
 use super::functions::Library;
-use super::memory::{Looked, Memory};
+use super::inner::{CLOSED, Inner};
+use super::memory::Memory;
 use super::outside::{Handle, Hook, each_of};
 use super::screen::Screen;
 use super::values;
@@ -15,16 +16,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use pyo3::{PyTraverseError, PyVisit};
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
-
-/// Why there is no scene, after `close`.
-const CLOSED: &str = "the scene is closed";
-/// Why there is no scene, after a panic.
-const BROKEN: &str = "the scene is gone: perigrain failed in the middle of a command, which is its own fault";
 
 /// A box: its corners, tilts (xy, xz, yz) [length] and which axes repeat.
 type Edges = ([f64; 3], [f64; 3], [f64; 3], [bool; 3]);
@@ -32,38 +27,18 @@ type Edges = ([f64; 3], [f64; 3], [f64; 3], [bool; 3]);
 /// A row of the step table: the step, and the columns with their values.
 type Row = (i64, Vec<(String, Py<PyAny>)>);
 
-/// What a lock guards.
-struct Inner {
-    session: Option<Session>,
-    looked: Looked,
-    screen: Screen,
-    /// The functions of variables of style python.
-    library: Arc<Library>,
-    /// What fixes external talk to, by their ids.
-    hooks: BTreeMap<String, Arc<Hook>>,
-    why: &'static str,
-}
-
-impl Inner {
-    fn end(&mut self, why: &'static str) {
-        self.looked.end(self.session.as_mut(), why);
-        std::mem::take(&mut self.hooks).values().for_each(|hook| hook.forget());
-        self.session = None;
-        self.why = why;
-    }
-}
-
-impl Drop for Inner {
-    fn drop(&mut self) {
-        self.end(CLOSED);
-    }
-}
-
 /// A scene: a deck's world, worked on line by line.
 #[pyclass(frozen, module = "perigrain._core")]
-pub struct Scene(Mutex<Inner>);
+pub struct Scene(pub(super) Mutex<Inner>);
 
 impl Scene {
+    /// A scene that [`Scene::show`] fills.
+    pub(super) fn of_a_moment() -> Self {
+        let mut inner = Inner::default();
+        inner.moment = true;
+        Self(Mutex::new(inner))
+    }
+
     fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Inner>> {
         match self.0.try_lock() {
             Ok(inner) => Ok(inner),
@@ -74,6 +49,14 @@ impl Scene {
 
     /// Something short, done at once; `lent` says whether columns that are looked at must be kept from moving.
     fn ask<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
+        if self.lock(py)?.moment {
+            return Err(errors::within(py));
+        }
+        self.look(py, lent, job)
+    }
+
+    /// As [`Scene::ask`], for what may be asked within a step, too.
+    fn look<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
         let mut inner = self.lock(py)?;
         let Inner { session, looked, screen, library, why, .. } = &mut *inner;
         let Some(session) = session else { return Err(errors::closed(py, why)) };
@@ -106,7 +89,10 @@ impl Scene {
         job: impl FnOnce(&mut Session) -> Deck<Heard> + Send,
     ) -> PyResult<Option<i32>> {
         let mut inner = self.lock(py)?;
-        let Inner { session, looked, screen, hooks, library, why } = &mut *inner;
+        if inner.moment {
+            return Err(errors::within(py));
+        }
+        let Inner { session, looked, screen, hooks, library, why, .. } = &mut *inner;
         let Some(session) = session else { return Err(errors::closed(py, why)) };
         let lent = looked.lend(session, !light);
         if let Err(e) = lent {
@@ -138,18 +124,6 @@ impl Scene {
     }
 }
 
-impl Inner {
-    /// After a panic nothing of the session can be trusted.
-    fn broken(&mut self, py: Python<'_>, words: &str) -> PyErr {
-        self.screen.show(py);
-        // What the scene still has of columns that are looked at must outlive it: the session is left behind, not dropped.
-        std::mem::forget(self.session.take());
-        self.looked.end(None, BROKEN);
-        self.why = BROKEN;
-        errors::raised(py, "InternalError", (words,))
-    }
-}
-
 #[pymethods]
 impl Scene {
     /// A scene before its first line, as the words of a command line want it.
@@ -163,14 +137,10 @@ impl Scene {
         screen.show(py);
         let library = Arc::new(Library::default());
         session.set_functions(library.clone());
-        Ok(Self(Mutex::new(Inner {
-            library,
-            session: Some(session),
-            looked: Looked::default(),
-            screen,
-            hooks: BTreeMap::new(),
-            why: CLOSED,
-        })))
+        session.set_host(library.clone());
+        let mut inner = Inner::default();
+        (inner.library, inner.session, inner.screen) = (library, Some(session), screen);
+        Ok(Self(Mutex::new(inner)))
     }
 
     /// Works off lines of a deck; the status of `quit`, if that was said.
@@ -223,14 +193,14 @@ impl Scene {
 
     /// Masses of the types, from index 1 on.
     fn type_masses<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
-        let masses = self.ask(py, false, |session| Ok(session.type_masses()))?;
+        let masses = self.look(py, false, |session| Ok(session.type_masses()))?;
         Ok(masses.map(|list| values::reals(py, &list)))
     }
 
     /// A number of the scene with LAMMPS' code of its type.
     #[pyo3(name = "global_")]
     fn global<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<(i32, Bound<'py, PyAny>)>> {
-        let found = self.ask(py, false, |session| Ok(session.global(name)))?;
+        let found = self.look(py, false, |session| Ok(session.global(name)))?;
         found.map(|found| values::global(py, found)).transpose()
     }
 
@@ -261,8 +231,11 @@ impl Scene {
         order: &Bound<'py, PyAny>,
     ) -> PyResult<(Bound<'py, PyBytes>, bool, usize)> {
         let order = values::order(order)?;
+        if self.lock(py)?.moment && (name.starts_with("c_") || name.starts_with("f_")) {
+            return Err(errors::within(py));
+        }
         // What somebody has written into whole numbers counts from the next command on.
-        let (rows, width) = self.ask(py, true, |session| session.gathered(name, apart, &order))?;
+        let (rows, width) = self.look(py, true, |session| session.gathered(name, apart, &order))?;
         let (bytes, whole) = values::rows(py, &rows);
         Ok((bytes, whole, width))
     }
@@ -277,7 +250,7 @@ impl Scene {
         whole: bool,
     ) -> PyResult<()> {
         let (order, rows) = (values::order(order)?, values::taken(data, whole)?);
-        self.ask(py, true, |session| session.scatter(name, &order, &rows))
+        self.look(py, true, |session| session.scatter(name, &order, &rows))
     }
 
     /// Makes particles; how many.
@@ -305,7 +278,7 @@ impl Scene {
 
     /// The box: corners, tilts (xy, xz, yz) and which axes repeat.
     fn domain(&self, py: Python<'_>) -> PyResult<Option<Edges>> {
-        self.ask(py, false, |session| {
+        self.look(py, false, |session| {
             let domain = session.world.domain.as_ref();
             Ok(domain.map(|d| (d.lo, d.hi, d.edges().tilt, [0, 1, 2].map(|k| d.boundary.periodic(k)))))
         })
@@ -313,7 +286,7 @@ impl Scene {
 
     /// Where the particle with an id stands.
     fn place(&self, py: Python<'_>, id: i64) -> PyResult<Option<usize>> {
-        self.ask(py, false, |session| {
+        self.look(py, false, |session| {
             Ok(u32::try_from(id).ok().and_then(|tag| session.world.particles.index_of(tag)))
         })
     }
@@ -340,13 +313,13 @@ impl Scene {
 
     /// 1 for each particle in a group, 0 for the others.
     fn members<'py>(&self, py: Python<'py>, group: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let list = self.ask(py, false, |session| session.members(group))?;
+        let list = self.look(py, false, |session| session.members(group))?;
         Ok(values::wholes(py, &list))
     }
 
     /// Bonds: type and the two ids of each.
     fn bonds(&self, py: Python<'_>) -> PyResult<Vec<(i32, u32, u32)>> {
-        self.ask(py, false, |session| {
+        self.look(py, false, |session| {
             let bond = |b: &perigrain::world::Bond| (b.kind, b.ends[0], b.ends[1]);
             Ok(session.world.bonds.list.iter().map(bond).collect())
         })
@@ -354,7 +327,7 @@ impl Scene {
 
     /// How many particles there are.
     fn count(&self, py: Python<'_>) -> PyResult<usize> {
-        self.ask(py, false, |session| Ok(session.world.n()))
+        self.look(py, false, |session| Ok(session.world.n()))
     }
 
     /// What a fix external talks to from now on: functions and what they say.
@@ -407,7 +380,7 @@ impl Scene {
     /// Whether a command is being worked off.
     #[getter]
     fn at_work(&self) -> bool {
-        matches!(self.0.try_lock(), Err(TryLockError::WouldBlock))
+        self.0.try_lock().map_or_else(|e| matches!(e, TryLockError::WouldBlock), |inner| inner.moment)
     }
 
     /// Why there is no scene any more; `None` while there is one.
@@ -425,6 +398,10 @@ impl Scene {
     /// Ends the scene; what is looked at belongs to who looks.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
         let mut inner = self.lock(py)?;
+        if inner.moment {
+            // It belongs to the run, which goes on.
+            return Ok(());
+        }
         if let Some(session) = &mut inner.session {
             // A log that cannot be written has been told of before.
             let _ = session.flush();

@@ -227,6 +227,22 @@ def test_switches(make, tmp_path, capfd):
         perigrain.lammps(ptr=1)
 
 
+def test_what_is_not_here_is_refused_with_what_stands_in_its_place(spheres):
+    for name, words in [
+        ("get_neighlist", "pair/local"), ("extract_pair", "deck"), ("create_molecule", "`create_atoms … mol`"), ("force_timeout", "fix halt"),
+    ]:  # fmt: skip
+        assert not hasattr(spheres, name)
+        with pytest.raises(AttributeError, match=words):
+            getattr(spheres, name)
+    with pytest.raises(AttributeError, match="pair/local"):
+        spheres.numpy.get_neighlist(0)
+    with pytest.raises(AttributeError, match="no attribute `comand`"):
+        spheres.comand("run 0")
+    spheres.addstep_compute_all(5)
+    assert spheres.get_gpu_device_info() == "" and spheres.numpy.gather_angles().shape == (0, 4)
+    assert (perigrain.LMP_MAX_GROUP, perigrain.LMP_BUFSIZE) == (32, 1024)
+
+
 def test_numbers_come_in_many_forms(spheres):
     wide = np.arange(12.0).reshape(2, 6)
     for data in (np.float32([1, 2, 3, 4, 5, 6]), np.arange(1, 7), wide[:, ::2], [1, 2.0, 3, 4, 5, 6], ((1, 2, 3), (4, 5, 6)), range(1, 7)):

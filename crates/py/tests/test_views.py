@@ -21,6 +21,17 @@ def test_steps_show_in_an_array_and_what_is_written_counts(spheres):
     assert spheres.gather_atoms("x", 1, 3)[:3] == [0.5, 0.5, 0.5]
 
 
+def test_what_is_written_counts_if_nobody_looks_any_more(spheres):
+    spheres.numpy.extract_atom("type")[0] = 2
+    spheres.extract_atom("x")[0][0] = 0.65
+    spheres.extract_atom("x")[0][1] = spheres.extract_atom("x")[0][2] = 0.7
+    with pytest.raises(perigrain.DeckError, match="have not been computed"):
+        spheres.command('print "$(pe)"')
+    spheres.command("run 0")
+    assert spheres.gather_atoms("type", 0, 1)[:] == [2, 2]
+    assert abs(spheres.extract_atom("f")[0][0]) > 1.0, "the spheres overlap now"
+
+
 def test_looking_alone_changes_no_bit(make):
     from conftest import PERI
 

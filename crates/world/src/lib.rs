@@ -8,6 +8,7 @@
 
 pub mod adapted;
 pub mod allowed;
+mod atom_style;
 pub mod bonds;
 pub mod clock;
 pub mod columns;
@@ -52,6 +53,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_peri::families::Families;
 
 pub use allowed::{Allowed, excluded};
+pub use atom_style::{AtomStyle, Own};
 pub use bonds::{Bond, Bonds};
 pub use clock::{Clock, Halt};
 pub use columns::Columns;
@@ -65,7 +67,7 @@ pub use lattice::Lattice;
 pub use minimizer::Minimizer;
 pub use named::{Constant, Key, Named, Numbers, Vectors};
 pub use outside::Outside;
-pub use particles::{AtomStyle, Own, Particles};
+pub use particles::Particles;
 pub use promises::{Promise, Promises};
 pub use properties::Properties;
 pub use rebuild::{Kept, Rebuild};
@@ -189,6 +191,8 @@ pub struct Parts {
     pub resume: Option<Arc<Resume>>,
     /// The program that hosts the session, as each fix external sees it, by the fix's ID.
     pub outside: Named<Arc<dyn Outside>>,
+    /// The program that hosts the session, if it has functions that can be called within steps.
+    pub host: Option<Arc<dyn outside::Host>>,
 }
 
 /// A row of the step table.

@@ -1,5 +1,6 @@
-//! What a program that hosts the session does and says while steps are made (`fix external`).
+//! What a program that hosts the session does and says while steps are made (`fix external`, `fix python/invoke`).
 
+use super::World;
 use perigrain_base::math::vec3::Vec3;
 use std::fmt::Debug;
 
@@ -52,4 +53,27 @@ pub trait Outside: Debug + Send + Sync {
     fn each(&self) -> Each {
         Each::default()
     }
+}
+
+/// When a function of the program is called within a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Invoked {
+    /// After forces have been computed: which virials somebody reads, in LAMMPS' numbers (1 of all, 4 of each particle).
+    PostForce(i32),
+    /// After the step.
+    EndOfStep,
+}
+
+/// A program that hosts the session and has functions that are called by name.
+///
+/// As [`Outside`] it is no state of the scene.
+pub trait Host: Debug + Send + Sync {
+    /// Whether there is a function of this name.
+    fn has(&self, function: &str) -> bool;
+
+    /// Calls a function, which may change what particles have.
+    ///
+    /// # Errors
+    /// The program's own words on why it failed.
+    fn invoke(&self, function: &str, when: Invoked, w: &mut World) -> Result<(), String>;
 }

@@ -263,13 +263,13 @@ impl<'a> Reader<'a> {
 
     fn atoms(&mut self, title: &Line) -> Result<()> {
         let style = self.how.style;
-        if !title.comment.is_empty() && title.comment != style.name() {
+        if !title.comment.is_empty() && !style.is_laid_out_as(title.comment) {
             let at = title.span();
             let comment = Span { end: at.end + title.comment.len() as u32 + 3, ..at };
             let text = format!(
                 "the particles of this file are of atom_style {}, those of the deck of atom_style {}",
                 title.comment,
-                style.name()
+                style.words()
             );
             let d = Diagnostic::error(Code::CONFLICT, comment, text);
             return Err(d.help(format!("write `atom_style {}` before read_data", title.comment)).into());

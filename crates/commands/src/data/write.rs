@@ -105,7 +105,7 @@ fn bond_coeffs(out: &mut dyn Write, w: &World) -> Result<()> {
 }
 
 fn atoms(out: &mut dyn Write, p: &Particles) -> Result<()> {
-    writeln!(out, "\nAtoms # {}\n", p.style.name())?;
+    writeln!(out, "\nAtoms # {}\n", p.style.words())?;
     let layout = columns(p.style);
     for i in 0..p.len() {
         for column in &layout {

@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import _core
 from . import constants as C
+from .absent import Absent
 from .arrays import array_of, as_bytes, pointer_to
 from .errors import DataError
 from .external import External
@@ -44,22 +45,23 @@ class _Commands:
         return say
 
 
-class lammps(External):
+class lammps(External, Absent):
     """A scene, with the methods of LAMMPS' Python class.
 
     ``cmdargs`` are the words of a command line (`-log`, `-screen`, `-var`, `-echo`, `-threads` …); what the scene says
     goes to ``sys.stdout``. Several scenes may live side by side. What goes wrong is a ``perigrain.DeckError`` that knows
-    line, column and remedy, and the scene can be used on.
+    line, column and remedy, and the scene can be used on. ``ptr`` is what a function of ``fix python/invoke`` is given:
+    the scene of a run that is under way.
     """
 
     def __init__(
         self, name: str = "", cmdargs: Optional[Sequence[str]] = None, ptr: Any = None, comm: Any = None
     ) -> None:
-        if ptr is not None:
-            raise DataError("`ptr` is a handle of LAMMPS' library, which is not here: leave it out")
+        if ptr is not None and not isinstance(ptr, _core.Scene):
+            raise DataError("`ptr` is what a function of `fix python/invoke` is given; elsewhere leave it out")
         if comm is not None and getattr(comm, "Get_size", lambda: 1)() > 1:
             raise DataError("perigrain is one process with threads: start it with one MPI process, without `comm`")
-        self._scene = _core.Scene([str(word) for word in cmdargs or []])
+        self._scene = ptr if ptr is not None else _core.Scene([str(word) for word in cmdargs or []])
         self._numpy: Any = None
         self._outsides = {}
         self.opened = 1

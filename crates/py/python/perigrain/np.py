@@ -7,12 +7,13 @@ from typing import Any, Optional
 import numpy
 
 from . import constants as C
+from .absent import Named
 from .arrays import array_of
 from .errors import DataError
 from .views import view
 
 
-class numpy_wrapper:
+class numpy_wrapper(Named):
     """Columns of particles as arrays that look into the scene's memory; all else as copies."""
 
     def __init__(self, lmp: Any) -> None:
@@ -64,6 +65,16 @@ class numpy_wrapper:
         """Type and two ids of each bond."""
         _, flat = self.lmp.gather_bonds()
         return numpy.array(flat, dtype=numpy.int32).reshape(-1, 3)
+
+    def gather_angles(self) -> Any:
+        """There are none."""
+        return numpy.zeros((0, 4), dtype=numpy.int32)
+
+    def gather_dihedrals(self) -> Any:
+        """There are none."""
+        return numpy.zeros((0, 5), dtype=numpy.int32)
+
+    gather_impropers = gather_dihedrals
 
     def darray(self, raw_ptr: Any, nelem: int, dim: int = 1) -> Any:
         """A copy of numbers that a pointer of `extract_atom`, `extract_compute` … leads to."""

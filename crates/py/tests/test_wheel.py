@@ -1,0 +1,55 @@
+"""What the wheel holds: files, metadata, and stubs that tell what the compiled part has."""
+
+import ast
+import importlib.metadata
+import inspect
+from pathlib import Path
+
+import pytest
+
+import perigrain
+from perigrain import _core
+
+STUBS = Path(perigrain.__file__).with_name("_core.pyi")
+
+
+def test_files_and_metadata():
+    try:
+        wheel = importlib.metadata.distribution("perigrain")
+    except importlib.metadata.PackageNotFoundError:
+        pytest.skip("it is not installed")
+    assert wheel.version == perigrain.__version__ == _core.VERSION
+    told = wheel.metadata
+    assert told["Requires-Python"] == ">=3.9" and told.get_all("Requires-Dist") == ["numpy"]
+    assert told["License-Expression"] == "MIT OR Apache-2.0" and "fracture" in told["Summary"]
+    assert told["Description-Content-Type"].startswith("text/markdown") and "perigrain" in told.get_payload()
+    files = {str(f) for f in wheel.files or []}
+    assert {"perigrain/__init__.py", "perigrain/__main__.py", "perigrain/py.typed", "perigrain/_core.pyi"} <= files
+    assert [f for f in files if f.startswith("perigrain/_core.") and ".abi3." in f]
+    assert {Path(f).name for f in files if ".dist-info/licenses/" in f} == {"LICENSE-MIT", "LICENSE-APACHE"}
+    assert not [f for f in files if "test" in f]
+    assert "cp39-abi3" in (wheel.read_text("WHEEL") or "")
+    # what is imported is what was installed
+    assert Path(perigrain.__file__).resolve() == Path(str(wheel.locate_file("perigrain/__init__.py"))).resolve()
+
+
+def _words(function):
+    return [a.arg for a in function.args.posonlyargs + function.args.args]
+
+
+def test_stubs_tell_what_there_is():
+    tree = ast.parse(STUBS.read_text())
+    told = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    public = {name for name in vars(_core) if not name.startswith("_")} - {"VERSION"}
+    assert set(told) == public
+    for name, node in told.items():
+        there = getattr(_core, name)
+        if isinstance(node, ast.FunctionDef):
+            assert _words(node) == list(inspect.signature(there).parameters), name
+            continue
+        methods = {part.name: part for part in node.body if isinstance(part, ast.FunctionDef)}
+        own = {part for part in vars(there) if not part.startswith("_")}
+        assert {part for part in methods if not part.startswith("_")} == own, name
+        for part in own & set(methods):
+            if not any(isinstance(d, ast.Name) and d.id == "property" for d in methods[part].decorator_list):
+                assert _words(methods[part]) == list(inspect.signature(getattr(there, part)).parameters), (name, part)
