@@ -40,11 +40,13 @@ fn told(text: &str, word: &str) -> f64 {
 /// but for 0.02 of what lacks in directions in which there is hardly a bond, and with factors of 5 at most. Actions are reactions.
 #[test]
 fn even_strains_have_the_materials_energy() {
+    let mut off = vec![];
     for (law, options) in [
         ("pmb", "horizon own surface tensor"),
         ("lps", "horizon own surface tensor"),
         ("lps", "horizon own surface tensor influence one"),
         ("pmb", "surface tensor"),
+        ("lps", "surface tensor"),
     ] {
         for (axes, stiffness) in [("xyz", 6.0), ("x", 1.2), ("y", 1.2)] {
             let grow: String = axes
@@ -55,8 +57,10 @@ fn even_strains_have_the_materials_energy() {
             let (w, text) = run(&deck, false);
             let volume: f64 = w.particles.volume.iter().sum();
             let ratio = told(&text, "\nstored ") / (0.5 * stiffness * 1e-6 * volume);
-            println!("{law} {options} {axes}: {ratio}");
-            assert!((ratio - 1.0).abs() < 0.02, "{law} {options} {axes}: {ratio}");
+            off.push(format!("{law} {options} {axes}: {ratio:.4}"));
+            if (ratio - 1.0).abs() > 0.02 {
+                off.push("is too far off".into());
+            }
             let sizes: f64 = w.particles.f.iter().flatten().map(|f| f.abs()).sum();
             for d in 0..3 {
                 let sum: f64 = w.particles.f.iter().map(|f| f[d]).sum();
@@ -65,6 +69,7 @@ fn even_strains_have_the_materials_energy() {
             }
         }
     }
+    assert!(!off.iter().any(|line| line.starts_with("is")), "{}", off.join("\n"));
 }
 
 #[test]

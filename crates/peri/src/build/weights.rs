@@ -5,7 +5,7 @@
 //! any even strain has the energy that the material's moduli give it, and state-based families have the right dilatation.
 //! The factors on q that make it so and differ least from 1 are a polynomial of n of degree four (least squares, as the weights
 //! of Trask, You, Yu and Parks, Comput. Methods Appl. Mech. Eng. 343 (2019) 151, which integrate a whole ball; here it stands for
-//! families at surfaces, too). A bond has the mean of what its ends ask for.
+//! families at surfaces, too), times what keeps Σ q, the energy of an even growth, exact. A bond has the mean of what its ends ask for.
 
 use crate::families::list::{GROUP, ListBody};
 use crate::families::own::{Factors, Weighed};
@@ -18,7 +18,7 @@ const MOMENTS: usize = 15;
 type Moments = [f64; MOMENTS];
 
 /// What is asked for less where a family has hardly a bond in some direction, as a share of a whole one: of pulled bars of 6 to 10
-/// particles across it left the least error under both laws (from 0.005, 0.01, 0.02, 0.05, 0.1).
+/// particles across it left the least error under both laws (of 0.01, 0.02, 0.05, 0.1).
 const RIDGE: f64 = 0.02;
 /// Factors are no smaller and no larger.
 const FACTORS: [f64; 2] = [0.2, 5.0];
@@ -55,6 +55,21 @@ fn mean_over_directions(of: [u32; 3]) -> f64 {
 fn monomials(n: [f64; 3]) -> Moments {
     let powers = n.map(|a| [1.0, a, a * a, a * a * a, a * a * a * a]);
     EXPONENTS.map(|e| (0..3).map(|k| powers[k][e[k] as usize]).product())
+}
+
+/// What an end asks of its bonds: factors `scale` (1 + Σ `by` φ) over the monomials φ of their directions.
+#[derive(Clone, Copy)]
+struct Asked {
+    scale: f64,
+    by: Moments,
+}
+
+impl Asked {
+    const NOTHING: Self = Self { scale: 1.0, by: [0.0; MOMENTS] };
+
+    fn of(&self, monomials: &Moments) -> f64 {
+        self.scale * (1.0 + self.by.iter().zip(monomials).map(|(a, n)| a * n).sum::<f64>())
+    }
 }
 
 /// What a list is weighed with.
@@ -143,7 +158,7 @@ impl Weighing<'_> {
     /// Multiplies weights by what makes families whole.
     fn made_whole(&self, own: &mut [f64]) -> Factors {
         let n = self.body.record.len();
-        let mut asked = vec![[0.0; MOMENTS]; n];
+        let mut asked = vec![Asked::NOTHING; n];
         let plain = &*own;
         let column = Shared::new(&mut asked);
         par::for_chunks(n, |range| {
@@ -155,8 +170,7 @@ impl Weighing<'_> {
         let factor = |b: usize| {
             let ends = self.ends(b);
             let n = monomials(unit(self.xi(ends)));
-            let of = |r: usize| asked[r].iter().zip(&n).map(|(a, n)| a * n).sum::<f64>();
-            1.0 + 0.5 * (of(ends[0]) + of(ends[1]))
+            0.5 * (asked[ends[0]].of(&n) + asked[ends[1]].of(&n))
         };
         let mut all = vec![0.0; own.len()];
         par::each(&mut all[..], |start, all| {
@@ -181,8 +195,8 @@ impl Weighing<'_> {
         told
     }
 
-    /// The polynomial of directions by which the factors that make a family whole differ from 1.
-    fn asked(&self, i: usize, plain: &[f64]) -> Moments {
+    /// The factors that make a family whole.
+    fn asked(&self, i: usize, plain: &[f64]) -> Asked {
         let (mut squares, mut sums, mut all) = ([[0.0; MOMENTS]; MOMENTS], [0.0; MOMENTS], 0.0);
         self.body.around(i, |j, b| {
             let (xi, pair) = (self.xi([i, j]), self.body.constants(b));
@@ -202,16 +216,19 @@ impl Weighing<'_> {
         });
         let whole = if self.law.kind.bond_based() { 1.0 } else { all };
         if all <= 0.0 {
-            return [0.0; MOMENTS];
+            return Asked::NOTHING;
         }
+        let mut lacking = [0.0; MOMENTS];
         for k in 0..MOMENTS {
-            sums[k] = whole * mean_over_directions(EXPONENTS[k]) - sums[k];
+            lacking[k] = whole * mean_over_directions(EXPONENTS[k]) - sums[k];
             for m in 0..=k {
                 let both = std::array::from_fn(|d| EXPONENTS[k][d] + EXPONENTS[m][d]);
                 squares[k][m] += RIDGE * whole * mean_over_directions(both);
             }
         }
-        solved(squares, sums)
+        let by = solved(squares, lacking);
+        let sum = all + by.iter().zip(&sums).map(|(a, s)| a * s).sum::<f64>();
+        Asked { scale: if sum > 0.0 { whole / sum } else { 1.0 }, by }
     }
 }
 
