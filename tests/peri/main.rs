@@ -5,6 +5,7 @@ mod golden;
 mod lattices;
 mod layouts;
 mod limits;
+mod own;
 mod patch;
 mod released;
 mod scatter;

@@ -185,7 +185,24 @@ pub const ROTATIONAL_AGAIN: &str = "pair_style gran/hooke/history 1e5 NULL 50.0 
     compute nb all nbond/atom\ncompute tb all reduce sum c_nb\n\
     thermo_style custom step time ke ebond bonds c_tb\nthermo_modify format float %24.17g norm no\nthermo 5\n";
 
-pub const SCENES: [Scene; 22] = [
+/// The block of bonds whose micro-moduli have a shape and are corrected at surfaces.
+pub const SHAPED_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\n\
+    peri_modify surface energy influence gaussian\nneighbor 0.0006 bin\nfix 1 all nve\ntimestep 5.0e-8\n\
+    compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+
+/// The block of unlike, shaken particles with horizons of their own, whose families are made whole.
+pub const UNLIKE: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion blk block 0 7 0 5 0 5\n\
+    create_box 1 blk\ncreate_atoms 1 region blk\nset group all density 2400\nset group all volume 1e-9\n\
+    set atom 40*90 volume 2e-9\nset group all peri/strength weibull 9 4711\n\
+    displace_atoms all random 0.00005 0.00005 0.00005 4711 units box\nmaterial glass E 2.5e10 nu 0.25 rho 2400 Gc 200\n\
+    variable u atom 6000.0*(x-0.0035)\nvelocity all set v_u 0 0 units box\n";
+pub const UNLIKE_AGAIN: &str = "pair_style peri/lps\npair_coeff * * material glass horizon 3.015\n\
+    peri_modify volume full horizon own surface tensor\nneighbor 0.0006 bin\nfix 1 all nve\ntimestep 5.0e-8\n\
+    compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+
+pub const SCENES: [Scene; 24] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "scattered", make: SCATTERED, again: BLOCK_AGAIN, steps: 60, list: false },
@@ -196,6 +213,8 @@ pub const SCENES: [Scene; 22] = [
     Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
     Scene { name: "softening", make: BLOCK, again: SOFT_AGAIN, steps: 60, list: false },
     Scene { name: "softening, list", make: BLOCK, again: DECAYING_AGAIN, steps: 60, list: true },
+    Scene { name: "shaped", make: BLOCK, again: SHAPED_AGAIN, steps: 60, list: false },
+    Scene { name: "own horizons", make: UNLIKE, again: UNLIKE_AGAIN, steps: 60, list: false },
     Scene { name: "averages", make: BLOCK, again: AVERAGES_AGAIN, steps: 60, list: false },
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "bath pile", make: PILE, again: BATH_AGAIN, steps: 400, list: false },

@@ -47,11 +47,10 @@ impl Style for ReadMesh {
                    in whichever order the line says it (`move` is another word for `shift`). Only particles inside of the box are made; a warning counts the others. Peridynamic \
                    particles get the volume, spheres the diameter of a ball of the same volume, both the `density`, as `set` would give it; \
                    without one spheres have density 1, as those of create_atoms, and the others none yet. Ids go on behind the largest one.\n\n\
-                   For peridynamics one horizon serves the whole body: about three times the mean spacing V^⅓ of its cells, so that cells \
-                   should be alike in size, and `lattice sc` that spacing, which is what the partial volumes at the horizon and \
-                   `horizon` of a material go by. Young's modulus inside comes out within 2 % of the \
-                   material's for tetrahedra, hexahedra and jittered points under `peri_modify volume full`, with `surface energy` for `peri/pmb` (each particle's family counts as a whole one, \
-                   at surfaces too) and `influence one` for `peri/lps`; bonds without `surface energy` are up to 3 % softer.",
+                   For peridynamics `lattice sc` is the mean spacing V^⅓ of its cells, which is what the partial volumes at the horizon and \
+                   `horizon` of a material go by; where cells are not alike in size `peri_modify horizon own` lets them go by the spacing around each particle. \
+                   With `peri_modify volume full surface tensor` bars of tetrahedra and hexahedra, nine and eight cells across, that are pulled have Young's modulus within 2 % of the \
+                   material's, under `peri/pmb` and `peri/lps`.",
             example: "read_mesh body.msh types physical rock 1 binder 2 density 2235.0 scale 0.001 shift 0 0 0.006",
         }
     }

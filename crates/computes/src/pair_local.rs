@@ -38,7 +38,7 @@ impl Style for PairLocal {
                    their radii. LAMMPS' first particle of a pair is that of its neighbour list, and its granular style shortens the \
                    springs of contacts that slide when this compute (or fabric) looks at them, which changes the run; \
                    perigrain's computes change nothing.\n\n\
-                   Of peridynamic styles `peri/pmb` alone can be asked, as in LAMMPS, by itself and without `peri_modify broken compress`: \
+                   Of peridynamic styles `peri/pmb` alone can be asked, as in LAMMPS, by itself and without `peri_modify broken compress`, `surface`, `influence` and `horizon own`: \
                    pairs within the horizon, with the force on the first and the energy that its bond, if it lives, and short-range repulsion \
                    have with the volume of the second (force and energy densities in LAMMPS' convention); under `-compat lammps` without bonds across \
                    periodic faces, which LAMMPS forgets here. In a `hybrid` pairs of \

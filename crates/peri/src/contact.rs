@@ -65,7 +65,7 @@ impl Repulsion<'_, '_, '_> {
 
 impl Repulsion<'_, '_, '_> {
     /// The push of a broken bond of this shape that is shorter than at the start: c w s as before it broke.
-    fn broken(&mut self, i: usize, j: usize, length: f64, shape: Influence) {
+    fn broken(&mut self, i: usize, j: usize, length: f64, (shape, weight): (Influence, f64)) {
         let view = self.view;
         let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { return };
         let d = view.bounds.nearest([0, 1, 2].map(|k| view.x[i][k] - view.x[j][k]));
@@ -74,7 +74,6 @@ impl Repulsion<'_, '_, '_> {
         if s >= 0.0 || r == 0.0 {
             return;
         }
-        let weight = self.options.volume.weight(length, coeff.horizon, self.options.lattice_spacing);
         let c = coeff.c * shape.shape(length, coeff.horizon) * weight;
         let pull = -c * s / r;
         let ((vi, vj), newton) = ((view.volume[i], view.volume[j]), self.options.unit == ForceUnit::Newton);
@@ -105,7 +104,10 @@ pub fn push_apart(families: &Families, repulsion: &mut Repulsion) {
             if n.alive || j < i {
                 return;
             }
-            repulsion.broken(i, j, length(families.first_bond(view, i, j)), shape);
+            let Some(coeff) = families.table.get(view.kind[i], view.kind[j]) else { return };
+            let length = length(families.first_bond(view, i, j));
+            let weight = families.share_of(i, &n, length, coeff.horizon);
+            repulsion.broken(i, j, length, (shape, weight));
         });
     }
 }

@@ -14,6 +14,8 @@ pub struct Neighbour {
     pub partner: u32,
     /// Whether the bond still lives.
     pub alive: bool,
+    /// What it weighs, where bonds are weighed one at a time.
+    pub weight: Option<f64>,
 }
 
 /// Where a bond stands.
@@ -125,7 +127,8 @@ impl Families {
             body.around(cell, |other, owner, e| {
                 let partner = body.particle[other];
                 if partner != u32::MAX {
-                    f(Neighbour { partner, alive: body.lives(owner, e) }, Link::Lattice(body, e));
+                    let alive = body.lives(owner, e);
+                    f(Neighbour { partner, alive, weight: None }, Link::Lattice(body, e));
                 }
             });
             return;
@@ -134,7 +137,8 @@ impl Families {
         list.around(record, |other, b| {
             let partner = list.particle[other];
             if partner != u32::MAX {
-                f(Neighbour { partner, alive: list.lives(b) }, Link::List(list, [record, other]));
+                let (alive, weight) = (list.lives(b), list.own_weight.get(b).copied());
+                f(Neighbour { partner, alive, weight }, Link::List(list, [record, other]));
             }
         });
     }
@@ -167,6 +171,9 @@ impl Families {
         self.family_volume = moved(&self.family_volume, old_to_new, n, 0.0);
         self.family_size = moved(&self.family_size, old_to_new, n, 0);
         self.damaged = vec![true; n];
+        if !self.spacing.is_empty() {
+            self.spacing = moved(&self.spacing, old_to_new, n, 1.0);
+        }
         if !self.lasting.is_empty() {
             self.lasting = moved(&self.lasting, old_to_new, n, false);
         }

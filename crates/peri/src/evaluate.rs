@@ -5,7 +5,8 @@ use std::sync::Mutex;
 
 use crate::breaking::break_bonds;
 use crate::build::sites::{Carrier, carrier};
-use crate::build::{detect, lattice as cells, list as records};
+use crate::build::spacing::spacings;
+use crate::build::{detect, lattice as cells, list as records, weights};
 use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::lattice::RowMotion;
@@ -43,16 +44,24 @@ impl Families {
     /// # Errors
     /// As for [`Families::build`].
     pub fn build_of(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Result<Self> {
-        check_box(view, detect::reach(table, &options))?;
         let mut families = Self::empty(view, table, options, law);
+        if options.own.spacing {
+            families.spacing = spacings(view, table, options.lattice_spacing);
+        }
+        check_box(view, detect::reach(table, &options, &families.spacing))?;
         families.lay_out(view);
         families.number_places();
         families.refresh(view, table);
+        if options.own.any() {
+            let Self { list, law, options, spacing, .. } = &mut families;
+            families.weighed = Some(weights::weigh(list, view, (law, options), spacing));
+        }
         if families.law.kind.has_states() {
             families.weigh(view, periods(&view.bounds));
         }
         let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
-        families.start_near(reaches.fold(f64::INFINITY, f64::min));
+        let finest = families.spacing.iter().copied().reduce(f64::min).unwrap_or(1.0);
+        families.start_near(finest * reaches.fold(f64::INFINITY, f64::min));
         if view.excluded.is_some() {
             // Close pairs without a bond may meet as soon as the rules are gone.
             families.forget_near();
@@ -104,6 +113,7 @@ impl Families {
             place: vec![u32::MAX; n],
             family_volume: vec![0.0; n],
             family_size: vec![0; n],
+            spacing: vec![],
             lasting: vec![],
             damaged: vec![false; n],
             near: NearPairs::default(),
@@ -112,18 +122,21 @@ impl Families {
             relaxing: None,
             counts_losses: false,
             almost: vec![],
+            weighed: None,
             scratch: Scratch::default(),
         }
     }
 
     /// Gives each body its layout.
     fn lay_out(&mut self, view: &PeriView) {
-        let bodies = detect::bodies(view, &self.table, &self.options);
+        let bodies = detect::bodies(view, &self.table, &self.options, &self.spacing);
         let mut listed = Vec::new();
         let mut wraps = false;
         for (k, members) in bodies.members.iter().enumerate() {
-            let free =
-                self.options.layout == Layout::Auto && !bodies.wraps[k] && self.suits_lattice(view, members);
+            let free = self.options.layout == Layout::Auto
+                && !self.options.own.any()
+                && !bodies.wraps[k]
+                && self.suits_lattice(view, members);
             let carrier = if free { carrier(view, members, bodies.nearest[k]) } else { Carrier::Nothing };
             let (volume, size) = (&mut self.family_volume, &mut self.family_size);
             let body = match carrier {
@@ -146,7 +159,8 @@ impl Families {
         }
         listed.sort_unstable();
         let (volume, size) = (&mut self.family_volume, &mut self.family_size);
-        self.list = records::lay_out(view, &listed, wraps, &self.table, &self.options, volume, size);
+        let rules = (&self.table, &self.options, &self.spacing[..]);
+        self.list = records::lay_out(view, &listed, wraps, rules, volume, size);
     }
 
     /// Lattice kernels of bonds with memory know one pair of types and one volume.

@@ -21,7 +21,7 @@ impl Families {
             let Some(pair) = self.table.get(view.kind[i], view.kind[j]).filter(|_| n.alive) else { return };
             let (xi, y) = (self.first_bond(view, i, j), view.bounds.nearest(sub(view.x[j], view.x[i])));
             let length = length(xi);
-            let volume = self.options.volume.weight(length, pair.horizon, self.options.lattice_spacing);
+            let volume = self.weight_of(&n, length, pair.horizon);
             let share = self.law.influence.of(length, pair.horizon) * volume * view.volume[j];
             for a in 0..3 {
                 for b in 0..3 {

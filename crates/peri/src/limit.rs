@@ -28,7 +28,7 @@ impl Families {
             self.each_apart(i, periods, |b, length| {
                 let j = b.partner as usize;
                 let Some(p) = self.table.get(view.kind[i], view.kind[j]).filter(|_| b.alive) else { return };
-                let weight = self.options.volume.weight(length, p.horizon, self.options.lattice_spacing);
+                let weight = self.share_of(i, &b, length, p.horizon);
                 let factor = 0.5 * (own + self.stiffness_of(j));
                 stiffness += factor * p.c * weight * view.volume[j] / length;
             });

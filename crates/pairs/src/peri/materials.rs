@@ -73,6 +73,11 @@ impl Materials {
         self.types.get(&kind).map(|s| s.density)
     }
 
+    /// Whether the critical stretch of a type's bonds follows from a fracture energy.
+    pub fn by_energy(&self, kind: u16) -> bool {
+        self.types.get(&kind).is_some_and(|s| matches!(s.strength, Some(Strength::FractureEnergy(_))))
+    }
+
     /// `mix RULE`: means of the properties of exactly two types.
     fn mixed(&self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
         let word = args.peek().map_or(cx.span, |w| w.span);

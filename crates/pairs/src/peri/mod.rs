@@ -8,6 +8,7 @@ mod lps;
 pub mod materials;
 mod numbers;
 mod options;
+mod own;
 mod plastic;
 mod pmb;
 mod reunion;
@@ -26,7 +27,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_peri::calibration::constants;
 use perigrain_peri::families::{
-    FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
+    FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, Own, PmbCoeff, PmbTable, VolumeRule,
 };
 use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
@@ -51,6 +52,8 @@ struct Solid {
     unit: Option<ForceUnit>,
     volume: VolumeRule,
     calibrate: Calibrate,
+    /// What bonds are weighed by one at a time.
+    own: Own,
     /// Broken bonds still push.
     compress: bool,
     /// The rule of unloading that a line has said.
@@ -93,6 +96,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         unit: None,
         volume: VolumeRule::Lammps,
         calibrate: Calibrate::No,
+        own: Own::default(),
         compress: false,
         unloading: None,
         lasting: vec![],
@@ -208,6 +212,7 @@ impl Solid {
             portable: s.portable,
             no_repulsion: self.no_repulsion,
             reunite: self.reunite.is_some_and(|r| r.0),
+            own: self.own,
         }
     }
 
@@ -217,10 +222,10 @@ impl Solid {
         if self.calibrate == Calibrate::No || !self.law.kind.bond_based() {
             return Ok(table);
         }
-        if self.law.surface {
+        if self.law.surface || self.own.any() {
             self.cannot(
                 span,
-                "cannot be calibrated and have its surfaces corrected: that makes K right by itself",
+                "cannot be calibrated and have its surfaces corrected or horizons of its own: the one makes K right by itself, the other knows no lattice",
             )?;
         }
         let types = table.types() as u16;
@@ -268,6 +273,7 @@ impl Pair for Solid {
             Some(coeff) => coeff,
             None => {
                 self.raw = true;
+                own::needs_materials(self, span)?;
                 numbers(self.law.kind, args, cx)?
             }
         };
@@ -334,6 +340,7 @@ impl Pair for Solid {
             .into());
         }
         let before = w.families.as_ref().map(|f| f.law.kind);
+        own::allowed(self, &options, span)?;
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
@@ -385,8 +392,9 @@ impl Pair for Solid {
             Some((rho / (ftm2v * stiffer * stiffest(i)?)).sqrt())
         };
         let cutoff = self.table.iter().map(|c| c.horizon).reduce(f64::max);
-        let stable_step = (1..=types).filter_map(step).reduce(f64::min);
-        Scales { cutoff, stable_step, contact_time: None }
+        let [finest, widest] = own::spacings(self, w);
+        let stable_step = (1..=types).filter_map(step).reduce(f64::min).map(|t| finest * t);
+        Scales { cutoff: cutoff.map(|c| widest * c), stable_step, contact_time: None }
     }
 
     fn check(&self, cx: &BuildCx) {
@@ -406,7 +414,9 @@ impl Pair for Solid {
     }
 
     fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
-        let plain = self.law.kind == LawKind::Pmb && !self.compress;
+        // One number for a pair of types is what such a look knows of bonds.
+        let alike = !self.law.surface && self.law.influence == Influence::One && !self.own.any();
+        let plain = self.law.kind == LawKind::Pmb && !self.compress && alike;
         Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })
     }
 }

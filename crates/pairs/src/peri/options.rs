@@ -1,13 +1,23 @@
 //! `peri_modify`: options of peridynamic styles.
 
-use super::{Calibrate, Solid};
+use super::{Calibrate, Solid, own};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::Args;
-use perigrain_peri::families::{ForceUnit, Influence, LawKind, VolumeRule};
+use perigrain_peri::families::{Families, ForceUnit, Influence, LawKind, VolumeRule};
 use perigrain_styles::BuildCx;
 
-const KNOWN: [&str; 9] =
-    ["force", "volume", "influence", "surface", "calibrate", "nofail", "broken", "repulsion", "family"];
+const KNOWN: [&str; 10] = [
+    "force",
+    "volume",
+    "influence",
+    "surface",
+    "horizon",
+    "calibrate",
+    "nofail",
+    "broken",
+    "repulsion",
+    "family",
+];
 
 /// Reads the words of a `peri_modify`.
 ///
@@ -41,20 +51,25 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 };
             }
             "influence" => {
-                settled(style, &word.text, word.span, cx)?;
                 let name = args.choice("influence function", &Influence::NAMES.map(|n| n.0))?;
                 let found = Influence::NAMES.iter().find(|n| n.0 == name);
                 style.law.influence = found.map_or_else(Influence::default, |n| n.1);
+                settled(style, &word.text, word.span, cx)?;
             }
             "surface" => {
-                settled(style, &word.text, word.span, cx)?;
-                let how = args.choice("correction of surfaces", &["no", "energy"])?;
-                if !style.law.kind.bond_based() && how != "no" {
-                    let text =
-                        "peri_modify surface concerns peri/pmb: a state-based particle weighs its own family";
+                let how = args.choice("correction of surfaces", &["no", "energy", "tensor"])?;
+                if !style.law.kind.bond_based() && how == "energy" {
+                    let text = "peri_modify surface energy concerns peri/pmb: a state-based particle weighs its own family (`surface tensor` corrects it, too)";
                     return fail(Code::CONFLICT, word.span, text);
                 }
-                style.law.surface = how == "energy";
+                (style.law.surface, style.own.tensor) = (how == "energy", how == "tensor");
+                settled(style, &word.text, word.span, cx)?;
+            }
+            "horizon" => {
+                style.own.spacing =
+                    args.choice("spacing that horizons count in", &["lattice", "own"])? == "own";
+                own::needs_materials(style, word.span)?;
+                settled(style, &word.text, word.span, cx)?;
             }
             "broken" => {
                 args.choice("what broken bonds do", &["compress"])?;
@@ -93,7 +108,13 @@ fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
         let text = format!("peri_modify {option} does not concern pair_style {}", style.name);
         return fail(Code::CONFLICT, at, text);
     }
-    if cx.world.families.is_some() {
+    // A restart file says its lines again.
+    let other = |f: &Families| match option {
+        "influence" => f.law.influence != style.law.influence,
+        "horizon" => f.options.own.spacing != style.own.spacing,
+        _ => (f.law.surface, f.options.own.tensor) != (style.law.surface, style.own.tensor),
+    };
+    if cx.world.families.as_ref().is_some_and(other) {
         let text = format!("peri_modify {option} comes too late: bonds were weighed at the first run");
         return fail(Code::WRONG_ORDER, at, text);
     }

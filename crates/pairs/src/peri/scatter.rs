@@ -63,10 +63,19 @@ impl Scatter {
         self.strength || self.stiffness
     }
 
-    /// Gives families the factors.
-    pub fn give(self, w: &World, families: &mut Families) {
+    /// Gives families the factors, those on strengths with what horizons of particles' own make of them, if anything.
+    pub fn give(self, w: &World, families: &mut Families, mut by_horizon: Vec<f64>) {
         let column = |is: bool, which: usize| if is { said(w, which) } else { &[] };
-        families.scatter(column(self.strength, 0), column(self.stiffness, 1));
+        let strength = column(self.strength, 0);
+        if by_horizon.is_empty() {
+            return families.scatter(strength, column(self.stiffness, 1));
+        }
+        by_horizon
+            .iter_mut()
+            .zip(strength)
+            .filter(|(_, said)| **said > 0.0)
+            .for_each(|(own, said)| *own *= said);
+        families.scatter(&by_horizon, column(self.stiffness, 1));
     }
 
     /// Tells how far they scatter.

@@ -23,15 +23,15 @@ pub fn distance(view: &PeriView, i: u32, j: u32) -> (f64, bool) {
     (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], d != plain)
 }
 
-/// Calls `f(i, j, |x_i - x_j|^2, whether the shortest image crosses a periodic face)` for every bond.
+/// Calls `f(i, j, |x_i - x_j|^2, whether the shortest image crosses a periodic face)` for every bond. Where particles have spacings
+/// of their own, over that of the lattice, there is a bond if one end is within the horizon of the other.
 pub fn bonds(
     view: &PeriView,
     which: impl Iterator<Item = u32> + Clone,
-    table: &PmbTable,
-    options: &FamilyOptions,
+    (table, options, spacing): (&PmbTable, &FamilyOptions, &[f64]),
     mut f: impl FnMut(u32, u32, f64, bool),
 ) {
-    let far = reach(table, options);
+    let far = reach(table, options, spacing);
     if far <= 0.0 {
         return;
     }
@@ -47,6 +47,10 @@ pub fn bonds(
             last = (kinds, cut_of(kinds.0, kinds.1));
         }
         let Some(cut) = last.1 else { return };
+        let cut = match spacing {
+            [] => cut,
+            own => cut * own[i as usize].max(own[j as usize]),
+        };
         if rsq <= cut * cut && !view.excludes(i, j) {
             f(i, j, rsq, wraps);
         }
@@ -54,17 +58,19 @@ pub fn bonds(
 }
 
 /// The longest reach of any family.
-pub fn reach(table: &PmbTable, options: &FamilyOptions) -> f64 {
-    table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing)).fold(0.0, f64::max)
+pub fn reach(table: &PmbTable, options: &FamilyOptions, spacing: &[f64]) -> f64 {
+    let widest = spacing.iter().copied().reduce(f64::max).unwrap_or(1.0);
+    widest
+        * table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing)).fold(0.0, f64::max)
 }
 
 /// Finds the bodies of a scene.
-pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bodies {
+pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions, spacing: &[f64]) -> Bodies {
     let n = view.x.len();
     let mut parent: Vec<u32> = (0..n as u32).collect();
     let mut shortest = vec![f64::INFINITY; n];
     let mut crosses = vec![false; n];
-    bonds(view, 0..n as u32, table, options, |i, j, rsq, wraps| {
+    bonds(view, 0..n as u32, (table, options, spacing), |i, j, rsq, wraps| {
         if parent[i as usize] != parent[j as usize] {
             join(&mut parent, i, j);
         }

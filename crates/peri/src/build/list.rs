@@ -4,13 +4,12 @@ use crate::build::detect::{bonds, distance, reach};
 use crate::families::list::{CLOSE, GROUP, ListBody, Record};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
 
-/// The list layout of the bonds among `members`, and the sums of initial partners' volumes and numbers.
+/// The list layout of the bonds among `members`, whose spacings may be their own, and the sums of initial partners' volumes and numbers.
 pub fn lay_out(
     view: &PeriView,
     members: &[u32],
     wraps: bool,
-    table: &PmbTable,
-    options: &FamilyOptions,
+    (table, options, spacing): (&PmbTable, &FamilyOptions, &[f64]),
     family_volume: &mut [f64],
     family_size: &mut [u16],
 ) -> ListBody {
@@ -19,7 +18,7 @@ pub fn lay_out(
     }
     let mut contact = f64::NEG_INFINITY;
     let found = |each: &mut dyn FnMut(u32, u32, Option<u8>)| {
-        bonds(view, members.iter().copied(), table, options, |p, q, rsq, _| {
+        bonds(view, members.iter().copied(), (table, options, spacing), |p, q, rsq, _| {
             // Two at one place: a bond without a length has no stretch and no direction.
             if rsq == 0.0 {
                 return;
@@ -30,7 +29,7 @@ pub fn lay_out(
         });
     };
     let mut body =
-        gathered(view, members, (wraps, reach(table, options)), (family_volume, family_size), found);
+        gathered(view, members, (wraps, reach(table, options, spacing)), (family_volume, family_size), found);
     body.contact = contact;
     find_close(&mut body, view, options);
     body

@@ -5,3 +5,5 @@ pub mod lattice;
 pub mod list;
 pub mod near;
 pub mod sites;
+pub mod spacing;
+pub mod weights;

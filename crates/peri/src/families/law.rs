@@ -29,6 +29,14 @@ impl Influence {
         }
     }
 
+    /// What the weighted volume ∫ ω |ξ|² of a whole ball is proportional to as its radius changes.
+    pub fn whole(self, delta: f64) -> f64 {
+        match self {
+            Self::Inverse => delta.powi(4),
+            Self::One | Self::Gaussian => delta.powi(5),
+        }
+    }
+
     /// What a micro-modulus of this shape is at `length`, over the constant one with the same bulk modulus: g(|xi|)
     /// ∫ x³ dx/∫ g x³ dx over the horizon, K being (2π/9) ∫ c ξ³ dξ.
     pub fn shape(self, length: f64, delta: f64) -> f64 {

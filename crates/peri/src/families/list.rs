@@ -90,6 +90,9 @@ pub struct ListBody {
     /// The influence of each bond where it takes an exponential; empty elsewhere.
     #[serde(skip)]
     pub influence: Vec<f64>,
+    /// The weight of each bond in the place of that of partial volumes, where bonds are weighed one at a time; empty elsewhere.
+    #[serde(default)]
+    pub own_weight: Vec<f64>,
     /// Place of the first record among all cells and records of all bodies.
     pub first_place: u32,
     /// Bonds (places in `partner`) that broke in the last step that advanced.
@@ -167,6 +170,13 @@ impl ListBody {
         &self.pairs[own * self.kinds.len() + usize::from(self.group_kind[group])]
     }
 
+    /// The weight of the bond at a place in `partner`, of this length at the start.
+    #[inline]
+    pub fn weight(&self, b: usize, length: f64) -> f64 {
+        let [most, slope] = self.constants(b).weight;
+        self.own_weight.get(b).copied().unwrap_or_else(|| (most - slope * length).min(1.0))
+    }
+
     /// Calls `f(other record, place in partner)` for every bond of a record, living or not.
     pub fn around(&self, i: usize, mut f: impl FnMut(usize, usize)) {
         for &b in &self.back[self.back_start[i] as usize..self.back_start[i + 1] as usize] {
@@ -185,7 +195,7 @@ impl ListBody {
         self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 4)
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
-            + 8 * (self.close.len() + self.inverse.len() + self.influence.len())
+            + 8 * (self.close.len() + self.inverse.len() + self.influence.len() + self.own_weight.len())
             + 8 * (self.limits.least.len() + self.limits.next.len())
             + self.state.bytes()
     }

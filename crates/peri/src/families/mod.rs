@@ -13,13 +13,16 @@ pub mod lattice;
 pub mod law;
 pub mod list;
 mod measures;
+pub mod own;
 mod scatter;
 mod sound;
 
+pub use crate::damage::Neighbour;
 pub use cells::Cells;
 pub use excluded::Excluded;
 pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
+pub use own::{Factors, Own, Weighed};
 pub use scatter::Scatter;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
@@ -170,6 +173,9 @@ pub struct FamilyOptions {
     /// Members of one family whose bond is broken meet again as others do (`peri_modify family broken`).
     #[serde(default)]
     pub reunite: bool,
+    /// What bonds are weighed by one at a time.
+    #[serde(default)]
+    pub own: Own,
 }
 
 /// Bond length changes below this count as none under `compat lammps`: an absolute length.
@@ -211,6 +217,7 @@ impl FamilyOptions {
             portable: false,
             no_repulsion: false,
             reunite: false,
+            own: Own::default(),
         }
     }
 }
@@ -365,6 +372,9 @@ pub struct Families {
     pub family_volume: Vec<f64>,
     /// Number of partners at the start, per particle.
     pub family_size: Vec<u16>,
+    /// The spacing around each particle over that of the lattice, where horizons count in it; empty elsewhere.
+    #[serde(default)]
+    pub spacing: Vec<f64>,
     /// Particles whose bonds never break; empty if there are none.
     pub lasting: Vec<bool>,
     /// Whether a particle may have lost a bond: damage need not be counted elsewhere.
@@ -386,6 +396,9 @@ pub struct Families {
     /// Bodies that were meant to be on a lattice, when families were built.
     #[serde(skip)]
     pub almost: Vec<AlmostLattice>,
+    /// What weighing bonds one at a time has come to, when they were found.
+    #[serde(skip)]
+    pub weighed: Option<Weighed>,
     /// Scratch that is not state.
     #[serde(skip)]
     pub scratch: Scratch,

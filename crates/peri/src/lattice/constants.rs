@@ -128,7 +128,7 @@ pub fn weigh_list(body: &mut ListBody, period: Periods, law: &Law) {
             let pair = body.constants(b);
             let length = body.z(false, i, j, period).1;
             let omega = law.influence.of(length, pair.horizon);
-            let one = law.weight(length, pair.horizon, (pair.weight[0] - pair.weight[1] * length).min(1.0));
+            let one = law.weight(length, pair.horizon, body.weight(b, length));
             for (a, b) in [(i, j), (j, i)] {
                 state.weighted[a] += one * body.record[b].volume;
                 state.spread[a] += omega * one * body.record[b].volume;

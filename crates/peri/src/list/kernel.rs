@@ -235,6 +235,7 @@ unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut B
         let [x, u] = [x, u].map(|a| [L::splat(a[0]), L::splat(a[1]), L::splat(a[2])]);
         let pairs = body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let owned = !body.own_weight.is_empty();
         let dead = rules.dead.map(|a| L::splat(a));
         let (mut high, mut low) = (zero, zero);
         let mut first = 0;
@@ -287,7 +288,10 @@ unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut B
                     continue;
                 }
                 (high, low) = (z.max(high), z.min(low));
-                let weight = L::splat(pair.weight[1]).fnma(length, L::splat(pair.weight[0])).min(one);
+                let weight = match owned {
+                    true => L::load(body.own_weight.as_ptr().add(place)),
+                    false => L::splat(pair.weight[1]).fnma(length, L::splat(pair.weight[0])).min(one),
+                };
                 let shape = match rules.influence {
                     Influence::Inverse => inverse,
                     Influence::One => one,

@@ -48,6 +48,9 @@ impl ListBody {
         ] {
             equal(&format!("the number of its {what} is"), len, expected)?;
         }
+        let own = &self.own_weight;
+        must(own.is_empty() || own.len() == GROUP * groups, "its weights and bonds differ in number")?;
+        must(own.iter().all(|w| w.is_finite() && *w >= 0.0), "a bond weighs less than nothing")?;
         must(self.scatter.fits(n), "it has factors of more or fewer records")?;
         must(self.partner.len() < u32::MAX as usize, "it has more bonds than can be numbered")?;
         must(of_bonds == 0 || kinds <= 1, "it has several types beside those of bonds")?;

@@ -44,6 +44,7 @@ impl Families {
             ("sizes", self.family_size.len()),
             ("damages", self.damaged.len()),
             ("reference positions", self.reference.as_ref().map_or(x0.len(), Vec::len)),
+            ("spacings", if self.spacing.is_empty() { n } else { self.spacing.len() }),
             ("lasting particles", if self.lasting.is_empty() { n } else { self.lasting.len() }),
         ] {
             equal(&format!("the number of {what} is"), len, n)?;

@@ -1,0 +1,128 @@
+//! Horizons that count in the spacing around each particle, and families made whole: which styles have them, what the log tells.
+
+use super::Solid;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_peri::families::{Families, FamilyOptions, VolumeRule, Weighed};
+use perigrain_world::World;
+
+/// So many factors at their bounds mean that families cannot be made whole.
+const TOO_MANY: f64 = 0.1;
+
+fn refused(style: &Solid, span: Span, why: &str, help: &str) -> Result<()> {
+    let text = format!("pair_style {} cannot have `peri_modify horizon own`: {why}", style.name);
+    Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into())
+}
+
+/// Refuses coefficients that are numbers beside horizons of particles' own, as soon as a deck has said both.
+///
+/// # Errors
+/// Numbers stand for one horizon.
+pub fn needs_materials(style: &Solid, span: Span) -> Result<()> {
+    if !(style.own.spacing && style.raw) {
+        return Ok(());
+    }
+    let why = "its coefficients are numbers, which stand for one horizon";
+    refused(style, span, why, "give every pair a `material`, whose horizon counts in spacings")
+}
+
+/// Refuses what else does not go together with horizons of particles' own.
+///
+/// # Errors
+/// A scene with one horizon for a type.
+pub fn allowed(style: &Solid, options: &FamilyOptions, span: Span) -> Result<()> {
+    match style.own.spacing && options.compat_lammps {
+        true => refused(style, span, "`compat lammps` has one horizon for a type", "leave one of both out"),
+        false => Ok(()),
+    }
+}
+
+/// The least and the largest spacing of particles over that of the lattice, as far as it is known.
+pub fn spacings(style: &Solid, w: &World) -> [f64; 2] {
+    if !style.own.spacing {
+        return [1.0; 2];
+    }
+    let lattice = w.lattice.spacing[0];
+    let all: Vec<f64> = match &*w.families {
+        Some(families) => families.spacing.clone(),
+        None => {
+            let own = w.particles.kind.iter().zip(&w.particles.volume).filter(|(k, _)| style.is_of(**k));
+            own.map(|(_, v)| v.cbrt() / lattice).collect()
+        }
+    };
+    let [least, most] = extremes(all.iter().copied().filter(|a| *a > 0.0));
+    if least.is_finite() { [least, most] } else { [1.0; 2] }
+}
+
+fn extremes(all: impl Iterator<Item = f64>) -> [f64; 2] {
+    all.fold([f64::INFINITY, 0.0], |[least, most], a| [least.min(a), most.max(a)])
+}
+
+impl Solid {
+    fn is_of(&self, kind: u16) -> bool {
+        usize::from(kind) <= self.table.types() && self.table.get(kind, kind).is_some()
+    }
+}
+
+/// A particle's factor on critical stretches that follow from fracture energies: √(δ/δ_i), as in a body of that horizon.
+pub fn strength(style: &Solid, families: &Families, kind: u16, i: usize) -> f64 {
+    match style.materials.by_energy(kind) {
+        true => families.spacing_of(i).recip().sqrt(),
+        false => 1.0,
+    }
+}
+
+/// Tells what families have been weighed by, when they are found.
+pub fn tell(style: &Solid, families: &Families, w: &mut World) {
+    if style.own.spacing {
+        horizons(style, families, w);
+    }
+    let Some(weighed) = families.weighed else { return };
+    partial(families.options.volume, weighed, w);
+    if let Some(factors) = weighed.factors {
+        let text = format!(
+            "peridynamic bonds: families made whole in each direction (`surface tensor`): factors {:.3} to {:.3}, mean {:.4}",
+            factors.least, factors.most, factors.mean
+        );
+        w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
+        if factors.cut > TOO_MANY {
+            let text = format!(
+                "{:.0} % of the bonds would need factors beyond {:.1} to {:.0} for whole families, as in bodies of one or two layers",
+                100.0 * factors.cut,
+                factors.least,
+                factors.most
+            );
+            let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
+            w.parts.notes.push(d.help("take three particles or more across the body, or a smaller horizon"));
+        }
+    }
+}
+
+fn horizons(style: &Solid, families: &Families, w: &mut World) {
+    let lattice = w.lattice.spacing[0];
+    let own = (0..w.n()).filter(|i| style.is_of(w.particles.kind[*i]));
+    let spacing: Vec<f64> = own.map(|i| families.spacing_of(i) * lattice).collect();
+    let [least, most] = extremes(spacing.iter().copied());
+    let mean = spacing.iter().sum::<f64>() / spacing.len().max(1) as f64;
+    let sizes = (0..w.n()).filter(|i| style.is_of(w.particles.kind[*i])).map(|i| families.family_size[i]);
+    let fewest = sizes.min().unwrap_or(0);
+    let text = format!(
+        "peridynamic bonds: horizons count in the spacing around each particle (`horizon own`): {least:.4e} to {most:.4e}, mean \
+         {mean:.4e}; the smallest family has {fewest} partners"
+    );
+    w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
+}
+
+/// What partial volumes take from families.
+fn partial(rule: VolumeRule, weighed: Weighed, w: &mut World) {
+    let name = match rule {
+        VolumeRule::Lammps => "lammps",
+        VolumeRule::None => "none",
+        VolumeRule::Full => "full",
+    };
+    let text = format!(
+        "peridynamic bonds: partial volumes (`volume {name}`) make {:.1} % of the bonds count in part, all of them {:.4} in the mean",
+        100.0 * weighed.in_part,
+        weighed.mean
+    );
+    w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
+}
