@@ -97,7 +97,7 @@ fn par_sum(all: &[Packed]) -> Packed {
 fn affine(network: &Network) -> Packed {
     // k_s d d as xx yy zz yz xz xy, then the second sum.
     let bond = |sum: &mut [f64; 27], bond: usize| {
-        let (n, l, k) = (network.n[bond], network.length[bond], &network.k[bond]);
+        let (n, l, k) = (network.n(bond), network.length(bond), &network.k[bond]);
         let nn = VOIGT.map(|(i, j)| l * n[i] * n[j]);
         (0..6).for_each(|a| sum[a] += k.shear * l * nn[a]);
         let scaled = nn.map(|a| (k.normal - k.shear) * a);
@@ -261,7 +261,7 @@ impl Pull {
     #[inline(always)]
     fn new(network: &Network, bond: usize) -> Self {
         let k = &network.k[bond];
-        Self { d: network.d(bond), n: network.n[bond], across: k.shear, along: k.normal - k.shear }
+        Self { d: network.d(bond), n: network.n(bond), across: k.shear, along: k.normal - k.shear }
     }
 
     /// K u = k_s u + (k_n − k_s) n (n·u).
