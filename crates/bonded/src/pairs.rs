@@ -79,7 +79,7 @@ impl Pairs {
 
     /// That of the chunk of particles that begins with `start`.
     #[inline(always)]
-    fn gather_chunk<const N: usize>(
+    pub fn gather_chunk<const N: usize>(
         &self,
         start: usize,
         rows: &mut [[f64; N]],
