@@ -247,6 +247,9 @@ fn forged_restart() {
         if count > 8 && took > slowest.0 {
             slowest = (took, count);
         }
+        if took > SLOW {
+            eprintln!("case {count} of seed {seed} takes {took:?}: recipe {recipe:?}");
+        }
         if outcome.is_err() {
             panic!("case {count} of seed {seed} panics: recipe {recipe:?}");
         }
@@ -257,3 +260,6 @@ fn forged_restart() {
 
 /// So many in the ordinary tests.
 const FORGED: u64 = 2000;
+
+/// What takes longer is told: cases take less than a thousandth of that.
+const SLOW: Duration = Duration::from_secs(1);

@@ -137,10 +137,14 @@ impl Case {
 
 /// Any bytes as a recipe for one of a few small scenes, which the first byte chooses.
 pub fn forged_restart(bytes: &[u8]) {
-    thread_local!(static CASES: Vec<Case> = SMALL.iter().map(|[make, again]| Case::new(make, again, 4, false)).collect());
+    thread_local! {
+        static CASES: Vec<Case> = SMALL.iter().map(|[make, again]| Case::new(make, again, 4, false)).collect();
+        // One folder for all: to make and remove one takes longer than most cases.
+        static FOLDER: tempfile::TempDir = tempfile::tempdir().expect("a folder for files");
+    }
     let Some((first, recipe)) = bytes.split_first() else { return };
-    let Ok(folder) = tempfile::tempdir() else { return };
-    CASES.with(|cases| drop(cases[usize::from(*first) % cases.len()].read(recipe, &folder.path().join("a"))));
+    let place = FOLDER.with(|folder| folder.path().join("a"));
+    CASES.with(|cases| drop(cases[usize::from(*first) % cases.len()].read(recipe, &place)));
 }
 
 /// Small scenes of each kind: what makes them, and what is said again.

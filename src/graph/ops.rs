@@ -92,13 +92,14 @@ fn corners_moved(w: &World) -> f64 {
     }
     // Of a leaning box all eight count, and the two that moved farthest.
     let before = Domain { lo, hi, tilt: Some(tilt), ..domain.clone() };
-    let mut ways = [0.0, 0.0];
+    let (mut ways, lammps) = ([0.0, 0.0], w.settings.lammps());
+    // Corners that move alike do so up to rounding, which LAMMPS goes by.
+    let more = if lammps { 1.0 } else { 1.0 + 1e-12 };
     for (a, b) in domain.corners().into_iter().zip(before.corners()) {
         let way = apart(a, b);
-        // Corners that move alike do so up to rounding.
-        if way > ways[0] * (1.0 + 1e-12) {
+        if way > ways[0] * more {
             // LAMMPS forgets the one that was farthest so far, and makes its lists at these times.
-            ways = [way, if w.settings.lammps() { ways[1] } else { ways[0] }];
+            ways = [way, if lammps { ways[1] } else { ways[0] }];
         } else if way > ways[1] {
             ways[1] = way;
         }

@@ -40,7 +40,8 @@ impl Way {
     }
 }
 
-fn packed(bytes: &[u8]) -> Vec<u8> {
+/// Bytes as zlib packs them.
+pub fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut writer = flate2::write::ZlibEncoder::new(vec![], flate2::Compression::default());
     writer.write_all(bytes).unwrap();
     writer.finish().unwrap()

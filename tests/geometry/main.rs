@@ -334,6 +334,62 @@ fn images_of_vtk_are_read_too() {
     assert!(said.contains("no array `gray`"), "{said}");
 }
 
+/// An image of 9 x 8 x 7 voxels as ParaView writes it, its array among the tags as text or raw behind them, in blocks or in one.
+fn image(way: &str, values: &[u16]) -> Vec<u8> {
+    let (packed, raw) = (way == "packed", way != "text");
+    let text: String = values.iter().map(|v| format!("{v} ")).collect();
+    let (format, text) = if raw { ("appended\" offset=\"0", "") } else { ("ascii", text.as_str()) };
+    let packer = if packed { " compressor=\"vtkZLibDataCompressor\"" } else { "" };
+    let mut all = format!(
+        "<VTKFile type=\"ImageData\" byte_order=\"BigEndian\" header_type=\"UInt64\"{packer}><ImageData WholeExtent=\"0 9 0 8 0 7\" \
+         Origin=\"1 0 0\" Spacing=\"0.5 1 0.25\"><Piece Extent=\"0 9 0 8 0 7\"><CellData><DataArray type=\"UInt16\" Name=\"g\" \
+         format=\"{format}\">{text}</DataArray></CellData></Piece></ImageData>"
+    )
+    .into_bytes();
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
+    let word = |n: usize| (n as u64).to_be_bytes();
+    if raw {
+        all.extend(b"<AppendedData encoding=\"raw\">_");
+    }
+    match way {
+        "raw" => all.extend([&word(bytes.len())[..], &bytes].concat()),
+        "packed" => {
+            // Blocks that end within a slice, within a voxel even.
+            let blocks: Vec<Vec<u8>> = bytes.chunks(101).map(appended::packed).collect();
+            let counts = [blocks.len(), 101, bytes.len() % 101];
+            counts.into_iter().chain(blocks.iter().map(Vec::len)).for_each(|n| all.extend(word(n)));
+            all.extend(blocks.concat());
+        }
+        _ => {}
+    }
+    all.extend(if raw { &b"</AppendedData></VTKFile>"[..] } else { b"</VTKFile>" });
+    all
+}
+
+#[test]
+fn images_read_slice_by_slice_give_what_those_read_whole_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let values: Vec<u16> = (0..9 * 8 * 7u32).map(|k| (k * k % 1009) as u16).collect();
+    let particles = |way: &str, words: &str| {
+        fs::write(folder.path().join("image.vti"), image(way, &values)).unwrap();
+        let line = format!("read_voxels image.vti types 100:499 1 500:900 2{words}");
+        let p = world(folder.path(), &format!("atom_style peri\n{BOX}{line}")).particles.clone();
+        (p.x.clone(), p.kind.clone(), p.volume.clone())
+    };
+    for words in ["", " resample 0.8"] {
+        let whole = particles("text", words);
+        assert!(whole.0.len() > 10);
+        assert_eq!(particles("raw", words), whole);
+        assert_eq!(particles("packed", words), whole);
+    }
+    for way in ["raw", "packed"] {
+        let bytes = image(way, &values);
+        fs::write(folder.path().join("cut.vti"), &bytes[..bytes.len() - 300]).unwrap();
+        let said = refused(folder.path(), "peri", "read_voxels cut.vti types 1:9 1").2;
+        assert!(said.contains("cut off"), "{said}");
+    }
+}
+
 #[test]
 fn blocks_keep_the_volume_of_each_material() {
     let deck =

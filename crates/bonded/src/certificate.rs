@@ -81,7 +81,7 @@ impl Certificate {
 
     /// ½ (F_n²/k_n + |F_t|²/k_s + M_n²/k_t + |M_t|²/k_b).
     fn strained(&self, network: &Network, bond: usize, f: Vec3, m: Vec3) -> f64 {
-        let (n, k) = (network.n[bond], &network.k[bond]);
+        let (n, k) = (network.n(bond), &network.k[bond]);
         let (along, twist) = (dot(n, f), dot(n, m));
         let (across, bend) = (sub(f, scale(along, n)), sub(m, scale(twist, n)));
         let over = |square: f64, k: f64| if square == 0.0 { 0.0 } else { square / k };

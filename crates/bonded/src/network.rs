@@ -16,10 +16,9 @@ pub struct Network {
     pub particles: usize,
     /// Who is bonded to whom.
     pub pairs: Pairs,
-    /// Unit vectors n from the lower end to the upper one.
-    pub n: Vec<Vec3>,
-    /// Distances of the ends [length].
-    pub length: Vec<f64>,
+    /// Vectors from the lower end to the upper one [length]. Directions and lengths are reckoned from them: there are millions of bonds,
+    /// and what is read costs more than what is reckoned.
+    d: Vec<Vec3>,
     /// Stiffnesses.
     pub k: Vec<Stiffness>,
 }
@@ -75,18 +74,20 @@ impl Network {
     /// Of bonds between these ends; `bond(k)` tells the vector from the first end to the second and the stiffnesses of the k-th.
     pub fn new(particles: usize, ends: &[[u32; 2]], bond: impl Fn(usize) -> (Vec3, Stiffness)) -> Self {
         let pairs = Pairs::new(particles, ends);
-        let mut out = Self { particles, pairs, n: vec![], length: vec![], k: Vec::with_capacity(ends.len()) };
-        out.n.reserve_exact(ends.len());
-        out.length.reserve_exact(ends.len());
+        let (d, k) = (Vec::with_capacity(ends.len()), Vec::with_capacity(ends.len()));
+        let mut out = Self { particles, pairs, d, k };
         for &origin in &out.pairs.origin {
             let (d, k) = bond(origin as usize);
             let [a, b] = ends[origin as usize];
-            let l = length(d);
-            out.n.push(scale(if a < b { 1.0 } else { -1.0 } / l, d));
-            out.length.push(l);
+            out.d.push(scale(if a < b { 1.0 } else { -1.0 }, d));
             out.k.push(k);
         }
         out
+    }
+
+    /// The same bonds with other stiffnesses, one for each.
+    pub fn with(&self, k: Vec<Stiffness>) -> Self {
+        Self { k, ..self.clone() }
     }
 
     /// Number of bonds.
@@ -95,22 +96,36 @@ impl Network {
     }
 
     /// The vector from the lower end of a bond to the upper one [length].
+    #[inline(always)]
     pub fn d(&self, k: usize) -> Vec3 {
-        scale(self.length[k], self.n[k])
+        self.d[k]
+    }
+
+    /// The distance of the ends of a bond [length].
+    #[inline(always)]
+    pub fn length(&self, k: usize) -> f64 {
+        length(self.d[k])
+    }
+
+    /// The unit vector n from the lower end of a bond to the upper one.
+    #[inline(always)]
+    pub fn n(&self, k: usize) -> Vec3 {
+        scale(1.0 / self.length(k), self.d[k])
     }
 
     /// g = Δu + ½ d × (θ_i + θ_j); F = K_t g with K_t = k_s 1 + (k_n − k_s) n nᵀ; M = K_r φ with K_r = k_b 1 + (k_t − k_b) n nᵀ.
     #[inline(always)]
     pub fn resist(&self, bond: usize, moved: &Moved) -> Resisting {
-        let (n, k) = (self.n[bond], &self.k[bond]);
-        let arm = scale(0.5 * self.length[bond], n);
+        let (d, k) = (self.d[bond], &self.k[bond]);
+        let arm = scale(0.5, d);
         let g = add(moved.apart, cross(arm, moved.together));
-        // The part of g from rotations is across n.
-        let along = (k.normal - k.shear) * dot(n, moved.apart);
-        let twisted = (k.twist - k.bend) * dot(n, moved.turned);
+        // n nᵀ is d dᵀ/d². The part of g from rotations is across n.
+        let over = 1.0 / dot(d, d);
+        let along = over * (k.normal - k.shear) * dot(d, moved.apart);
+        let twisted = over * (k.twist - k.bend) * dot(d, moved.turned);
         Resisting {
-            force: add(scale(k.shear, g), scale(along, n)),
-            moment: add(scale(k.bend, moved.turned), scale(twisted, n)),
+            force: add(scale(k.shear, g), scale(along, d)),
+            moment: add(scale(k.bend, moved.turned), scale(twisted, d)),
             couple: scale(k.shear, cross(arm, g)),
         }
     }
@@ -145,19 +160,20 @@ impl Network {
     /// k_n (n·g)(n·g'), k_s g·g' across n, k_b φ·φ' across n, k_t (n·φ)(n·φ').
     #[inline(always)]
     pub fn work(&self, bond: usize, a: &Moved, b: &Moved) -> Modes {
-        let (n, k) = (self.n[bond], &self.k[bond]);
-        let arm = scale(0.5 * self.length[bond], n);
+        let (d, k) = (self.d[bond], &self.k[bond]);
+        let (arm, over) = (scale(0.5, d), 1.0 / dot(d, d));
+        // What is along n, times the length of the bond, and what is across.
         let split = |m: &Moved| {
             let g = add(m.apart, cross(arm, m.together));
-            let (along, twist) = (dot(n, g), dot(n, m.turned));
-            (along, sub(g, scale(along, n)), sub(m.turned, scale(twist, n)), twist)
+            let (along, twist) = (dot(d, g), dot(d, m.turned));
+            (along, sub(g, scale(over * along, d)), sub(m.turned, scale(over * twist, d)), twist)
         };
         let ((along, across, bend, twist), other) = (split(a), split(b));
         [
-            k.normal * along * other.0,
+            over * k.normal * along * other.0,
             k.shear * dot(across, other.1),
             k.bend * dot(bend, other.2),
-            k.twist * twist * other.3,
+            over * k.twist * twist * other.3,
         ]
     }
 
@@ -190,7 +206,7 @@ impl Network {
     /// middle [force length], these three without a sign.
     #[inline(always)]
     pub fn borne(&self, bond: usize, u: &[Six]) -> Modes {
-        let n = self.n[bond];
+        let n = self.n(bond);
         let r = self.resist(bond, &self.moved(bond, u, None));
         let (tension, twist) = (dot(n, r.force), dot(n, r.moment));
         let across = |a: Vec3, along: f64| length(sub(a, scale(along, n)));
@@ -201,8 +217,13 @@ impl Network {
     /// other sign beside the diagonal at the upper one.
     pub fn blocks(&self) -> Vec<Packed> {
         let mut out = vec![[0.0; 21]; self.particles];
-        self.pairs.gather(&mut out, |k, _| [self.end(k, true), self.end(k, false)]);
+        self.blocks_into(&mut out, |_, block, row| *row = *block);
         out
+    }
+
+    /// Hands the block of each particle over, with its row of `out`: nobody keeps all of them.
+    pub fn blocks_into<T: Send>(&self, out: &mut [T], take: impl Fn(usize, &Packed, &mut T) + Sync) {
+        self.pairs.gather_into(out, |k, _| [self.end(k, true), self.end(k, false)], take);
     }
 
     /// That of one particle, whose bonds these are.

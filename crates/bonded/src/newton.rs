@@ -133,7 +133,7 @@ impl Body<'_> {
         for (particle, k) in &walls {
             blocks[*particle as usize][super::six::at(self.walls.axis, self.walls.axis)] += k;
         }
-        let blocks = Blocks::new(blocks, self.held);
+        let blocks = Blocks::new(&blocks, self.held);
         out.loose = blocks.loose;
         let load: Vec<Six> = out.forces.iter().map(|f| f.map(|a| -a)).collect();
         let product = |p: &[Six], q: &mut [Six]| {

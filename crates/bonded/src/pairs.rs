@@ -49,6 +49,23 @@ impl Pairs {
         self.ends.is_empty()
     }
 
+    /// What pairs give to each particle, `pull(pair, places)` to the lower end and to the upper one, added up and handed to
+    /// `take(particle, sum, row)` with the row of the particle in `out`.
+    pub fn gather_into<const N: usize, T: Send>(
+        &self,
+        out: &mut [T],
+        pull: impl Fn(usize, [usize; 2]) -> [[f64; N]; 2] + Sync,
+        take: impl Fn(usize, &[f64; N], &mut T) + Sync,
+    ) {
+        par::each(out, |start, rows: &mut [T]| {
+            let mut sums = vec![[0.0; N]; rows.len()];
+            self.gather_chunk(start, &mut sums, &pull);
+            for (k, (sum, row)) in sums.iter().zip(rows).enumerate() {
+                take(start + k, sum, row);
+            }
+        });
+    }
+
     /// Adds what each pair gives to its lower end and to its upper one, `pull(pair, places)`, to the rows of `out`: one for each
     /// particle. What crosses a border of chunks is reckoned on both sides; each row is added to in the order of the pairs
     /// within its chunk, then of those from before.
@@ -57,25 +74,34 @@ impl Pairs {
         out: &mut [[f64; N]],
         pull: impl Fn(usize, [usize; 2]) -> [[f64; N]; 2] + Sync,
     ) {
+        par::each(out, |start, rows: &mut [[f64; N]]| self.gather_chunk(start, rows, &pull));
+    }
+
+    /// That of the chunk of particles that begins with `start`.
+    #[inline(always)]
+    pub fn gather_chunk<const N: usize>(
+        &self,
+        start: usize,
+        rows: &mut [[f64; N]],
+        pull: &(impl Fn(usize, [usize; 2]) -> [[f64; N]; 2] + Sync),
+    ) {
         if self.is_empty() {
             return;
         }
-        par::each(out, |start, rows: &mut [[f64; N]]| {
-            let chunk = start / par::CHUNK;
-            let own = self.first[chunk]..self.first[chunk + 1];
-            let late = &self.late[self.first_late[chunk] as usize..self.first_late[chunk + 1] as usize];
-            // One loop, so that there is one place into which `pull` is compiled.
-            for k in own.chain(late.iter().copied()).map(|k| k as usize) {
-                let [i, j] = self.ends[k].map(|place| place as usize);
-                let [low, high] = pull(k, [i, j]);
-                // An end outside of the chunk is below its first row or beyond its last.
-                for (place, more) in [(i, low), (j, high)] {
-                    if let Some(row) = rows.get_mut(place.wrapping_sub(start)) {
-                        row.iter_mut().zip(more).for_each(|(sum, a)| *sum += a);
-                    }
+        let chunk = start / par::CHUNK;
+        let own = self.first[chunk]..self.first[chunk + 1];
+        let late = &self.late[self.first_late[chunk] as usize..self.first_late[chunk + 1] as usize];
+        // One loop, so that there is one place into which `pull` is compiled.
+        for k in own.chain(late.iter().copied()).map(|k| k as usize) {
+            let [i, j] = self.ends[k].map(|place| place as usize);
+            let [low, high] = pull(k, [i, j]);
+            // An end outside of the chunk is below its first row or beyond its last.
+            for (place, more) in [(i, low), (j, high)] {
+                if let Some(row) = rows.get_mut(place.wrapping_sub(start)) {
+                    row.iter_mut().zip(more).for_each(|(sum, a)| *sum += a);
                 }
             }
-        });
+        }
     }
 }
 

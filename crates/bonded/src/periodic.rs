@@ -5,8 +5,8 @@ use super::network::{Moved, Network};
 use super::pcg::{MARGIN, solve};
 use super::precond::Blocks;
 use super::six::{Matrix6, Six};
+use super::ste::Estimate;
 use super::tensor::strain;
-use perigrain_base::math::vec3::dot;
 use perigrain_base::par;
 
 /// The solutions of the six load cases.
@@ -77,21 +77,7 @@ impl Cell {
     }
 }
 
-/// The tensor if all particles followed the strain: an upper bound.
+/// The tensor if all particles followed the strain: an upper bound, and an estimate of order 0.
 pub fn mean_field(network: &Network, volume: f64) -> Matrix6 {
-    let mut c = [[0.0; 6]; 6];
-    for (a, b) in (0..6).flat_map(|a| (a..6).map(move |b| (a, b))) {
-        let work = network.sum(|bond| {
-            let d = network.d(bond);
-            let follow = |case: usize| Moved {
-                apart: strain(case).map(|row| dot(row, d)),
-                together: [0.0; 3],
-                turned: [0.0; 3],
-            };
-            network.work(bond, &follow(a), &follow(b))
-        });
-        c[a][b] = work.iter().sum::<f64>() / volume;
-        c[b][a] = c[a][b];
-    }
-    c
+    Estimate::new(network, 0).whole(volume)
 }

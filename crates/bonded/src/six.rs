@@ -35,15 +35,6 @@ pub fn full(m: &Packed) -> Matrix6 {
     std::array::from_fn(|row| std::array::from_fn(|column| m[at(row, column)]))
 }
 
-/// m v.
-#[inline(always)]
-pub fn times(m: &Packed, v: &Six) -> Six {
-    std::array::from_fn(|row| {
-        (m[at(row, 0)] * v[0] + m[at(row, 1)] * v[1] + m[at(row, 2)] * v[2])
-            + (m[at(row, 3)] * v[3] + m[at(row, 4)] * v[4] + m[at(row, 5)] * v[5])
-    })
-}
-
 /// An inverse, with what it leaves out.
 pub struct Inverse {
     /// Of the matrix without the rows and columns left out, in which it is zero.
@@ -54,22 +45,32 @@ pub struct Inverse {
     pub negative: bool,
 }
 
-/// The inverse of a positive semidefinite matrix without the rows `held` (a bit each), and without those of which nothing is left
-/// once the rows before are eliminated. Rows below and from 3 on are of different units and compared among themselves.
-///
-/// Cholesky's decomposition in the form L D Lᵀ, then columns of the inverse one by one.
-pub fn invert(m: &Matrix6, held: u8) -> Inverse {
+/// Cholesky's decomposition in the form L D Lᵀ.
+pub struct Factors {
+    /// L, below its diagonal of ones.
+    pub l: Matrix6,
+    /// D, zero in rows that are left out.
+    pub d: Six,
+    /// Rows without a pivot, a bit each.
+    pub without: u8,
+    /// Some pivot was negative: the matrix is no stiffness.
+    pub negative: bool,
+}
+
+/// Decomposes a positive semidefinite matrix without the rows `held` (a bit each), and without those of which nothing is left once
+/// the rows before are eliminated. Rows below and from 3 on are of different units and compared among themselves.
+pub fn factor(m: &Matrix6, held: u8) -> Factors {
     let largest = |rows: std::ops::Range<usize>| rows.fold(0.0, |most: f64, r| most.max(m[r][r].abs()));
     let least = [PIVOT * largest(0..3), PIVOT * largest(3..6)];
     let (mut l, mut d) = (*m, [0.0; 6]);
-    let mut out = Inverse { inverse: [0.0; 21], without: 0, negative: false };
+    let (mut without, mut negative) = (0, false);
     for k in 0..6 {
         d[k] = l[k][k];
-        out.negative |= held >> k & 1 == 0 && d[k] < -least[k / 3];
+        negative |= held >> k & 1 == 0 && d[k] < -least[k / 3];
         if held >> k & 1 == 0 && d[k] <= least[k / 3] {
-            out.without |= 1 << k;
+            without |= 1 << k;
         }
-        if (held | out.without) >> k & 1 != 0 {
+        if (held | without) >> k & 1 != 0 {
             d[k] = 0.0;
             for r in k + 1..6 {
                 l[r][k] = 0.0;
@@ -87,6 +88,13 @@ pub fn invert(m: &Matrix6, held: u8) -> Inverse {
             l[r][k] /= d[k];
         }
     }
+    Factors { l, d, without, negative }
+}
+
+/// The inverse of a positive semidefinite matrix without what [`factor`] leaves out, column by column.
+pub fn invert(m: &Matrix6, held: u8) -> Inverse {
+    let Factors { l, d, without, negative } = factor(m, held);
+    let mut out = Inverse { inverse: [0.0; 21], without, negative };
     for column in (0..6).filter(|c| d[*c] != 0.0) {
         let mut v = [0.0; 6];
         v[column] = 1.0;
@@ -159,6 +167,11 @@ mod tests {
                 (0..6).map(|k| a[r][k] * a[c][k]).sum::<f64>() + f64::from(u8::from(r == c))
             })
         })
+    }
+
+    /// m v.
+    fn times(m: &Packed, v: &Six) -> Six {
+        std::array::from_fn(|row| (0..6).map(|c| m[at(row, c)] * v[c]).sum())
     }
 
     #[test]

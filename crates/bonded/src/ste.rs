@@ -28,29 +28,27 @@ impl Estimate {
     /// Of order 0: all follow the strain; 1, 2: as Jarolin and Dosta take them, one's own fluctuation a sweep ahead of the partners';
     /// from 3 on the same for both. Bonds are springs along and across their direction: rotations are left out.
     ///
-    /// K is symmetric, and with T = Σ K ε d of a particle Σ V C = Σ_bonds (ε d) K (ε d) − ½ Σ_particles T (φ own + φ other): no pass over
-    /// bonds but for the sweeps.
+    /// K is symmetric, and with T = Σ K ε d of a particle Σ V C = Σ_bonds (ε d) K (ε d) − ½ Σ_particles T (φ own + φ other): one
+    /// pass over bonds besides the sweeps.
     pub fn new(network: &Network, order: usize) -> Self {
         let mut out =
             Self { sum: affine(network), own: vec![], other: vec![], out: vec![false; network.particles] };
         if order == 0 {
             return out;
         }
-        let forces = pulls(network);
         let (inverse, without) = inverses(network);
         out.out = without;
-        out.other = vec![[0.0; 18]; network.particles];
-        out.own.clone_from(&forces);
-        solve(&mut out.own, &inverse);
-        for _ in 1..order {
+        // The first sweep begins with what follows the strain.
+        (out.own, out.other) = (vec![[0.0; 18]; network.particles], vec![[0.0; 18]; network.particles]);
+        for _ in 0..order {
             std::mem::swap(&mut out.own, &mut out.other);
-            sweep(network, &forces, &inverse, &out.other, &mut out.own);
+            sweep(network, &inverse, &out.other, &mut out.own);
         }
         if order > 2 {
             out.other.clone_from(&out.own);
         }
         out.sum = match out.without() {
-            0 => add_packed(&out.sum, &relaxation(&forces, &out.own, &out.other)),
+            0 => add_packed(&out.sum, &relaxation(network, &out.own, &out.other)),
             _ => par_sum(&out.local(network)),
         };
         out
@@ -97,7 +95,7 @@ fn par_sum(all: &[Packed]) -> Packed {
 fn affine(network: &Network) -> Packed {
     // k_s d d as xx yy zz yz xz xy, then the second sum.
     let bond = |sum: &mut [f64; 27], bond: usize| {
-        let (n, l, k) = (network.n[bond], network.length[bond], &network.k[bond]);
+        let (n, l, k) = (network.n(bond), network.length(bond), &network.k[bond]);
         let nn = VOIGT.map(|(i, j)| l * n[i] * n[j]);
         (0..6).for_each(|a| sum[a] += k.shear * l * nn[a]);
         let scaled = nn.map(|a| (k.normal - k.shear) * a);
@@ -144,14 +142,20 @@ fn affine(network: &Network) -> Packed {
     std::array::from_fn(|k| dots[k] + sum[6 + k])
 }
 
-/// −½ Σ_particles T_a·(φ own + φ other)_b, symmetric.
-fn relaxation(forces: &[Six3], own: &[Six3], other: &[Six3]) -> Packed {
+/// −½ Σ_particles T_a·(φ own + φ other)_b, symmetric; T = Σ K ε d is reckoned chunk by chunk, so that nobody keeps it.
+fn relaxation(network: &Network, own: &[Six3], other: &[Six3]) -> Packed {
     let chunk = |range: std::ops::Range<usize>| {
         let mut sum = [[0.0; 6]; 6];
-        for k in range {
+        let mut pulls = vec![[0.0; 18]; range.len()];
+        network.pairs.gather_chunk(range.start, &mut pulls, &|bond, _| {
+            let pull = Pull::new(network, bond);
+            let f = pull.times_all(&pull.stretches_by_axis());
+            [f, f.map(|f| -f)]
+        });
+        for (k, pulls) in range.zip(&pulls) {
             let phi: Six3 = std::array::from_fn(|c| own[k][c] + other[k][c]);
             for a in 0..6 {
-                let [x, y, z] = vector(&forces[k], a).map(|f| 0.5 * f);
+                let [x, y, z] = vector(pulls, a).map(|f| 0.5 * f);
                 for b in 0..6 {
                     sum[a][b] -= x * phi[b] + y * phi[6 + b] + z * phi[12 + b];
                 }
@@ -163,19 +167,7 @@ fn relaxation(forces: &[Six3], own: &[Six3], other: &[Six3]) -> Packed {
         }
         out
     };
-    par::reduce(forces.len(), chunk, |a, b| add_packed(&a, &b)).unwrap_or([0.0; 21])
-}
-
-/// T = Σ K ε d of every particle.
-fn pulls(network: &Network) -> Vec<Six3> {
-    let mut out = vec![[0.0; 18]; network.particles];
-    network.pairs.gather(&mut out, |bond, _| {
-        let pull = Pull::new(network, bond);
-        let stretches = pull.stretches();
-        let f = pull.times_all(&std::array::from_fn(|k| stretches[k % 6][k / 6]));
-        [f, f.map(|f| -f)]
-    });
-    out
+    par::reduce(own.len(), chunk, |a, b| add_packed(&a, &b)).unwrap_or([0.0; 21])
 }
 
 /// S⁻¹ of every particle, S = Σ K, six numbers; zero for those of which some displacement meets no resistance, and who they are.
@@ -235,11 +227,16 @@ fn solve(f: &mut [Six3], inverse: &[[f64; 6]]) {
 }
 
 /// φ = S⁻¹ Σ K (ε d + φ of the partner).
-fn sweep(network: &Network, forces: &[Six3], inverse: &[[f64; 6]], before: &[Six3], phi: &mut [Six3]) {
-    phi.copy_from_slice(forces);
+fn sweep(network: &Network, inverse: &[[f64; 6]], before: &[Six3], phi: &mut [Six3]) {
+    par::each(&mut *phi, |_, rows: &mut [Six3]| rows.fill([0.0; 18]));
     network.pairs.gather(phi, |bond, [i, j]| {
         let pull = Pull::new(network, bond);
-        [pull.times_all(&before[j]), pull.times_all(&before[i])]
+        let stretches = pull.stretches_by_axis();
+        let (low, high) = (&before[j], &before[i]);
+        [
+            pull.times_all(&std::array::from_fn(|c| low[c] + stretches[c])),
+            pull.times_all(&std::array::from_fn(|c| high[c] - stretches[c])),
+        ]
     });
     solve(phi, inverse);
 }
@@ -261,7 +258,7 @@ impl Pull {
     #[inline(always)]
     fn new(network: &Network, bond: usize) -> Self {
         let k = &network.k[bond];
-        Self { d: network.d(bond), n: network.n[bond], across: k.shear, along: k.normal - k.shear }
+        Self { d: network.d(bond), n: network.n(bond), across: k.shear, along: k.normal - k.shear }
     }
 
     /// K u = k_s u + (k_n − k_s) n (n·u).
@@ -290,6 +287,13 @@ impl Pull {
         let [x, y, z] = self.d;
         let [a, b, c] = self.d.map(|d| 0.5 * d);
         [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z], [0.0, c, b], [c, 0.0, a], [b, a, 0.0]]
+    }
+
+    /// The same, all x, all y, all z.
+    #[inline(always)]
+    fn stretches_by_axis(&self) -> Six3 {
+        let stretches = self.stretches();
+        std::array::from_fn(|k| stretches[k % 6][k / 6])
     }
 
     /// ½ d ⊗ K (ε d − φ_low + φ_high) for all six strains, symmetric in all ways: a particle's half of the bond.

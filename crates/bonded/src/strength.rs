@@ -91,7 +91,7 @@ pub fn crumble(
     share: impl Fn(usize, &Modes) -> f64 + Sync,
 ) -> Path {
     let rows = Rows::new(&network);
-    let mut blocks = Blocks::new(network.blocks(), &held.mask);
+    let mut blocks = Blocks::of_network(&network, &held.mask);
     let mut energy: f64 = network.energy(&field).iter().sum();
     let first = energy;
     let mut out =

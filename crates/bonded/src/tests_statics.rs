@@ -33,7 +33,7 @@ fn test(body: &Body, network: Network, hold: Hold, rotations: bool, stop: Stop, 
             *row = std::array::from_fn(|c| if held >> c & 1 == 1 { row[c] } else { 0.0 });
         }
     }
-    let blocks = Blocks::new(network.blocks(), &held.mask);
+    let blocks = Blocks::of_network(&network, &held.mask);
     let answer = relax(&network, &blocks, &held, start, rotations, stop);
     let force = |end: usize| reaction(&network, &answer.field, &ends.members[end], 2) / delta;
     let by_force = [-force(0), force(1)];
@@ -124,7 +124,7 @@ fn cantilevers_are_beams() {
             // Across and along the bar, and a twist.
             (tip[n][1], tip[n][0], tip[n][3]) = (load, 2.0 * load, 1e-6);
             let mut u = vec![[0.0; 6]; n + 1];
-            let blocks = Blocks::new(network.blocks(), &mask);
+            let blocks = Blocks::of_network(&network, &mask);
             let out =
                 solve(|u, o| network.product(u, o), &blocks, Some(&tip), &mut u, 0.0, 10_000, |_| false);
             // Printed with 12 digits; conjugate gradients on a chain of 40 bends leave 1e-9 of it.
@@ -173,7 +173,7 @@ fn bounds_hold_and_fall() {
         let sample = Sample { x: &body.x, radius: &radius, axis: 2 };
         let ends = Ends::new(&sample, sample.mean_radius());
         let held = Held::new(&sample, &ends, [Hold::Grip; 2], true, &network.pieces());
-        let blocks = Blocks::new(network.blocks(), &held.mask);
+        let blocks = Blocks::of_network(&network, &held.mask);
         let delta = exact.delta;
         let mut u = affine(&sample, &ends, [Hold::Grip; 2], &held, delta, [0.2, 0.2, 0.0]);
         let certificate =

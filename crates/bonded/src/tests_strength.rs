@@ -22,7 +22,7 @@ fn pull(
     let held = Held::new(&sample, &ends, [Hold::Grip; 2], true, &network.pieces());
     let delta = 0.01 * ends.free_length();
     let mut field = affine(&sample, &ends, [Hold::Grip; 2], &held, delta, [0.0; 3]);
-    let blocks = Blocks::new(network.blocks(), &held.mask);
+    let blocks = Blocks::of_network(&network, &held.mask);
     solve(|u, out| network.product(u, out), &blocks, None, &mut field, 0.0, 10_000, |_| false);
     let origin = network.pairs.origin.clone();
     let share = |k: usize, bears: &[f64; 4]| bears[0] / strength(origin[k] as usize);

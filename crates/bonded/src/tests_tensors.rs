@@ -18,7 +18,7 @@ fn near(a: f64, b: f64, tolerance: f64) {
 
 fn blocks(network: &Network, rotations: bool) -> Blocks {
     let held = if rotations { 0 } else { ROTATIONS };
-    Blocks::new(network.blocks(), &vec![held; network.particles])
+    Blocks::of_network(network, &vec![held; network.particles])
 }
 
 /// All 36 numbers are those of a cubic tensor.
@@ -146,7 +146,7 @@ fn sweeps_of_a_periodic_pack_converge_to_its_tensor() {
     near(e(&mean_field(&network, volume)), orders[0], 1e-12);
     // In closed form, for bonds in all directions alike: E = s (2 + 3ξ)/(3 (4 + ξ)), ν = (1 − ξ)/(4 + ξ), s = Σ k_n L²/V.
     let s: f64 =
-        (0..network.bonds()).map(|k| network.k[k].normal * network.length[k].powi(2)).sum::<f64>() / volume;
+        (0..network.bonds()).map(|k| network.k[k].normal * network.length(k).powi(2)).sum::<f64>() / volume;
     let xi = network.k[0].shear / network.k[0].normal;
     // 1 %: directions of 950 bonds.
     near(orders[0], s * (2.0 + 3.0 * xi) / (3.0 * (4.0 + xi)), 0.01);

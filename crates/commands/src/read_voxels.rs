@@ -37,7 +37,8 @@ impl Style for ReadVoxels {
                    - `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;\n\
                    - `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;\n\
                    - `.vti`: VTK's XML images in one piece; of several arrays `array` says which, of cells or of points.\n\n\
-                   Packed TIFF is refused by name. NRRD, PNG and TIFF are read slice by slice, twice: memory is needed for the particles and one slice; a `.vti` is read whole.\n\n\
+                   Packed TIFF is refused by name. Images are read slice by slice, twice: memory is needed for the particles and one slice. A `.vti` is so where its \
+                   arrays are appended raw, packed by zlib or not, as ParaView writes them; one whose arrays are text or base64 is read whole.\n\n\
                    Edges of voxels are the file's, or `spacing`'s, which a file without them needs (PNG, TIFF). The image begins where the file says, else with its lower corner at the \
                    origin; columns lie along x, rows along y with the first one lowest. Images in flat scenes have one slice, which lies at z = 0; its depth counts in the volume.\n\n\
                    Each voxel with a type is a particle, in its middle with its volume. `resample` H makes blocks of about H instead (a whole number of them along each edge of the image; the log \

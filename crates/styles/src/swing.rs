@@ -98,8 +98,7 @@ pub fn swinging(
     let network = Network::new(members.len(), &ends, |k| (known[k].d, known[k].swing.stiffness));
     let damped = known.iter().any(|b| b.swing.dashpots != Default::default());
     let dashpots = damped.then(|| {
-        let k = network.pairs.origin.iter().map(|k| known[*k as usize].swing.dashpots).collect();
-        Network { k, ..network.clone() }
+        network.with(network.pairs.origin.iter().map(|k| known[*k as usize].swing.dashpots).collect())
     });
     let inertia = |i: &usize| {
         let m = if moves(*i) { mass(*i) } else { f64::INFINITY };

@@ -34,7 +34,7 @@ pub fn cell(w: &World, scene: &Scene, span: Span) -> Result<f64> {
 /// Solves the six load cases of a cell.
 pub fn solve_cell(scene: &Scene, words: &Words, tol: f64, from: Option<Cell>) -> (Cell, usize) {
     let held = if words.rotations { 0 } else { ROTATIONS };
-    let blocks = Blocks::new(scene.network.blocks(), &vec![held; scene.places.len()]);
+    let blocks = Blocks::of_network(&scene.network, &vec![held; scene.places.len()]);
     (Cell::new(&scene.network, &blocks, tol, from), blocks.loose)
 }
 

@@ -49,38 +49,45 @@ impl Scene {
         let p = &w.particles;
         let member = |i: usize| p.mask[i] & group.bit() != 0;
         let places = in_space((0..w.n()).filter(|i| member(*i)).collect(), &p.x);
-        let found = find(w, |_| true, span)?;
-        let bonds: Vec<_> = found.into_iter().filter(|(_, b)| b.ends.iter().all(|i| member(*i))).collect();
-        if bonds.is_empty() {
+        let mut row = vec![u32::MAX; w.n()];
+        places.iter().enumerate().for_each(|(k, place)| row[*place] = k as u32);
+        // Of millions of bonds no more is kept than where they stand in the list, and the rows of their ends.
+        let (mut listed, mut ends) = (vec![], vec![]);
+        for (at, bond) in find(w, |_| true, span)? {
+            if bond.ends.iter().all(|i| member(*i)) {
+                listed.push(at as u32);
+                ends.push(bond.ends.map(|i| row[i]));
+            }
+        }
+        if listed.is_empty() {
             let text = format!("there are no bonds between particles of group `{}`", w.groups.name(group));
             let help =
                 "make some with `create_bonds` or `read_data`, and check which particles the group holds";
             return Err(Diagnostic::error(Code::WRONG_ORDER, span, text).help(help).into());
         }
-        let mut row = vec![u32::MAX; w.n()];
-        places.iter().enumerate().for_each(|(k, place)| row[*place] = k as u32);
-        let ends: Vec<[u32; 2]> = bonds.iter().map(|(_, b)| b.ends.map(|i| row[i])).collect();
+        let joined = |k: usize| ends[k].map(|row| places[row as usize]);
         // `apart` is first less second.
-        let vector = |k: usize| apart(w, &period, bonds[k].1.ends).map(|a| -a);
+        let vector = |k: usize| apart(w, &period, joined(k)).map(|a| -a);
         let said = |k: usize| {
-            let (at, bond) = &bonds[k];
-            let rest = w.bonds.list[*at].length;
-            let length = if rest > 0.0 { rest } else { length(vector(k)) };
+            let bond = &w.bonds.list[listed[k] as usize];
             Said {
-                kind: bond.kind,
-                length,
-                radii: bond.ends.map(|i| p.radius.get(i).copied().unwrap_or(0.0)),
-                ids: w.bonds.list[*at].ends,
+                kind: bond.kind as u16,
+                length: if bond.length > 0.0 { bond.length } else { length(vector(k)) },
+                radii: joined(k).map(|i| p.radius.get(i).copied().unwrap_or(0.0)),
+                ids: bond.ends,
             }
         };
-        for k in 0..bonds.len() {
-            check(w, &said(k), length(vector(k)), bonds[k].1.ends, style, span)?;
+        for k in 0..ends.len() {
+            check(w, &said(k), length(vector(k)), joined(k), style, span)?;
         }
-        let network = Network::new(places.len(), &ends, |k| (vector(k), stiffness(style, &said(k))));
-        let bonds = network.pairs.origin.iter().filter(|_| varied).map(|k| said(*k as usize)).collect();
+        let mut network = Network::new(places.len(), &ends, |k| (vector(k), stiffness(style, &said(k))));
+        // Whose bond is whose matters no more once the style has been asked.
+        let origin = std::mem::take(&mut network.pairs.origin);
+        let bonds = origin.into_iter().filter(|_| varied).map(|k| said(k as usize)).collect();
         let x = places.iter().map(|i| p.x[*i]).collect();
         // Particles without a radius reach half way to their partners.
-        let half = 0.5 * network.length.iter().sum::<f64>() / network.length.len() as f64;
+        let half =
+            0.5 * (0..network.bonds()).map(|k| network.length(k)).sum::<f64>() / network.bonds() as f64;
         let radius =
             places.iter().map(|i| p.radius.get(*i).copied().filter(|r| *r > 0.0).unwrap_or(half)).collect();
         Ok(Self { places, x, radius, network, bonds, period: period.length })

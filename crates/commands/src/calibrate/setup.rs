@@ -184,7 +184,7 @@ impl Setup {
 
     /// The preconditioner of the bonds.
     pub fn blocks(&self, scene: &Scene) -> Blocks {
-        Blocks::new(scene.network.blocks(), &self.held.mask)
+        Blocks::of_network(&scene.network, &self.held.mask)
     }
 
     fn by_newton(&self, scene: &Scene, words: &Words, tol: f64, start: Vec<Six>) -> Response {

@@ -143,7 +143,7 @@ impl Estimator {
         let [a, b] = scene.sample(words.axis).across().map(|d| moduli.poisson[words.axis][d]);
         let contacts: f64 = self.springs.iter().map(|(_, d, k)| k[0] * dot(*d, *d)).sum();
         let network = &scene.network;
-        let bonds: f64 = (0..network.bonds()).map(|k| network.k[k].normal * network.length[k].powi(2)).sum();
+        let bonds: f64 = (0..network.bonds()).map(|k| network.k[k].normal * network.length(k).powi(2)).sum();
         Ok(Estimated {
             tensor,
             stiffness: if self.walls.is_empty() { body } else { self.between_walls(body) },

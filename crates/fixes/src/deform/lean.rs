@@ -173,10 +173,14 @@ pub fn tilts(leans: &[Lean; 3], w: &World, t: &Tick, lengths: [f64; 3]) -> Resul
                 (now[k] + rate * steering.span(w, t), rate)
             }
         };
-        let edge = lengths[ALONG[k]];
-        let over = target / edge - now[k] / domain.lengths()[ALONG[k]];
-        let edges = (over - 0.5).ceil();
-        tilts[k] = if edges == 0.0 { target } else { target - edges * edge };
+        let (edge, leans) = (lengths[ALONG[k]], now[k] / domain.lengths()[ALONG[k]]);
+        let over = target / edge - leans;
+        tilts[k] = if w.settings.lammps() && over.abs() < FAR {
+            one_by_one(target, edge, leans)
+        } else {
+            let edges = (over - 0.5).ceil();
+            if edges == 0.0 { target } else { target - edges * edge }
+        };
         rates[k] = rate;
         if !tilts[k].is_finite() {
             let text = format!("the box would lean by {} = {target} at step {}", NAMES[k], t.step);
@@ -184,6 +188,22 @@ pub fn tilts(leans: &[Lean; 3], w: &World, t: &Tick, lengths: [f64; 3]) -> Resul
         }
     }
     Ok((tilts, rates))
+}
+
+/// Of more edges than this nobody counts one by one.
+const FAR: f64 = 1000.0;
+
+/// The tilt whole edges from `target` that is nearest to a box which leans by so many of them now, in LAMMPS' arithmetic: edges are
+/// taken away and added one by one. In its rounding corners move, and by these lists are made.
+fn one_by_one(mut target: f64, edge: f64, leans: f64) -> f64 {
+    while target / edge - leans > 0.0 {
+        target -= edge;
+    }
+    while target / edge - leans < 0.0 {
+        target += edge;
+    }
+    let before = (target / edge - 1.0 - leans).abs() < (target / edge - leans).abs();
+    if before { target - edge } else { target }
 }
 
 /// How fast tilts grow, as compute temp/deform asks for it: see [`super::track::streaming`].
@@ -220,6 +240,16 @@ pub fn flip(domain: &Domain) -> Option<Flip> {
 mod tests {
     use super::*;
     use perigrain_world::{Boundary, Face};
+
+    #[test]
+    fn edges_counted_one_by_one_end_where_a_division_does() {
+        for (target, leans, nearest) in
+            [(0.7, 0.2, 0.7), (9.1, 0.2, 1.1), (-9.1, 0.2, 0.9), (2.2, 0.1, 0.2), (0.2, 0.1, 0.2)]
+        {
+            // Some additions of numbers below ten.
+            assert!((one_by_one(target, 2.0, leans) - nearest).abs() < 1e-14, "{target}");
+        }
+    }
 
     #[test]
     fn a_flip_leads_to_the_box_that_leans_less() {

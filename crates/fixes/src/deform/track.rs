@@ -178,6 +178,12 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
         }
     }
     follow(tracks, &mut at, &mut rate);
+    for (d, track) in tracks.iter().enumerate().filter(|_| w.settings.lammps()) {
+        // LAMMPS takes the length that the box still has for the one that it gets.
+        if let Way::Exponential(r) = track.way {
+            rate[d] = r * (domain.hi[d] - domain.lo[d]);
+        }
+    }
     for (d, [lo, hi]) in at.iter().enumerate() {
         if tracks[d].moves() && !(hi > lo && (hi - lo).is_finite()) {
             let text = format!(

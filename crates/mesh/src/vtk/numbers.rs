@@ -36,14 +36,19 @@ impl Kind {
         }
     }
 
-    /// The number in these bytes, of which there are as many as it has.
-    pub fn read(self, bytes: &[u8], big_endian: bool) -> f64 {
+    /// The whole number without a sign in these bytes, of which there are as many as it has.
+    pub fn whole(self, bytes: &[u8], big_endian: bool) -> u64 {
         let mut b = [0u8; 8];
         let size = self.size();
         for (k, byte) in bytes.iter().take(size).enumerate() {
             b[if big_endian { size - 1 - k } else { k }] = *byte;
         }
-        let low = u64::from_le_bytes(b);
+        u64::from_le_bytes(b)
+    }
+
+    /// The number in these bytes, of which there are as many as it has.
+    pub fn read(self, bytes: &[u8], big_endian: bool) -> f64 {
+        let low = self.whole(bytes, big_endian);
         match self {
             Kind::I8 => f64::from(low as u8 as i8),
             Kind::U8 => f64::from(low as u8),
@@ -60,7 +65,19 @@ impl Kind {
 
     /// All numbers in these bytes.
     pub fn read_all(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
-        bytes.chunks_exact(self.size()).map(|b| self.read(b, big_endian)).collect()
+        let mut all = vec![];
+        self.read_into(bytes, big_endian, &mut all);
+        all
+    }
+
+    /// All numbers in these bytes, in the place of those that `all` holds.
+    pub fn read_into(self, bytes: &[u8], big_endian: bool, all: &mut Vec<f64>) {
+        all.clear();
+        match self {
+            // Most images are of these, and large.
+            Kind::U8 => all.extend(bytes.iter().map(|b| f64::from(*b))),
+            _ => all.extend(bytes.chunks_exact(self.size()).map(|b| self.read(b, big_endian))),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! VTK's XML files: tags, and arrays as text, base64 or raw bytes, packed by zlib or not.
 
+use super::appended::Place;
 use super::numbers::Kind;
 use super::tags::{Tag, next};
 use perigrain_base::base64;
@@ -216,6 +217,14 @@ impl<'a> Document<'a> {
     /// The array of this name, or the first one for an empty name.
     pub fn array<'p>(&self, piece: &'p Piece, of: &str, name: &str) -> Option<&'p Array> {
         piece.arrays.iter().find(|a| a.of == of && (name.is_empty() || a.name == name))
+    }
+
+    /// Where an array is that can be read as it is needed: behind the tags, raw.
+    pub fn place(&self, a: &Array) -> Option<Place> {
+        let (Format::Appended(offset), Some((start, true))) = (a.format, self.appended) else { return None };
+        let start = (start as u64).checked_add(offset as u64)?;
+        let (big_endian, wide, packed) = (self.big_endian, self.wide, self.packed);
+        Some(Place { start, kind: a.kind, big_endian, wide, packed })
     }
 
     /// The numbers of an array.

@@ -146,7 +146,7 @@ pub fn read(path: &Path) -> Result<Saved> {
         check_whole(&mut file, size).map_err(failed)?.map_err(|(why, help)| refuse(why).help(help))?;
 
     file.seek(SeekFrom::Start(16)).map_err(failed)?;
-    let mut reader = BufReader::with_capacity(1 << 20, file.take(crc_at - 16));
+    let mut reader = BufReader::with_capacity(at_most(size), file.take(crc_at - 16));
     let mut program = [0u8; 1];
     reader.read_exact(&mut program).map_err(failed)?;
     let mut version = vec![0u8; usize::from(program[0])];
@@ -161,7 +161,7 @@ pub fn read(path: &Path) -> Result<Saved> {
         return Err(refuse(why).help(help).into());
     }
     // Room for the longest text in it: names and words of a deck.
-    let mut room = vec![0u8; 1 << 20];
+    let mut room = vec![0u8; at_most(size)];
     let (mut saved, _): (Saved, _) = postcard::from_io((reader, &mut room)).map_err(|e| {
         refuse(format!("holds no scene: {e}")).help("it was made by hand or by another program")
     })?;
@@ -171,6 +171,11 @@ pub fn read(path: &Path) -> Result<Saved> {
         return Err(contradiction(refuse, "pair", "a line was said under a lattice that is none").into());
     }
     Ok(saved)
+}
+
+/// Bytes of a buffer for a file of this size: small files are many, and a large buffer costs more than they do.
+fn at_most(size: u64) -> usize {
+    size.min(1 << 20) as usize
 }
 
 /// A file that is whole and yet not what a perigrain writes.
@@ -222,8 +227,8 @@ fn check_whole(file: &mut File, size: u64) -> std::io::Result<std::result::Resul
     }
     let mut hasher = crc32fast::Hasher::new();
     file.seek(SeekFrom::Start(0))?;
-    let mut reader = BufReader::with_capacity(1 << 20, Read::by_ref(file).take(end + 8));
-    let mut buffer = vec![0u8; 1 << 20];
+    let mut reader = Read::by_ref(file).take(end + 8);
+    let mut buffer = vec![0u8; at_most(size)];
     loop {
         match reader.read(&mut buffer)? {
             0 => break,

@@ -2,7 +2,7 @@
 
 use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
 use super::mdr::Press;
-use super::reach::reaching;
+use super::reach::{reaching, refuse_giants};
 use perigrain_base::diag::Result;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
@@ -133,6 +133,7 @@ impl Force {
         }
         self.hand_over(w);
         let wanted = reaching(&self.rules, &self.wanted, w);
+        refuse_giants(w, &wanted, skin)?;
         self.plain.list = near(w, built_at(w), &wanted, skin, &Allowed::new(w));
         Ok(())
     }

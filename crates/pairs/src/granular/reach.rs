@@ -1,9 +1,51 @@
 //! How far types of grains reach for each other.
 
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::cformat::general;
 use perigrain_contact::ContactLaw;
 use perigrain_contact::driver::Rules;
 use perigrain_neigh::list::{Reach, Wanted};
 use perigrain_world::World;
+
+/// In more images than this grains do not meet each other, and are not looked for.
+const IMAGES: [f64; 2] = [1e4, 1e6];
+
+/// Refuses grains so large for a box that repeats that they would touch each other across its faces thousands of times over.
+///
+/// # Errors
+/// The diameter of the largest one.
+pub fn refuse_giants(w: &World, wanted: &Wanted, skin: f64) -> Result<()> {
+    let (largest, heights) = (largest(w), w.periods().heights());
+    let types = 1..=w.types as u16;
+    for (a, b) in types.clone().flat_map(|a| (a..=w.types as u16).map(move |b| (a, b))) {
+        let [ra, rb] = [a, b].map(|k| largest[usize::from(k) - 1]);
+        let gap = match wanted.get(a, b) {
+            Some(Reach::Touch) => 0.0,
+            Some(Reach::Beyond(gap)) => gap,
+            Some(Reach::Fixed(_)) | None => continue,
+        };
+        if ra + rb == 0.0 {
+            continue;
+        }
+        let images = |far: f64| -> f64 {
+            let along = |height: f64| if height > 0.0 { 2.0 * (far / height).ceil() + 1.0 } else { 1.0 };
+            heights.map(along).into_iter().product()
+        };
+        let far = ra + rb + gap;
+        if images(far) > IMAGES[0] || images(far + skin) > IMAGES[1] {
+            let text = format!(
+                "grains of diameter {} with a skin of {} do not go with the periodic box: they reach into {} images of it",
+                general(2.0 * ra.max(rb), 4),
+                general(skin, 4),
+                general(images(far + skin), 3)
+            );
+            return Err(Diagnostic::error(Code::CONFLICT, None, text)
+                .help("make the grains or the skin (`neighbor`) smaller or the box larger, or let its faces not repeat (`boundary f f f`)")
+                .into());
+        }
+    }
+    Ok(())
+}
 
 /// The largest radius of each type (index type − 1).
 pub fn largest(w: &World) -> Vec<f64> {

@@ -133,3 +133,20 @@ fn unreadable(path: &Path, word: &Word, e: &std::io::Error) -> perigrain_base::d
     let text = format!("the image `{}` cannot be read: {e}", path.display());
     Diagnostic::error(gate::code(e), word.span, text).into()
 }
+
+/// The error of a slice that cannot be read: which one, counted from 0, of how many.
+fn cut_off(
+    name: &str,
+    [slice, of]: [usize; 2],
+    word: &Word,
+    e: &std::io::Error,
+) -> perigrain_base::diag::Diagnostics {
+    let slice = slice + 1;
+    let text = match e.kind() {
+        std::io::ErrorKind::UnexpectedEof => {
+            format!("the image `{name}` is cut off: it ends within slice {slice} of {of}")
+        }
+        _ => format!("the image `{name}` cannot be read in slice {slice}: {e}"),
+    };
+    Diagnostic::error(Code::BAD_FILE, word.span, text).into()
+}

@@ -1,7 +1,7 @@
 //! NRRD images (`.nrrd`, `.nhdr`), raw or packed by gzip, read as they are needed.
 
 use super::super::file::{File, not_read};
-use super::{Image, Info, locate, passable, unreadable};
+use super::{Image, Info, cut_off, locate, passable, unreadable};
 use crate::data::text::{Line, Lines, whole};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::gate;
@@ -232,19 +232,11 @@ impl Image for Nrrd {
         let h = &self.header;
         let [nx, ny, nz] = h.info.size;
         self.bytes.resize(nx * ny * h.kind.size(), 0);
-        if let Err(e) = self.reader.read_exact(&mut self.bytes) {
-            let name = self.path.display();
-            let text = match e.kind() {
-                std::io::ErrorKind::UnexpectedEof => {
-                    format!("the image `{name}` is cut off: it ends within slice {} of {nz}", self.slice + 1)
-                }
-                _ => format!("the image `{name}` cannot be read in slice {}: {e}", self.slice + 1),
-            };
-            return fail(Code::BAD_FILE, self.word.span, text);
-        }
+        let read = self.reader.read_exact(&mut self.bytes);
+        let name = self.path.display().to_string();
+        read.map_err(|e| cut_off(&name, [self.slice, nz], &self.word, &e))?;
         self.slice += 1;
-        values.clear();
-        values.extend(self.bytes.chunks_exact(h.kind.size()).map(|b| h.kind.read(b, h.big_endian)));
+        h.kind.read_into(&self.bytes, h.big_endian, values);
         Ok(())
     }
 }

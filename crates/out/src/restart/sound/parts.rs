@@ -63,7 +63,9 @@ pub fn stand(w: &World) -> bool {
     let energies = [t.atom.len(), t.bond_atom.len(), t.fix_atom.len()];
     let virials = [t.atom_virial.len(), t.atom_bonds.len(), t.atom_fixes.len()];
     let places = [r.held.len(), r.kept.x.len()];
-    energies.into_iter().chain(virials).chain(places).all(|len| len == 0 || len == w.n())
+    // Where nobody had moved since creation no places are held.
+    let held = r.unmoved || r.held.len() == w.n();
+    held && energies.into_iter().chain(virials).chain(places).all(|len| len == 0 || len == w.n())
 }
 
 pub fn rebuild(w: &World) -> Outcome {
