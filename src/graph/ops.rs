@@ -44,7 +44,8 @@ impl Op for Reneighbor {
         if t.setup {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
-            w.rebuild.due = false;
+            // A box that leans too far since the last step of a run is flipped in the first one of the next, as in LAMMPS.
+            w.rebuild.due = w.domain.as_ref().is_some_and(|d| d.flip.is_some());
             w.rebuild.freed.clear();
             return rebuild(w, t, self, true);
         }
@@ -190,7 +191,9 @@ fn flip(w: &mut World) {
 fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> {
     let n = w.n();
     let before = w.rebuild.generation;
-    flip(w);
+    if !t.setup {
+        flip(w);
+    }
     let Some(domain) = &mut *w.domain else { return Ok(()) };
     let p = &mut w.particles;
     let extent = Extent::of(&p.x, domain);

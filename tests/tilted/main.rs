@@ -60,6 +60,11 @@ fn grains_whose_lists_outlast_rebuilds_of_a_sheared_box_agree() {
 }
 
 #[test]
+fn a_box_that_leans_too_far_at_the_end_of_a_run_is_flipped_in_the_next_one() {
+    agrees("later", &[]);
+}
+
+#[test]
 fn places_that_move_along_with_the_box_agree() {
     agrees("remapped", &["remapped.dump"]);
 }

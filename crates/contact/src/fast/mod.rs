@@ -294,7 +294,7 @@ impl<L: ContactLaw> Fast<L> {
 
     /// Takes pairs into the lists that `keep` has only now let in, told by their grains; `grains` and `frame` are those of the last
     /// [`Fast::rebuild`]. The lists are those that a rebuild would make. `false`, and nothing is done, where only a rebuild will do:
-    /// before an evaluation, and beside large grains.
+    /// before an evaluation, beside large grains, and where grains or images have been moved since.
     pub fn admit(
         &mut self,
         grains: &Grains,
@@ -304,7 +304,8 @@ impl<L: ContactLaw> Fast<L> {
     ) -> bool {
         let reach = frame.reach + self.span;
         let [edge, far] = edges(grains.radius, reach);
-        if self.stale || self.book.is_some() || edge != far || grains.tag != self.tag {
+        let elsewhere = !self.turns.is_empty() || self.period != frame.period;
+        if self.stale || self.book.is_some() || edge != far || elsewhere || grains.tag != self.tag {
             return false;
         }
         let mut slabs = Slabs::default();

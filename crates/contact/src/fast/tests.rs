@@ -400,6 +400,20 @@ fn small_grains_beside_large_ones_have_slabs_of_their_own() {
     }
 }
 
+#[test]
+fn beside_grains_that_went_around_the_box_only_a_rebuild_will_do() {
+    let s = scene(PERIODS[2]);
+    let mut fast = FastLoop::new(false, between);
+    fast.step(&s, 0);
+    let frame = Frame { lo: [0.0; 3], period: s.period, reach: SKIN, skin: SKIN };
+    let admit = |fast: &mut FastLoop| fast.fast.admit(&s.grains(), &frame, &[7], &|i, j| s.keep(i, j));
+    assert!(admit(&mut fast));
+    let mut turns = vec![[0; 3]; s.x.len()];
+    turns[s.x.len() / 2] = [1, 0, 0];
+    fast.fast.turn(&turns, &s.period);
+    assert!(!admit(&mut fast));
+}
+
 /// What is left of 20 steps.
 fn end(first: &Scene, mut fast: FastLoop) -> (Vec<Vec3>, Vec<Vec3>, Got) {
     let mut s = first.clone();
