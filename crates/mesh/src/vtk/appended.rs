@@ -4,7 +4,7 @@ use super::numbers::Kind;
 use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom};
 
 /// Deflate packs a thousand bytes into one at most: more than that is forged.
-const DENSEST: u64 = 1100;
+pub const DENSEST: u64 = 1100;
 
 /// Where an array's bytes are in its file, and how they are kept.
 #[derive(Clone, Copy, Debug)]

@@ -1,13 +1,13 @@
 //! VTK's XML files: tags, and arrays as text, base64 or raw bytes, packed by zlib or not.
 
-use super::appended::Place;
+use super::appended::{Appended, DENSEST, Place};
 use super::numbers::Kind;
 use super::tags::{Tag, next};
 use perigrain_base::base64;
 use perigrain_base::diag::brought::{broken, not_read, place};
-use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::memory;
-use std::io::Read;
+use std::io::{Cursor, ErrorKind, Read};
 
 /// An array of the file, not read yet.
 #[derive(Clone, Debug)]
@@ -222,9 +222,12 @@ impl<'a> Document<'a> {
     /// Where an array is that can be read as it is needed: behind the tags, raw.
     pub fn place(&self, a: &Array) -> Option<Place> {
         let (Format::Appended(offset), Some((start, true))) = (a.format, self.appended) else { return None };
-        let start = (start as u64).checked_add(offset as u64)?;
+        Some(self.place_at(a, (start as u64).checked_add(offset as u64)?))
+    }
+
+    fn place_at(&self, a: &Array, start: u64) -> Place {
         let (big_endian, wide, packed) = (self.big_endian, self.wide, self.packed);
-        Some(Place { start, kind: a.kind, big_endian, wide, packed })
+        Place { start, kind: a.kind, big_endian, wide, packed }
     }
 
     /// The numbers of an array.
@@ -280,52 +283,26 @@ impl<'a> Document<'a> {
 
     /// The bytes behind their header.
     fn unpacked(&self, a: &Array, bytes: &[u8]) -> Result<Vec<u8>> {
-        let size = if self.wide { 8 } else { 4 };
-        let kind = if self.wide { Kind::U64 } else { Kind::U32 };
-        let cut = || broken(a.at.start as usize, format!("the array `{}` is cut off", a.name));
-        let word = |k: usize| -> Result<usize> {
-            let b = k.checked_mul(size).and_then(|at| bytes.get(at..at + size)).ok_or_else(cut)?;
-            Ok(kind.read(b, self.big_endian) as usize)
+        let blamed = |e: &std::io::Error| match e.kind() {
+            ErrorKind::UnexpectedEof => {
+                broken(a.at.start as usize, format!("the array `{}` is cut off", a.name))
+            }
+            _ => {
+                let text = format!("the array `{}` cannot be unpacked: it is damaged", a.name);
+                Diagnostic::error(Code::BAD_FILE, a.at, text).into()
+            }
         };
-        if !self.packed {
-            let count = word(0)?;
-            let end = size.checked_add(count).ok_or_else(cut)?;
-            return bytes.get(size..end).map(<[u8]>::to_vec).ok_or_else(cut);
-        }
-        let (blocks, block, last) = (word(0)?, word(1)?, word(2)?);
-        let mut at = blocks.checked_add(3).and_then(|n| n.checked_mul(size)).ok_or_else(cut)?;
-        if at > bytes.len() {
-            return Err(cut());
-        }
-        // Deflate packs a thousand bytes into one at most: more than that is forged.
-        let whole = if last > 0 { blocks.saturating_sub(1) } else { blocks };
-        let all = block.saturating_mul(whole).saturating_add(last);
-        if all > bytes.len().saturating_mul(1100) {
-            return fail(
-                Code::BAD_FILE,
-                a.at,
-                format!("the array `{}` says it has {all} bytes: it is damaged", a.name),
-            );
+        let mut file = Appended::open(Cursor::new(bytes), &self.place_at(a, 0)).map_err(|e| blamed(&e))?;
+        let all = file.length();
+        if all > (bytes.len() as u64).saturating_mul(DENSEST) {
+            let text = format!("the array `{}` says it has {all} bytes: it is damaged", a.name);
+            return fail(Code::BAD_FILE, a.at, text);
         }
         if let Some(d) = memory::lacking(all as f64, &format!("the array `{}`", a.name)) {
             return Err(d.into());
         }
-        let mut out = Vec::with_capacity(all);
-        for k in 0..blocks {
-            let end = at.checked_add(word(3 + k)?).ok_or_else(cut)?;
-            let packed = bytes.get(at..end).ok_or_else(cut)?;
-            at = end;
-            let want = if k + 1 == blocks && last > 0 { last } else { block };
-            let before = out.len();
-            let reader = flate2::read::ZlibDecoder::new(packed).take(want as u64 + 1);
-            if std::io::BufReader::new(reader).read_to_end(&mut out).is_err() || out.len() - before != want {
-                return fail(
-                    Code::BAD_FILE,
-                    a.at,
-                    format!("the array `{}` cannot be unpacked: it is damaged", a.name),
-                );
-            }
-        }
+        let mut out = Vec::with_capacity(all as usize);
+        file.read_to_end(&mut out).map_err(|e| blamed(&e))?;
         Ok(out)
     }
 }
