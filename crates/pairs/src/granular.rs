@@ -2,6 +2,8 @@
 
 mod declared;
 pub mod force;
+pub mod heating;
+mod images;
 pub mod mdr;
 pub mod reach;
 

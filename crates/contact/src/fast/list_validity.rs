@@ -277,20 +277,16 @@ impl ListValidity {
             unsafe { shared.get(k..k + 1)[0] = ways };
         });
         let closer = |k: usize| {
-            let (own, changed) = (ways[k][0], self.listed[k] != grains.period);
-            match (self.next[k], self.axes) {
-                (Some(next), Some(axes)) if changed => {
-                    let [fast, middle, slow] = axes.map(|d| edge_moved(d, &grains.period, &self.listed[k]));
-                    let around = if next > k { [0.0; 3] } else { slow };
-                    own.join(ways[next][1].seen_from(around)).closer() + length(fast) + length(middle)
-                }
-                (Some(next), _) => own.join(ways[next][1]).closer(),
-                (None, Some(axes)) if changed => {
-                    let [fast, middle, _] = axes.map(|d| edge_moved(d, &grains.period, &self.listed[k]));
-                    own.closer() + length(fast) + length(middle)
-                }
-                (None, _) => own.closer() + farthest(&grains.period, &self.listed[k]),
-            }
+            let (own, now, then) = (ways[k][0], &grains.period, &self.listed[k]);
+            let Some(axes) = self.axes else { return own.closer() + farthest(now, then) };
+            let [fast, middle, slow] = axes.map(|d| edge_moved(d, now, then));
+            let all = match self.next[k] {
+                Some(next) if next > k => own.join(ways[next][1]),
+                // Around the box, where the next slab is an image.
+                Some(next) => own.join(ways[next][1].seen_from(slow)),
+                None => own,
+            };
+            all.closer() + length(fast) + length(middle)
         };
         self.nearer.clear();
         self.nearer.extend((0..ways.len()).map(closer));
@@ -347,90 +343,4 @@ impl ListValidity {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use perigrain_world::Travel;
-
-    /// Three grains in each of three slabs, 1 apart along x.
-    fn scene() -> (Slabs, Vec<[f64; 3]>, Vec<u32>) {
-        let x: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.0, 0.0]).collect();
-        let tag: Vec<u32> = (0..9).collect();
-        let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag, [2.8; 2], &[0.0; 3], &Periods::default());
-        assert_eq!(slabs.near().count(), 3);
-        (slabs, x, tag)
-    }
-
-    fn grains<'a>(
-        x: &'a [[f64; 3]],
-        tag: &'a [u32],
-        more: (&'a [[f64; 3]], &'a [f64]),
-        travel: Travel,
-    ) -> Grains<'a> {
-        let (still, radius) = more;
-        let none = (&[][..], &[][..]);
-        Grains {
-            x,
-            v: still,
-            omega: still,
-            radius,
-            mass: radius,
-            kind: &[1; 9],
-            tag,
-            period: Default::default(),
-            flow: None,
-            body: none.0,
-            frozen: none.1,
-            travel,
-        }
-    }
-
-    #[test]
-    fn lists_wear_by_what_ways_differ_and_slab_by_slab() {
-        let (slabs, mut x, tag) = scene();
-        let (still, radius) = ([[0.0; 3]; 9], [0.5; 9]);
-        let mut validity = ListValidity::default();
-        validity.divide(&slabs);
-        let mut look = |x: &[[f64; 3]], all| {
-            validity.strayed(&grains(x, &tag, (&still, &radius), Travel::default()), 0.1, all)
-        };
-        assert_eq!(look(&x, true), [0, 1, 2]);
-        // All go far together.
-        x.iter_mut().for_each(|x| x[1] += 3.0);
-        assert_eq!(look(&x, false), [0usize; 0]);
-        // The last grain leaves the others of its slab and of the slab before, which reaches into it.
-        x[8][0] += 0.06;
-        assert_eq!(look(&x, false), [1, 2]);
-        assert_eq!(look(&x, false), [0usize; 0], "the new lists know");
-        x[8][0] += 0.04;
-        assert_eq!(look(&x, false), [0usize; 0], "less than half of the skin");
-        x[0][2] = f64::NAN;
-        assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
-        let mut around = Slabs::default();
-        around.sort(&x[..8], &tag[..8], [2.8; 2], &[0.0; 3], &Periods::upright([8.0, 0.0, 0.0]));
-        assert_eq!([0, 1, 2].map(|k| slabs.near().next(k)), [Some(1), Some(2), None]);
-        assert_eq!([0, 1].map(|k| around.near().next(k)), [Some(1), Some(0)]);
-    }
-
-    #[test]
-    fn the_account_saves_looks_and_growth_counts_twice() {
-        let (slabs, mut x, tag) = scene();
-        let (still, mut radius) = ([[0.0; 3]; 9], [0.5; 9]);
-        let mut travel = Travel::default();
-        travel.begin(true);
-        let mut validity = ListValidity::default();
-        validity.divide(&slabs);
-        validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, true);
-        travel.went(0.04);
-        x[4][0] += 0.04;
-        assert!(validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty());
-        travel.went(0.04);
-        assert!(
-            validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty(),
-            "0.04 of 0.05"
-        );
-        travel.went(0.04);
-        radius[4] += 0.006;
-        assert_eq!(validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false), [0, 1]);
-    }
-}
+mod tests;

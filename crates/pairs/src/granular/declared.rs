@@ -1,6 +1,7 @@
 //! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
 
-use super::force::{Force, conducts};
+use super::force::Force;
+use super::heating::conducts;
 use super::mdr::Press;
 use crate::contact::{Coeff, durations, words};
 use crate::contact_probe::{ContactProbe, Own};

@@ -1,29 +1,27 @@
 //! The op of granular contacts: list when it is due, contacts, forces and torques.
 
 use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
+use super::heating::{Heating, conducts};
+use super::images::suits;
 use super::mdr::Press;
 use super::reach::{reaching, refuse_giants};
 use perigrain_base::diag::Result;
 use perigrain_base::math::periods::Periods;
-use perigrain_base::math::vec3::Vec3;
-use perigrain_base::par;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use perigrain_contact::fast::{Fast, Frame, Laws, MOST_GRAINS, Sums};
+use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
 use perigrain_contact::mdr::Manner;
-use perigrain_contact::{Advance, ContactLaw, Granular, Heat, MOST_MEMORY};
+use perigrain_contact::{Advance, ContactLaw, Granular, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
-use perigrain_neigh::slabs::{edges, shift_of};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_world::Fields;
-use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, Deep};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
 };
 use perigrain_world::index::Index;
-use perigrain_world::{Allowed, Key, Numbers, World};
+use perigrain_world::{Allowed, Key, World};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -395,47 +393,6 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
     Laws::new(types, |a, b| rules.get(a, b).map(|r| r.law))
 }
 
-/// Whether the fast loop can take these particles.
-fn suits(w: &World, period: Periods, fast: &Fast<Granular>) -> bool {
-    let p = &w.particles;
-    let most = par::best(&p.radius, 0.0, f64::max);
-    let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
-    let fits =
-        period.repeats_where_it_leans() && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
-    fits && !meet_twice(w, period, most, more)
-}
-
-/// Most grains whose images are looked at one by one.
-const FEW: usize = 64;
-
-/// Whether two grains might meet in two images at once, with surfaces up to `more` apart, or one meets itself.
-fn meet_twice(w: &World, period: Periods, most: f64, more: f64) -> bool {
-    let (radius, x) = (&w.particles.radius, made_at(w));
-    let shortest = period.heights().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
-    if 2.0 * (2.0 * most + more) <= shortest {
-        return false;
-    }
-    // In two images the larger distance is half a height of the box at least.
-    let large: Vec<usize> =
-        (0..radius.len()).filter(|&i| 2.0 * (radius[i] + most + more) > shortest).collect();
-    let [edge, reach] = edges(radius, more);
-    if large.len() > FEW || edge == reach || reach > shortest {
-        return true;
-    }
-    let twice = |i: usize, j: usize| {
-        let reach = radius[i] + radius[j] + more;
-        let near = |image: &u32| {
-            let shift = shift_of(*image);
-            let by = period.shift(shift);
-            let d: Vec3 = std::array::from_fn(|d| x[i][d] - (x[j][d] + by[d]));
-            let absent = (0..3).any(|d| period.length[d] == 0.0 && shift[d] != 0.0);
-            !absent && d.iter().map(|d| d * d).sum::<f64>() < reach * reach
-        };
-        (0..27).filter(near).count() > 1
-    };
-    large.iter().enumerate().any(|(k, &i)| large[k + 1..].iter().any(|&j| twice(i, j)))
-}
-
 /// What contacts see of the particles.
 pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
     let p = &w.particles;
@@ -453,40 +410,6 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
         frozen,
         travel: *w.travel,
     })
-}
-
-/// Temperatures of particles, and the heat that flows into them.
-pub struct Heating {
-    /// Temperatures.
-    pub temperature: Vec<f64>,
-    /// Heat [energy/time].
-    pub flow: Vec<f64>,
-    /// Both columns.
-    keys: [Numbers; 2],
-}
-
-impl Heating {
-    /// Taken out of the world, if some contacts conduct heat and particles have both.
-    pub fn take(w: &mut World, rules: &Rules<Granular>) -> Option<Self> {
-        let keys = [w.columns.property(*TEMPERATURE)?, w.columns.property(*HEATFLOW)?];
-        let n = w.n();
-        conducts(rules).then(|| {
-            let [temperature, flow] = keys.map(|key| std::mem::take(w.columns.scalar(key, n)));
-            Self { temperature, flow, keys }
-        })
-    }
-
-    /// Put back.
-    pub fn give(self, w: &mut World) {
-        let n = w.n();
-        *w.columns.scalar(self.keys[0], n) = self.temperature;
-        *w.columns.scalar(self.keys[1], n) = self.flow;
-    }
-}
-
-/// Whether some contacts conduct heat.
-pub fn conducts(rules: &Rules<Granular>) -> bool {
-    rules.any(|r| r.law.heat != Heat::None)
 }
 
 /// Keeps the first grains that were seen too deep in each other.

@@ -1,0 +1,130 @@
+//! Slabs against a look at everything, upright and leaning.
+
+use super::*;
+use perigrain_base::math::rng::ParkMiller;
+use std::collections::BTreeSet;
+
+fn points(n: usize, box_: [f64; 3]) -> Vec<[f64; 3]> {
+    let mut random = ParkMiller::new(7);
+    (0..n).map(|_| box_.map(|l| l * random.uniform())).collect()
+}
+
+/// Pairs closer than `cut`, each with the image of the second, by looking at everything.
+fn all(x: &[[f64; 3]], cut: f64, period: Periods) -> BTreeSet<(usize, usize, u32)> {
+    let mut found = BTreeSet::new();
+    for image in 0..27 {
+        let s = shift_of(image);
+        if (0..3).any(|d| period.length[d] == 0.0 && s[d] != 0.0) {
+            continue;
+        }
+        let by = period.shift(s);
+        for (i, j) in (0..x.len()).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let square: f64 = (0..3).map(|d| (x[i][d] - x[j][d] - by[d]).powi(2)).sum();
+            if square < cut * cut {
+                found.insert((i, j, image));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
+    let edges = [8.0, 3.2, 5.0];
+    let upright = points(300, edges);
+    let tag: Vec<u32> = (0..300).map(|i| (i * 7919) % 300).collect();
+    let boxes = [
+        ([0.0; 3], [0.0; 3]),
+        (edges, [0.0; 3]),
+        ([8.0, 0.0, 0.0], [0.0; 3]),
+        ([0.0, 3.2, 5.0], [0.0; 3]),
+        (edges, [1.6, -4.0, 1.2]),
+        (edges, [-1.5, 3.0, -1.6]),
+        ([8.0, 3.2, 0.0], [1.6, 0.0, 0.0]),
+        ([8.0, 0.0, 5.0], [0.0, 3.9, 0.0]),
+        ([0.0, 3.2, 5.0], [1.6, 2.0, -1.0]),
+    ];
+    for period in boxes.map(|(length, tilt)| Periods { length, tilt }) {
+        assert!(period.repeats_where_it_leans());
+        let lean = |x: &[f64; 3]| {
+            let part = |d: usize| if period.length[d] > 0.0 { x[d] / period.length[d] } else { 0.0 };
+            let ([y, z], [xy, xz, yz]) = ([part(1), part(2)], period.tilt);
+            [x[0] + y * xy + z * xz, x[1] + z * yz, x[2]]
+        };
+        let x: Vec<[f64; 3]> = upright.iter().map(lean).collect();
+        let mut slabs = Slabs::default();
+        slabs.sort(&x, &tag, [1.0; 2], &[0.0; 3], &period);
+        let (mut found, mut runs) = (BTreeSet::new(), vec![]);
+        for k in 0..slabs.near().count() {
+            let next = slabs.near().slab((k + 1) % slabs.near().count());
+            for cell in slabs.near().slab(k) {
+                let own = slabs.places(cell);
+                let point = |at: usize| &x[slabs.order[at] as usize];
+                assert!(own.clone().all(|at| slabs.near().of_layers()[slabs.layer_of(point(at))] == k));
+                slabs.runs(cell, &mut runs);
+                for i in own.clone() {
+                    let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
+                    for r in runs.iter().chain([&rest]) {
+                        for j in r.from as usize..r.to as usize {
+                            let reach = |c: &Range<usize>| c.clone().any(|c| slabs.places(c).contains(&j));
+                            assert!(reach(&slabs.near().slab(k)) || reach(&next));
+                            let (a, b) = (slabs.order[i] as usize, slabs.order[j] as usize);
+                            let entry = if a > b { (a, b, r.image) } else { (b, a, 26 - r.image) };
+                            assert!(found.insert(entry), "{entry:?} twice");
+                        }
+                    }
+                }
+            }
+        }
+        let wanted = all(&x, 1.0, period);
+        assert!(wanted.len() > 500 && wanted.is_subset(&found), "{period:?}");
+    }
+}
+
+#[test]
+fn slabs_of_small_cells_are_as_thick_as_pairs_reach() {
+    let x = points(3000, [9.0, 4.0, 3.0]);
+    let tag: Vec<u32> = (0..3000).collect();
+    for period in [[0.0; 3], [9.0, 4.0, 3.0]].map(Periods::upright) {
+        let mut slabs = Slabs::default();
+        slabs.sort(&x, &tag, [0.3, 1.1], &[0.0; 3], &period);
+        let count = slabs.far().count();
+        assert!(count >= 4 && slabs.near().count() > count);
+        let of = |i: usize| {
+            let place = slabs.order.iter().position(|o| *o as usize == i).unwrap();
+            (0..count).find(|k| slabs.far().members(*k).contains(&place)).unwrap()
+        };
+        for (i, j, _) in all(&x[..300], 1.1, period) {
+            let (a, b) = (of(i), of(j));
+            assert!(a == b || (a + 1) % count == b || (b + 1) % count == a, "{a} {b}");
+        }
+    }
+    assert_eq!(edges(&[1.0, 4.0], 0.5), [8.5, 8.5]);
+    assert_eq!(edges(&[1.0, 3.9, 4.1], 0.5), [8.3, 8.7]);
+}
+
+#[test]
+fn pairs_may_reach_beyond_all_numbers() {
+    let (x, tag) = (points(20, [4.0; 3]), (0..20).collect::<Vec<u32>>());
+    let mut slabs = Slabs::default();
+    slabs.sort(&x, &tag, [1.0, 1e308], &[0.0; 3], &Periods::default());
+    assert_eq!(slabs.far().count(), 1);
+}
+
+#[test]
+fn the_order_depends_on_places_and_tags_alone() {
+    let x = points(200, [3.0; 3]);
+    let tag: Vec<u32> = (0..200).collect();
+    let sorted = |x: &[[f64; 3]], tag: &[u32]| {
+        let mut s = Slabs::default();
+        s.sort(x, tag, [1.0; 2], &[0.0; 3], &Periods::default());
+        s.order.iter().map(|&i| tag[i as usize]).collect::<Vec<_>>()
+    };
+    let (back, mixed): (Vec<_>, Vec<_>) = x.iter().copied().zip(tag.iter().copied()).rev().unzip();
+    assert_eq!(sorted(&x, &tag), sorted(&back, &mixed));
+    assert_eq!(sorted(&[], &[]), []);
+    // Far points do not cost memory.
+    let mut s = Slabs::default();
+    s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], [1.0; 2], &[0.0; 3], &Periods::default());
+    assert!(s.start.len() < 200);
+}
