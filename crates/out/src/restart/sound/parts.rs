@@ -72,6 +72,10 @@ pub fn rebuild(w: &World) -> Outcome {
     let r = w.rebuild.past();
     must(r.kept.x.len() == r.kept.turns.len(), "places of kept lists and their turns differ in number")?;
     must(!r.unmoved || w.particles.style.peri, "nothing has moved since a creation that nobody remembers")?;
+    let kept = (r.kept.corners, r.kept.tilt);
+    let box_of_kept = kept.0.as_flattened().iter().chain(&kept.1).all(|x| x.is_finite())
+        && (0..3).all(|d| r.kept.x.is_empty() || kept.0[0][d] < kept.0[1][d]);
+    must(box_of_kept, "the box of kept lists is none")?;
     let places = r.held.iter().chain(&r.kept.x);
     must(places.flatten().all(|x| x.is_finite()), "a particle was nowhere")
 }

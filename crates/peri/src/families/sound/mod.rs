@@ -49,6 +49,7 @@ impl Families {
         ] {
             equal(&format!("the number of {what} is"), len, n)?;
         }
+        must(self.spacing.iter().all(|h| h.is_finite() && *h > 0.0), "a particle has no spacing")?;
         let reference = self.reference.as_deref().unwrap_or(x0);
         for (k, body) in self.lattices.iter().enumerate() {
             body.sound((&self.law, types), reference)
