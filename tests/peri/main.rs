@@ -1,11 +1,11 @@
 //! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
 
+mod bond_weights;
 mod endurance;
 mod golden;
 mod lattices;
 mod layouts;
 mod limits;
-mod own;
 mod patch;
 mod released;
 mod scatter;

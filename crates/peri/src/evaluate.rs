@@ -45,14 +45,14 @@ impl Families {
     /// As for [`Families::build`].
     pub fn build_of(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Result<Self> {
         let mut families = Self::empty(view, table, options, law);
-        if options.own.spacing {
+        if options.weights.own_horizons {
             families.spacing = spacings(view, table, options.lattice_spacing);
         }
         check_box(view, detect::reach(table, &options, &families.spacing))?;
         families.lay_out(view);
         families.number_places();
         families.refresh(view, table);
-        if options.own.any() {
+        if options.weights.any() {
             let Self { list, law, options, spacing, .. } = &mut families;
             families.weighed = Some(weights::weigh(list, view, (law, options), spacing));
         }
@@ -134,7 +134,7 @@ impl Families {
         let mut wraps = false;
         for (k, members) in bodies.members.iter().enumerate() {
             let free = self.options.layout == Layout::Auto
-                && !self.options.own.any()
+                && !self.options.weights.any()
                 && !bodies.wraps[k]
                 && self.suits_lattice(view, members);
             let carrier = if free { carrier(view, members, bodies.nearest[k]) } else { Carrier::Nothing };

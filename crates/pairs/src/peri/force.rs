@@ -1,7 +1,7 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
 use super::scatter::Scatter;
-use super::{Pair, Solid, own, reunion};
+use super::{Pair, Solid, bond_weights, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
 use perigrain_plan::{About, Level, Needs, Op, Stage, Tick};
@@ -130,7 +130,7 @@ impl Force {
 
     /// Gives bonds their factors, which refreshed families may have of an earlier run.
     fn scatter(&self, w: &World, families: &mut Families) {
-        let own = |i: usize| own::strength(&self.style, families, w.particles.kind[i], i);
+        let own = |i: usize| bond_weights::strength(&self.style, families, w.particles.kind[i], i);
         let by_horizon: Vec<f64> = match families.spacing.is_empty() {
             true => vec![],
             false => (0..w.n()).map(own).collect(),
@@ -182,7 +182,7 @@ impl Force {
                 self.tell_doubles(w, &families);
                 tell_almost(w, &families);
                 self.scatter.tell(w);
-                own::tell(&self.style, &families, w);
+                bond_weights::tell(&self.style, &families, w);
                 families
             }
         };

@@ -1,6 +1,7 @@
 //! Peridynamic pair styles: what they share. A style is its law, the words of its coefficients and its page.
 
 mod bond_probe;
+mod bond_weights;
 mod eps;
 mod force;
 mod horizon;
@@ -8,7 +9,6 @@ mod lps;
 pub mod materials;
 mod numbers;
 mod options;
-mod own;
 mod plastic;
 mod pmb;
 mod reunion;
@@ -27,7 +27,8 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_peri::calibration::constants;
 use perigrain_peri::families::{
-    FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, Own, PmbCoeff, PmbTable, VolumeRule,
+    BondWeights, FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable,
+    VolumeRule,
 };
 use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
@@ -53,7 +54,7 @@ struct Solid {
     volume: VolumeRule,
     calibrate: Calibrate,
     /// What bonds are weighed by one at a time.
-    own: Own,
+    weights: BondWeights,
     /// Broken bonds still push.
     compress: bool,
     /// The rule of unloading that a line has said.
@@ -96,7 +97,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         unit: None,
         volume: VolumeRule::Lammps,
         calibrate: Calibrate::No,
-        own: Own::default(),
+        weights: BondWeights::default(),
         compress: false,
         unloading: None,
         lasting: vec![],
@@ -212,7 +213,7 @@ impl Solid {
             portable: s.portable,
             no_repulsion: self.no_repulsion,
             reunite: self.reunite.is_some_and(|r| r.0),
-            own: self.own,
+            weights: self.weights,
         }
     }
 
@@ -222,7 +223,7 @@ impl Solid {
         if self.calibrate == Calibrate::No || !self.law.kind.bond_based() {
             return Ok(table);
         }
-        if self.law.surface || self.own.any() {
+        if self.law.surface || self.weights.any() {
             self.cannot(
                 span,
                 "cannot be calibrated and have its surfaces corrected or horizons of its own: the one makes K right by itself, the other knows no lattice",
@@ -273,7 +274,7 @@ impl Pair for Solid {
             Some(coeff) => coeff,
             None => {
                 self.raw = true;
-                own::needs_materials(self, span)?;
+                bond_weights::needs_materials(self, span)?;
                 numbers(self.law.kind, args, cx)?
             }
         };
@@ -340,7 +341,7 @@ impl Pair for Solid {
             .into());
         }
         let before = w.families.as_ref().map(|f| f.law.kind);
-        own::allowed(self, &options, span)?;
+        bond_weights::allowed(self, &options, w.settings.two_dimensional, span)?;
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
@@ -392,7 +393,7 @@ impl Pair for Solid {
             Some((rho / (ftm2v * stiffer * stiffest(i)?)).sqrt())
         };
         let cutoff = self.table.iter().map(|c| c.horizon).reduce(f64::max);
-        let [finest, widest] = own::spacings(self, w);
+        let [finest, widest] = bond_weights::spacings(self, w);
         let stable_step = (1..=types).filter_map(step).reduce(f64::min).map(|t| finest * t);
         Scales { cutoff: cutoff.map(|c| widest * c), stable_step, contact_time: None }
     }
@@ -415,7 +416,7 @@ impl Pair for Solid {
 
     fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
         // One number for a pair of types is what such a look knows of bonds.
-        let alike = !self.law.surface && self.law.influence == Influence::One && !self.own.any();
+        let alike = !self.law.surface && self.law.influence == Influence::One && !self.weights.any();
         let plain = self.law.kind == LawKind::Pmb && !self.compress && alike;
         Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })
     }

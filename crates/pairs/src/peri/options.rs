@@ -1,6 +1,6 @@
 //! `peri_modify`: options of peridynamic styles.
 
-use super::{Calibrate, Solid, own};
+use super::{Calibrate, Solid, bond_weights};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_peri::families::{Families, ForceUnit, Influence, LawKind, VolumeRule};
@@ -62,13 +62,13 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                     let text = "peri_modify surface energy concerns peri/pmb: a state-based particle weighs its own family (`surface tensor` corrects it, too)";
                     return fail(Code::CONFLICT, word.span, text);
                 }
-                (style.law.surface, style.own.tensor) = (how == "energy", how == "tensor");
+                (style.law.surface, style.weights.whole_families) = (how == "energy", how == "tensor");
                 settled(style, &word.text, word.span, cx)?;
             }
             "horizon" => {
-                style.own.spacing =
+                style.weights.own_horizons =
                     args.choice("spacing that horizons count in", &["lattice", "own"])? == "own";
-                own::needs_materials(style, word.span)?;
+                bond_weights::needs_materials(style, word.span)?;
                 settled(style, &word.text, word.span, cx)?;
             }
             "broken" => {
@@ -111,8 +111,11 @@ fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
     // A restart file says its lines again.
     let other = |f: &Families| match option {
         "influence" => f.law.influence != style.law.influence,
-        "horizon" => f.options.own.spacing != style.own.spacing,
-        _ => (f.law.surface, f.options.own.tensor) != (style.law.surface, style.own.tensor),
+        "horizon" => f.options.weights.own_horizons != style.weights.own_horizons,
+        _ => {
+            (f.law.surface, f.options.weights.whole_families)
+                != (style.law.surface, style.weights.whole_families)
+        }
     };
     if cx.world.families.as_ref().is_some_and(other) {
         let text = format!("peri_modify {option} comes too late: bonds were weighed at the first run");

@@ -50,7 +50,7 @@ impl Style for PeriPmb {
                 `surface tensor` makes families whole in each direction: bonds get factors (a polynomial of their direction, \
                 0.2 to 5) that give Σ c w |ξ| n⊗n⊗n⊗n V of each particle the value of a whole ball, at surfaces, between \
                 irregular neighbours and inside of lattices, where shear is then the same in all directions. Bars with \
-                six particles and more across, on a lattice, jittered, meshed, of voxels, have E to 2 % with `volume full` (with four bonds are 5 % too stiff). State-based laws have \
+                six particles and more across, on a lattice, jittered, meshed, of voxels, have E to 2 % with `volume full`; with four across bonds are 5 % too stiff. Flat scenes have no balls: there it is refused. State-based laws have \
                 it, too. `horizon own`: a material's horizon counts in the spacing around each particle, the cube root of the \
                 mean volume of the particles within two edges of its own, in place of the lattice's. There is a bond where \
                 one end is within the horizon of the other; it has the mean of what it is in both families, c ∝ δ⁻⁴ and partial volumes of each, \

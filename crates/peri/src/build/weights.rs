@@ -7,8 +7,8 @@
 //! of Trask, You, Yu and Parks, Comput. Methods Appl. Mech. Eng. 343 (2019) 151, which integrate a whole ball; here it stands for
 //! families at surfaces, too), times what keeps Σ q, the energy of an even growth, exact. A bond has the mean of what its ends ask for.
 
+use crate::families::bond_weights::{Factors, Weighed};
 use crate::families::list::{GROUP, ListBody};
-use crate::families::own::{Factors, Weighed};
 use crate::families::{FamilyOptions, Law, PeriView};
 use perigrain_base::math::vec3::{length, scale};
 use perigrain_base::par::{self, Shared};
@@ -99,7 +99,7 @@ pub fn weigh(
             let by_volume = w.by_volume(b);
             [n + 1.0, part + f64::from(u8::from(by_volume < 1.0)), sum + by_volume]
         });
-    let factors = options.own.tensor.then(|| w.made_whole(&mut own));
+    let factors = options.weights.whole_families.then(|| w.made_whole(&mut own));
     body.own_weight = own;
     Weighed { in_part: in_part / f64::max(bonds, 1.0), mean: sum / f64::max(bonds, 1.0), factors }
 }
@@ -260,7 +260,7 @@ mod tests {
 
     #[test]
     fn means_over_directions() {
-        // Closed forms: 1/5, 1/15, 1/9, 1/105.
+        // Closed forms.
         for (of, mean) in
             [([4, 0, 0], 0.2), ([2, 2, 0], 1.0 / 15.0), ([8, 0, 0], 1.0 / 9.0), ([4, 2, 2], 1.0 / 315.0)]
         {

@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::SIX;
 
+pub mod bond_weights;
 mod cells;
 mod excluded;
 mod kin;
@@ -13,16 +14,16 @@ pub mod lattice;
 pub mod law;
 pub mod list;
 mod measures;
-pub mod own;
 mod scatter;
 mod sound;
 
 pub use crate::damage::Neighbour;
+pub use bond_weights::{BondWeights, Factors, Weighed};
 pub use cells::Cells;
 pub use excluded::Excluded;
 pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
-pub use own::{Factors, Own, Weighed};
+
 pub use scatter::Scatter;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
@@ -175,7 +176,7 @@ pub struct FamilyOptions {
     pub reunite: bool,
     /// What bonds are weighed by one at a time.
     #[serde(default)]
-    pub own: Own,
+    pub weights: BondWeights,
 }
 
 /// Bond length changes below this count as none under `compat lammps`: an absolute length.
@@ -217,7 +218,7 @@ impl FamilyOptions {
             portable: false,
             no_repulsion: false,
             reunite: false,
-            own: Own::default(),
+            weights: BondWeights::default(),
         }
     }
 }

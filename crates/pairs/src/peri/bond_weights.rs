@@ -18,27 +18,32 @@ fn refused(style: &Solid, span: Span, why: &str, help: &str) -> Result<()> {
 /// # Errors
 /// Numbers stand for one horizon.
 pub fn needs_materials(style: &Solid, span: Span) -> Result<()> {
-    if !(style.own.spacing && style.raw) {
+    if !(style.weights.own_horizons && style.raw) {
         return Ok(());
     }
     let why = "its coefficients are numbers, which stand for one horizon";
     refused(style, span, why, "give every pair a `material`, whose horizon counts in spacings")
 }
 
-/// Refuses what else does not go together with horizons of particles' own.
+/// Refuses what else does not go together with horizons of particles' own, and with families made whole.
 ///
 /// # Errors
-/// A scene with one horizon for a type.
-pub fn allowed(style: &Solid, options: &FamilyOptions, span: Span) -> Result<()> {
-    match style.own.spacing && options.compat_lammps {
-        true => refused(style, span, "`compat lammps` has one horizon for a type", "leave one of both out"),
-        false => Ok(()),
+/// A scene with one horizon for a type; a flat one, where no family is a ball.
+pub fn allowed(style: &Solid, options: &FamilyOptions, flat: bool, span: Span) -> Result<()> {
+    if style.weights.own_horizons && options.compat_lammps {
+        return refused(style, span, "`compat lammps` has one horizon for a type", "leave one of both out");
     }
+    if style.weights.whole_families && flat {
+        let text = "`peri_modify surface tensor` makes families balls: it does not go with `dimension 2`";
+        let help = "take layers of particles in a box that repeats along z, or leave it out";
+        return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
+    }
+    Ok(())
 }
 
 /// The least and the largest spacing of particles over that of the lattice, as far as it is known.
 pub fn spacings(style: &Solid, w: &World) -> [f64; 2] {
-    if !style.own.spacing {
+    if !style.weights.own_horizons {
         return [1.0; 2];
     }
     let lattice = w.lattice.spacing[0];
@@ -73,7 +78,7 @@ pub fn strength(style: &Solid, families: &Families, kind: u16, i: usize) -> f64 
 
 /// Tells what families have been weighed by, when they are found.
 pub fn tell(style: &Solid, families: &Families, w: &mut World) {
-    if style.own.spacing {
+    if style.weights.own_horizons {
         horizons(style, families, w);
     }
     let Some(weighed) = families.weighed else { return };

@@ -4,17 +4,17 @@ use super::{Families, FamilyOptions, Neighbour};
 
 /// What bonds are weighed by one at a time, when families are found; bodies are then kept as lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Own {
+pub struct BondWeights {
     /// Horizons count in the spacing around each particle (`peri_modify horizon own`).
-    pub spacing: bool,
+    pub own_horizons: bool,
     /// Families are made whole in each direction (`peri_modify surface tensor`).
-    pub tensor: bool,
+    pub whole_families: bool,
 }
 
-impl Own {
+impl BondWeights {
     /// Whether there is such a thing.
     pub fn any(self) -> bool {
-        self.spacing || self.tensor
+        self.own_horizons || self.whole_families
     }
 }
 
