@@ -321,6 +321,6 @@ fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
     // SAFETY: plain arithmetic.
     let (near, far) = unsafe { W::pull(&b.stretch, omega, &ends, &mut memory, &now) };
     // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
-    let pull = -0.5 * (near.0 + far.0) * b.share * b.volume[0] * b.volume[1];
-    t.add_virial(b.ends[0], b.ends[1], pull, b.y);
+    let pulls = [near.0, far.0].map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
+    t.add_virials(b.ends, pulls, b.y);
 }

@@ -307,12 +307,17 @@ impl PeriTally<'_> {
 
     /// Adds the virial of the force `pull` times `d` on `i` from `j`.
     pub fn add_virial(&mut self, i: usize, j: usize, pull: f64, d: [f64; 3]) {
-        let product = SIX.map(|(a, b)| pull * d[a] * d[b]);
-        self.virial.iter_mut().zip(product).for_each(|(v, p)| *v += p);
+        self.add_virials([i, j], [pull; 2], d);
+    }
+
+    /// Adds the virial of a bond along `d` that pulls at each of its ends as that end feels it.
+    pub fn add_virials(&mut self, ends: [usize; 2], pulls: [f64; 2], d: [f64; 3]) {
+        let both = 0.5 * (pulls[0] + pulls[1]);
+        let product = |pull: f64| SIX.map(|(a, b)| pull * d[a] * d[b]);
+        self.virial.iter_mut().zip(product(both)).for_each(|(v, p)| *v += p);
         if let Some(atoms) = self.per_atom_virial.as_deref_mut() {
-            for k in 0..6 {
-                atoms[i][k] += 0.5 * product[k];
-                atoms[j][k] += 0.5 * product[k];
+            for (end, pull) in ends.into_iter().zip(pulls) {
+                atoms[end].iter_mut().zip(product(pull)).for_each(|(v, p)| *v += 0.5 * p);
             }
         }
     }

@@ -113,8 +113,8 @@ impl Energies<'_> {
                 }
                 if let Some(atoms) = t.per_atom_virial.as_deref_mut() {
                     let y = [b.y[0][at], b.y[1][at], b.y[2][at]];
-                    let products = SIX.map(|(c, d)| b.out[2][at] * y[c] * y[d]);
-                    for end in ends {
+                    for (end, pull) in ends.into_iter().zip([b.out[2][at], b.out[3][at]]) {
+                        let products = SIX.map(|(c, d)| pull * y[c] * y[d]);
                         atoms[end].iter_mut().zip(products).for_each(|(v, p)| *v += 0.5 * p);
                     }
                 }

@@ -78,7 +78,7 @@ pub struct Block {
     /// The partner's volume.
     pub volume: [f64; MOST],
     /// What comes out.
-    pub out: [[f64; MOST]; 3],
+    pub out: [[f64; MOST]; 4],
     /// Places of partners in the window.
     pub target: [u32; MOST],
     /// Places of the first bonds of groups, among all bonds.
@@ -107,7 +107,7 @@ impl Block {
             limit: none,
             weight: none,
             volume: none,
-            out: [none; 3],
+            out: [none; 4],
             target: [0; MOST],
             place: [0; MOST / GROUP],
             count: 0,

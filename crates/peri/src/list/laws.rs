@@ -347,7 +347,10 @@ unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, look: &Looking, b
             sum[0].add(at, near.add(far), L::splat(1.0));
             let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
             let pull = near.add(far).mul(weight).mul(L::splat(-0.5)).mul(both);
-            pull.store(b.out[2].as_mut_ptr().add(at));
+            // Of particles each end has what it feels, which differs in LAMMPS' laws.
+            let push = weight.mul(L::splat(-1.0));
+            near.mul(push).mul(both).store(b.out[2].as_mut_ptr().add(at));
+            far.mul(push).mul(both).store(b.out[3].as_mut_ptr().add(at));
             let y = [
                 L::load(b.y[0].as_ptr().add(at)),
                 L::load(b.y[1].as_ptr().add(at)),
