@@ -85,7 +85,7 @@ fn run(deck: &str, v: Variant) -> Outcome {
     fs::write(folder.path().join("in.deck"), text).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
     command.current_dir(folder.path());
-    command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps"]);
+    command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps/2025"]);
     command.args(["-threads", v.threads, "-layout", v.layout, "-rest", v.rest]);
     command.args(v.portable.then_some("-portable"));
     let output = command.output().unwrap();
@@ -179,7 +179,7 @@ fn check_table(deck: &str) -> Vec<String> {
     fs::write(folder.path().join("in.deck"), stored(&format!("decks/{deck}.in"))).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
     command.current_dir(folder.path());
-    command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps"]);
+    command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps/2025"]);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{deck}: {}", String::from_utf8_lossy(&output.stderr));
     let log = fs::read_to_string(folder.path().join("log.deck")).unwrap();

@@ -28,8 +28,8 @@ fn decks_choose_what_becomes_of_energy_from_nothing() {
     assert_eq!(outcome("", &[]), (Some(1), 1));
     assert_eq!(outcome("thermo_modify energy warn\n", &[]), (Some(0), 1));
     assert_eq!(outcome("thermo_modify energy ignore\n", &[]), (Some(0), 0));
-    assert_eq!(outcome("", &["-compat", "lammps"]), (Some(0), 1));
-    assert_eq!(outcome("thermo_modify energy error\n", &["-compat", "lammps"]), (Some(1), 1));
+    assert_eq!(outcome("", &["-compat", "lammps/2025"]), (Some(0), 1));
+    assert_eq!(outcome("thermo_modify energy error\n", &["-compat", "lammps/2025"]), (Some(1), 1));
     // As long as the step is right nobody hears of it.
     assert_eq!(outcome("timestep 1.7e-7\n", &[]), (Some(0), 0));
 }

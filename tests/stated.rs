@@ -151,7 +151,7 @@ fn run(path: &Path, text: &str, vars: &Vars, compat: bool) -> String {
     let (name, folder) = (&name(path), path.parent().unwrap().to_path_buf());
     let here = std::env::current_dir().unwrap().to_string_lossy().into_owned();
     let vars = vars.iter().cloned().chain([("dir".to_string(), vec![here])]).collect();
-    let compat = if compat { Compat::Lammps } else { Compat::Perigrain };
+    let compat = if compat { Compat::Lammps2025 } else { Compat::Perigrain };
     let mut session = hosted(Session::new(Options { vars, folder, compat, ..Options::default() }).unwrap());
     match session.run_text(name, text) {
         Ok(_) => String::new(),

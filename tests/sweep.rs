@@ -195,7 +195,7 @@ fn what_changed_since_is_refused_with_its_place() {
     refused(&["in.x", "-each", "n", "1", "3"], "run 2 is n=2, not n=3");
     refused(
         &["in.x", "-each", "n", "1", "2", "-compat", "lammps"],
-        "switches were none, they are `-compat lammps`",
+        "switches were none, they are `-compat lammps/2026`",
     );
     fs::write(at.join("more.in"), "variable m index 8\n").unwrap();
     refused(&args, "more.in` has changed since run 1 read it");

@@ -194,7 +194,7 @@ pub const SWITCHES: &[Switch] = &[
         let word = v.one("lammps")?;
         let Some(compat) = Compat::from_name(&word).filter(|compat| compat.lammps()) else {
             let message = format!("perigrain cannot imitate `{word}`");
-            let help = "write `-compat lammps` for LAMMPS 22Jul2025, or `-compat lammps/2026` with what has been mended since";
+            let help = "write `-compat lammps/2025` for LAMMPS 22Jul2025, or `-compat lammps` (`lammps/2026`) with what has been mended since";
             return Err(Usage::new(message).help(help));
         };
         o.compat = compat;

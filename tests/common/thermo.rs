@@ -16,7 +16,7 @@ pub fn run_in(folder: &Path, name: &str, deck: &str, compat: bool) -> (Session, 
     log.open(&path, false).unwrap();
     let dir = folder.to_str().unwrap().to_string();
     let vars = vec![("dir".into(), vec![dir])];
-    let compat = if compat { Compat::Lammps } else { Compat::Perigrain };
+    let compat = if compat { Compat::Lammps2025 } else { Compat::Perigrain };
     let options = Options { compat, log: log.clone(), vars, ..Options::default() };
     let mut session = Session::new(options).unwrap();
     if let Err(e) = session.run_text(name, deck) {

@@ -32,7 +32,7 @@ fn the_same_bytes_as_lammps() {
     let dir = folder.path().to_str().unwrap().to_string();
     // LAMMPS' unfolded fractions carry the rounding of its image offset: an artefact of compat.
     let options =
-        Options { compat: Compat::Lammps, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+        Options { compat: Compat::Lammps2025, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
     let mut session = Session::new(options).unwrap();
     let deck = fs::read_to_string(here.join("in.dumps")).unwrap();
     session.run_text("in.dumps", &deck).unwrap();
@@ -60,7 +60,7 @@ fn writes_the_same(name: &str) {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path().to_str().unwrap().to_string();
     let options =
-        Options { compat: Compat::Lammps, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+        Options { compat: Compat::Lammps2025, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
     let file = format!("in.{name}");
     let deck = fs::read_to_string(here.join(&file)).unwrap();
     Session::new(options).unwrap().run_text(&file, &deck).unwrap();

@@ -192,7 +192,7 @@ fn rain(rain: &Rain) {
     fs::write(folder.path().join("in.deck"), beginning(&fs::read_to_string(&path).unwrap(), rain.steps))
         .unwrap();
     let done = perigrain(
-        &["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps"],
+        &["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps/2025"],
         folder.path(),
     );
     assert!(done.status.success(), "{}: {}", rain.deck, String::from_utf8_lossy(&done.stderr));
@@ -266,7 +266,8 @@ fn the_chute_gives_lammps_rows() {
     let Some(path) = chute() else { return };
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("log.deck");
-    let switches = ["-in", "in.chute", "-log", log.to_str().unwrap(), "-screen", "none", "-compat", "lammps"];
+    let switches =
+        ["-in", "in.chute", "-log", log.to_str().unwrap(), "-screen", "none", "-compat", "lammps/2025"];
     let done = perigrain(&switches, path.parent().unwrap());
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let mut rows = read(&fs::read_to_string(log).unwrap());
@@ -356,7 +357,7 @@ fn whole(path: &Path, seeds: &[&str], legs: &[Leg]) {
 /// Runs a deck in the folder of `path`; the mean of each leg.
 fn ended(path: &Path, deck: &Path, legs: &[Leg]) -> Vec<f64> {
     let folder = beside(path);
-    let switches = ["-in", deck.to_str().unwrap(), "-screen", "none", "-compat", "lammps"];
+    let switches = ["-in", deck.to_str().unwrap(), "-screen", "none", "-compat", "lammps/2025"];
     let done = perigrain(&switches, folder.path());
     assert!(done.status.success(), "{path:?}: {}", String::from_utf8_lossy(&done.stderr));
     let rows = read(&fs::read_to_string(folder.path().join("log.lammps")).unwrap());

@@ -81,7 +81,7 @@ fn first_rows(deck: &str, golden: &str) {
     let rule = Rule { rtol: 1e-7, ..Rule::default() };
     let Some(path) = installed(deck) else { return };
     let folder = tempfile::tempdir().unwrap();
-    let switches = ["-log", "log.deck", "-screen", "none", "-compat", "lammps"];
+    let switches = ["-log", "log.deck", "-screen", "none", "-compat", "lammps/2025"];
     let done = perigrain(&[&["-in", path.to_str().unwrap()], &switches[..]].concat(), folder.path());
     assert!(done.status.success(), "{deck}: {}", String::from_utf8_lossy(&done.stderr));
     let mut rows = read(&fs::read_to_string(folder.path().join("log.deck")).unwrap());

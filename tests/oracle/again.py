@@ -1,7 +1,7 @@
 """Random decks of the other kinds, cut in two: by a restart file, and by a second `run`.
 
 LAMMPS' own restarts forget what contacts and families remember, so it runs the deck whole. perigrain runs it whole and cut:
-under `-compat lammps` beside LAMMPS, and as it is with one and two threads, where all have the same bits.
+under `-compat lammps/2025` beside LAMMPS, and as it is with one and two threads, where all have the same bits.
 """
 import os
 import tempfile

@@ -84,7 +84,7 @@ def compare(deck, name, lammps, perigrain, ours=None):
         theirs, their_files = run(f"{top}/lammps", lammps, "-in", path, "-log", "none")
         with open(f"{top}/ours.in", "w") as file:
             file.write("\n".join(cut) + "\n")
-        ours, our_files = run(f"{top}/perigrain", perigrain, "-compat", "lammps", "-threads", "1", "-log", "none", f"{top}/ours.in")
+        ours, our_files = run(f"{top}/perigrain", perigrain, "-compat", "lammps/2025", "-threads", "1", "-log", "none", f"{top}/ours.in")
         if cut is not deck:
             their_files, our_files = ({k: v for k, v in found.items() if k == "end.dump"} for found in (their_files, our_files))
         if hasattr(deck, "read"):
@@ -140,7 +140,7 @@ def crosswise(top, lammps, perigrain, read=None):
         else:
             with open(f"{top}/lammps/kept.sides") as file:
                 deck = READ.format(of=of, sides=file.read().strip())
-        for program, words in (("lammps", [lammps, "-log", "none", "-in"]), ("perigrain", [perigrain, "-compat", "lammps", "-threads", "1", "-log", "none"])):
+        for program, words in (("lammps", [lammps, "-log", "none", "-in"]), ("perigrain", [perigrain, "-compat", "lammps/2025", "-threads", "1", "-log", "none"])):
             with open(f"{top}/read.in", "w") as file:
                 file.write(deck)
             said.append(run(f"{top}/{program}", *words, f"{top}/read.in")[0])

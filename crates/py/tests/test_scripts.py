@@ -74,7 +74,7 @@ rot 0
 
 @pytest.mark.parametrize("name", sorted(SAID))
 def test_a_script_for_lammps(name):
-    words = [sys.executable, str(SCRIPTS / f"{name}.py"), "perigrain", "-compat", "lammps"]
+    words = [sys.executable, str(SCRIPTS / f"{name}.py"), "perigrain", "-compat", "lammps/2025"]
     outcome = subprocess.run(words, capture_output=True, text=True, timeout=60)
     assert (outcome.returncode, outcome.stderr) == (0, "")
     assert outcome.stdout == SAID[name].lstrip()

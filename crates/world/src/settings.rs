@@ -12,19 +12,19 @@ pub enum Compat {
     #[default]
     Perigrain,
     /// Those of LAMMPS 22Jul2025, for comparison.
-    Lammps,
+    Lammps2025,
     /// The same with what the LAMMPS of 2026 has mended, as far as it is known well enough.
     Lammps2026,
 }
 
 impl Compat {
     /// The words of decks and command lines with their meaning; the first one of each is what is told. `lammps` is the newest
-    /// version whose numbers have been compared.
+    /// version.
     pub const NAMES: [(&'static str, Compat); 4] = [
         ("none", Compat::Perigrain),
-        ("lammps", Compat::Lammps),
-        ("lammps/2025", Compat::Lammps),
+        ("lammps/2025", Compat::Lammps2025),
         ("lammps/2026", Compat::Lammps2026),
+        ("lammps", Compat::Lammps2026),
     ];
 
     /// What a word means.
@@ -226,6 +226,11 @@ impl Settings {
     /// Whether LAMMPS' artefacts are wanted.
     pub fn lammps(&self) -> bool {
         self.compat.lammps()
+    }
+
+    /// Whether they are those of LAMMPS 22Jul2025, with all that has been mended since.
+    pub fn lammps_of_2025(&self) -> bool {
+        self.compat == Compat::Lammps2025
     }
 
     /// Whether they are those of the LAMMPS of 2026.

@@ -47,9 +47,11 @@ fn what_is_not_understood_is_named_with_the_nearest() {
     }
     let help = read("a -compat lammps/2024").unwrap_err().help.unwrap();
     assert!(help.contains("lammps/2026"), "{help}");
-    for (word, compat) in
-        [("lammps", Compat::Lammps), ("lammps/2025", Compat::Lammps), ("lammps/2026", Compat::Lammps2026)]
-    {
+    for (word, compat) in [
+        ("lammps", Compat::Lammps2026),
+        ("lammps/2025", Compat::Lammps2025),
+        ("lammps/2026", Compat::Lammps2026),
+    ] {
         assert_eq!(read(&format!("a -compat {word}")).unwrap().compat, compat);
     }
     assert!(read("a -compat none").is_err());

@@ -111,8 +111,8 @@ pub(super) const COMPAT: Entry = (
         text: "The same as `-compat lammps` on the command line. [Coming from LAMMPS](../coming-from-lammps.md) lists what \
             it changes and by how much; the log tells which of it a deck touches. `none` goes back. LAMMPS has no such \
             command.\n\n\
-            `lammps/2025`, which `lammps` alone stands for, is LAMMPS 22Jul2025, whose numbers have been compared. `lammps/2026` is the same but \
-            for what that page tells of LAMMPS since; what is known to be mended there and could not be compared is refused.",
+            `lammps/2025` is LAMMPS 22Jul2025, whose numbers have been compared. `lammps/2026`, which `lammps` alone stands for, is the same but \
+            for what LAMMPS has mended in 2026; that page tells what.",
         example: "compat lammps",
     },
 );

@@ -198,7 +198,7 @@ codes! {
         "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for. With `error soft` the run ends and the deck goes on.",
         "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";
     COMPAT = 301, "LAMMPS does otherwise",
-        "A place where LAMMPS 22Jul2025 is wrong and perigrain is not, unless `-compat lammps` is on. `Coming from LAMMPS` lists all of them.",
+        "A place where LAMMPS is wrong (22Jul2025, in part mended in 2026) and perigrain is not, unless `-compat lammps` is on. `Coming from LAMMPS` lists all of them.",
         "", "";
     MATERIAL = 302, "material questionable",
         "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics. Where `form` says which modulus the bonds shall keep, this is a note, else a warning.",

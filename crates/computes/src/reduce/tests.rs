@@ -27,7 +27,7 @@ fn all_modes() {
         assert_eq!(value(&mut b, &format!("{mode} x")), a, "{mode}");
     }
     // Oracle: LAMMPS 22Jul2025 prints the sum for aveabs of several inputs, and 1e20 for minabs.
-    b.world.settings.compat = Compat::Lammps;
+    b.world.settings.compat = Compat::Lammps2025;
     assert_eq!((value(&mut b, "aveabs x"), value(&mut b, "minabs x")), (2.5, 1e20));
     let c = b.compute(&Reduce, "aveabs x x").unwrap();
     assert_eq!(b.evaluate(&*c).unwrap().vector, [7.5, 7.5]);

@@ -111,7 +111,12 @@ fn restitution_is_what_was_asked_for() {
             [(0.9, 0.902), (0.7, 0.718), (0.5, 0.550), (0.3, 0.397)],
         ),
         (Damping::Tsuji, Compat::Perigrain, false, [(0.9, 0.900), (0.7, 0.700), (0.5, 0.500), (0.9, 0.900)]),
-        (Damping::Tsuji, Compat::Lammps, false, [(0.9, 0.9284), (0.7, 0.7777), (0.5, 0.6161), (0.9, 0.9284)]),
+        (
+            Damping::Tsuji,
+            Compat::Lammps2025,
+            false,
+            [(0.9, 0.9284), (0.7, 0.7777), (0.5, 0.6161), (0.9, 0.9284)],
+        ),
     ];
     for (damping, compat, limit, pairs) in cases {
         for (asked, expected) in pairs {

@@ -29,7 +29,7 @@ impl Style for DeformPressure {
                    is the one at the end of the step.\n\
                    The fix brings its own computes `ID_temp` (temp) and `ID_press` (pressure), which other lines may read; `fix_modify ID press C` takes \
                    another one. Choose K so that 1/(K · bulk modulus) is some ten times what a wave needs to cross the box: above that the box swings.\n\
-                   Under `-compat lammps` a change takes the time of one step whatever N is, and with `remap v` particles that cross a face of a steered length get the rate of strain as their velocity, as in LAMMPS. `box` and `vol/balance/p` are not here: they are refused.",
+                   Under `-compat lammps` a change takes the time of one step whatever N is, and under `-compat lammps/2025` particles that cross a face of a steered length with `remap v` get the rate of strain as their velocity, as in LAMMPS. `box` and `vol/balance/p` are not here: they are refused.",
             example: "fix hold all deform/pressure 1 x pressure 0.0 1e-3 max/rate 0.1 remap x",
         }
     }

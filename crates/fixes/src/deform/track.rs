@@ -108,8 +108,9 @@ pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track
     Ok(start.map(|start| Track { start, way: ways.next().unwrap_or(Way::Still) }))
 }
 
-/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps` a length that keeps the
-/// volume counts with its rate over itself, and before the first change of a run (`first`) those alone do that grow evenly.
+/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps/2025` a length that keeps
+/// the volume counts with its rate over itself, under all of LAMMPS before the first change of a run (`first`) those alone do that
+/// grow evenly.
 pub fn streaming(
     tracks: &[Track; 3],
     w: &World,
@@ -118,7 +119,7 @@ pub fn streaming(
 ) -> [[f64; 3]; 2] {
     let lammps = w.settings.lammps();
     let rate: [f64; 3] = std::array::from_fn(|d| match tracks[d].way {
-        Way::Volume { .. } if lammps => rate[d] / lengths[d],
+        Way::Volume { .. } if w.settings.lammps_of_2025() => rate[d] / lengths[d],
         _ => rate[d],
     });
     let clock = &w.clock;
@@ -171,8 +172,8 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
                 let [lo, hi] = at[d];
                 let grows = steering.rate(w, t)?;
                 let half = 0.5 * (hi - lo) * grows * steering.span(w, t);
-                // LAMMPS takes the rate of strain for that of the length.
-                let over = if w.settings.lammps() { 1.0 } else { hi - lo };
+                // LAMMPS takes the rate of strain for that of the length, until 2026.
+                let over = if w.settings.lammps_of_2025() { 1.0 } else { hi - lo };
                 (at[d], rate[d]) = ([lo - half, hi + half], over * grows);
             }
         }

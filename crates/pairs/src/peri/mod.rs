@@ -206,7 +206,7 @@ impl Solid {
             unit: self.unit(),
             lattice_spacing: w.lattice.spacing[0],
             compat_lammps: s.lammps(),
-            own_stretches: s.lammps_of_2026(),
+            mended: s.lammps_of_2026(),
             compress: self.compress,
             layout: if s.force_list { Layout::List } else { Layout::Auto },
             skip_rest: !s.no_skipping,
@@ -330,16 +330,6 @@ impl Pair for Solid {
             self.cannot(span, "needs a lattice that is the same in x, y and z")?;
         }
         let options = self.options(w);
-        if w.settings.lammps_of_2026() && self.law.kind == LawKind::ElasticPlastic {
-            let text = "under `compat lammps/2026`: its yielding has been mended in 2026 by rules that have not been compared";
-            return Err(Diagnostic::error(
-                Code::NOT_SUPPORTED,
-                span,
-                format!("no pair_style {} {text}", self.name),
-            )
-            .help("`compat lammps/2025` has the yielding of LAMMPS 22Jul2025, `compat none` the right one")
-            .into());
-        }
         let before = w.families.as_ref().map(|f| f.law.kind);
         bond_weights::allowed(self, &options, w.settings.two_dimensional, span)?;
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;

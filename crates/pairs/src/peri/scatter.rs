@@ -43,7 +43,7 @@ impl Scatter {
         }
         if own.strength && options.one_stretch() {
             let text = "under `compat lammps/2025` particles have one critical stretch, whatever bond has it";
-            return refuse(0, text, "`compat lammps/2026` or none");
+            return refuse(0, text, "`compat lammps` or none");
         }
         if own.stiffness && kind != LawKind::Pmb {
             return refuse(1, &format!("bonds of pair_style {} have no factors", style.name), "peri/pmb");

@@ -155,9 +155,10 @@ pub struct FamilyOptions {
     pub lattice_spacing: f64,
     /// One critical stretch per particle, and LAMMPS' absolute threshold for stretch.
     pub compat_lammps: bool,
-    /// Under that each bond has the critical stretch of its own pair nevertheless, as in the LAMMPS of 2026.
-    #[serde(default)]
-    pub own_stretches: bool,
+    /// Under that what LAMMPS has mended in 2026: each bond has the critical stretch of its own pair, and plastic bodies return
+    /// to the yield surface.
+    #[serde(default, alias = "own_stretches")]
+    pub mended: bool,
     /// Broken bonds still push when they are shorter than at the start (`peri_modify broken compress`).
     pub compress: bool,
     /// Lattice or list.
@@ -192,7 +193,7 @@ impl FamilyOptions {
 
     /// Whether particles have one critical stretch each, the largest of their bonds, as in LAMMPS 22Jul2025.
     pub fn one_stretch(&self) -> bool {
-        self.compat_lammps && !self.own_stretches
+        self.compat_lammps && !self.mended
     }
 
     /// The distance below which two particles repel each other, bonded or not:
@@ -211,7 +212,7 @@ impl FamilyOptions {
             unit: ForceUnit::Density,
             lattice_spacing,
             compat_lammps: false,
-            own_stretches: false,
+            mended: false,
             compress: false,
             layout: Layout::Auto,
             skip_rest: true,

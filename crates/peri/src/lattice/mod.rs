@@ -83,7 +83,8 @@ pub fn settling<'a>(
     options: &FamilyOptions,
     (advance, tallied, counts): (bool, bool, bool),
 ) -> Settling<'a> {
-    let (moment, compat) = (moment(law, advance), options.compat_lammps);
+    let moment = Moment { mended: options.mended, ..moment(law, advance) };
+    let compat = options.compat_lammps;
     Settling { law, table, moment, compat, advance, tallied, counted: counts && advance }
 }
 

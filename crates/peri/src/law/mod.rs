@@ -50,6 +50,8 @@ pub struct Moment {
     pub hold: Held,
     /// Energies asked for are those that damage has taken.
     pub lost: bool,
+    /// Flow under LAMMPS' laws is that of 2026.
+    pub mended: bool,
 }
 
 impl Moment {
@@ -302,7 +304,9 @@ impl BondLaw for Plastic {
 }
 
 /// LAMMPS' forces and its flow, which forgets the plastic stretch of what is elastic again. Columns: 3Kθ/m, B, θ/3, the
-/// scale σ of the trial state, and the step of the plastic multiplier (0 where elastic).
+/// scale σ of the trial state, and the step of the plastic multiplier (0 where elastic). A bond flows by the multiplier
+/// times ω times its deviatoric pull, in 2026 by half of their product without ω: (1 + m_i/m_j)/2 of what would return it to
+/// the yield surface.
 pub struct PlasticLammps;
 
 impl BondLaw for PlasticLammps {
@@ -320,6 +324,7 @@ impl BondLaw for PlasticLammps {
         // SAFETY: passed on to the caller.
         unsafe {
             let flow = L::splat(moment.flow);
+            let gain = if moment.mended { L::splat(0.5) } else { omega };
             let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
             let mut pulls = [a, a];
             let mut end = 0;
@@ -328,7 +333,7 @@ impl BondLaw for PlasticLammps {
                 let part = b.mul(bond.s.sub(this[2]).sub(memory[end])).mul(this[3]);
                 pulls[end] = a.add(part).mul(bond.inverse);
                 let elastic = this[3].ge(L::splat(1.0));
-                let flowed = omega.mul(part).mul(this[4]).add(memory[end]);
+                let flowed = gain.mul(part).mul(this[4]).add(memory[end]);
                 let flowed = flowed.sub(flowed.keep(elastic));
                 memory[end] = flowed.sub(memory[end]).fma(flow, memory[end]);
                 end += 1;

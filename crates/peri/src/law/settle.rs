@@ -130,7 +130,9 @@ impl Settling<'_> {
                             }
                         }
                         LawKind::ElasticPlastic if self.compat => {
-                            [angle * by_m, shear, angle / 3.0, 1.0, 0.0, 0.0]
+                            // What LAMMPS' norm has in the place of 1/m; 1/m itself in 2026.
+                            let share = if self.moment.mended { by_m } else { angle * by_m };
+                            [share, shear, angle / 3.0, 1.0, 0.0, 0.0]
                         }
                         LawKind::ElasticPlastic => {
                             [own.bulk * angle * by_m, shear, angle / 3.0, 0.0, 0.0, 0.0]
@@ -255,6 +257,7 @@ pub fn moment(law: &Law, advance: bool) -> Moment {
         held: Held::default(),
         hold: Held::for_steps(decay, fresh),
         lost: law.lost,
+        mended: false,
     }
 }
 

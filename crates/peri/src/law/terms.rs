@@ -55,7 +55,8 @@ impl Term for Norm {
     }
 }
 
-/// What LAMMPS takes for the norm, over (15G)²: with (θ_i/m_i + θ_j/m_j) in place of 1/m. Column 0 is θ/m here.
+/// What LAMMPS takes for the norm, over (15G)²: with (θ_i/m_i + θ_j/m_j) in place of 1/m, in 2026 with (1/m_i + 1/m_j).
+/// Column 0 is θ/m or 1/m here.
 pub struct NormLammps;
 
 impl Term for NormLammps {

@@ -19,8 +19,16 @@ fn end(values: [f64; COLUMNS]) -> [Single; COLUMNS] {
 
 /// Memory is the element's stretch itself.
 const ITSELF: Held = Held { decay: 1.0, fresh: 0.0 };
-const NOW: Moment =
-    Moment { decay: 0.8, fresh: 0.9, lambda: 0.4, flow: 1.0, held: ITSELF, hold: ITSELF, lost: false };
+const NOW: Moment = Moment {
+    decay: 0.8,
+    fresh: 0.9,
+    lambda: 0.4,
+    flow: 1.0,
+    held: ITSELF,
+    hold: ITSELF,
+    lost: false,
+    mended: false,
+};
 
 #[test]
 fn forms_of_the_stretch() {
@@ -86,7 +94,7 @@ fn both_forms_of_viscous_memory_give_the_same_pulls() {
         let (decay, fresh) = if (20..40).contains(&step) { (0.7, 0.84) } else { (0.9, 0.95) };
         d = decay * d + fresh * (s - before);
         let hold = Held::for_steps(decay, fresh);
-        let moment = Moment { decay, fresh, lambda: 0.4, flow: 1.0, held, hold, lost: false };
+        let moment = Moment { decay, fresh, lambda: 0.4, flow: 1.0, held, hold, lost: false, mended: false };
         assert_eq!(moment.steady(), ![0, 20, 40].contains(&step));
         let b = Stretch { before: Single(before), ..bond(s) };
         let mut looking = memory;
@@ -174,4 +182,24 @@ fn flow_returns_to_the_limit_and_stays() {
         let (q, _) = Plastic::pull(&bond(0.1), Single(1.0), &ends, &mut memory, &look);
         assert_eq!(p.0, q.0);
     }
+}
+
+#[test]
+fn plastic_bodies_of_2026_return_to_the_limit_within_a_body() {
+    // B = 3 and B' = 2 at the ends, deviatoric stretch 0.1 at both, limits 0.4 and 0.5 of the trial norms. The multiplier is
+    // (1/scale - 1)/B; half of it times the deviatoric pull (B + B') 0.1 scale flows. With B = B' it is 0.1 (1 - scale).
+    let flowed = |g: [f64; 2], scale: [f64; 2]| {
+        let ends = [0, 1].map(|i| end([0.0, g[i], 0.0, scale[i], (1.0 / scale[i] - 1.0) / g[i], 0.0]));
+        let mut memory = [Single(0.0); 2];
+        let moment = Moment { mended: true, ..NOW };
+        // ω is 1 over the length of a bond, here of 1/7; in 2026 it does not count.
+        // SAFETY: plain arithmetic.
+        unsafe { PlasticLammps::pull(&bond(0.1), Single(7.0), &ends, &mut memory, &moment) };
+        memory.map(|m| m.0)
+    };
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-15;
+    let [a, b] = flowed([3.0, 3.0], [0.4, 0.5]);
+    assert!(near(a, 0.06) && near(b, 0.05), "{a} {b}");
+    let [a, b] = flowed([3.0, 2.0], [0.4, 0.5]);
+    assert!(near(a, 0.06 * (1.0 + 2.0 / 3.0) / 2.0) && near(b, 0.05 * (1.0 + 1.5) / 2.0), "{a} {b}");
 }
