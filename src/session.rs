@@ -261,7 +261,8 @@ impl Session {
         let outcome = self.work_off(&mut script);
         self.doubt(&script);
         if self.planning() {
-            self.told_to.line(&self.plans.text(&self.sources))?;
+            let text = self.plans.text(&self.sources);
+            self.told_to.line_or(&text, Some(&text))?;
             self.told_to.flush()?;
         }
         if self.checking() && !self.blind {
@@ -318,7 +319,10 @@ impl Session {
                 }
                 Err(e) => return Err(e),
             }
-            self.interrupted |= self.stop_flag().load(Ordering::Relaxed);
+            if self.stop_flag().load(Ordering::Relaxed) && !self.interrupted {
+                self.interrupted = true;
+                self.say_interrupted(&line)?;
+            }
             if self.interrupted || self.quit.is_some() {
                 break;
             }

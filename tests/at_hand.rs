@@ -36,7 +36,7 @@ fn new_decks_run_as_they_stand() {
 fn examples_are_listed_shown_and_copied() {
     let folder = tempfile::tempdir().unwrap();
     let list = out(&perigrain(folder.path(), &["examples"]));
-    assert!(list.contains("\nhopper "), "{list}");
+    assert!(list.contains("\n  hopper "), "{list}");
     assert_eq!(out(&perigrain(folder.path(), &["examples", "list"])), list);
     assert!(out(&perigrain(folder.path(), &["examples", "show", "hopper"])).starts_with("# Hopper\n"));
     let o = perigrain(folder.path(), &["examples", "copy", "hopper"]);

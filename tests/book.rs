@@ -129,6 +129,16 @@ fn decks_in_the_text_run_and_draw_their_pictures() {
 }
 
 #[test]
+fn the_first_crack_is_that_of_a_new_deck() {
+    let starter = include_str!("../src/cli/starters/crack.in");
+    let (_, lines) = starter.split_once("\n\n").unwrap();
+    let shown = decks(&docs().join("howto/first-crack.md")).pop().unwrap().text;
+    // The picture in the last line has another name and size.
+    let cut = |text: &str| text.trim_end().rsplit_once('\n').map(|(lines, _)| lines.to_string());
+    assert_eq!(cut(&shown), cut(lines));
+}
+
+#[test]
 fn every_picture_is_shown() {
     let text: String =
         pages_in("howto").into_iter().chain(pages_in("theory")).map(|(_, text)| text).collect();

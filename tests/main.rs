@@ -18,6 +18,7 @@ mod disk;
 #[path = "dumps/main.rs"]
 mod dumps;
 mod examples;
+mod found;
 mod fuzz_loop;
 #[path = "geometry/main.rs"]
 mod geometry;
@@ -26,6 +27,7 @@ mod grains;
 mod impact;
 #[path = "installed_decks/main.rs"]
 mod installed_decks;
+mod interrupts;
 #[path = "lammps.rs"]
 mod lammps;
 mod lsp;
@@ -35,6 +37,9 @@ mod partitions;
 mod peri;
 mod plans;
 mod prompt;
+#[cfg(unix)]
+#[path = "common/pty.rs"]
+mod pty;
 #[path = "common/random.rs"]
 mod random;
 mod report;

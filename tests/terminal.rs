@@ -1,35 +1,46 @@
 //! What a run, its progress and its tables look like on a terminal: the bytes of a real one.
+//!
+//! What a terminal shows, claim by claim, and the test that reads it from the bytes of a pseudo-terminal:
+//!
+//! | claim | test |
+//! |---|---|
+//! | progress is that of the whole deck, over loops around `run` | `progress_is_that_of_the_whole_deck` |
+//! | a loop that asks the clock ends in sight; where nobody can know, the bar is that of the run | the same |
+//! | nothing is drawn while the scene is built | `the_line_tells_how_far_it_is_and_what_is_left` |
+//! | the step in the line is the present one | the same |
+//! | time left is learnt from the run, and never 0 s | the same |
+//! | the line fits a window that changes its size | `a_window_may_change_its_size` |
+//! | memory is foretold before the run | `a_run_ends_in_three_lines_and_setup_says_one_line_each` |
+//! | a run ends in three lines: time and speed, where results are, what would make it faster | the same |
+//! | setup says what it made in one line each | the same |
+//! | LAMMPS' blocks stay in `log.lammps` | the same |
+//! | LAMMPS' blocks under `-screen full`, and in pipes | `a_terminal_that_wants_all_and_a_pipe_have_lammps_blocks` |
+//! | no bar where there is no terminal | the same |
+//! | no bar on a terminal that cannot take a line back | `progress_is_that_of_the_whole_deck` |
+//! | a limit of wall time, with a last restart file | `a_limit_of_time_leaves_a_restart_file` |
+//! | `NO_COLOR` | `colours_are_left_out_where_they_are_not_wanted` |
+//! | tables are cut by columns, never within a number | `tables_are_cut_between_columns`, `tables_of_sweeps_…` |
+//! | rows have the columns of their heading | `rows_have_the_columns_of_their_heading` |
+//! | lines of the program break between words | `lines_of_its_own_break_between_words` |
+//! | files of averaged vectors name their columns | `files_of_averages_name_their_columns_and_…` |
+//! | `check` notes speeds in lattice units a thousandth of others | the same |
+//! | Ctrl-C ends a run at a whole step; two end the program | `interrupts::` |
+//! | `examples` lists, `copy NAME` | `found::examples_and_new_decks_are_written_here` |
+//! | `new` | the same |
+//! | `completions SHELL` | `found::shells_and_man_get_their_pages`, `at_hand::terminal::bash_completes_…` |
+//! | man pages | the same, `at_hand::terminal::man_has_a_page_for_each_subcommand` |
+//! | a mistyped subcommand is taken for one, also where the deck is there | `found::a_mistyped_subcommand_is_taken_for_one` |
+//! | `help` goes by topics | `found::help_goes_by_topics_through_a_pager` |
+//! | pages are wrapped at words, and go through a pager | the same, `at_hand::terminal::pages_are_wrapped_…` |
+//! | `help fix` lists fixes | `found::help_searches_names_and_texts` |
+//! | `help wall` finds `wall/gran`: a search over names and texts | the same |
+//! | an unknown word that is known elsewhere is told where it belongs | `found::a_word_that_is_known_elsewhere_is_told_…` |
+//!
+//! Those of the prompt are in `tests/prompt/terminal.rs`.
 #![cfg(unix)]
 
-use rexpect::session::{PtySession, spawn_command};
+use super::pty::{GRAINS, PLAIN, shown, too_wide, width};
 use std::fs;
-use std::path::Path;
-use std::process::Command;
-
-const PATIENCE: u64 = 60_000;
-
-/// Grains that fall without touching.
-const GRAINS: &str = "units si\natom_style sphere\nboundary f f f\nregion box block 0 0.1 0 0.1 0 0.1 units box\ncreate_box 1 box\n\
-                      lattice sc 0.025\nregion r block 0.5 3.5 0.5 3.5 0.5 3.5\ncreate_atoms 1 region r\n\
-                      set group all diameter 0.004 density 2500\npair_style granular\npair_coeff * * hooke 1e3 0.1 tangential none\n\
-                      fix 1 all nve/sphere\nfix 2 all gravity 9.81 vector 0 0 -1\ntimestep 1e-9\nneighbor 0.001 bin\n";
-
-/// The program on a terminal of so many columns, in a folder with this deck.
-fn start(folder: &Path, columns: u16, deck: &str, args: &str, env: &[(&str, &str)]) -> PtySession {
-    fs::write(folder.join("in.deck"), deck).unwrap();
-    let line = format!("stty cols {columns} rows 50 && \"$0\" {args}");
-    let mut command = Command::new("sh");
-    command.args(["-c", &line, env!("CARGO_BIN_EXE_perigrain")]).current_dir(folder).env("TERM", "xterm");
-    command.env_remove("NO_COLOR").envs(env.iter().copied());
-    spawn_command(command, Some(PATIENCE)).unwrap()
-}
-
-/// All that it shows.
-fn shown(folder: &Path, columns: u16, deck: &str, args: &str, env: &[(&str, &str)]) -> String {
-    start(folder, columns, deck, args, env).exp_eof().unwrap()
-}
-
-const PLAIN: &str = "in.deck -threads 1";
 
 #[test]
 fn a_run_ends_in_three_lines_and_setup_says_one_line_each() {
@@ -37,7 +48,7 @@ fn a_run_ends_in_three_lines_and_setup_says_one_line_each() {
     let deck = format!(
         "{GRAINS}dump d all custom 5 run.dump id x\nrestart 10 run.*.restart\nrun 10\nrun 10\nrun 10 post no\n"
     );
-    let text = shown(folder.path(), 100, &deck, PLAIN, &[]);
+    let text = shown(folder.path(), 200, &deck, PLAIN, &[]);
     let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
     let log = fs::read_to_string(folder.path().join("log.lammps")).unwrap();
     for block in [
@@ -60,10 +71,9 @@ fn a_run_ends_in_three_lines_and_setup_says_one_line_each() {
         .position(|l| l.starts_with("27 particles, about ") && l.ends_with("kB of memory"))
         .unwrap();
     let end = lines.iter().position(|l| l.starts_with("10 steps in ")).unwrap();
-    assert!(
-        memory < end && lines[end].contains(" steps/s, ") && lines[end].ends_with(" particle steps/s"),
-        "{text}"
-    );
+    let table = lines.iter().position(|l| l.starts_with("   Step")).unwrap();
+    assert!(memory < table && table < end, "{text}");
+    assert!(lines[end].contains(" steps/s, ") && lines[end].ends_with(" particle steps/s"), "{text}");
     assert_eq!(lines[end + 1], "results: log.lammps, run.dump, run.*.restart");
     assert!(lines[end + 2].starts_with("faster: ") && lines[end + 2].contains(" % goes into "), "{text}");
     // What has been said is not said again.
@@ -74,7 +84,8 @@ fn a_run_ends_in_three_lines_and_setup_says_one_line_each() {
 #[test]
 fn a_terminal_that_wants_all_and_a_pipe_have_lammps_blocks() {
     let folder = tempfile::tempdir().unwrap();
-    let deck = format!("{GRAINS}run 10\n");
+    // Long enough for a live line, were there one.
+    let deck = format!("{GRAINS}thermo 0\nrun 150000\n");
     let full = shown(folder.path(), 100, &deck, "in.deck -threads 1 -screen full", &[]);
     let piped = shown(folder.path(), 100, &deck, "in.deck -threads 1 2> err.txt | cat > out.txt", &[]);
     assert_eq!(piped, "");
@@ -139,11 +150,83 @@ fn tables_are_cut_between_columns() {
         assert_eq!(whole[..4], cut[..]);
     }
     assert!(
-        text.contains("(4 more than fit here, in log.lammps alone: TotEng Press Volume v_speed)"),
+        text.contains("(4 more than fit here, in log.lammps alone: TotEng Press\r\n  Volume v_speed)"),
         "{text}"
     );
     let long = |l: &&str| l.chars().count() > 60 && l.trim_start().starts_with(|c: char| c.is_ascii_digit());
     assert_eq!(table_lines(&text).find(long), None);
+}
+
+#[test]
+fn rows_have_the_columns_of_their_heading() {
+    let folder = tempfile::tempdir().unwrap();
+    // At 53 columns the last heading fits, and so does a 0 below it, but not 2.4e-18.
+    let deck = format!("{GRAINS}thermo_style custom step pe temp ke\nthermo 5\nrun 10\n");
+    for (columns, fit) in [(52, 3), (53, 3), (55, 3), (56, 4), (80, 4)] {
+        let text = shown(folder.path(), columns, &deck, PLAIN, &[]);
+        let rows: Vec<usize> = table(&text).iter().map(Vec::len).collect();
+        assert_eq!(rows, [fit; 4], "{columns}: {text}");
+    }
+}
+
+#[test]
+fn lines_of_its_own_break_between_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = format!("{GRAINS}dump d all custom 5 run.dump id x\nrun 1\nrun 2\n");
+    for columns in [60, 80, 200] {
+        let text = shown(folder.path(), columns, &deck, PLAIN, &[]);
+        assert_eq!(too_wide(&text, columns.into()), None, "{text}");
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        assert!(lines.iter().any(|l| l.starts_with("1 step in ")), "{text}");
+        let set = ["Setting atom values: 27 settings made for diameter, 27", "settings made for density"];
+        assert_eq!(set.map(|part| lines.contains(&part)), [columns == 60; 2], "{text}");
+    }
+}
+
+#[test]
+fn the_line_tells_how_far_it_is_and_what_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    // A scene whose building takes a while has no steps yet, and is no run.
+    let deck = format!("{GRAINS}shell sleep 0.4\nthermo 0\nrun 200000\n");
+    let text = shown(folder.path(), 100, &deck, PLAIN, &[]);
+    let (building, running) = text.split_once("   Step").unwrap();
+    assert!(!building.contains('\x1b') && !building.contains(" steps"), "{building}");
+    let bars: Vec<[f64; 4]> = running.split("\x1b[2K").filter_map(bar).collect();
+    assert!(bars.len() > 1, "{running}");
+    for [done, rate, left, step] in &bars {
+        assert_eq!(done, step, "{running}");
+        // Whole seconds, rounded up; speeds are rounded to a step.
+        assert!(*left >= 1.0 && (left - (200_000.0 - done) / rate).abs() <= 1.01, "{running}");
+    }
+    // It is drawn once more below a line that comes in between.
+    assert!(bars.is_sorted_by(|a, b| a[0] <= b[0]) && bars[0][0] < bars[bars.len() - 1][0], "{running}");
+}
+
+/// Steps made, steps per second, seconds left and the present step of a live line.
+fn bar(text: &str) -> Option<[f64; 4]> {
+    let (steps, rest) = text.split_once(" of 200,000 steps, ")?;
+    let (rate, rest) = rest.split_once(" steps/s, ")?;
+    let (left, rest) = rest.split_once(" s left  step ")?;
+    let number = |t: &str| t.split_whitespace().next_back()?.replace(',', "").parse().ok();
+    Some([number(steps)?, number(rate)?, number(left)?, rest.split_whitespace().next()?.parse().ok()?])
+}
+
+#[test]
+fn a_window_may_change_its_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = format!("{GRAINS}thermo 100000\nrun 200000\n");
+    let text = shown(folder.path(), 120, &deck, "in.deck -threads 1 & sleep 0.5; stty cols 41; wait", &[]);
+    let bars: Vec<&str> =
+        text.split("\x1b[2K").filter_map(|l| l.lines().last()).filter(|l| l.contains(" steps")).collect();
+    let narrow: Vec<&&str> = bars.iter().skip_while(|bar| width(bar) > 40).collect();
+    assert!(bars.len() > narrow.len() && !narrow.is_empty(), "{bars:?}");
+    for bar in narrow {
+        // In whole words.
+        let end = bar.trim_end();
+        assert!(width(bar) <= 40 && (end.ends_with(" steps") || end.ends_with(" steps/s")), "{bar}");
+    }
+    let last = text.split("\x1b[2K").flat_map(str::lines).find(|l| l.starts_with("    200000 ")).unwrap();
+    assert_eq!(last.split_whitespace().count(), 3, "{text}");
 }
 
 /// The lines of the step table.
@@ -238,34 +321,4 @@ fn a_limit_of_time_leaves_a_restart_file() {
     assert!(text.contains(&format!("end {}", step + 10)), "{text}");
     let text = shown(folder.path(), 100, "", "-in in.deck -timeout soon", &[]);
     assert!(text.contains("`soon` is no time") && text.contains("-timeout 23:30:00"), "{text}");
-}
-
-#[test]
-fn commands_of_the_program_are_found() {
-    let folder = tempfile::tempdir().unwrap();
-    let pager = [("PAGER", "cat")];
-    let text = shown(folder.path(), 80, "", "chekc in.fall", &[]);
-    assert!(text.contains("did you mean `perigrain check in.fall`?"), "{text}");
-    let text = shown(folder.path(), 80, "", "help fix", &pager);
-    assert!(text.contains("\n  fix nve/sphere ") && text.contains("\n  fix wall/gran "), "{text}");
-    let text = shown(folder.path(), 80, "", "help wall", &pager);
-    assert!(text.contains("\n  fix wall/gran "), "{text}");
-    // Pages go through the pager, and their lines break at words.
-    let text = shown(folder.path(), 60, "", "help fix", &[("PAGER", "sed s/^/@/")]);
-    let lines: Vec<&str> = text.lines().map(|l| l.trim_end().trim_start_matches('@')).collect();
-    assert!(text.lines().filter(|l| !l.trim().is_empty()).all(|l| l.starts_with('@')), "{text}");
-    assert!(
-        lines.iter().any(|l| l.ends_with("Lets the diameter of spheres")) && !text.contains("\x1b"),
-        "{text}"
-    );
-    assert!(lines.iter().filter(|l| l.starts_with("  ")).all(|l| l.chars().count() <= 60), "{text}");
-    let deck = "units si\natom_style sphere\npair_style granular hertz/material 1e7 0.5 0.3\n";
-    let text = shown(folder.path(), 80, deck, PLAIN, &[("NO_COLOR", "1")]);
-    assert!(text.contains("pair_coeff"), "{text}");
-    for (args, wanted) in [("examples list", "hopper"), ("completions bash", "complete"), ("man", ".TH")] {
-        let text = shown(folder.path(), 80, "", args, &pager);
-        assert!(text.contains(wanted), "{args}: {text}");
-    }
-    let text = shown(folder.path(), 80, "", "new in.mine && exec \"$0\" check in.mine", &[]);
-    assert!(text.contains("in.mine"), "{text}");
 }

@@ -55,7 +55,7 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
         true => session.set_watch(Box::new(recorder)),
         false => session.set_watch(Box::new(Bar(progress.clone()))),
     }
-    catch_interrupt(&session);
+    catch_interrupt(&session, progress);
     if runs(mode) {
         let with = o.compat.told();
         let threads = session::threads();
@@ -211,12 +211,16 @@ fn runs(mode: Mode) -> bool {
 }
 
 /// The first Ctrl-C or request to end ends the run at a whole step, the second one the program at once.
-fn catch_interrupt(session: &Session) {
-    let stop = session.stop_flag();
+fn catch_interrupt(session: &Session, progress: &Progress) {
+    let (stop, progress) = (session.stop_flag(), progress.clone());
     let ask = move || {
         if stop.swap(true, Ordering::Relaxed) {
+            progress.leave();
+            // Nobody may be there to read it.
+            let _ = writeln!(stderr(), "ended at once: the last lines of files may be missing");
             std::process::exit(i32::from(INTERRUPTED));
         }
+        progress.heard();
     };
     signals::listen(ask.clone());
     // Without a handler, Ctrl-C ends the program as it always did.
@@ -224,11 +228,13 @@ fn catch_interrupt(session: &Session) {
 }
 
 /// Ctrl-C ends what is going on at a whole step, however often it comes.
-pub(super) fn catch_interrupts(session: &Session) {
-    let stop = session.stop_flag();
+pub(super) fn catch_interrupts(session: &Session, progress: &Progress) {
+    let (stop, progress) = (session.stop_flag(), progress.clone());
     let _ = ctrlc::set_handler(move || {
+        progress.heard();
         if stop.swap(true, Ordering::Relaxed) {
-            eprintln!("stopping at the end of this step; Ctrl-\\ ends the program at once");
+            let told = "stopping at the end of this step; Ctrl-\\ ends at once";
+            let _ = writeln!(progress.around(stderr()), "{told}");
         }
     });
 }

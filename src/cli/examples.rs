@@ -87,7 +87,7 @@ enum Act {
 /// An unknown name, a folder that is there already or cannot be made.
 pub fn perform(wanted: &Wanted) -> Result<(), Usage> {
     match &wanted.act {
-        None | Some(Act::List) => show(&list()),
+        None | Some(Act::List) => super::pager::page(&list()),
         Some(Act::Show { name }) => super::pager::page(find(name)?.files[0].1),
         Some(Act::Copy { name, folder }) => {
             let example = find(name)?;
@@ -104,7 +104,7 @@ pub fn perform(wanted: &Wanted) -> Result<(), Usage> {
 fn list() -> String {
     let mut text = String::new();
     for example in EXAMPLES {
-        let _ = writeln!(text, "{:<24} {}", example.name, example.title());
+        let _ = writeln!(text, "  {:<24} {}", example.name, example.title());
     }
     text + "\n`perigrain examples show NAME` tells more, `perigrain examples copy NAME` writes its files here.\n"
 }

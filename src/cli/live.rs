@@ -55,6 +55,23 @@ impl Live {
         });
     }
 
+    /// What the terminal shows of a key (`^C`) does not stay behind the line; without one, the next text begins on a line of its own.
+    pub fn over_echo(&self) {
+        self.with(|line| match line.seen {
+            true => line.draw(),
+            false => drop(line.term.write_line("")),
+        });
+    }
+
+    /// Takes it away as the program ends, unless somebody is at it and perhaps waits for ever.
+    pub fn leave(&self) {
+        let Some(mut line) = self.0.as_ref().and_then(|inner| inner.try_lock().ok()) else { return };
+        match line.seen {
+            true => line.hide(),
+            false => drop(line.term.write_line("")),
+        }
+    }
+
     /// Does something with the line out of the way.
     pub fn aside<T>(&self, what: impl FnOnce() -> T) -> T {
         let Some(inner) = &self.0 else { return what() };

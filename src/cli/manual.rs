@@ -44,10 +44,19 @@ pub fn page(name: &str) -> Result<String, Usage> {
     Err(Usage { message: format!("the manual has no page `{name}`"), help: Some(help) })
 }
 
-/// Pages with the words in their names, then those with them in their texts.
+/// Pages with the words in their names, then those with them in their texts: beside each other, else each of them.
 fn speaking_of(words: &str, all: &[Page]) -> Option<String> {
     let words = words.to_lowercase();
-    let holds = |text: &str| text.to_lowercase().contains(&words);
+    found(&words, &[&words], all)
+        .or_else(|| found(&words, &words.split_whitespace().collect::<Vec<_>>(), all))
+}
+
+/// The pages that have each of the parts, for who asked for these words.
+fn found(words: &str, each: &[&str], all: &[Page]) -> Option<String> {
+    let holds = |text: &str| {
+        let text = text.to_lowercase();
+        each.iter().all(|part| text.contains(part))
+    };
     let (named, others): (Vec<&Page>, Vec<&Page>) = all.iter().partition(|p| holds(&p.title()));
     let telling: Vec<&Page> = others.into_iter().filter(|p| holds(&p.markdown())).collect();
     let parts = [("Pages named so", named), ("Pages that speak of it", telling)];

@@ -58,8 +58,8 @@ pub fn work() -> u8 {
 
 fn perform(task: Task) -> Result<u8, Usage> {
     match task {
-        Task::Text(text) => show(&text),
-        Task::Explain(code) => show(&explain(&code)?),
+        Task::Text(text) => pager::page(&text),
+        Task::Explain(code) => pager::page(&explain(&code)?),
         Task::Examples(wanted) => examples::perform(&wanted)?,
         Task::New { file, kind } => starters::write(&file, kind)?,
         Task::Completions(shell) => shells::completions(shell),

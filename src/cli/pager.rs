@@ -20,6 +20,11 @@ pub fn page(text: &str) {
     }
 }
 
+/// The text as it fits a terminal's screen, and as it is into a pipe.
+pub fn fitted(text: &str) -> String {
+    wrapped(text, width(usize::MAX))
+}
+
 /// How many characters a line on standard output may have: so many, and fewer where a terminal has fewer.
 pub fn width(most: usize) -> usize {
     let columns =

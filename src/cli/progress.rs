@@ -17,6 +17,9 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// How long a deck may be read for the number of its steps.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+/// Characters that a terminal shows of a Ctrl-C, behind the line.
+const KEY: usize = 2;
+
 /// How much a new measurement of the speed counts against those before.
 const NEWS: f64 = 0.2;
 
@@ -123,7 +126,7 @@ impl Progress {
         if let Some((stop, _)) = state.looking.as_ref().filter(|(_, since)| since.elapsed() > PATIENCE) {
             stop.store(true, Ordering::Relaxed);
         }
-        let text = state.line(made, self.log.as_ref(), self.live.width());
+        let text = state.line(made, self.log.as_ref(), self.live.width().saturating_sub(KEY));
         drop(state);
         self.live.draw(text);
     }
@@ -131,6 +134,16 @@ impl Progress {
     /// Takes the line away, for instance before a message.
     pub fn clear(&self) {
         self.live.clear();
+    }
+
+    /// A Ctrl-C has been heard.
+    pub fn heard(&self) {
+        self.live.over_echo();
+    }
+
+    /// The program ends in the middle of something.
+    pub fn leave(&self) {
+        self.live.leave();
     }
 
     /// A writer for the terminal that steps around the line.
@@ -182,24 +195,25 @@ impl State {
         }
     }
 
-    /// The line: bar, steps, speed, time left, and as many of the latest values as there is room for.
+    /// The line: bar, steps, and as much of speed, time left and the latest values as there is room for.
     fn line(&self, made: &Made, log: Option<&Log>, width: usize) -> String {
         let (done, all, [most, of]) = self.share(made);
         let wide = if width < 100 { 10 } else { 20 };
         let full = (wide as f64 * done as f64 / all.max(1) as f64).floor().clamp(0.0, wide as f64) as usize;
         let mut text = format!("{}{} ", "█".repeat(full), "░".repeat(wide - full));
         text += &format!("{} of {most}{} steps{of}", count(done as f64), count(all as f64));
+        let mut words = vec![];
         if let Some(rate) = self.rate.filter(|r| *r > 0.0) {
             let left = duration(((all - done) as f64 / rate).ceil());
-            text += &format!(", {} steps/s, {left} left", count(rate));
+            words.extend([format!(", {} steps/s", count(rate)), format!(", {left} left")]);
         }
+        words.extend(values(made, log).iter().map(|value| format!("  {value}")));
         let mut long = text.chars().count();
-        for word in values(made, log) {
-            long += word.chars().count() + 2;
+        for word in words {
+            long += word.chars().count();
             if long > width {
                 break;
             }
-            text += "  ";
             text += &word;
         }
         text

@@ -331,9 +331,16 @@ fn unread(e: &clap::Error) -> Result<Task, Usage> {
     if !e.use_stderr() {
         return Ok(Task::Text(text));
     }
-    let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
-    let message = lines.next().unwrap_or("").trim_start_matches("error: ").to_string();
-    let help = lines.find(|l| l.starts_with("tip:")).map(|l| l.trim_start_matches("tip: ").to_string());
+    let mut parts = text.split("\n\n");
+    // What is missing or possible stands in lines of its own.
+    let first: Vec<&str> = parts.next().unwrap_or_default().lines().map(str::trim).collect();
+    let message = first.join(" ").trim_start_matches("error: ").to_string();
+    let (mut tip, mut usage) = (None, None);
+    for line in parts.flat_map(str::lines).map(str::trim) {
+        tip = tip.or_else(|| line.strip_prefix("tip: ").map(|tip| tip.trim().to_string()));
+        usage = usage.or_else(|| line.strip_prefix("Usage: ").map(|line| format!("write `{line}`")));
+    }
+    let help = tip.or(usage);
     Err(Usage { message, help })
 }
 
@@ -364,10 +371,10 @@ pub fn help() -> String {
     );
     for sub in Sub::command().get_subcommands() {
         let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
-        text += &format!("  {:<10} {about}\n", sub.get_name());
+        text += &format!("  {:<12} {about}\n", sub.get_name());
     }
     text += &format!(
-        "  {:<10} {}\n",
+        "  {:<12} {}\n",
         "help", "Print the manual page of a command or style, or this page and the list of all"
     );
     text += "\nswitches (what holds without them in brackets):\n";

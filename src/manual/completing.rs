@@ -3,6 +3,7 @@
 use super::knowing::{self, COLON, Named};
 use super::pages;
 use super::syntax::is_word;
+use crate::graph::measure;
 use crate::session::Known;
 use perigrain_base::gate;
 use perigrain_out::image::{MAPS, colour_names};
@@ -44,11 +45,20 @@ pub struct Candidate {
 
 /// The byte at which the word before the cursor begins, and what it may become, sorted.
 pub fn complete(line: &str, known: &Known, folder: &Path) -> (usize, Vec<String>) {
+    for (habit, means) in HABITS {
+        if let Some(rest) = line.strip_prefix(habit) {
+            let (start, all) = complete(&(means.to_string() + rest), known, folder);
+            return (start + habit.len() - means.len(), all);
+        }
+    }
     let (start, all) = candidates(line, known, folder);
     let mut all: Vec<String> = all.into_iter().map(|c| c.text).collect();
     all.dedup();
     (start, all)
 }
+
+/// What stands before a line at the prompt, and what is completed in its place.
+const HABITS: [(&str, &str); 2] = [("%time ", ""), ("?", "help ")];
 
 /// As [`complete`], and says what each of them is.
 pub fn candidates(line: &str, known: &Known, folder: &Path) -> (usize, Vec<Candidate>) {
@@ -212,8 +222,16 @@ fn references(word: &str, known: &Known) -> Option<(usize, Vec<Candidate>)> {
         let names = known.variables.iter().map(|v| named(Named::Variable, format!("${{{v}}}")));
         return Some((k, names.collect()));
     }
+    if let Some((function, group)) =
+        word.rsplit_once('(').filter(|(_, group)| group.chars().all(part_of_name))
+        && measure::NAMES.contains(&function.rsplit(|c| !part_of_name(c)).next().unwrap_or_default())
+        && !["c_", "f_", "v_"].iter().any(|letter| group.starts_with(letter))
+    {
+        let names = known.groups.iter().map(|name| named(Named::Group, name.clone()));
+        return Some((function.len() + 1, names.collect()));
+    }
     let begins = |k: usize| k + word[k..].chars().next().map_or(1, char::len_utf8);
-    let start = word.rfind(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).map_or(0, begins);
+    let start = word.rfind(|c| !part_of_name(c)).map_or(0, begins);
     let (kind, names) = match word.get(start..start + 2)? {
         "v_" => (Named::Variable, &known.variables),
         "c_" | "C_" => (Named::Compute, &known.computes),
@@ -222,6 +240,10 @@ fn references(word: &str, known: &Known) -> Option<(usize, Vec<Candidate>)> {
     };
     let letter = &word[start..start + 2];
     Some((start, names.iter().map(|n| named(kind, format!("{letter}{n}"))).collect()))
+}
+
+fn part_of_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
 }
 
 /// All values that have a name: `c_ID f_ID v_name`.
@@ -327,6 +349,11 @@ mod tests {
         check("delete_atoms group bu", &["delete_atoms group bullet"]);
         check("thermo_style custom step c_d", &["thermo_style custom step c_dmg"]);
         check("print \"v = ${spe", &["print \"v = ${speed}"]);
+        check("variable e equal 2*vcm(bu", &["variable e equal 2*vcm(bullet"]);
+        check("variable e equal vcm(ball,c_d", &["variable e equal vcm(ball,c_dmg"]);
+        check("%time unfix m", &["%time unfix motion"]);
+        check("?pair_style granu", &["?pair_style granular"]);
+        check("?pair_sty", &["?pair_style"]);
         check(
             "variable e equal 0.5*v_sp",
             &["variable e equal 0.5*v_spacing", "variable e equal 0.5*v_speed"],

@@ -1,13 +1,15 @@
 //! What a line of a deck has made, in one line for a terminal: LAMMPS' blocks stay in the log.
 
 /// Parts of LAMMPS' blocks that tell nothing of what was made.
-const EMPTY: [&str; 6] = [
+const EMPTY: [&str; 7] = [
     "MPI processor grid",
     " units in orthogonal box = ",
     " units in triclinic box = ",
     "0 fragments",
     "0 bodies",
     " with max type 0",
+    // Of the memory a terminal is told before the run.
+    "forecast: about ",
 ];
 
 /// The lines that a command says as one; nothing where they tell of nothing.

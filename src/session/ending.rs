@@ -2,7 +2,9 @@
 
 use super::Session;
 use crate::human::{about, bytes, count, duration};
+use perigrain_base::diag::Result;
 use perigrain_base::par;
+use perigrain_lang::Line;
 use perigrain_out::log::Log;
 use perigrain_plan::run::verlet::Outcome;
 use perigrain_plan::{OpClass, StepPlan};
@@ -67,6 +69,26 @@ impl Session {
             }
         }
         lines.join("\n")
+    }
+
+    /// Tells a terminal of a file that a line has written; `*` in its name stands for the step.
+    pub(super) fn tell_written(&self, file: &str) {
+        if self.options.log.brief().is_some() {
+            self.options
+                .log
+                .to_screen(&format!("wrote {}", file.replace('*', &self.world.clock.step.to_string())));
+        }
+    }
+
+    /// Says that a line was the last one because somebody asked for an end; a run says so itself.
+    pub(super) fn say_interrupted(&self, line: &Line) -> Result<()> {
+        let place = line.command.as_ref().map(|cmd| cmd.span).filter(|span| self.prompt != Some(span.file));
+        let text = place.map_or("Interrupted".into(), |span| {
+            let name = self.sources.get(span.file).map_or("", |source| &source.name);
+            let (row, _) = self.sources.place(span);
+            format!("Interrupted behind {name}:{row}: no further line is worked off")
+        });
+        self.options.log.line(&text)
     }
 
     /// Where results are.
@@ -136,8 +158,9 @@ fn faster(hints: &[String], plan: &StepPlan, o: &Outcome) -> Option<String> {
 /// Time and speed of a run, or how a minimization went.
 fn speed(o: &Outcome, particles: usize, minimized: Option<&str>) -> String {
     let seconds = o.time.as_secs_f64();
-    let what = if minimized.is_some() { "iterations" } else { "steps" };
-    let mut line = format!("{} {what} in {}", count(o.steps as f64), duration(seconds));
+    let what = if minimized.is_some() { "iteration" } else { "step" };
+    let several = if o.steps == 1 { "" } else { "s" };
+    let mut line = format!("{} {what}{several} in {}", count(o.steps as f64), duration(seconds));
     if let Some(stop) = minimized.and_then(|text| text.split_once("Stopping criterion = ")) {
         line += &format!(", ended by: {}", stop.1.lines().next().unwrap_or_default());
     } else if o.steps > 0 && seconds > 0.0 {

@@ -34,7 +34,9 @@ impl Session {
             self.promise_restart(name.text().to_string());
             return Ok(());
         }
-        self.save_restart(&word.text).map_err(|e| e.at(word.span))
+        self.save_restart(&word.text).map_err(|e| e.at(word.span))?;
+        self.tell_written(&word.text);
+        Ok(())
     }
 
     /// Writes the scene as it is to a restart file; `*` in its name stands for the step.

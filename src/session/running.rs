@@ -457,6 +457,8 @@ impl Session {
         self.drew(cmd);
         self.world.spread_type_masses();
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
-        env.once(cmd.span, &self.vars, |s| dump.op(s, 0))
+        env.once(cmd.span, &self.vars, |s| dump.op(s, 0))?;
+        self.tell_written(cmd.args.get(2).map_or("", |w| &w.text));
+        Ok(())
     }
 }

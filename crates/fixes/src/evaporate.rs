@@ -22,7 +22,7 @@ impl Style for Evaporate {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group evaporate N M region seed [molecule no]",
+            syntax: "fix ID group evaporate N M region-ID seed [molecule no]",
             summary: "Deletes M particles of a region every N steps, chosen at random.",
             text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of them \
                    where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both programs keep \

@@ -159,16 +159,16 @@ impl Log {
     pub fn line_or(&self, line: &str, brief: Option<&str>) -> Result<()> {
         let mut inner = self.inner();
         match (inner.width.is_some(), brief) {
-            (true, Some(brief)) => inner.say(brief),
+            (true, Some(brief)) => inner.say_within(brief),
             (true, None) => {}
             (false, _) => inner.say(line),
         }
         inner.record(line)
     }
 
-    /// A line for the screen alone.
+    /// A line for the screen alone; one that wants few words breaks it where it ends.
     pub fn to_screen(&self, line: &str) {
-        self.inner().say(line);
+        self.inner().say_within(line);
     }
 
     /// A line for the file alone.
@@ -225,6 +225,14 @@ impl Inner {
         }
     }
 
+    /// Lines that are wider than a screen that wants few words go on below, broken between words.
+    fn say_within(&mut self, text: &str) {
+        match self.width.as_ref().map(|width| width()) {
+            Some(width) => self.say(&within(text, width)),
+            None => self.say(text),
+        }
+    }
+
     /// A file that cannot be written is reported once and then dropped.
     fn record(&mut self, line: &str) -> Result<()> {
         let Some((_, file)) = &mut self.file else { return Ok(()) };
@@ -255,6 +263,30 @@ impl Inner {
         Ok(())
     }
 }
+
+/// The text with lines of at most so many characters, where words are no longer; what goes on below is set in.
+fn within(text: &str, width: usize) -> String {
+    let mut out = String::with_capacity(text.len());
+    for (k, line) in text.lines().enumerate() {
+        out.extend((k > 0).then_some('\n'));
+        let mut long = 0;
+        for word in line.split_inclusive(' ') {
+            let more = word.trim_end().chars().count();
+            if long > SET_IN.len() && long + more > width {
+                out.truncate(out.trim_end_matches(' ').len());
+                out += "\n";
+                out += SET_IN;
+                long = SET_IN.len();
+            }
+            out += word;
+            long += word.chars().count();
+        }
+    }
+    out
+}
+
+/// Stands before what is left of a line.
+const SET_IN: &str = "  ";
 
 /// A screen that keeps what it is told, for tests and bindings.
 #[derive(Clone, Debug, Default)]
@@ -326,6 +358,13 @@ mod tests {
         log.line_or("more", None).unwrap();
         log.close().unwrap();
         assert_eq!((screen.text().as_str(), read(&path).as_str()), ("all\nline\n", "all\nblock\nmore\n"));
+    }
+
+    #[test]
+    fn lines_break_between_words() {
+        assert_eq!(within("results: a.txt, b.txt\nfast", 14), "results:\n  a.txt, b.txt\nfast");
+        assert_eq!(within("results: a_long_name.txt b", 8), "results:\n  a_long_name.txt\n  b");
+        assert_eq!(within("  Step   Temp   ", 13), "  Step   Temp   ");
     }
 
     #[test]

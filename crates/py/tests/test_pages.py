@@ -1,15 +1,17 @@
 """Pages of the manual: their blocks run in order, and what they assert is so."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 
 
-def work_off(page):
+def work_off(page, least=4):
     """Runs the blocks of a page one after the other; their names."""
     blocks = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(encoding="utf-8"), re.S)
-    assert len(blocks) >= 4
+    assert len(blocks) >= least
     names = {}
     for k, block in enumerate(blocks):
         exec(compile(block, f"docs/{page}, block {k + 1}", "exec"), names)
@@ -27,3 +29,12 @@ def test_a_run_is_driven_as_the_page_says(folder):
     made, kept = (where / "from-python.jpg" for where in (folder, DOCS / "howto" / "pictures"))
     # The same scene with the same bits: as large as the one in the book, give or take what another C library changes.
     assert abs(made.stat().st_size - kept.stat().st_size) < 0.05 * kept.stat().st_size
+
+
+def test_a_first_crack_is_made_as_the_page_says(folder):
+    page = (DOCS / "howto" / "first-crack.md").read_text(encoding="utf-8")
+    words = re.search(r"^python (-m perigrain new in\.crack)$", page, re.M)[1].split()
+    subprocess.run([sys.executable, *words], check=True)
+    work_off("howto/first-crack.md", least=2)
+    for picture in ("crack.png", "again.png"):
+        assert (folder / picture).read_bytes().startswith(b"\x89PNG")

@@ -3,6 +3,7 @@
 use super::alone::Alone;
 use super::picture::{self, Ink};
 use super::{Repl, colours, saving, slicing};
+use crate::cli::pager;
 use crate::manual::knowing::COLON;
 use crate::plot::terminal::{Curve, plot};
 use perigrain_base::diag::{nearest, render};
@@ -11,6 +12,9 @@ use std::path::Path;
 
 /// Characters across and pixels down of a picture.
 const PICTURE: (usize, usize) = (80, 80);
+
+/// Characters across of a cut.
+const SLICE: usize = 72;
 
 /// What a command prints, or what is wrong with it.
 type Outcome = Result<String, String>;
@@ -29,12 +33,14 @@ impl Repl {
         match (words[0], rest) {
             (":plan", []) => {
                 let outcome = self.session.plan_text();
-                outcome.map_err(|e| render::plain(&e, &self.session.sources))
+                outcome.map(|text| pager::fitted(&text)).map_err(|e| render::plain(&e, &self.session.sources))
             }
-            (":graph", []) => Ok(self.graph()),
+            (":graph", []) => Ok(pager::fitted(&self.graph())),
             (":graph", [file]) => write(file, &self.session.dot()),
             (":plot", columns) => self.plot(columns),
-            (":slice", rest) => slicing::slice(rest, &mut self.session, Ink::of_stdout()),
+            (":slice", rest) => {
+                slicing::slice(rest, &mut self.session, Ink::of_stdout(), pager::width(SLICE))
+            }
             (":show", [file]) => show(file),
             (":undo", []) => self.go_back(1),
             (":undo", [n]) => match n.parse() {
@@ -42,7 +48,7 @@ impl Repl {
                 _ => Err(format!("`{n}` is no number of lines")),
             },
             (":save", [file]) => self.save(file),
-            (":help", []) => Ok(list()),
+            (":help", []) => Ok(pager::fitted(&list())),
             (":help", words) => self.help(&words.iter().map(|w| (*w).to_string()).collect::<Vec<_>>()),
             (name, _) => Err(wrong(name)),
         }
@@ -85,7 +91,7 @@ impl Repl {
             }
             curves.push(Curve { name, points });
         }
-        Ok(plot(&curves, "step", colours()))
+        Ok(plot(&curves, "step", colours(), pager::width(usize::MAX)))
     }
 
     fn go_back(&mut self, n: usize) -> Outcome {
@@ -136,7 +142,7 @@ fn write(file: &str, text: &str) -> Outcome {
 
 fn show(file: &str) -> Outcome {
     let bytes = std::fs::read(file).map_err(|e| format!("cannot read `{file}`: {e}"))?;
-    let picture =
-        picture::png(&bytes, PICTURE.0, PICTURE.1).map_err(|e| format!("`{file}` is no picture: {e}"))?;
+    let picture = picture::png(&bytes, pager::width(PICTURE.0), PICTURE.1)
+        .map_err(|e| format!("`{file}` is no picture: {e}"))?;
     Ok(picture.text(Ink::of_stdout()))
 }

@@ -13,7 +13,7 @@ pub mod undoing;
 
 use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
-use super::{FAILED, OK, deck, manual};
+use super::{FAILED, OK, deck, manual, pager};
 use crate::human::duration;
 use crate::session::{Heard, Known, Mode, Session};
 use habits::Meant;
@@ -60,7 +60,8 @@ pub fn run(o: &Options) -> u8 {
     };
     let mut reader = Reader::new(known, std::path::Path::new("."));
     if reader.is_terminal() {
-        println!("perigrain {}\n{GREETING}", env!("CARGO_PKG_VERSION"));
+        println!("perigrain {}", env!("CARGO_PKG_VERSION"));
+        super::show(&pager::fitted(GREETING));
     }
     let mut status = None;
     if let Deck::File(path) = &o.deck {
@@ -89,7 +90,7 @@ fn begin(o: &Options, log: &Log, known: Rc<RefCell<Known>>) -> Result<Repl> {
     log.keep_rows();
     let mut session = deck::begin(o, Mode::Run, log)?;
     session.set_watch(Box::new(deck::Bar(progress.clone())));
-    deck::catch_interrupts(&session);
+    deck::catch_interrupts(&session, &progress);
     let mut switches: Vec<String> =
         o.vars.iter().map(|(name, values)| format!("variable {name} index {}", values.join(" "))).collect();
     switches.extend(o.compat.lammps().then(|| format!("compat {}", o.compat.name())));
@@ -135,7 +136,7 @@ impl Repl {
         match habits::meant(line) {
             Meant::Leave => return Some(0),
             Meant::Help(about) => match self.help(&about) {
-                Ok(text) => super::pager::page(&text),
+                Ok(text) => pager::page(&text),
                 outcome => self.tell(outcome),
             },
             Meant::Told(text) => self.tell(Err(text)),

@@ -5,18 +5,17 @@ use crate::cli::progress::short;
 use crate::session::Session;
 use perigrain_out::image::Map;
 
-/// Characters across, and pixels (half characters) down, at most.
-const WIDTH: f64 = 72.0;
+/// Pixels (half characters) down at most.
 const HEIGHT: f64 = 56.0;
 
 /// A particle in the cut: its place there, its width, its value.
 type Dot = ([f64; 2], f64, f64);
 
-/// The cut as text, or what is wrong with the words.
+/// The cut as text of so many characters across at most, or what is wrong with the words.
 ///
 /// # Errors
 /// Words that make no cut; the formula's own mistakes come as a rendered text.
-pub fn slice(words: &[&str], session: &mut Session, ink: Ink) -> Result<String, String> {
+pub fn slice(words: &[&str], session: &mut Session, ink: Ink, width: usize) -> Result<String, String> {
     let usage = || "write `:slice FORMULA x|y|z AT [WIDTH]`, as `:slice c_damage z 0`".to_string();
     let (formula, axis, rest) = match words {
         [formula, axis, rest @ ..] if (1..=2).contains(&rest.len()) => (formula, axis, rest),
@@ -58,11 +57,11 @@ pub fn slice(words: &[&str], session: &mut Session, ink: Ink) -> Result<String, 
     let range = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
     let map = Map::by_name("viridis").ok_or("there is no colour map")?;
     let title = format!("{formula} at {} = {}, {} across, {} up", names[axis], short(at), names[u], names[v]);
-    Ok(format!("{title}\n{}{}", draw(&dots, map, range).text(ink), legend(map, range, ink)))
+    Ok(format!("{title}\n{}{}", draw(&dots, map, range, width as f64).text(ink), legend(map, range, ink)))
 }
 
 /// The particles as squares of their width.
-fn draw(dots: &[Dot], map: &Map, range: [f64; 2]) -> Picture {
+fn draw(dots: &[Dot], map: &Map, range: [f64; 2], across: f64) -> Picture {
     let mut lo = [f64::INFINITY; 2];
     let mut hi = [f64::NEG_INFINITY; 2];
     for (p, width, _) in dots {
@@ -71,7 +70,7 @@ fn draw(dots: &[Dot], map: &Map, range: [f64; 2]) -> Picture {
             hi[d] = hi[d].max(p[d] + width / 2.0);
         }
     }
-    let scale = (WIDTH / (hi[0] - lo[0])).min(HEIGHT / (hi[1] - lo[1]));
+    let scale = (across / (hi[0] - lo[0])).min(HEIGHT / (hi[1] - lo[1]));
     let size = |d: usize| (((hi[d] - lo[d]) * scale).round() as usize).max(1);
     let mut picture = Picture::new(size(0), size(1).next_multiple_of(2));
     let height = size(1);
@@ -100,7 +99,7 @@ mod tests {
 
     #[test]
     fn a_cut_shows_values_from_left_to_right() {
-        let text = slice(&["x", "z", "0"], &mut scene(), Ink::None).unwrap();
+        let text = slice(&["x", "z", "0"], &mut scene(), Ink::None, 72).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], "x at z = 0, x across, y up");
         // Four particles side by side, each 18 characters of 72.
@@ -113,12 +112,13 @@ mod tests {
     #[test]
     fn what_makes_no_cut_is_said() {
         let mut s = scene();
-        assert!(slice(&["x", "z"], &mut s, Ink::None).unwrap_err().contains(":slice FORMULA"));
-        assert!(slice(&["x", "w", "0"], &mut s, Ink::None).is_err());
-        assert!(slice(&["x", "z", "9"], &mut s, Ink::None).unwrap_err().contains("from 0 to 0"));
-        assert!(slice(&["c_no", "z", "0"], &mut s, Ink::None).unwrap_err().contains("c_no"));
+        assert!(slice(&["x", "z"], &mut s, Ink::None, 72).unwrap_err().contains(":slice FORMULA"));
+        assert!(slice(&["x", "w", "0"], &mut s, Ink::None, 72).is_err());
+        assert!(slice(&["x", "z", "9"], &mut s, Ink::None, 72).unwrap_err().contains("from 0 to 0"));
+        assert!(slice(&["c_no", "z", "0"], &mut s, Ink::None, 72).unwrap_err().contains("c_no"));
         assert!(
-            slice(&["c_no", "z", "0"], &mut Session::new(Options::default()).unwrap(), Ink::None).is_err()
+            slice(&["c_no", "z", "0"], &mut Session::new(Options::default()).unwrap(), Ink::None, 72)
+                .is_err()
         );
     }
 }

@@ -74,12 +74,12 @@ pub(super) const BOND_COEFF: Entry = (
 pub(super) const PERI_MODIFY: Entry = (
     "peri_modify",
     Doc {
-        syntax: "peri_modify [force density|newton] [volume lammps|none|full] [surface no|energy|tensor] [horizon lattice|own]",
+        syntax: "peri_modify [force density|newton] [volume lammps|none|full] [surface no|energy|tensor] [horizon lattice|own] [nofail region ID]…",
         summary: "Sets options of the peridynamic pair styles.",
         text: "`force density` keeps LAMMPS' force densities with the density in the place of mass; `newton` makes forces \
             true forces and masses ρV, so that grains and bodies exchange momentum and energies add up in one scene. \
             `volume` chooses how bonds near the horizon are weighted, `surface` what makes up for bonds that lack at surfaces, `horizon` \
-            whether horizons count in the lattice's spacing or in that around each particle. See `pair_style peri/pmb`. LAMMPS has no such \
+            whether horizons count in the lattice's spacing or in that around each particle; bonds with an end in a region of `nofail` never break. See `pair_style peri/pmb`. LAMMPS has no such \
             command.",
         example: "peri_modify force newton volume full",
     },

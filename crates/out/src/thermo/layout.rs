@@ -180,9 +180,8 @@ impl Layout {
         }
         let (mut head, mut row) = (0, 0);
         let fits = |(h, c): &(String, String)| -> bool {
-            // What is left of blanks at the end does no harm.
-            let (h_end, c_end) = (h.trim_end().chars().count(), c.trim_end().chars().count());
-            let fits = head + h_end <= width && row + c_end <= width;
+            // Of a heading blanks at the end do no harm; what is blank in this row may be digits in the next one.
+            let fits = head + h.trim_end().chars().count() <= width && row + c.chars().count() <= width;
             head += h.chars().count() + 1;
             row += c.chars().count() + 1;
             fits
