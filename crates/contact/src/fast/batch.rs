@@ -19,10 +19,13 @@ pub(super) const BATCH: usize = 64;
 /// The most groups of a batch.
 const GROUPS: usize = BATCH / 4;
 
-/// Contacts that go from stage to stage together; what is past the last one repeats it up to a full group.
+/// Contacts that go from stage to stage together, perhaps of several lists; what is past the last one repeats it up to a full
+/// group.
 pub(super) struct Batch<V, const N: usize> {
-    /// Numbers of the pairs in the short list.
-    k: [u32; BATCH],
+    /// How many wait to be evaluated.
+    waiting: usize,
+    /// What each remembers.
+    past: [*mut f64; BATCH],
     i: [u32; BATCH],
     /// The others and their images.
     w: [u32; BATCH],
@@ -135,7 +138,8 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             (sizes, mass)
         };
         Self {
-            k: [0; BATCH],
+            waiting: 0,
+            past: [std::ptr::null_mut(); BATCH],
             i: [0; BATCH],
             w: [0; BATCH],
             apart: Room::new(),
@@ -147,28 +151,52 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Evaluates the law for these pairs of the short list, at least one and at most [`BATCH`].
+    /// Whether some wait to be evaluated.
+    pub fn waits(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Takes as many of these pairs of a short list as there is room for; the rest, and whether it is full now.
     ///
     /// # Safety
-    /// They must be pairs of the list, and its entries grains.
+    /// They must be pairs of the list, which must not change until they have been evaluated.
     #[inline(always)]
-    pub unsafe fn run<L: ContactLaw, const W: usize>(
+    pub unsafe fn take<'a, const W: usize>(
         &mut self,
-        cx: &Cx<L>,
-        law: &L,
-        slab: &mut Slab,
-        pairs: &[u32],
-    ) {
-        let count = pairs.len();
+        short: &mut Short,
+        pairs: &'a [u32],
+    ) -> (&'a [u32], bool) {
+        let (pairs, rest) = pairs.split_at(pairs.len().min(BATCH - self.waiting));
+        let past = short.history.as_mut_ptr();
+        for (at, k) in pairs.iter().enumerate() {
+            let (at, k) = (self.waiting + at, *k as usize);
+            // SAFETY: passed on; there is room for all of them.
+            unsafe {
+                *self.i.get_unchecked_mut(at) = *short.i.as_ptr().add(k);
+                *self.w.get_unchecked_mut(at) = *short.w.as_ptr().add(k);
+                *self.past.get_unchecked_mut(at) = past.add(W * k);
+            }
+        }
+        self.waiting += pairs.len();
+        (rest, self.waiting == BATCH)
+    }
+
+    /// Evaluates the law for those that wait, at least one. What they are in sum is told to the list of the last ones.
+    ///
+    /// # Safety
+    /// Entries of their lists must be grains.
+    #[inline(always)]
+    pub unsafe fn run<L: ContactLaw, const W: usize>(&mut self, cx: &Cx<L>, law: &L, slab: &mut Slab) {
+        let count = std::mem::take(&mut self.waiting);
         // SAFETY: passed on.
         unsafe {
-            self.gather(&slab.short, pairs);
+            self.fill_up(count);
             for group in 0..count.div_ceil(N) {
                 slab.deep |= self.meet(cx, group);
             }
             let memory = law.memory();
             for group in 0..count.div_ceil(N) {
-                self.act::<L, W>(cx, law, memory, &mut slab.short, group);
+                self.act::<L, W>(cx, law, memory, group);
             }
             if cx.virial {
                 self.add_virial(count, &mut slab.virial);
@@ -187,24 +215,20 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// First stage: who they are.
+    /// Repeats the last contact up to a full group.
     #[inline(always)]
-    unsafe fn gather(&mut self, short: &Short, pairs: &[u32]) {
-        let count = pairs.len();
-        self.k[..count].copy_from_slice(pairs);
-        self.k[count..count.next_multiple_of(N)].fill(pairs[count - 1]);
-        for at in 0..count.next_multiple_of(N) {
+    unsafe fn fill_up(&mut self, count: usize) {
+        for at in count..count.next_multiple_of(N) {
             // SAFETY: passed on; the batch has room for whole groups.
             unsafe {
-                let k = *self.k.get_unchecked(at);
-                let (i, w) = (*short.i.as_ptr().add(k as usize), *short.w.as_ptr().add(k as usize));
-                *self.i.get_unchecked_mut(at) = i;
-                *self.w.get_unchecked_mut(at) = w;
+                *self.i.get_unchecked_mut(at) = *self.i.get_unchecked(count - 1);
+                *self.w.get_unchecked_mut(at) = *self.w.get_unchecked(count - 1);
+                *self.past.get_unchecked_mut(at) = *self.past.get_unchecked(count - 1);
             }
         }
     }
 
-    /// Second stage: where and how grains touch. Whether some overlap too far.
+    /// First stage: where and how grains touch. Whether some overlap too far.
     #[inline(always)]
     unsafe fn meet<L: ContactLaw>(&mut self, cx: &Cx<L>, group: usize) -> bool {
         // SAFETY: passed on.
@@ -228,33 +252,32 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Four numbers from `part` on of records of `width` numbers, turned into lanes.
+    /// Four numbers from `part` on of what contacts remember, turned into lanes.
     #[inline(always)]
-    unsafe fn records(p: *const f64, width: usize, part: usize, at: *const u32) -> [V; 4] {
+    unsafe fn records(past: *const *mut f64, part: usize) -> [V; 4] {
         // SAFETY: passed on.
         unsafe {
             let mut rows = [V::Row::splat(0.0); N];
             for lane in 0..N {
-                rows[lane] = V::Row::load(p.add(width * *at.add(lane) as usize + part));
+                rows[lane] = V::Row::load((*past.add(lane)).add(part));
             }
             V::of_rows(rows)
         }
     }
 
-    /// Third stage: forces, torques and what is remembered.
+    /// Second stage: forces, torques and what is remembered.
     #[inline(always)]
     unsafe fn act<L: ContactLaw, const W: usize>(
         &mut self,
         cx: &Cx<L>,
         law: &L,
         memory: usize,
-        short: &mut Short,
         group: usize,
     ) {
         // SAFETY: passed on.
         unsafe {
             let at = N * group;
-            let (i, w, k) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.k.as_ptr().add(at));
+            let (i, w, past) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.past.as_ptr().add(at));
             // (No closures in here: they are not compiled for AVX.)
             let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
             let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
@@ -266,10 +289,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 }
             }
 
-            let past = short.history.as_mut_ptr();
             let mut history = [V::all(0.0); W];
             for part in (0..W).step_by(4) {
-                let lanes = Self::records(past, W, part, k);
+                let lanes = Self::records(past, part);
                 [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
             }
             let lasts = history[W - 1].above(V::all(cx.now - 0.5));
@@ -290,7 +312,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                     V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
                 // Lanes without a contact repeat the last one, in whose place they would write the same.
                 for lane in 0..N {
-                    rows[lane].store(past.add(W * *k.add(lane) as usize + part));
+                    rows[lane].store((*past.add(lane)).add(part));
                 }
             }
         }

@@ -158,6 +158,8 @@ pub struct Fast<L> {
     turns: Vec<[i8; 3]>,
     /// Those of slabs, then those of pairs with large grains.
     lists: Vec<Slab>,
+    /// Lists in the order of one thread.
+    order: Vec<usize>,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
     /// The periods of these.
@@ -201,6 +203,7 @@ impl<L: ContactLaw> Fast<L> {
             alike: Alike::default(),
             turns: vec![],
             lists: vec![],
+            order: vec![],
             shifts: [[0.0; 4]; 32],
             period: Periods::default(),
             thin: 0.0,
@@ -288,6 +291,7 @@ impl<L: ContactLaw> Fast<L> {
         }
         self.lists.iter_mut().for_each(|list| list.long.fill_up());
         self.validity.divide(&slabs);
+        self.put_in_order();
         self.book = Some(book);
         self.stale = true;
     }
@@ -365,6 +369,13 @@ impl<L: ContactLaw> Fast<L> {
             None => par::two_colours(first, &f),
         }
         par::two_colours(self.validity_of_large.lists(), |k| f(first + k));
+    }
+
+    /// Puts lists in the order in which [`Fast::each_list`] calls them on one thread.
+    fn put_in_order(&mut self) {
+        let (first, large) = (self.validity.lists(), self.validity_of_large.lists());
+        self.order.clear();
+        self.order.extend(par::in_turn(first).chain(par::in_turn(large).map(|k| first + k)));
     }
 
     /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have

@@ -1,6 +1,6 @@
 //! The inner loop of a step: which pairs of short lists touch, and their contacts, batch by batch.
 
-use super::batch::{BATCH, Batch};
+use super::batch::Batch;
 use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
 use super::{Alike, Fast, Laws, NONE, Sums};
@@ -89,6 +89,11 @@ impl<'a> Drift<'a> {
 }
 
 impl<L> Cx<'_, L> {
+    /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in the same order.
+    fn joins(&self) -> bool {
+        self.laws.distinct.len() == 1 && !self.virial
+    }
+
     /// Where grains are.
     pub fn places(&self) -> Places<'_> {
         Places { x: self.x, radius: self.radius, alike: self.alike.radius, shifts: self.shifts }
@@ -163,34 +168,31 @@ impl<L: ContactLaw> Fast<L> {
             span: self.span,
             drift: drift.as_ref(),
         };
-        let contacts = |k: usize| {
-            // SAFETY: each part writes its own slab.
-            let slab = unsafe { &mut slabs.get(k..k + 1)[0] };
-            if slab.short.i.is_empty() {
-                return slab.found([0.0; 6], false, 0);
-            }
-            // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
+        let contacts = |which: &[usize]| {
+            // SAFETY: each part writes its own lists, and forces of grains in them and the next ones, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 match width {
-                    4 => form.run(Contacts::<L, 4> { cx: &cx, slab }),
-                    8 => form.run(Contacts::<L, 8> { cx: &cx, slab }),
-                    _ => form.run(Contacts::<L, 12> { cx: &cx, slab }),
+                    4 => form.run(Contacts::<L, 4> { cx: &cx, lists: &slabs, which }),
+                    8 => form.run(Contacts::<L, 8> { cx: &cx, lists: &slabs, which }),
+                    _ => form.run(Contacts::<L, 12> { cx: &cx, lists: &slabs, which }),
                 }
             }
         };
         match only {
-            None => self.each_list(&weights, contacts),
-            Some(k) => contacts(k),
+            None if shared => self.each_list(&weights, |k| contacts(&[k])),
+            None => contacts(&self.order),
+            Some(k) => contacts(&[k]),
         }
         self.lists = lists;
     }
 }
 
-/// All contacts of a slab, which remember `W` − 1 numbers at most.
+/// All contacts of some lists, one list after the other, which remember `W` − 1 numbers at most.
 struct Contacts<'a, 'b, L, const W: usize> {
     cx: &'a Cx<'b, L>,
-    slab: &'a mut Slab,
+    lists: &'a par::Shared<'a, Slab>,
+    which: &'a [usize],
 }
 
 impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
@@ -198,46 +200,63 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
 
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        let Self { cx, slab } = self;
-        slab.found([0.0; 6], false, 0);
-        let at = cx.places();
-        let mut hits = [0; ROOM];
-        let (mut count, mut k, end) = (0, 0, slab.short.i.len());
+        let Self { cx, lists, which } = self;
         let mut batch = None;
-        loop {
-            // By the same steps in all forms: where it stops, blocks of what holds end.
-            while k < end && count + FILL <= ROOM {
-                let sure = (end - k).min((ROOM - count) / FILL * FILL);
-                let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut hits, count };
-                // SAFETY: lists are filled up; entries are grains. There is room for so many.
-                count = unsafe {
-                    match at.alike {
-                        Some(_) => pairs.of::<N, V, true>(k..k + sure),
-                        None => pairs.of::<N, V, false>(k..k + sure),
-                    }
-                };
-                k += sure;
-            }
-            let ready = if k == end { count } else { count - count % BLOCK };
-            // What holds is moved to the front of what is ready; the rest stays where it is.
-            let holding =
-                if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
-            slab.touching += holding;
-            if holding > 0 {
-                // SAFETY: passed on. Not before something touches: in loose scenes most slabs have no contact.
-                let batch = match &mut batch {
-                    Some(batch) => batch,
-                    none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
-                };
-                // SAFETY: passed on.
-                unsafe { evaluate::<N, V, L, W>(cx, slab, batch, &hits[..holding]) };
-            }
-            if k == end {
-                break;
-            }
-            hits.copy_within(ready..count, 0);
-            count -= ready;
+        for (at, &k) in which.iter().enumerate() {
+            // SAFETY: the caller's promise: nobody else has these lists.
+            let slab = unsafe { &mut lists.get(k..k + 1)[0] };
+            let ends = at + 1 == which.len() || !cx.joins();
+            // SAFETY: passed on.
+            unsafe { of_list::<N, V, L, W>(cx, slab, &mut batch, ends) };
         }
+    }
+}
+
+/// The contacts of a list, which may wait for those of the next one; where it `ends`, nobody waits.
+#[inline(always)]
+unsafe fn of_list<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
+    cx: &Cx<L>,
+    slab: &mut Slab,
+    batch: &mut Option<Batch<V, N>>,
+    ends: bool,
+) {
+    slab.found([0.0; 6], false, 0);
+    let at = cx.places();
+    let mut hits = [0; ROOM];
+    let (mut count, mut k, end) = (0, 0, slab.short.i.len());
+    loop {
+        // By the same steps in all forms: where it stops, blocks of what holds end.
+        while k < end && count + FILL <= ROOM {
+            let sure = (end - k).min((ROOM - count) / FILL * FILL);
+            let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut hits, count };
+            // SAFETY: lists are filled up; entries are grains. There is room for so many.
+            count = unsafe {
+                match at.alike {
+                    Some(_) => pairs.of::<N, V, true>(k..k + sure),
+                    None => pairs.of::<N, V, false>(k..k + sure),
+                }
+            };
+            k += sure;
+        }
+        let ready = if k == end { count } else { count - count % BLOCK };
+        // What holds is moved to the front of what is ready; the rest stays where it is.
+        let holding = if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
+        slab.touching += holding;
+        let ends = ends && k == end;
+        if holding > 0 || (ends && batch.as_ref().is_some_and(Batch::waits)) {
+            // SAFETY: passed on. Not before something touches: in loose scenes most lists have no contact.
+            let batch = match &mut *batch {
+                Some(batch) => batch,
+                none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
+            };
+            // SAFETY: passed on.
+            unsafe { evaluate::<N, V, L, W>(cx, slab, batch, &hits[..holding], ends) };
+        }
+        if k == end {
+            break;
+        }
+        hits.copy_within(ready..count, 0);
+        count -= ready;
     }
 }
 
@@ -270,18 +289,19 @@ impl Hits<'_, '_> {
     }
 }
 
-/// The contacts of these hits.
+/// The contacts of these hits; where it `ends`, nobody waits for others any more.
 #[inline(always)]
 unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     slab: &mut Slab,
     batch: &mut Batch<V, N>,
     hits: &[u32],
+    ends: bool,
 ) {
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, L, W>(cx, law, slab, batch, hits);
+            return of_law::<N, V, L, W>(cx, law, slab, batch, hits, ends);
         }
         let mut own = [0; BLOCK];
         for block in hits.chunks(BLOCK) {
@@ -293,7 +313,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
                     own[count] = k;
                     count += usize::from(which != NONE && usize::from(which) == number);
                 }
-                of_law::<N, V, L, W>(cx, law, slab, batch, &own[..count]);
+                of_law::<N, V, L, W>(cx, law, slab, batch, &own[..count], true);
             }
         }
     }
@@ -310,8 +330,9 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     slab: &mut Slab,
     batch: &mut Batch<V, N>,
     hits: &[u32],
+    ends: bool,
 ) {
-    let many = Many::<N, V, L, W> { cx, slab, batch, hits };
+    let many = Many::<N, V, L, W> { cx, slab, batch, hits, ends };
     if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
@@ -321,14 +342,23 @@ struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
     slab: &'a mut Slab,
     batch: &'a mut Batch<V, N>,
     hits: &'a [u32],
+    ends: bool,
 }
 
 impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
     #[inline(always)]
     fn run(self, law: &L) {
-        for pairs in self.hits.chunks(BATCH) {
-            // SAFETY: hits are pairs of the list, and their entries grains.
-            unsafe { self.batch.run::<L, W>(self.cx, law, self.slab, pairs) };
+        let Self { cx, slab, batch, mut hits, ends } = self;
+        loop {
+            // SAFETY: hits are pairs of the list, and their entries grains; lists stay while contacts are evaluated.
+            unsafe {
+                let full;
+                (hits, full) = batch.take::<W>(&mut slab.short, hits);
+                if !full && !(ends && batch.waits()) {
+                    return;
+                }
+                batch.run::<L, W>(cx, law, slab);
+            }
         }
     }
 }
