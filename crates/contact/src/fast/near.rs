@@ -62,15 +62,8 @@ pub(super) struct InOrder {
 impl InOrder {
     /// Copies the grains in this order.
     pub fn new(grains: &Grains, order: &[u32]) -> Self {
-        // What is read beyond the end is not used.
-        let pick = |of: &dyn Fn(usize) -> f64| {
-            let mut list = Vec::with_capacity(order.len() + FILL);
-            list.extend(order.iter().map(|&i| of(i as usize)));
-            list.extend([0.0; FILL]);
-            list
-        };
-        let x = [0, 1, 2].map(|d| pick(&|i| grains.x[i][d]));
-        Self { x, radius: pick(&|i| grains.radius[i]) }
+        let x = [0, 1, 2].map(|d| picked(order, |i| grains.x[i][d]));
+        Self { x, radius: picked(order, |i| grains.radius[i]) }
     }
 
     /// Calls `hit` with those places of a run, shifted, whose surfaces are nearer than `skin` to that of place `i`, in order.
@@ -104,6 +97,14 @@ impl InOrder {
             }
         }
     }
+}
+
+/// Numbers of grains in this order. What is read beyond the end is not used.
+fn picked(order: &[u32], of: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut list = Vec::with_capacity(order.len() + FILL);
+    list.extend(order.iter().map(|&i| of(i as usize)));
+    list.extend([0.0; FILL]);
+    list
 }
 
 /// Where grains are.

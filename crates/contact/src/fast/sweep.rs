@@ -201,13 +201,13 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let Self { cx, lists, which } = self;
-        let mut batch = None;
+        let (mut batch, mut hits) = (None, [0; ROOM]);
         for (at, &k) in which.iter().enumerate() {
             // SAFETY: the caller's promise: nobody else has these lists.
             let slab = unsafe { &mut lists.get(k..k + 1)[0] };
             let ends = at + 1 == which.len() || !cx.joins();
             // SAFETY: passed on.
-            unsafe { of_list::<N, V, L, W>(cx, slab, &mut batch, ends) };
+            unsafe { of_list::<N, V, L, W>(cx, slab, &mut hits, &mut batch, ends) };
         }
     }
 }
@@ -217,18 +217,18 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
 unsafe fn of_list<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     slab: &mut Slab,
+    hits: &mut [u32; ROOM],
     batch: &mut Option<Batch<V, N>>,
     ends: bool,
 ) {
     slab.found([0.0; 6], false, 0);
     let at = cx.places();
-    let mut hits = [0; ROOM];
     let (mut count, mut k, end) = (0, 0, slab.short.i.len());
     loop {
         // By the same steps in all forms: where it stops, blocks of what holds end.
         while k < end && count + FILL <= ROOM {
             let sure = (end - k).min((ROOM - count) / FILL * FILL);
-            let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut hits, count };
+            let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut *hits, count };
             // SAFETY: lists are filled up; entries are grains. There is room for so many.
             count = unsafe {
                 match at.alike {
