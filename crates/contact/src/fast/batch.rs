@@ -1,7 +1,8 @@
 //! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
 
 use super::Alike;
-use super::lists::{Short, Slab};
+use super::found::Found;
+use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
 use crate::driver::DEEP;
 use crate::{ContactLaw, Geometry, Motion};
@@ -11,6 +12,7 @@ use perigrain_base::math::pair::Pair;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{SIX, Vec3, scale};
 use std::mem::MaybeUninit;
+use std::ops::Range;
 
 /// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
 /// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
@@ -29,8 +31,8 @@ pub(super) struct Batch<V, const N: usize> {
     i: [u32; BATCH],
     /// The others and their images.
     w: [u32; BATCH],
-    /// x_i − x_j, by groups [length].
-    apart: Room<Vec3<V>>,
+    /// x_i − x_j, coordinate by coordinate [length].
+    apart: MaybeUninit<[[f64; BATCH + FILL]; 3]>,
     geometry: Room<Geometry<V>>,
     /// Of two grains, where all have one radius.
     sizes: Option<Sizes<V>>,
@@ -142,7 +144,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             past: [std::ptr::null_mut(); BATCH],
             i: [0; BATCH],
             w: [0; BATCH],
-            apart: Room::new(),
+            apart: MaybeUninit::uninit(),
             geometry: Room::new(),
             sizes,
             mass,
@@ -156,20 +158,28 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         self.waiting > 0
     }
 
-    /// Takes as many of these pairs of a short list as there is room for; the rest, and whether it is full now.
+    /// Whether there is no room for more.
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.waiting == BATCH
+    }
+
+    /// Takes as many of these pairs of a short list as there is room for; how many.
     ///
     /// # Safety
     /// They must be pairs of the list, which must not change until they have been evaluated.
     #[inline(always)]
-    pub unsafe fn take<'a, const W: usize>(
+    pub unsafe fn take<const W: usize>(
         &mut self,
         short: &mut Short,
-        pairs: &'a [u32],
-    ) -> (&'a [u32], bool) {
-        let (pairs, rest) = pairs.split_at(pairs.len().min(BATCH - self.waiting));
+        found: &Found,
+        which: Range<usize>,
+    ) -> usize {
+        let taken = which.len().min(BATCH - self.waiting);
+        let which = which.start..which.start + taken;
         let past = short.history.as_mut_ptr();
-        for (at, k) in pairs.iter().enumerate() {
-            let (at, k) = (self.waiting + at, *k as usize);
+        for (at, k) in (self.waiting..).zip(&found.numbers()[which.clone()]) {
+            let k = *k as usize;
             // SAFETY: passed on; there is room for all of them.
             unsafe {
                 *self.i.get_unchecked_mut(at) = *short.i.as_ptr().add(k);
@@ -177,8 +187,27 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 *self.past.get_unchecked_mut(at) = past.add(W * k);
             }
         }
-        self.waiting += pairs.len();
-        (rest, self.waiting == BATCH)
+        for d in 0..3 {
+            // SAFETY: behind both there is room for some lanes.
+            unsafe {
+                let (from, to) = (found.apart(d).add(which.start), self.apart(d).add(self.waiting));
+                for at in (0..taken).step_by(N) {
+                    // What stands behind the last one is copied as well, whatever it is.
+                    let lanes = from.add(at).cast::<[MaybeUninit<f64>; N]>().read();
+                    to.add(at).cast::<[MaybeUninit<f64>; N]>().write(lanes);
+                }
+            }
+        }
+        self.waiting += taken;
+        taken
+    }
+
+    /// Where x_i − x_j begins along an axis.
+    #[inline(always)]
+    fn apart(&mut self, d: usize) -> *mut f64 {
+        debug_assert!(d < 3);
+        // SAFETY: one of three rows.
+        unsafe { self.apart.as_mut_ptr().cast::<f64>().add(d * (BATCH + FILL)) }
     }
 
     /// Evaluates the law for those that wait, at least one. What they are in sum is told to the list of the last ones.
@@ -224,6 +253,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 *self.i.get_unchecked_mut(at) = *self.i.get_unchecked(count - 1);
                 *self.w.get_unchecked_mut(at) = *self.w.get_unchecked(count - 1);
                 *self.past.get_unchecked_mut(at) = *self.past.get_unchecked(count - 1);
+                for d in 0..3 {
+                    *self.apart(d).add(at) = *self.apart(d).add(count - 1);
+                }
             }
         }
     }
@@ -234,7 +266,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         // SAFETY: passed on.
         unsafe {
             let (i, w) = (self.i.as_ptr().add(N * group), self.w.as_ptr().add(N * group));
-            let [x, y, z] = V::apart(cx.x.as_ptr(), i, w, cx.shifts);
+            let [p, q, r] = [self.apart(0), self.apart(1), self.apart(2)];
+            let (p, q, r) = (p.add(N * group).cast(), q.add(N * group).cast(), r.add(N * group).cast());
+            let [x, y, z] = [V::of(*p), V::of(*q), V::of(*r)];
             let (r, m) = (cx.radius.as_ptr(), cx.mass.as_ptr());
             let sizes = match self.sizes {
                 Some(sizes) => sizes,
@@ -246,7 +280,6 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, w), mass),
             };
             let g = geometry([x, y, z], &sizes, mass);
-            self.apart.put(group, [x, y, z]);
             self.geometry.put(group, g);
             V::any(too_deep(&g))
         }
@@ -334,13 +367,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     }
 
     /// Adds Σ d ⊗ F of the first contacts, which must have gone through all stages.
-    unsafe fn add_virial(&self, count: usize, sum: &mut [f64; 6]) {
+    unsafe fn add_virial(&mut self, count: usize, sum: &mut [f64; 6]) {
         for at in 0..count {
             let (group, lane) = (at / N, at % N);
             // SAFETY: the caller's promise.
-            let (d, force) = unsafe { (self.apart.at(group), self.force.at(group)) };
-            // SAFETY: a lane of the group.
-            let d = unsafe { [0, 1, 2].map(|k| number(&d[k], lane)) };
+            let d = unsafe { [0, 1, 2].map(|k| *self.apart(k).add(at)) };
+            // SAFETY: as above.
+            let force = unsafe { self.force.at(group) };
             let xy = &force.xy[lane % 2][lane / 2 * 2..];
             let f = [xy[0], xy[1], force.z[lane]];
             for (s, (a, b)) in sum.iter_mut().zip(SIX) {

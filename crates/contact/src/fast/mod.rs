@@ -9,6 +9,7 @@
 mod batch;
 mod bidisperse;
 mod deep;
+mod found;
 mod image_shift;
 mod list_validity;
 mod lists;
@@ -154,6 +155,8 @@ pub struct Fast<L> {
     signed: Vec<f64>,
     /// What all grains have in common.
     alike: Alike,
+    /// Radii that short lists tell the reach of pairs by.
+    measured: Vec<f64>,
     /// How many periods grains have been moved since lists were made.
     turns: Vec<[i8; 3]>,
     /// Those of slabs, then those of pairs with large grains.
@@ -201,6 +204,7 @@ impl<L: ContactLaw> Fast<L> {
             validity_of_large: ListValidity::default(),
             signed: vec![],
             alike: Alike::default(),
+            measured: vec![],
             turns: vec![],
             lists: vec![],
             order: vec![],
@@ -382,6 +386,17 @@ impl<L: ContactLaw> Fast<L> {
     /// changed.
     pub fn weigh(&mut self, grains: &Grains) {
         self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
+        if self.measured != grains.radius {
+            self.measured.clear();
+            self.measured.extend_from_slice(grains.radius);
+            let mut lists = std::mem::take(&mut self.lists);
+            let (this, shared) = (&*self, par::Shared::new(&mut lists));
+            par::for_rows(shared.len(), |k| {
+                // SAFETY: each part writes its own list.
+                this.measure(grains, unsafe { &mut shared.get(k..k + 1)[0].short });
+            });
+            self.lists = lists;
+        }
         let known = if grains.frozen.is_empty() { 0 } else { self.tag.len() };
         self.signed.resize(known, 0.0);
         if known > 0 {
