@@ -23,6 +23,11 @@ pub trait Wall: Sync {
     /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
 
+    /// The wall as planes, if it is nothing else: to look for those near them takes less than to ask for each sphere.
+    fn planes(&self) -> Option<&Planes> {
+        None
+    }
+
     /// Whether a sticky sphere that touched there holds on until it is torn off.
     fn holds(&self, _near: &Near) -> bool {
         true
@@ -90,6 +95,21 @@ impl WallSweep {
         law: &L,
         skin: f64,
     ) {
+        match wall.planes() {
+            Some(planes) => self.list_near(planes, grains, mask, group, law, skin),
+            None => self.list_near(wall, grains, mask, group, law, skin),
+        }
+    }
+
+    fn list_near<W: Wall + ?Sized, L: ContactLaw>(
+        &mut self,
+        wall: &W,
+        grains: &Spheres,
+        mask: &[u32],
+        group: u32,
+        law: &L,
+        skin: f64,
+    ) {
         let some = |range: std::ops::Range<usize>| {
             let mut spare = vec![];
             let member = |i: &usize| mask[*i] & group != 0;
@@ -118,7 +138,10 @@ impl WallSweep {
 
     /// Finds the contacts among the listed particles, the first half of [`WallSweep::run`].
     pub fn meet<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &mut Contacts) {
-        self.find(wall, grains, law, memory);
+        match wall.planes() {
+            Some(planes) => self.find(planes, grains, law, memory),
+            None => self.find(wall, grains, law, memory),
+        }
         let width = law.memory();
         self.keys.clear();
         self.keys.extend(self.touching.iter().map(|t| [grains.tag[t.grain as usize], t.near.part]));
@@ -162,7 +185,13 @@ impl WallSweep {
         );
     }
 
-    fn find<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &Contacts) {
+    fn find<W: Wall + ?Sized, L: ContactLaw>(
+        &mut self,
+        wall: &W,
+        grains: &Spheres,
+        law: &L,
+        memory: &Contacts,
+    ) {
         let list = &self.list[..];
         let find = |range: std::ops::Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
             for &grain in &list[range] {
@@ -171,7 +200,9 @@ impl WallSweep {
                 near.clear();
                 // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
                 wall.near(grains.x[i], radius + 2.0 * law.gap(radius), near);
-                near.sort_by_key(|n| n.part);
+                if near.len() > 1 {
+                    near.sort_by_key(|n| n.part);
+                }
                 let touches = |n: &&Near| {
                     n.distance < radius
                         || (wall.holds(n)
@@ -337,12 +368,21 @@ pub struct Planes {
 }
 
 impl Wall for Planes {
+    fn planes(&self) -> Option<&Planes> {
+        Some(self)
+    }
+
+    #[inline]
     fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
         let near = |plane: Option<f64>| plane.is_some_and(|p| (x[self.axis] - p).abs() < reach);
         near(self.lo) || near(self.hi)
     }
 
+    #[inline]
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        if !self.close(x, reach, &mut vec![]) {
+            return;
+        }
         let height = |plane: Option<f64>, sign: f64| plane.map(|p| sign * (x[self.axis] - p));
         let sides = [height(self.lo, 1.0), height(self.hi, -1.0)];
         let hidden = match sides {

@@ -2,6 +2,7 @@
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
@@ -47,20 +48,28 @@ struct Declared {
     group: GroupId,
 }
 
+/// Velocities and forces along z become zero.
+pub(super) fn flatten([v, f]: [&mut [Vec3]; 2], mask: &[u32], bit: u32) {
+    for ((v, f), _) in v.iter_mut().zip(f).zip(mask).filter(|(_, m)| *m & bit != 0) {
+        (v[2], f[2]) = (0.0, 0.0);
+    }
+}
+
+/// Spins and torques across z, where there are some, become zero.
+pub(super) fn flatten_turning([omega, torque]: [&mut [Vec3]; 2], mask: &[u32], bit: u32) {
+    for ((a, b), _) in omega.iter_mut().zip(torque).zip(mask).filter(|(_, m)| *m & bit != 0) {
+        (*a, *b) = ([0.0, 0.0, a[2]], [0.0, 0.0, b[2]]);
+    }
+}
+
 impl Fix for Declared {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (bit, access) = (self.group.bit(), Needs::new().read(MASK).write(V | F | OMEGA | TORQUE));
         let flatten = move |_: &World, t: &Tick, room: &mut Room| {
-            room.act(move |s: &mut ParticleBlock<'_>| {
+            room.flatten(bit, move |s: &mut ParticleBlock<'_>| {
                 let mask = s.mask();
-                let member = |m: &u32| m & bit != 0;
-                for ((v, f), _) in s.v.iter_mut().zip(s.f.iter_mut()).zip(mask).filter(|(_, m)| member(m)) {
-                    (v[2], f[2]) = (0.0, 0.0);
-                }
-                let spins = s.omega.iter_mut().zip(s.torque.iter_mut());
-                for ((a, b), _) in spins.zip(mask).filter(|(_, m)| member(m)) {
-                    (*a, *b) = ([0.0, 0.0, a[2]], [0.0, 0.0, b[2]]);
-                }
+                flatten([&mut s.v, &mut s.f], mask, bit);
+                flatten_turning([&mut s.omega, &mut s.torque], mask, bit);
                 BlockSums::default()
             });
             !t.unchanged

@@ -90,8 +90,9 @@ pub fn extent(x: &[[f64; 3]], members: impl Iterator<Item = u32>) -> ([f64; 3], 
     for m in members {
         let p = &x[m as usize];
         for d in 0..3 {
-            lo[d] = lo[d].min(p[d]);
-            hi[d] = hi[d].max(p[d]);
+            // As `min` and `max` have it, which look twice for NaN.
+            lo[d] = if p[d] < lo[d] { p[d] } else { lo[d] };
+            hi[d] = if p[d] > hi[d] { p[d] } else { hi[d] };
         }
     }
     (lo, hi)

@@ -120,10 +120,13 @@ impl Slabs {
                 next[c as usize] += 1;
             }
         }
-        for c in self.start.windows(2) {
-            let members = &mut self.order[c[0] as usize..c[1] as usize];
-            if !members.is_sorted_by_key(|&i| tag[i as usize]) {
-                members.sort_unstable_by_key(|&i| tag[i as usize]);
+        // Point by point: there may be more cells than points.
+        for place in 1..self.order.len() {
+            let [before, here] = [place - 1, place].map(|p| self.order[p] as usize);
+            let of = cell[here] as usize;
+            if cell[before] == cell[here] && tag[before] > tag[here] {
+                let members = self.start[of] as usize..self.start[of + 1] as usize;
+                self.order[members].sort_unstable_by_key(|&i| tag[i as usize]);
             }
         }
     }
@@ -223,15 +226,14 @@ impl Slabs {
         out.clear();
         let [nx, ny, _] = self.cells;
         let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
-        self.row(at, [1..2, 0..1, 0..1], out);
-        self.row(at, [-1..2, 1..2, 0..1], out);
-        for y in -1..2 {
-            self.row(at, [-1..2, y..y + 1, 1..2], out);
+        for (dx, dy, dz) in [(1..2, 0, 0), (-1..2, 1, 0), (-1..2, -1, 1), (-1..2, 0, 1), (-1..2, 1, 1)] {
+            self.row(at, (dx, dy, dz), out);
         }
     }
 
     /// Cells at offsets along the fast axis in one row.
-    fn row(&self, at: [usize; 3], [dx, dy, dz]: [Range<i32>; 3], out: &mut Vec<Run>) {
+    #[inline]
+    fn row(&self, at: [usize; 3], (dx, dy, dz): (Range<i32>, i32, i32), out: &mut Vec<Run>) {
         let wrapped = |k: usize, offset: i32| {
             let (c, n) = (at[k] as i32 + offset, self.cells[k] as i32);
             match self.repeats[k] {
@@ -240,7 +242,7 @@ impl Slabs {
                 false => None,
             }
         };
-        let (Some((y, sy)), Some((z, sz))) = (wrapped(1, dy.start), wrapped(2, dz.start)) else { return };
+        let (Some((y, sy)), Some((z, sz))) = (wrapped(1, dy), wrapped(2, dz)) else { return };
         let row = (z * self.cells[1] + y) * self.cells[0];
         // Within the row all cells are one run.
         let (first, last) = (at[0] as i32 + dx.start, at[0] as i32 + dx.end - 1);

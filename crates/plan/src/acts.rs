@@ -105,6 +105,8 @@ enum Kind {
     Pull(Pull),
     /// Sets forces and torques of particles with this group bit to zero.
     Hold(u32),
+    /// Takes from particles with this group bit what would move them out of the plane.
+    Flatten(u32),
     /// Sets all forces and torques to zero.
     Clear,
 }
@@ -125,6 +127,8 @@ pub struct Beside {
     pub pull: Option<Pull>,
     /// Then forces and torques of particles with one of these group bits are set to zero.
     pub held: u32,
+    /// Then velocities and forces along z, spins and torques across it, of particles with one of these group bits become zero.
+    pub flat: u32,
     /// At last all forces and torques are set to zero.
     pub clears: bool,
 }
@@ -165,6 +169,15 @@ impl Room {
         alone: impl Fn(&mut ParticleBlock) -> BlockSums + Send + Sync + 'static,
     ) {
         self.alone(Kind::Hold(bit), alone);
+    }
+
+    /// One that keeps a group in the plane: no velocities and forces along z, no spins and torques across it.
+    pub fn flatten(
+        &mut self,
+        bit: u32,
+        alone: impl Fn(&mut ParticleBlock) -> BlockSums + Send + Sync + 'static,
+    ) {
+        self.alone(Kind::Flatten(bit), alone);
     }
 
     /// One that sets all forces and torques to zero.
@@ -237,7 +250,8 @@ pub(super) enum Pass<'a> {
     Together(&'a dyn Together, Beside, [Option<usize>; 3]),
 }
 
-/// Acts in as few passes as can be: a motion takes a pull and then a hold right before it, and a clearing right behind.
+/// Acts in as few passes as can be: a motion takes a pull, then a hold and then a flattening right before it, and a clearing right
+/// behind.
 pub(super) struct Passes<'a> {
     acts: Acts<'a>,
     at: usize,
@@ -260,6 +274,11 @@ impl<'a> Iterator for Passes<'a> {
         }
         if let Some(Kind::Hold(bit)) = acts.get(k).map(Act::kind) {
             (beside.held, places[1]) = (*bit, Some(k));
+            k += 1;
+        }
+        if let Some(Kind::Flatten(bit)) = acts.get(k).map(Act::kind) {
+            // Nothing comes of it.
+            beside.flat = *bit;
             k += 1;
         }
         match (acts.get(k).map(|act| &act.0), &act.0) {

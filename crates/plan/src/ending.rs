@@ -3,7 +3,6 @@
 use super::{Placed, Stage, StepPlan, Tick, When};
 use perigrain_world::field::{F, TORQUE};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// Forces and what follows them in a step.
 pub struct Ending {
@@ -73,18 +72,23 @@ impl StepPlan {
         !t.setup && self.quiet.1 == t.last && self.quiet.0.contains(&t.step)
     }
 
-    /// Forces and what follows them in this step.
-    pub(super) fn ending(&mut self, t: &Tick) -> Arc<Ending> {
-        let next = t.step + 1;
-        let usual = t.phase.levels == 1 && self.is_quiet(t) && self.quiet.0.contains(&next);
-        match &self.usual {
-            Some(ending) if usual => ending.clone(),
-            _ => {
-                let ending = Arc::new(self.find_ending(t));
-                self.usual = usual.then(|| ending.clone());
-                ending
-            }
+    /// Whether this is a quiet step before a quiet step, of which all end alike.
+    fn ends_as_usual(&self, t: &Tick) -> bool {
+        t.phase.levels == 1 && self.is_quiet(t) && self.quiet.0.contains(&(t.step + 1))
+    }
+
+    /// Forces and what follows them in this step; see [`StepPlan::keep_ending`].
+    pub(super) fn ending(&mut self, t: &Tick) -> Box<Ending> {
+        let usual = self.usual.take();
+        match usual.filter(|_| self.ends_as_usual(t)) {
+            Some(ending) => ending,
+            None => Box::new(self.find_ending(t)),
         }
+    }
+
+    /// Keeps the ending of this step for the next one, if that ends alike.
+    pub(super) fn keep_ending(&mut self, t: &Tick, ending: Box<Ending>) {
+        self.usual = Some(ending).filter(|_| self.ends_as_usual(t));
     }
 
     fn find_ending(&mut self, t: &Tick) -> Ending {

@@ -19,16 +19,24 @@ pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     for which in acts.which.chunks(MOST) {
         let (all, columns) = columns(w);
         let acts = Acts { which, ..acts };
+        let n = columns.rows();
+        if n <= CHUNK {
+            // Not through the hands of those who share out, and one block not through those who cut.
+            let mut sums = [BlockSums::default(); MOST];
+            match n {
+                0 => {}
+                n if n <= BLOCK => block(acts, all, 0, columns, &mut sums),
+                _ => chunk(acts, all, 0, columns, &mut sums),
+            }
+            came.extend_from_slice(&sums[..which.len()]);
+            continue;
+        }
         let whole = |start, rows| {
             let mut sums = [BlockSums::default(); MOST];
             chunk(acts, all, start, rows, &mut sums);
             sums
         };
-        let sums = match columns.rows() {
-            // Not through the hands of those who share out.
-            n if n <= CHUNK => whole(0, columns),
-            _ => par::reduce_each(columns, whole, join).unwrap_or_default(),
-        };
+        let sums = par::reduce_each(columns, whole, join).unwrap_or_default();
         came.extend_from_slice(&sums[..which.len()]);
     }
 }
@@ -38,6 +46,7 @@ type Columns<'a> = (Lent<'a, Vec3>, Lent<'a, Vec3>, Lent<'a, Vec3>, Turning<'a>)
 type Turning<'a> = Option<(Lent<'a, Vec3>, Lent<'a, Vec3>, Option<Lent<'a, Quat>>)>;
 
 /// What ops read of all particles, and the columns that are cut.
+#[inline]
 fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
     let p = &mut w.particles;
     let all = Known {
@@ -59,23 +68,35 @@ fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
 fn chunk(acts: Acts, all: Known<'_>, mut start: usize, mut rest: Columns<'_>, sums: &mut [BlockSums; MOST]) {
     while rest.rows() > 0 {
         let n = rest.rows().min(BLOCK);
-        let ((x, v, f, turned), later) = rest.cut(n);
-        let (omega, torque, quat) = turned.unwrap_or_else(|| (Lent::none(), Lent::none(), None));
-        let quat = quat.unwrap_or_else(Lent::none);
-        let mut block = ParticleBlock { start, x, v, f, omega, torque, quat, all };
-        for pass in passes(acts) {
-            match pass {
-                Pass::Alone(at, act) => sums[at] = sums[at].join(act.act(&mut block)),
-                Pass::Together(act, beside, places) => {
-                    let came = act.act(&mut block, &beside);
-                    for (at, came) in places.into_iter().zip(came) {
-                        let Some(at) = at else { continue };
-                        sums[at] = sums[at].join(came);
-                    }
+        let (own, later) = rest.cut(n);
+        block(acts, all, start, own, sums);
+        (start, rest) = (start + n, later);
+    }
+}
+
+/// All passes over a block; what comes of each act is added.
+#[inline(always)]
+fn block(
+    acts: Acts,
+    all: Known<'_>,
+    start: usize,
+    (x, v, f, turned): Columns<'_>,
+    sums: &mut [BlockSums; MOST],
+) {
+    let (omega, torque, quat) = turned.unwrap_or_else(|| (Lent::none(), Lent::none(), None));
+    let quat = quat.unwrap_or_else(Lent::none);
+    let mut block = ParticleBlock { start, x, v, f, omega, torque, quat, all };
+    for pass in passes(acts) {
+        match pass {
+            Pass::Alone(at, act) => sums[at] = sums[at].join(act.act(&mut block)),
+            Pass::Together(act, beside, places) => {
+                let came = act.act(&mut block, &beside);
+                for (at, came) in places.into_iter().zip(came) {
+                    let Some(at) = at else { continue };
+                    sums[at] = sums[at].join(came);
                 }
             }
         }
-        (start, rest) = (start + n, later);
     }
 }
 
@@ -166,11 +187,16 @@ mod tests {
         let none = |_: &mut ParticleBlock<'_>| BlockSums::default();
         let pull: &dyn Fn(&mut Room) = &|room| room.pull(Pull { bit: 1, a: [0.0; 3] }, none);
         let hold: &dyn Fn(&mut Room) = &|room| room.hold(2, none);
+        let flat: &dyn Fn(&mut Room) = &|room| room.flatten(4, none);
         let moving: &dyn Fn(&mut Room) = &|room| room.moving(|_, _| [BlockSums::default(); 3]);
         let other: &dyn Fn(&mut Room) = &|room| room.act(none);
         let clear: &dyn Fn(&mut Room) = &Room::clear;
         assert_eq!(told(&[pull, hold, moving, clear]), ["0+1+2+c"]);
         assert_eq!(told(&[hold, pull, moving, clear]), ["0", "1+2+c"]);
+        // What a flattening does has no sum of its own.
+        assert_eq!(told(&[pull, hold, flat, moving, clear]), ["0+1+3+c"]);
+        assert_eq!(told(&[flat, moving, clear]), ["1+c"]);
+        assert_eq!(told(&[flat, hold, moving]), ["0", "1+2+"]);
         assert_eq!(told(&[pull, pull, hold, moving]), ["0", "1+2+3+"]);
         assert_eq!(told(&[pull, other, moving, hold, clear]), ["0", "1", "2+", "3", "4"]);
         assert_eq!(told(&[pull, hold, clear, moving, moving]), ["0", "1", "2", "3+", "4+"]);

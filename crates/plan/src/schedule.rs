@@ -12,7 +12,6 @@ use perigrain_world::field::{CONTACTS, RADIUS, X};
 use perigrain_world::named::Acting;
 use perigrain_world::{Fields, World};
 use std::ops::Range;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// An op with its times and the command it came from.
@@ -74,7 +73,10 @@ impl Placed {
         if clock.runs() {
             self.meter.reckon(self.op.bytes(w));
         }
-        outcome.map_err(|e| placed_error(e, self, t))
+        match outcome {
+            Ok(outcome) => Ok(outcome),
+            Err(e) => Err(placed_error(e, self, t)),
+        }
     }
 }
 
@@ -135,7 +137,7 @@ pub struct StepPlan {
     pub(super) usually: Usually,
     pub(super) asked: Asked,
     /// The ending of quiet steps before quiet steps.
-    pub(super) usual: Option<Arc<Ending>>,
+    pub(super) usual: Option<Box<Ending>>,
     /// Room that steps use again.
     pub(super) rooms: Rooms,
 }
@@ -323,6 +325,7 @@ impl StepPlan {
     }
 }
 
+#[cold]
 fn placed_error(e: Diagnostics, p: &Placed, t: &Tick) -> Diagnostics {
     let mut e = e;
     for d in &mut e.0 {

@@ -6,6 +6,7 @@ use super::fuse::Waiting;
 use super::schedule::{begin_watch, end_watch};
 use super::{Acts, BlockSums, FusedPass, Stage, StepPlan, Tick, Way, fuse, needs};
 use perigrain_base::diag::Result;
+use perigrain_base::par::CHUNK;
 use perigrain_world::World;
 use std::time::Duration;
 
@@ -48,16 +49,17 @@ impl StepPlan {
         }
         self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
         let ending = self.ending(t);
-        if self.force_and_end(w, t, &ending, &more)? {
-            return Ok(());
+        if !self.force_and_end(w, t, &ending, &more)? {
+            self.run(w, t, &[Stage::Force])?;
+            self.end_as(w, t, &ending, more)?;
         }
-        self.run(w, t, &[Stage::Force])?;
-        self.end_as(w, t, &ending, more)
+        self.keep_ending(t, ending);
+        Ok(())
     }
 
     /// Where one op alone adds forces and all that follows acts on each particle by itself: particles that have all their forces
     /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
-    /// that is not so, and nothing has been done.
+    /// that is not so, and nothing has been done. Of few particles all are moved at the end anyway.
     fn force_and_end(
         &mut self,
         w: &mut World,
@@ -66,7 +68,9 @@ impl StepPlan {
         more: &impl Fn(&World) -> bool,
     ) -> Result<bool> {
         let order = &ending.order[..];
-        let Some(force) = ending.force.filter(|_| !needs::collecting()) else { return Ok(false) };
+        let Some(force) = ending.force.filter(|_| w.n() > CHUNK && !needs::collecting()) else {
+            return Ok(false);
+        };
         if order.is_empty() || !order.iter().all(|k| self.ops[*k].about.fuses || self.rests(w, t, *k)) {
             return Ok(false);
         }
@@ -169,7 +173,9 @@ impl StepPlan {
     /// The first op's that fails.
     pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
         let ending = self.ending(t);
-        self.end_as(w, t, &ending, more)
+        self.end_as(w, t, &ending, more)?;
+        self.keep_ending(t, ending);
+        Ok(())
     }
 
     fn end_as(

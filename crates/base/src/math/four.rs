@@ -38,6 +38,8 @@ pub trait Four: Real {
     fn transpose(rows: [Self; 4]) -> [Self; 4];
     /// Lane `k` of a mask as bit `k`.
     fn bits(mask: Self::Mask) -> u32;
+    /// The lanes with these numbers; all of them have to be below four.
+    fn at(self, lanes: [u32; 4]) -> Self;
 }
 
 /// Four lanes as an array.
@@ -158,6 +160,10 @@ impl Four for Plain {
         // SAFETY: readable by the caller's promise.
         let [a, b, c] = unsafe { p.cast::<[f64; 3]>().read() };
         Self([a, b, c, 0.0])
+    }
+    #[inline(always)]
+    fn at(self, lanes: [u32; 4]) -> Self {
+        Self(lanes.map(|k| self.0[k as usize & 3]))
     }
     type Two = [f64; 2];
     #[inline(always)]
@@ -287,6 +293,15 @@ mod x86 {
         unsafe fn load3(p: *const f64) -> Self {
             Self(unsafe { _mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)) })
         }
+        #[inline(always)]
+        fn at(self, [a, b, c, d]: [u32; 4]) -> Self {
+            // Each lane is two halves.
+            let [p, q, r, s] = [a, b, c, d].map(|k| 2 * k as i32);
+            unsafe {
+                let halves = _mm256_setr_epi32(p, p + 1, q, q + 1, r, r + 1, s, s + 1);
+                Self(_mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(self.0), halves)))
+            }
+        }
         type Two = Sse;
         #[inline(always)]
         fn pairs_of(x: Self, y: Self) -> [Self; 2] {
@@ -358,6 +373,7 @@ mod tests {
             }
             put(F::load(four.as_ptr()));
         }
+        [[0, 1, 2, 3], [3, 1, 0, 2], [2, 2, 3, 0]].into_iter().for_each(|at| put(a.at(at)));
         out.extend([F::bits(mask), F::any(mask).into(), F::any(none).into()].map(u64::from));
         out
     }

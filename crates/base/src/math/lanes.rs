@@ -50,6 +50,11 @@ pub trait Lanes<const N: usize>: Real {
     /// # Safety
     /// There must be room for as many as there are lanes.
     unsafe fn put(mask: Self::Mask, first: u32, to: *mut u32) -> usize;
+    /// Puts the numbers in the lanes that are set to memory, and something behind them.
+    ///
+    /// # Safety
+    /// As [`Lanes::put`].
+    unsafe fn pack(self, mask: Self::Mask, to: *mut f64);
 }
 
 /// Bits of an entry that hold a place in a list; what stands above them tells which shift.
@@ -197,5 +202,11 @@ impl<F: Four> Lanes<4> for F {
         // SAFETY: the caller's promise.
         unsafe { to.cast::<[u32; 4]>().write([first + a, first + b, first + c, first + d]) };
         (COUNTS >> (4 * bits) & 15) as usize
+    }
+    #[inline(always)]
+    unsafe fn pack(self, mask: F::Mask, to: *mut f64) {
+        let of = self.at(LANES[F::bits(mask) as usize & 15]);
+        // SAFETY: the caller's promise.
+        unsafe { of.store(to) };
     }
 }

@@ -1,7 +1,8 @@
 //! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
 
 use super::Alike;
-use super::lists::{Short, Slab};
+use super::found::Found;
+use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
 use crate::driver::DEEP;
 use crate::{ContactLaw, Geometry, Motion};
@@ -11,6 +12,7 @@ use perigrain_base::math::pair::Pair;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{SIX, Vec3, scale};
 use std::mem::MaybeUninit;
+use std::ops::Range;
 
 /// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
 /// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
@@ -19,15 +21,18 @@ pub(super) const BATCH: usize = 64;
 /// The most groups of a batch.
 const GROUPS: usize = BATCH / 4;
 
-/// Contacts that go from stage to stage together; what is past the last one repeats it up to a full group.
+/// Contacts that go from stage to stage together, perhaps of several lists; what is past the last one repeats it up to a full
+/// group.
 pub(super) struct Batch<V, const N: usize> {
-    /// Numbers of the pairs in the short list.
-    k: [u32; BATCH],
+    /// How many wait to be evaluated.
+    waiting: usize,
+    /// What each remembers.
+    past: [*mut f64; BATCH],
     i: [u32; BATCH],
     /// The others and their images.
     w: [u32; BATCH],
-    /// x_i − x_j, by groups [length].
-    apart: Room<Vec3<V>>,
+    /// x_i − x_j, coordinate by coordinate [length].
+    apart: MaybeUninit<[[f64; BATCH + FILL]; 3]>,
     geometry: Room<Geometry<V>>,
     /// Of two grains, where all have one radius.
     sizes: Option<Sizes<V>>,
@@ -135,10 +140,11 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             (sizes, mass)
         };
         Self {
-            k: [0; BATCH],
+            waiting: 0,
+            past: [std::ptr::null_mut(); BATCH],
             i: [0; BATCH],
             w: [0; BATCH],
-            apart: Room::new(),
+            apart: MaybeUninit::uninit(),
             geometry: Room::new(),
             sizes,
             mass,
@@ -147,28 +153,79 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Evaluates the law for these pairs of the short list, at least one and at most [`BATCH`].
+    /// Whether some wait to be evaluated.
+    pub fn waits(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Whether there is no room for more.
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.waiting == BATCH
+    }
+
+    /// Takes as many of these pairs of a short list as there is room for; how many.
     ///
     /// # Safety
-    /// They must be pairs of the list, and its entries grains.
+    /// They must be pairs of the list, which must not change until they have been evaluated.
     #[inline(always)]
-    pub unsafe fn run<L: ContactLaw, const W: usize>(
+    pub unsafe fn take<const W: usize>(
         &mut self,
-        cx: &Cx<L>,
-        law: &L,
-        slab: &mut Slab,
-        pairs: &[u32],
-    ) {
-        let count = pairs.len();
+        short: &mut Short,
+        found: &Found,
+        which: Range<usize>,
+    ) -> usize {
+        let taken = which.len().min(BATCH - self.waiting);
+        let which = which.start..which.start + taken;
+        let past = short.history.as_mut_ptr();
+        for (at, k) in (self.waiting..).zip(&found.numbers()[which.clone()]) {
+            let k = *k as usize;
+            // SAFETY: passed on; there is room for all of them.
+            unsafe {
+                *self.i.get_unchecked_mut(at) = *short.i.as_ptr().add(k);
+                *self.w.get_unchecked_mut(at) = *short.w.as_ptr().add(k);
+                *self.past.get_unchecked_mut(at) = past.add(W * k);
+            }
+        }
+        for d in 0..3 {
+            // SAFETY: behind both there is room for some lanes.
+            unsafe {
+                let (from, to) = (found.apart(d).add(which.start), self.apart(d).add(self.waiting));
+                for at in (0..taken).step_by(N) {
+                    // What stands behind the last one is copied as well, whatever it is.
+                    let lanes = from.add(at).cast::<[MaybeUninit<f64>; N]>().read();
+                    to.add(at).cast::<[MaybeUninit<f64>; N]>().write(lanes);
+                }
+            }
+        }
+        self.waiting += taken;
+        taken
+    }
+
+    /// Where x_i − x_j begins along an axis.
+    #[inline(always)]
+    fn apart(&mut self, d: usize) -> *mut f64 {
+        debug_assert!(d < 3);
+        // SAFETY: one of three rows.
+        unsafe { self.apart.as_mut_ptr().cast::<f64>().add(d * (BATCH + FILL)) }
+    }
+
+    /// Evaluates the law for those that wait, at least one. What they are in sum is told to the list of the last ones.
+    ///
+    /// # Safety
+    /// Entries of their lists must be grains.
+    #[inline(always)]
+    pub unsafe fn run<L: ContactLaw, const W: usize>(&mut self, cx: &Cx<L>, law: &L, slab: &mut Slab) {
+        let count = std::mem::take(&mut self.waiting);
         // SAFETY: passed on.
         unsafe {
-            self.gather(&slab.short, pairs);
+            self.fill_up(count);
             for group in 0..count.div_ceil(N) {
                 slab.deep |= self.meet(cx, group);
             }
             let memory = law.memory();
             for group in 0..count.div_ceil(N) {
-                self.act::<L, W>(cx, law, memory, &mut slab.short, group);
+                self.act::<L, W>(cx, law, memory, group);
             }
             if cx.virial {
                 self.add_virial(count, &mut slab.virial);
@@ -187,30 +244,31 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// First stage: who they are.
+    /// Repeats the last contact up to a full group.
     #[inline(always)]
-    unsafe fn gather(&mut self, short: &Short, pairs: &[u32]) {
-        let count = pairs.len();
-        self.k[..count].copy_from_slice(pairs);
-        self.k[count..count.next_multiple_of(N)].fill(pairs[count - 1]);
-        for at in 0..count.next_multiple_of(N) {
+    unsafe fn fill_up(&mut self, count: usize) {
+        for at in count..count.next_multiple_of(N) {
             // SAFETY: passed on; the batch has room for whole groups.
             unsafe {
-                let k = *self.k.get_unchecked(at);
-                let (i, w) = (*short.i.as_ptr().add(k as usize), *short.w.as_ptr().add(k as usize));
-                *self.i.get_unchecked_mut(at) = i;
-                *self.w.get_unchecked_mut(at) = w;
+                *self.i.get_unchecked_mut(at) = *self.i.get_unchecked(count - 1);
+                *self.w.get_unchecked_mut(at) = *self.w.get_unchecked(count - 1);
+                *self.past.get_unchecked_mut(at) = *self.past.get_unchecked(count - 1);
+                for d in 0..3 {
+                    *self.apart(d).add(at) = *self.apart(d).add(count - 1);
+                }
             }
         }
     }
 
-    /// Second stage: where and how grains touch. Whether some overlap too far.
+    /// First stage: where and how grains touch. Whether some overlap too far.
     #[inline(always)]
     unsafe fn meet<L: ContactLaw>(&mut self, cx: &Cx<L>, group: usize) -> bool {
         // SAFETY: passed on.
         unsafe {
             let (i, w) = (self.i.as_ptr().add(N * group), self.w.as_ptr().add(N * group));
-            let [x, y, z] = V::apart(cx.x.as_ptr(), i, w, cx.shifts);
+            let [p, q, r] = [self.apart(0), self.apart(1), self.apart(2)];
+            let (p, q, r) = (p.add(N * group).cast(), q.add(N * group).cast(), r.add(N * group).cast());
+            let [x, y, z] = [V::of(*p), V::of(*q), V::of(*r)];
             let (r, m) = (cx.radius.as_ptr(), cx.mass.as_ptr());
             let sizes = match self.sizes {
                 Some(sizes) => sizes,
@@ -222,39 +280,37 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, w), mass),
             };
             let g = geometry([x, y, z], &sizes, mass);
-            self.apart.put(group, [x, y, z]);
             self.geometry.put(group, g);
             V::any(too_deep(&g))
         }
     }
 
-    /// Four numbers from `part` on of records of `width` numbers, turned into lanes.
+    /// Four numbers from `part` on of what contacts remember, turned into lanes.
     #[inline(always)]
-    unsafe fn records(p: *const f64, width: usize, part: usize, at: *const u32) -> [V; 4] {
+    unsafe fn records(past: *const *mut f64, part: usize) -> [V; 4] {
         // SAFETY: passed on.
         unsafe {
             let mut rows = [V::Row::splat(0.0); N];
             for lane in 0..N {
-                rows[lane] = V::Row::load(p.add(width * *at.add(lane) as usize + part));
+                rows[lane] = V::Row::load((*past.add(lane)).add(part));
             }
             V::of_rows(rows)
         }
     }
 
-    /// Third stage: forces, torques and what is remembered.
+    /// Second stage: forces, torques and what is remembered.
     #[inline(always)]
     unsafe fn act<L: ContactLaw, const W: usize>(
         &mut self,
         cx: &Cx<L>,
         law: &L,
         memory: usize,
-        short: &mut Short,
         group: usize,
     ) {
         // SAFETY: passed on.
         unsafe {
             let at = N * group;
-            let (i, w, k) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.k.as_ptr().add(at));
+            let (i, w, past) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.past.as_ptr().add(at));
             // (No closures in here: they are not compiled for AVX.)
             let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
             let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
@@ -266,10 +322,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 }
             }
 
-            let past = short.history.as_mut_ptr();
             let mut history = [V::all(0.0); W];
             for part in (0..W).step_by(4) {
-                let lanes = Self::records(past, W, part, k);
+                let lanes = Self::records(past, part);
                 [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
             }
             let lasts = history[W - 1].above(V::all(cx.now - 0.5));
@@ -290,7 +345,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                     V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
                 // Lanes without a contact repeat the last one, in whose place they would write the same.
                 for lane in 0..N {
-                    rows[lane].store(past.add(W * *k.add(lane) as usize + part));
+                    rows[lane].store((*past.add(lane)).add(part));
                 }
             }
         }
@@ -312,13 +367,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     }
 
     /// Adds Σ d ⊗ F of the first contacts, which must have gone through all stages.
-    unsafe fn add_virial(&self, count: usize, sum: &mut [f64; 6]) {
+    unsafe fn add_virial(&mut self, count: usize, sum: &mut [f64; 6]) {
         for at in 0..count {
             let (group, lane) = (at / N, at % N);
             // SAFETY: the caller's promise.
-            let (d, force) = unsafe { (self.apart.at(group), self.force.at(group)) };
-            // SAFETY: a lane of the group.
-            let d = unsafe { [0, 1, 2].map(|k| number(&d[k], lane)) };
+            let d = unsafe { [0, 1, 2].map(|k| *self.apart(k).add(at)) };
+            // SAFETY: as above.
+            let force = unsafe { self.force.at(group) };
             let xy = &force.xy[lane % 2][lane / 2 * 2..];
             let f = [xy[0], xy[1], force.z[lane]];
             for (s, (a, b)) in sum.iter_mut().zip(SIX) {

@@ -1,6 +1,6 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::near::{self, InOrder};
+use super::near::{self, InOrder, Places};
 use super::{Fast, NONE, NOWHERE};
 use crate::ContactLaw;
 use crate::driver::Grains;
@@ -44,6 +44,9 @@ pub struct Short {
     pub w: Vec<u32>,
     /// Which pair of the long list.
     pub t: Vec<u32>,
+    /// Per pair: the square of the distance within which they touch, or can hold together; empty where all radii are the same
+    /// [length²].
+    pub reach: Vec<f64>,
     /// Per pair: what its contact remembers, and the number of the step it last touched.
     pub history: Vec<f64>,
 }
@@ -54,6 +57,7 @@ impl Short {
         self.i.clear();
         self.w.clear();
         self.t.clear();
+        self.reach.clear();
     }
 }
 
@@ -176,11 +180,23 @@ impl<L: ContactLaw> Fast<L> {
             let long = [&slab.long.i[..], &slab.long.w];
             unsafe { near::near(this.form, grains, &this.shifts, long, this.thin + this.span, &mut room.t) };
             this.fill_short(slab, book.as_ref(), &mut room);
+            this.measure(grains, &mut room);
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);
         });
         self.spare = spare.into_inner().unwrap_or_else(PoisonError::into_inner);
         self.lists = lists;
+    }
+
+    /// Fills in how far each pair of a short list reaches.
+    pub(super) fn measure(&self, grains: &Grains, short: &mut Short) {
+        short.reach.clear();
+        if self.alike.radius.is_none() {
+            fit(&mut short.reach, short.i.len());
+            let at = Places::new(grains, &self.shifts);
+            let pairs = short.i.iter().zip(&short.w);
+            short.reach.extend(pairs.map(|(i, w)| at.reach(*i, *w, self.span)));
+        }
     }
 
     /// Fills in pairs and memory of a new short list that knows its pairs of the long list.

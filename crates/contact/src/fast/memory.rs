@@ -2,7 +2,7 @@
 
 use super::Fast;
 use super::lists::Short;
-use crate::{ContactLaw, MOST_MEMORY};
+use crate::ContactLaw;
 use perigrain_base::math::lanes::place;
 use perigrain_world::contacts::{Contacts, mirror};
 use std::ops::Range;
@@ -24,6 +24,16 @@ impl Book {
         let k = of.start + self.partner[of].iter().position(|p| *p == second)?;
         Some(&self.history[k * self.width..][..self.width])
     }
+}
+
+/// A contact of the last evaluation.
+struct Live<'a> {
+    /// Where the grain of the smaller tag stands now, and the other one.
+    first: u32,
+    second: u32,
+    /// Whether it is remembered as the other one sees it.
+    turned: bool,
+    history: &'a [f64],
 }
 
 /// Where each tag stands.
@@ -62,11 +72,8 @@ impl<L: ContactLaw> Fast<L> {
         let width = self.width - 1;
         let mut start = vec![0; tag.len() + 1];
         let both = |a: u32, b: u32| places.of(a).zip(places.of(b));
-        self.each_live(|[a, b], _| {
-            if let Some((p, _)) = both(a, b) {
-                start[p as usize] += 1;
-            }
-        });
+        let live = self.live(both);
+        live.iter().for_each(|l| start[l.first as usize] += 1);
         for &[a, b] in known.iter().flat_map(|c| &c.keys) {
             if let Some((p, _)) = both(a, b) {
                 start[p as usize] += 1;
@@ -78,43 +85,48 @@ impl<L: ContactLaw> Fast<L> {
             *s = sum;
         }
         let (mut partner, mut history) = (vec![0; sum as usize], vec![0.0; sum as usize * width]);
-        let mut put = |[a, b]: [u32; 2], h: &[f64]| {
-            if let Some((p, q)) = both(a, b) {
-                // Filled from behind: each start ends up at its first contact.
-                start[p as usize] -= 1;
-                let k = start[p as usize] as usize;
-                partner[k] = q;
-                let kept = width.min(h.len());
-                history[k * width..][..kept].copy_from_slice(&h[..kept]);
+        // Filled from behind: each start ends up at its first contact.
+        let mut put = |p: u32, q: u32, h: &[f64], turned: bool| {
+            start[p as usize] -= 1;
+            let k = start[p as usize] as usize;
+            partner[k] = q;
+            let kept = width.min(h.len());
+            let row = &mut history[k * width..][..width];
+            row[..kept].copy_from_slice(&h[..kept]);
+            if turned {
+                mirror(row);
             }
         };
         if let Some(c) = known {
-            for (k, key) in c.keys.iter().enumerate().rev() {
-                put(*key, &c.history[k * c.width..][..c.width]);
-            }
-        }
-        self.each_live(&mut put);
-        Book { start, partner, width, history }
-    }
-
-    /// Calls `f` with the tags of both grains, the smaller first, and what their contact remembers.
-    fn each_live(&self, mut f: impl FnMut([u32; 2], &[f64])) {
-        let memory = self.width - 1;
-        let mut turned = [0.0; MOST_MEMORY];
-        for list in &self.lists {
-            let short = &list.short;
-            for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {
-                let (i, j) = (short.i[k] as usize, place(short.w[k]));
-                let h = &short.history[k * self.width..][..memory];
-                if self.tag[i] <= self.tag[j] {
-                    f([self.tag[i], self.tag[j]], h);
-                } else {
-                    turned[..memory].copy_from_slice(h);
-                    mirror(&mut turned[..memory]);
-                    f([self.tag[j], self.tag[i]], &turned[..memory]);
+            for (k, &[a, b]) in c.keys.iter().enumerate().rev() {
+                if let Some((p, q)) = both(a, b) {
+                    put(p, q, &c.history[k * c.width..][..c.width], false);
                 }
             }
         }
+        for l in &live {
+            put(l.first, l.second, l.history, l.turned);
+        }
+        Book { start, partner, width, history }
+    }
+
+    /// The contacts of the last evaluation between grains that are still there, by where `both` of two tags stand now.
+    fn live(&self, both: impl Fn(u32, u32) -> Option<(u32, u32)>) -> Vec<Live<'_>> {
+        let (width, mut live) = (self.width, vec![]);
+        for short in self.lists.iter().map(|list| &list.short) {
+            let rows = short.history.chunks_exact(width);
+            for ((i, w), row) in short.i.iter().zip(&short.w).zip(rows) {
+                if row[width - 1] != self.now {
+                    continue;
+                }
+                let (a, b) = (self.tag[*i as usize], self.tag[place(*w)]);
+                let turned = a > b;
+                if let Some((first, second)) = both(a.min(b), a.max(b)) {
+                    live.push(Live { first, second, turned, history: &row[..width - 1] });
+                }
+            }
+        }
+        live
     }
 
     /// Writes what the book holds of a pair of grains into the row of a short list: what is remembered and the step.

@@ -9,6 +9,7 @@
 mod batch;
 mod bidisperse;
 mod deep;
+mod found;
 mod image_shift;
 mod list_validity;
 mod lists;
@@ -154,10 +155,14 @@ pub struct Fast<L> {
     signed: Vec<f64>,
     /// What all grains have in common.
     alike: Alike,
+    /// Radii that short lists tell the reach of pairs by.
+    measured: Vec<f64>,
     /// How many periods grains have been moved since lists were made.
     turns: Vec<[i8; 3]>,
     /// Those of slabs, then those of pairs with large grains.
     lists: Vec<Slab>,
+    /// Lists in the order of one thread.
+    order: Vec<usize>,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
     /// The periods of these.
@@ -199,8 +204,10 @@ impl<L: ContactLaw> Fast<L> {
             validity_of_large: ListValidity::default(),
             signed: vec![],
             alike: Alike::default(),
+            measured: vec![],
             turns: vec![],
             lists: vec![],
+            order: vec![],
             shifts: [[0.0; 4]; 32],
             period: Periods::default(),
             thin: 0.0,
@@ -288,6 +295,7 @@ impl<L: ContactLaw> Fast<L> {
         }
         self.lists.iter_mut().for_each(|list| list.long.fill_up());
         self.validity.divide(&slabs);
+        self.put_in_order();
         self.book = Some(book);
         self.stale = true;
     }
@@ -367,10 +375,28 @@ impl<L: ContactLaw> Fast<L> {
         par::two_colours(self.validity_of_large.lists(), |k| f(first + k));
     }
 
+    /// Puts lists in the order in which [`Fast::each_list`] calls them on one thread.
+    fn put_in_order(&mut self) {
+        let (first, large) = (self.validity.lists(), self.validity_of_large.lists());
+        self.order.clear();
+        self.order.extend(par::in_turn(first).chain(par::in_turn(large).map(|k| first + k)));
+    }
+
     /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have
     /// changed.
     pub fn weigh(&mut self, grains: &Grains) {
         self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
+        if self.measured != grains.radius {
+            self.measured.clear();
+            self.measured.extend_from_slice(grains.radius);
+            let mut lists = std::mem::take(&mut self.lists);
+            let (this, shared) = (&*self, par::Shared::new(&mut lists));
+            par::for_rows(shared.len(), |k| {
+                // SAFETY: each part writes its own list.
+                this.measure(grains, unsafe { &mut shared.get(k..k + 1)[0].short });
+            });
+            self.lists = lists;
+        }
         let known = if grains.frozen.is_empty() { 0 } else { self.tag.len() };
         self.signed.resize(known, 0.0);
         if known > 0 {

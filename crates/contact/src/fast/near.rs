@@ -45,7 +45,7 @@ impl InLanes for Near<'_> {
             // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind
             // the end.
             unsafe {
-                let hits = at.closer::<N, V, false>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
+                let hits = at.closer::<N, V>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
                 let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
                 out.set_len(out.len() + count);
             }
@@ -62,15 +62,8 @@ pub(super) struct InOrder {
 impl InOrder {
     /// Copies the grains in this order.
     pub fn new(grains: &Grains, order: &[u32]) -> Self {
-        // What is read beyond the end is not used.
-        let pick = |of: &dyn Fn(usize) -> f64| {
-            let mut list = Vec::with_capacity(order.len() + FILL);
-            list.extend(order.iter().map(|&i| of(i as usize)));
-            list.extend([0.0; FILL]);
-            list
-        };
-        let x = [0, 1, 2].map(|d| pick(&|i| grains.x[i][d]));
-        Self { x, radius: pick(&|i| grains.radius[i]) }
+        let x = [0, 1, 2].map(|d| picked(order, |i| grains.x[i][d]));
+        Self { x, radius: picked(order, |i| grains.radius[i]) }
     }
 
     /// Calls `hit` with those places of a run, shifted, whose surfaces are nearer than `skin` to that of place `i`, in order.
@@ -106,6 +99,14 @@ impl InOrder {
     }
 }
 
+/// Numbers of grains in this order. What is read beyond the end is not used.
+fn picked(order: &[u32], of: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut list = Vec::with_capacity(order.len() + FILL);
+    list.extend(order.iter().map(|&i| of(i as usize)));
+    list.extend([0.0; FILL]);
+    list
+}
+
 /// Where grains are.
 #[derive(Clone, Copy)]
 pub(super) struct Places<'a> {
@@ -125,12 +126,12 @@ impl<'a> Places<'a> {
         Self { x: grains.x, radius: grains.radius, alike: None, shifts }
     }
 
-    /// Which of some pairs have surfaces nearer than `extra`; `ALIKE`: all have one radius, and it is known.
+    /// Which of some pairs have surfaces nearer than `extra`.
     ///
     /// # Safety
     /// As many entries as there are lanes must be grains; the processor must have what the form needs.
     #[inline(always)]
-    pub unsafe fn closer<const N: usize, V: Lanes<N>, const ALIKE: bool>(
+    pub unsafe fn closer<const N: usize, V: Lanes<N>>(
         &self,
         i: *const u32,
         w: *const u32,
@@ -140,13 +141,17 @@ impl<'a> Places<'a> {
         unsafe {
             let [x, y, z] = V::apart(self.x.as_ptr(), i, w, self.shifts);
             let r = self.radius.as_ptr();
-            let radii = match self.alike {
-                Some(r) if ALIKE => V::all(r + r),
-                _ => V::pick(r, i) + V::pick(r, w),
-            };
-            let reach = radii + extra;
+            let reach = V::pick(r, i) + V::pick(r, w) + extra;
             (reach * reach).above(x * x + y * y + z * z)
         }
+    }
+
+    /// The square of how far apart the centres of a pair are whose surfaces are this far apart, with the bits of
+    /// [`Places::closer`].
+    #[inline(always)]
+    pub fn reach(&self, i: u32, w: u32, extra: f64) -> f64 {
+        let reach = self.radius[i as usize] + self.radius[place(w)] + extra;
+        reach * reach
     }
 
     /// x_i − x_j of one pair [length], with the bits of [`Lanes::apart`].

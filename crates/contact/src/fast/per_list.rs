@@ -24,9 +24,12 @@ pub struct PerList {
 
 impl<L: ContactLaw> Fast<L> {
     /// Whether an evaluation can go list by list: not where several threads share the lists, or grains of a slab do not stand beside
-    /// each other.
+    /// each other. Those of a chunk are moved together anyway, and contacts of several lists go faster together.
     pub fn is_per_list(&self) -> bool {
-        par::threads() == 1 && self.validity.stand_in_order() && self.validity_of_large.lists() == 0
+        par::threads() == 1
+            && self.len() > par::CHUNK
+            && self.validity.stand_in_order()
+            && self.validity_of_large.lists() == 0
     }
 
     /// Begins an evaluation as [`Fast::run`] does it without the virial, and with the same bits, for [`Fast::go_on`].
@@ -35,7 +38,7 @@ impl<L: ContactLaw> Fast<L> {
         let lists = self.validity.lists();
         let (mut order, mut to_come) = std::mem::take(&mut self.spare_per_list);
         order.clear();
-        order.extend(par::in_turn(lists));
+        order.extend_from_slice(&self.order);
         to_come.clear();
         to_come.resize(lists, 1);
         (0..lists).filter_map(|k| self.validity.next(k)).for_each(|next| to_come[next] += 1);

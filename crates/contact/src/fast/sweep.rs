@@ -1,6 +1,7 @@
 //! The inner loop of a step: which pairs of short lists touch, and their contacts, batch by batch.
 
-use super::batch::{BATCH, Batch};
+use super::batch::Batch;
+use super::found::{BLOCK, Found, ROOM};
 use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
 use super::{Alike, Fast, Laws, NONE, Sums};
@@ -12,12 +13,6 @@ use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_neigh::slabs::shift_of;
-use std::ops::Range;
-
-/// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
-const BLOCK: usize = 64;
-/// Room for hits: some blocks and what a test may put behind them.
-const ROOM: usize = 4 * BLOCK;
 
 /// What the loops read and where they write.
 pub(super) struct Cx<'a, L> {
@@ -89,6 +84,11 @@ impl<'a> Drift<'a> {
 }
 
 impl<L> Cx<'_, L> {
+    /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in the same order.
+    fn joins(&self) -> bool {
+        self.laws.distinct.len() == 1 && !self.virial
+    }
+
     /// Where grains are.
     pub fn places(&self) -> Places<'_> {
         Places { x: self.x, radius: self.radius, alike: self.alike.radius, shifts: self.shifts }
@@ -96,17 +96,7 @@ impl<L> Cx<'_, L> {
 }
 
 impl<L: ContactLaw> Cx<'_, L> {
-    /// Puts those hits first that touch, or have touched in the last step and still hold together; how many they are.
-    fn holding<const W: usize>(&self, short: &Short, hits: &mut [u32]) -> usize {
-        let mut count = 0;
-        for at in 0..hits.len() {
-            let k = hits[at];
-            hits[count] = k;
-            count += usize::from(self.holds::<W>(short, k as usize));
-        }
-        count
-    }
-
+    /// Whether a pair touches, or has touched in the last step and still holds together.
     fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
         let (i, w) = (short.i[k] as usize, short.w[k]);
         let (j, d) = (place(w), self.places().between(i, w));
@@ -163,34 +153,31 @@ impl<L: ContactLaw> Fast<L> {
             span: self.span,
             drift: drift.as_ref(),
         };
-        let contacts = |k: usize| {
-            // SAFETY: each part writes its own slab.
-            let slab = unsafe { &mut slabs.get(k..k + 1)[0] };
-            if slab.short.i.is_empty() {
-                return slab.found([0.0; 6], false, 0);
-            }
-            // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
+        let contacts = |which: &[usize]| {
+            // SAFETY: each part writes its own lists, and forces of grains in them and the next ones, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 match width {
-                    4 => form.run(Contacts::<L, 4> { cx: &cx, slab }),
-                    8 => form.run(Contacts::<L, 8> { cx: &cx, slab }),
-                    _ => form.run(Contacts::<L, 12> { cx: &cx, slab }),
+                    4 => form.run(Contacts::<L, 4> { cx: &cx, lists: &slabs, which }),
+                    8 => form.run(Contacts::<L, 8> { cx: &cx, lists: &slabs, which }),
+                    _ => form.run(Contacts::<L, 12> { cx: &cx, lists: &slabs, which }),
                 }
             }
         };
         match only {
-            None => self.each_list(&weights, contacts),
-            Some(k) => contacts(k),
+            None if shared => self.each_list(&weights, |k| contacts(&[k])),
+            None => contacts(&self.order),
+            Some(k) => contacts(&[k]),
         }
         self.lists = lists;
     }
 }
 
-/// All contacts of a slab, which remember `W` − 1 numbers at most.
+/// All contacts of some lists, one list after the other, which remember `W` − 1 numbers at most.
 struct Contacts<'a, 'b, L, const W: usize> {
     cx: &'a Cx<'b, L>,
-    slab: &'a mut Slab,
+    lists: &'a par::Shared<'a, Slab>,
+    which: &'a [usize],
 }
 
 impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
@@ -198,102 +185,95 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
 
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        let Self { cx, slab } = self;
-        slab.found([0.0; 6], false, 0);
-        let at = cx.places();
-        let mut hits = [0; ROOM];
-        let (mut count, mut k, end) = (0, 0, slab.short.i.len());
-        let mut batch = None;
-        loop {
-            // By the same steps in all forms: where it stops, blocks of what holds end.
-            while k < end && count + FILL <= ROOM {
-                let sure = (end - k).min((ROOM - count) / FILL * FILL);
-                let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut hits, count };
-                // SAFETY: lists are filled up; entries are grains. There is room for so many.
-                count = unsafe {
-                    match at.alike {
-                        Some(_) => pairs.of::<N, V, true>(k..k + sure),
-                        None => pairs.of::<N, V, false>(k..k + sure),
-                    }
-                };
-                k += sure;
-            }
-            let ready = if k == end { count } else { count - count % BLOCK };
-            // What holds is moved to the front of what is ready; the rest stays where it is.
-            let holding =
-                if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
-            slab.touching += holding;
-            if holding > 0 {
-                // SAFETY: passed on. Not before something touches: in loose scenes most slabs have no contact.
-                let batch = match &mut batch {
-                    Some(batch) => batch,
-                    none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
-                };
-                // SAFETY: passed on.
-                unsafe { evaluate::<N, V, L, W>(cx, slab, batch, &hits[..holding]) };
-            }
-            if k == end {
-                break;
-            }
-            hits.copy_within(ready..count, 0);
-            count -= ready;
+        let Self { cx, lists, which } = self;
+        let (mut batch, mut found) = (None, Found::new());
+        for (at, &k) in which.iter().enumerate() {
+            // SAFETY: the caller's promise: nobody else has these lists.
+            let slab = unsafe { &mut lists.get(k..k + 1)[0] };
+            let ends = at + 1 == which.len() || !cx.joins();
+            // SAFETY: passed on.
+            unsafe { of_list::<N, V, L, W>(cx, slab, &mut found, &mut batch, ends) };
         }
     }
 }
 
-/// What touches, behind what is known to touch.
-struct Hits<'a, 'b> {
-    short: &'a Short,
-    at: &'a Places<'b>,
-    span: f64,
-    hits: &'a mut [u32; ROOM],
-    count: usize,
-}
-
-impl Hits<'_, '_> {
-    /// Tests some pairs of the short list; how many touch by then.
-    ///
-    /// # Safety
-    /// The range must hold whole groups of pairs of the list, for which there must be room; for `ALIKE` see [`Places::closer`].
-    #[inline(always)]
-    unsafe fn of<const N: usize, V: Lanes<N>, const ALIKE: bool>(self, pairs: Range<usize>) -> usize {
-        let Self { short, at, span, hits, mut count } = self;
-        for k in pairs.step_by(N) {
-            // SAFETY: passed on. There is room for all lanes; the next ones overwrite what stands past `count`.
+/// The contacts of a list, which may wait for those of the next one; where it `ends`, nobody waits.
+#[inline(always)]
+unsafe fn of_list<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
+    cx: &Cx<L>,
+    slab: &mut Slab,
+    found: &mut Found,
+    batch: &mut Option<Batch<V, N>>,
+    ends: bool,
+) {
+    slab.found([0.0; 6], false, 0);
+    found.clear();
+    let at = cx.places();
+    let (mut k, end) = (0, slab.short.i.len());
+    loop {
+        // By the same steps in all forms: where it stops, blocks of what holds end.
+        while k < end && found.len() + FILL <= ROOM {
+            let sure = (end - k).min((ROOM - found.len()) / FILL * FILL);
+            // SAFETY: lists are filled up; entries are grains. There is room for so many.
             unsafe {
-                let (i, w) = (short.i.as_ptr().add(k), short.w.as_ptr().add(k));
-                let near = at.closer::<N, V, ALIKE>(i, w, span);
-                count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
+                match at.alike {
+                    Some(_) => found.test::<N, V, true>(&slab.short, &at, cx.span, k..k + sure),
+                    None => found.test::<N, V, false>(&slab.short, &at, cx.span, k..k + sure),
+                }
             }
+            k += sure;
         }
-        count
+        let ready = if k == end { found.len() } else { found.len() - found.len() % BLOCK };
+        // What holds is moved to the front of what is ready; the rest stays where it is.
+        let holding = match cx.span > 0.0 {
+            true => found.sift(ready, |k| cx.holds::<W>(&slab.short, k as usize)),
+            false => ready,
+        };
+        slab.touching += holding;
+        let ends = ends && k == end;
+        if holding > 0 || (ends && batch.as_ref().is_some_and(Batch::waits)) {
+            // SAFETY: passed on. Not before something touches: in loose scenes most lists have no contact.
+            let batch = match &mut *batch {
+                Some(batch) => batch,
+                none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
+            };
+            // SAFETY: passed on.
+            unsafe { evaluate::<N, V, L, W>(cx, slab, batch, (found, holding), ends) };
+        }
+        if k == end {
+            break;
+        }
+        found.drop_first(ready);
     }
 }
 
-/// The contacts of these hits.
+/// The contacts of the first so many that were found; where it `ends`, nobody waits for others any more.
 #[inline(always)]
 unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     slab: &mut Slab,
     batch: &mut Batch<V, N>,
-    hits: &[u32],
+    (found, ready): (&Found, usize),
+    ends: bool,
 ) {
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, L, W>(cx, law, slab, batch, hits);
+            return of_law::<N, V, L, W>(cx, law, slab, batch, (found, ready), ends);
         }
-        let mut own = [0; BLOCK];
-        for block in hits.chunks(BLOCK) {
+        let mut own = Found::new();
+        for block in (0..ready).step_by(BLOCK) {
             for (number, law) in cx.laws.distinct.iter().enumerate() {
-                let mut count = 0;
-                for &k in block {
-                    let (i, w) = (slab.short.i[k as usize], slab.short.w[k as usize]);
+                own.clear();
+                for at in block..ready.min(block + BLOCK) {
+                    let k = found.numbers()[at] as usize;
+                    let (i, w) = (slab.short.i[k], slab.short.w[k]);
                     let which = cx.laws.which(cx.kind[i as usize], cx.kind[place(w)]);
-                    own[count] = k;
-                    count += usize::from(which != NONE && usize::from(which) == number);
+                    if which != NONE && usize::from(which) == number {
+                        own.push(found, at);
+                    }
                 }
-                of_law::<N, V, L, W>(cx, law, slab, batch, &own[..count]);
+                of_law::<N, V, L, W>(cx, law, slab, batch, (&own, own.len()), true);
             }
         }
     }
@@ -309,9 +289,10 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     law: &L,
     slab: &mut Slab,
     batch: &mut Batch<V, N>,
-    hits: &[u32],
+    (found, ready): (&Found, usize),
+    ends: bool,
 ) {
-    let many = Many::<N, V, L, W> { cx, slab, batch, hits };
+    let many = Many::<N, V, L, W> { cx, slab, batch, found, ready, ends };
     if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
@@ -320,15 +301,26 @@ struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
     cx: &'a Cx<'b, L>,
     slab: &'a mut Slab,
     batch: &'a mut Batch<V, N>,
-    hits: &'a [u32],
+    found: &'a Found,
+    /// How many of these.
+    ready: usize,
+    ends: bool,
 }
 
 impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
     #[inline(always)]
     fn run(self, law: &L) {
-        for pairs in self.hits.chunks(BATCH) {
-            // SAFETY: hits are pairs of the list, and their entries grains.
-            unsafe { self.batch.run::<L, W>(self.cx, law, self.slab, pairs) };
+        let Self { cx, slab, batch, found, ready, ends } = self;
+        let mut taken = 0;
+        loop {
+            // SAFETY: they are pairs of the list, and its entries grains; lists stay while contacts are evaluated.
+            unsafe {
+                taken += batch.take::<W>(&mut slab.short, found, taken..ready);
+                if !batch.is_full() && !(ends && batch.waits()) {
+                    return;
+                }
+                batch.run::<L, W>(cx, law, slab);
+            }
         }
     }
 }

@@ -1,10 +1,12 @@
 //! One pass over particles: kicks, drifts and what stands beside them, four particles at a time.
 
+use super::super::enforce2d::{flatten, flatten_turning};
 use super::super::freeze::hold;
 use super::super::gravity::{pulled_each, pulled_four};
 use perigrain_base::math::body::{Quat, rolled};
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::real::Real;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_plan::{Beside, BlockSums, ParticleBlock};
@@ -119,6 +121,10 @@ impl Kick {
         beside: &Beside,
     ) -> [BlockSums; 3] {
         let (masses, start, own) = (Masses::Own(mass), s.start, 0..s.x.len());
+        if beside.flat != 0 && !spins {
+            let mask = s.mask();
+            flatten_turning([&mut s.omega, &mut s.torque], mask, beside.flat);
+        }
         let came = self.block(
             chunk(s, own, (spins, self.oriented, part), beside),
             spins,
@@ -255,7 +261,8 @@ impl Kick {
         let pulled = beside.pull.map_or(0, |pull| pull.bit);
         let same = |masks: &[u32]| {
             let (all, some) = masks.iter().fold((u32::MAX, 0), |(all, some), m| (all & m, some | m));
-            all & self.bit != 0 && all & pulled == pulled && some & beside.held == 0
+            let flat = all & beside.flat == beside.flat;
+            all & self.bit != 0 && all & pulled == pulled && some & beside.held == 0 && flat
         };
         let mut fours =
             Fours { x: x4, v: v4, f: f4, omega: omega4, torque: torque4, radius: radius4, quat: quat4 };
@@ -308,6 +315,10 @@ impl Kick {
         // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
         unsafe {
             let (zero, along) = (F::splat(0.0), threes::repeated::<F>(a));
+            let [level, about]: [Parts<F>; 2] = match beside.flat {
+                0 => [None; 2],
+                _ => [Some(parts_of::<F>([1.0, 1.0, 0.0])), Some(parts_of::<F>([0.0, 0.0, 1.0]))],
+            };
             let (mut fastest, mut wrong, mut energy) = (sums.fastest, sums.wrong, sums.energy);
             for k in 0..n {
                 let m = masses(first + k);
@@ -320,16 +331,21 @@ impl Kick {
                     (push, depth) = pulled_four(push, threes::load(at), m, along, a);
                     energy = energy - depth;
                 }
+                push = only(push, &level);
                 if beside.clears {
                     threes::store([zero; 3], force);
-                } else if pulls {
+                } else if pulls || beside.flat != 0 {
                     threes::store(push, force);
                 }
-                let v = kicked::<F, KICKS>(&mut v[k], push, F::splat(self.half) / m);
+                let v = kicked::<F, KICKS>(&mut v[k], &level, push, F::splat(self.half) / m);
                 if SPIN {
                     let r = F::load(radius[k].as_ptr());
-                    let turn = threes::load::<F>(torque[k].as_flattened().as_ptr());
-                    let spin = kicked::<F, KICKS>(&mut omega[k], turn, F::splat(self.spin) / (r * r * m));
+                    let turn = only(threes::load::<F>(torque[k].as_flattened().as_ptr()), &about);
+                    let by = F::splat(self.spin) / (r * r * m);
+                    let spin = kicked::<F, KICKS>(&mut omega[k], &about, turn, by);
+                    if beside.flat != 0 && !clears_torque {
+                        threes::store(turn, torque[k].as_flattened_mut().as_mut_ptr());
+                    }
                     if DRIFT && let Some(four) = quat.get_mut(k) {
                         let rows = four.as_flattened_mut().as_mut_ptr();
                         let q = F::transpose([0, 4, 8, 12].map(|at| F::load(rows.add(at))));
@@ -367,6 +383,10 @@ impl Kick {
             came.energy += pulled_each(c.f, c.x, m, c.mask, pull.bit, pull.a);
         }
         hold(c.f, c.torque, c.mask, beside.held, &mut came.held);
+        flatten([c.v, c.f], c.mask, beside.flat);
+        if SPIN {
+            flatten_turning([c.omega, c.torque], c.mask, beside.flat);
+        }
         for (i, m) in (0..c.mask.len()).zip(m).filter(|(i, _)| c.mask[*i] & self.bit != 0) {
             let v = &mut c.v[i];
             kick::<KICKS>(v, &c.f[i], self.half / m);
@@ -401,7 +421,7 @@ fn chunk<'a>(
     let (omega, torque, radius) = match s.omega.is_empty() {
         true => (&mut [][..], &mut [][..], &[][..]),
         false => {
-            let zeroes = beside.held != 0 || beside.clears;
+            let zeroes = beside.held != 0 || beside.flat != 0 || beside.clears;
             let omega = if spins { &mut s.omega[..] } else { s.omega.past_mut() };
             let torque = match (zeroes, spins) {
                 (true, _) => &mut s.torque[..],
@@ -437,16 +457,49 @@ fn kick<const KICKS: usize>(v: &mut Vec3, f: &Vec3, by: f64) {
     }
 }
 
-/// [`kick`] of four, and what comes of it.
+/// Which parts of four vectors stay, where some do not.
+type Parts<F> = Option<[<F as Real>::Mask; 3]>;
+
+/// Those of each vector that are not zero.
 ///
 /// # Safety
 /// The processor must have what the form needs.
 #[inline(always)]
-unsafe fn kicked<F: Threes, const KICKS: usize>(v: &mut [Vec3; 4], [fa, fb, fc]: [F; 3], by: F) -> [F; 3] {
+unsafe fn parts_of<F: Threes>(which: Vec3) -> [F::Mask; 3] {
+    // SAFETY: passed on.
+    unsafe {
+        let ([a, b, c], zero) = (threes::repeated::<F>(which), F::splat(0.0));
+        [a.above(zero), b.above(zero), c.above(zero)]
+    }
+}
+
+/// The parts that stay; the others are zero.
+///
+/// # Safety
+/// The processor must have what the form needs.
+#[inline(always)]
+unsafe fn only<F: Threes>([a, b, c]: [F; 3], parts: &Parts<F>) -> [F; 3] {
+    let Some([p, q, r]) = *parts else { return [a, b, c] };
+    // SAFETY: passed on.
+    let zero = unsafe { F::splat(0.0) };
+    [F::choose(p, a, zero), F::choose(q, b, zero), F::choose(r, c, zero)]
+}
+
+/// [`kick`] of four of which these parts stay, and what comes of it.
+///
+/// # Safety
+/// The processor must have what the form needs.
+#[inline(always)]
+unsafe fn kicked<F: Threes, const KICKS: usize>(
+    v: &mut [Vec3; 4],
+    parts: &Parts<F>,
+    [fa, fb, fc]: [F; 3],
+    by: F,
+) -> [F; 3] {
     let p = v.as_flattened_mut().as_mut_ptr();
     // SAFETY: twelve numbers; the rest is the caller's promise.
     unsafe {
-        let ([a, b, c], [ba, bb, bc]) = (threes::load::<F>(p), by.spread());
+        let ([a, b, c], [ba, bb, bc]) = (only(threes::load::<F>(p), parts), by.spread());
         let (da, db, dc) = (ba * fa, bb * fb, bc * fc);
         let mut now = [a, b, c];
         for _ in 0..KICKS {

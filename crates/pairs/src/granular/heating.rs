@@ -18,12 +18,13 @@ pub struct Heating {
 impl Heating {
     /// Taken out of the world, if some contacts conduct heat and particles have both.
     pub fn take(w: &mut World, rules: &Rules<Granular>) -> Option<Self> {
+        if !conducts(rules) {
+            return None;
+        }
         let keys = [w.columns.property(*TEMPERATURE)?, w.columns.property(*HEATFLOW)?];
         let n = w.n();
-        conducts(rules).then(|| {
-            let [temperature, flow] = keys.map(|key| std::mem::take(w.columns.scalar(key, n)));
-            Self { temperature, flow, keys }
-        })
+        let [temperature, flow] = keys.map(|key| std::mem::take(w.columns.scalar(key, n)));
+        Some(Self { temperature, flow, keys })
     }
 
     /// Put back.

@@ -69,13 +69,14 @@ fn the_formula_of_a_kick_and_a_drift() {
 #[test]
 fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
     let (pull, held) = (Pull { bit: 1, a: [0.3, -0.7, 1.1] }, 4);
-    let beside = Beside { pull: Some(pull), held, clears: true };
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2, oriented: false };
     let mass: Vec<f64> = (0..N).map(|i| 1.0 + i as f64 / 3.0).collect();
     let masses = |k: usize| std::array::from_fn(|l| mass.get(4 * k + l).copied().unwrap_or(1.0));
     let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
     // All alike, one that is held, one that is not pulled, one that stays.
-    for mask in [[3; N], [3, 3, 3, 3, 7, 3, 3, 3, 3, 3, 7], [3, 3, 3, 3, 3, 2, 3, 3, 1, 3, 3]] {
+    let masks = [[3; N], [3, 3, 3, 3, 7, 3, 3, 3, 3, 3, 7], [3, 3, 3, 3, 3, 2, 3, 3, 1, 3, 3]];
+    for (mask, flat, clears) in masks.into_iter().flat_map(|m| [(m, 0, true), (m, 2, true), (m, 2, false)]) {
+        let beside = Beside { pull: Some(pull), held, flat, clears };
         let run = |together: bool| {
             let (mut x, mut v, mut omega) = (some(1), some(2), some(3));
             let (mut f, mut torque) = (some(4), some(5));
@@ -86,6 +87,8 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
                     (0..3).for_each(|d| taken[d] += f[i][d]);
                     (f[i], torque[i]) = ([0.0; 3], [0.0; 3]);
                 }
+                flatten([&mut v, &mut f], &mask, flat);
+                flatten_turning([&mut omega, &mut torque], &mask, flat);
             }
             let c = Chunk {
                 x: &mut x,
@@ -101,9 +104,13 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
             let came = k.chunk(c, Part::Both, true, &with, masses);
             if together {
                 (energy, taken) = (came.energy, came.held);
-                assert_eq!([f, torque], [vec![[0.0; 3]; N], vec![[0.0; 3]; N]]);
             }
-            ((x, v, omega, taken, came.most), energy)
+            if together && clears {
+                assert_eq!([f, torque], [vec![[0.0; 3]; N], vec![[0.0; 3]; N]]);
+                return ((x, v, omega, taken, came.most, None), energy);
+            }
+            let left = (!clears).then_some([f, torque]);
+            ((x, v, omega, taken, came.most, left), energy)
         };
         let ((one, energy), (each, expected)) = (run(true), run(false));
         assert_eq!(one, each);

@@ -1,0 +1,139 @@
+//! Pairs of short lists that touch: found several at a time.
+
+use super::lists::{FILL, Short};
+use super::near::Places;
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::vec3::Vec3;
+use std::mem::MaybeUninit;
+use std::ops::Range;
+
+/// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
+pub(super) const BLOCK: usize = 64;
+/// Room for hits: some blocks and what a test may put behind them.
+pub(super) const ROOM: usize = 4 * BLOCK;
+
+/// Whole lanes can be read from any of them.
+const ROW: usize = ROOM + FILL;
+
+/// Pairs that touch: which ones of the short list, and how far their centres are apart.
+pub(super) struct Found {
+    count: usize,
+    // Not cleared: that would take longer than the pairs of a list of few.
+    numbers: MaybeUninit<[u32; ROOM]>,
+    /// x_i − x_j, coordinate by coordinate [length].
+    apart: MaybeUninit<[[f64; ROW]; 3]>,
+}
+
+impl Found {
+    /// None.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self { count: 0, numbers: MaybeUninit::uninit(), apart: MaybeUninit::uninit() }
+    }
+
+    /// How many there are.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Which pairs of the short list.
+    #[inline(always)]
+    pub fn numbers(&self) -> &[u32] {
+        // SAFETY: so many have been put there.
+        unsafe { std::slice::from_raw_parts(self.numbers.as_ptr().cast(), self.count) }
+    }
+
+    /// Where x_i − x_j begins along an axis: so many numbers, and there is room behind them for those of some lanes.
+    #[inline(always)]
+    pub fn apart(&self, d: usize) -> *const f64 {
+        debug_assert!(d < 3);
+        // SAFETY: one of three rows.
+        unsafe { self.apart.as_ptr().cast::<f64>().add(d * ROW) }
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Takes one of others as well.
+    pub fn push(&mut self, of: &Self, from: usize) {
+        assert!(from < of.count && self.count < ROOM);
+        let (numbers, apart) = (self.numbers.as_mut_ptr(), self.apart.as_mut_ptr());
+        // SAFETY: one that has been put there, and there is room for it.
+        unsafe {
+            (*numbers)[self.count] = of.numbers()[from];
+            (0..3).for_each(|d| (*apart)[d][self.count] = *of.apart(d).add(from));
+        }
+        self.count += 1;
+    }
+
+    /// Puts those of the first `ready` first that `stays` lets stay, in their order; how many they are.
+    pub fn sift(&mut self, ready: usize, mut stays: impl FnMut(u32) -> bool) -> usize {
+        let mut kept = 0;
+        for at in 0..ready {
+            if stays(self.numbers()[at]) {
+                self.shift(at, kept);
+                kept += 1;
+            }
+        }
+        kept
+    }
+
+    /// Forgets the first ones.
+    pub fn drop_first(&mut self, n: usize) {
+        (n..self.count).for_each(|at| self.shift(at, at - n));
+        self.count -= n;
+    }
+
+    /// Puts a pair at the place of an earlier one.
+    fn shift(&mut self, from: usize, at: usize) {
+        assert!(from < self.count && at <= from);
+        let (numbers, apart) = (self.numbers.as_mut_ptr(), self.apart.as_mut_ptr());
+        // SAFETY: both have been put there.
+        unsafe {
+            (*numbers)[at] = (*numbers)[from];
+            (0..3).for_each(|d| (*apart)[d][at] = (*apart)[d][from]);
+        }
+    }
+
+    /// Tests some pairs of the short list, and takes those whose surfaces are nearer than `span`; `ALIKE`: all grains have one
+    /// radius, and it is known.
+    ///
+    /// # Safety
+    /// The range must hold whole groups of pairs of the list, for which there must be room; list entries must be grains.
+    #[inline(always)]
+    pub unsafe fn test<const N: usize, V: Lanes<N>, const ALIKE: bool>(
+        &mut self,
+        short: &Short,
+        at: &Places,
+        span: f64,
+        pairs: Range<usize>,
+    ) {
+        let (numbers, apart) =
+            (self.numbers.as_mut_ptr().cast::<u32>(), self.apart.as_mut_ptr().cast::<f64>());
+        let mut count = self.count;
+        for k in pairs.step_by(N) {
+            // SAFETY: passed on; each pair has its reach where radii differ. There is room for all lanes; the next ones overwrite
+            // what stands past `count`.
+            unsafe {
+                let (i, w) = (short.i.as_ptr().add(k), short.w.as_ptr().add(k));
+                let [x, y, z]: Vec3<V> = V::apart(at.x.as_ptr(), i, w, at.shifts);
+                let reach = match at.alike {
+                    Some(r) if ALIKE => {
+                        let reach = V::all(r + r) + span;
+                        reach * reach
+                    }
+                    _ => V::of(short.reach.as_ptr().add(k).cast::<[f64; N]>().read()),
+                };
+                let near = reach.above(x * x + y * y + z * z);
+                x.pack(near, apart.add(count));
+                y.pack(near, apart.add(ROW + count));
+                z.pack(near, apart.add(2 * ROW + count));
+                count += V::put(near, k as u32, numbers.add(count));
+            }
+        }
+        self.count = count;
+    }
+}
