@@ -62,6 +62,9 @@ pub struct Limits {
     pub most: usize,
     /// The part of what a break changes in the energy to which it is found.
     pub tol: f64,
+    /// Bonds that lack less than this part of the load break with the one that breaks: the path is that of a body of which some
+    /// strengths are up to this part smaller.
+    pub together: f64,
 }
 
 /// What happened.
@@ -97,9 +100,14 @@ pub fn crumble(
     let mut out =
         Path { breaks: vec![], peak: 0, field: field.clone(), iterations: 0, done: true, whole: true };
     let (mut alive, mut highest, mut reached) = (vec![true; network.bonds()], 0.0, 0.0f64);
+    let mut shares = vec![0.0; network.bonds()];
     while out.breaks.len() < limits.most {
-        let loads = |k: usize| if alive[k] { share(k, &network.borne(k, &field)) } else { 0.0 };
-        let most = par::max(network.bonds(), loads);
+        par::each((&mut shares[..], &alive[..]), |first, (shares, alive)| {
+            for (k, (out, alive)) in shares.iter_mut().zip(alive).enumerate() {
+                *out = if *alive { share(first + k, &network.borne(first + k, &field)) } else { 0.0 };
+            }
+        });
+        let most = par::max(network.bonds(), |k| shares[k]);
         // Nothing bears anything that breaks it.
         if most.is_nan() || most <= 0.0 {
             break;
@@ -116,8 +124,9 @@ pub fn crumble(
         } else if force < limits.until * highest {
             break;
         }
-        let least = (1.0 / load).min(most) * (1.0 - TOGETHER);
-        let bonds: Vec<u32> = (0..network.bonds()).filter(|k| loads(*k) >= least).map(|k| k as u32).collect();
+        let least = (1.0 / load).min(most) * (1.0 - limits.together.max(TOGETHER));
+        let bonds: Vec<u32> =
+            (0..network.bonds()).filter(|k| shares[*k] >= least).map(|k| k as u32).collect();
         for k in bonds.iter().map(|k| *k as usize) {
             (alive[k], network.k[k]) = (false, Default::default());
         }

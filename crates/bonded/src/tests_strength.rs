@@ -29,7 +29,7 @@ fn pull(
     (delta, crumble(network, &held, field, limits, share))
 }
 
-const LAST: Limits = Limits { avalanche: Avalanche::One, until: 0.0, most: 10_000, tol: 1e-8 };
+const LAST: Limits = Limits { avalanche: Avalanche::One, until: 0.0, most: 10_000, tol: 1e-8, together: 0.0 };
 
 /// `n` chains of `links` bonds side by side, none touching another one.
 fn bundle(n: usize, links: usize) -> Body {
@@ -59,6 +59,22 @@ fn bundles_of_chains() {
         }
         let most = wanted.iter().fold(0.0f64, |a, b| a.max(*b));
         assert!((path.breaks[path.peak].force(delta) - most).abs() < 1e-9 * most);
+    }
+}
+
+/// Of a bundle whose strengths lie within 10 % the half that is nearest goes at once: as with the smallest of them for all.
+#[test]
+fn what_breaks_together() {
+    let body = bundle(4, 2);
+    let strength = |k: usize| [1.0, 1.04, 1.06, 1.2][body.bonds[k].0[0] as usize / 3];
+    let run =
+        |together: f64| pull(&body, body.network(|_, l| standard(l)), strength, &Limits { together, ..LAST });
+    let (delta, path) = run(0.05);
+    // Both links of a chain bear the same; 1.04 lacks 4 % of the load of the first, 1.06 more.
+    let broken: Vec<usize> = path.breaks.iter().map(|b| b.bonds.len()).collect();
+    assert_eq!(broken, [4, 2, 2]);
+    for (it, wanted) in path.breaks.iter().zip([4.0, 2.12, 1.2]) {
+        assert!((it.force(delta) - wanted).abs() < 1e-9 * wanted, "{} {wanted}", it.force(delta));
     }
 }
 
@@ -95,6 +111,12 @@ fn energies_add_up() {
     let (_, all) = run(&Limits { avalanche: Avalanche::All, until: 0.3, tol: 1e-4, ..LAST });
     assert!(peak(&all) <= peak(&path) * 1.0001 && all.breaks.len() < path.breaks.len());
     assert!(all.breaks.windows(2).all(|two| two[1].load >= two[0].load));
+    // Bonds that lack 3 % of the load go with those that break: never more than before, and at most these 3 % less, in fewer solutions.
+    let (_, rough) =
+        run(&Limits { avalanche: Avalanche::All, until: 0.3, tol: 1e-4, together: 0.03, ..LAST });
+    let kept = peak(&rough) / peak(&all);
+    assert!((0.97..1.0001).contains(&kept), "{kept}");
+    assert!(rough.breaks.len() < all.breaks.len() && rough.iterations < all.iterations);
     // The field left behind is that of the peak.
     let network = body.network(|_, l| standard(l));
     let first = network.energy(&path.field).iter().sum::<f64>();

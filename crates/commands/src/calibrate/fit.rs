@@ -5,7 +5,7 @@
 
 use super::Line;
 use super::model::Model;
-use super::scene::Scene;
+use super::scene::{Said, Scene};
 use super::telling::{count, warn_unfinished};
 use super::touch::Hertz;
 use super::words::{Quantity, Target, Words};
@@ -41,7 +41,7 @@ pub fn run(
     let (began, words) = (Instant::now(), &line.words);
     let mut model = Model::new(cx.world, line, &scene, hertz, cx.span)?;
     let mut params = vec![0.0; words.vary.len()];
-    let (mut solves, mut best) = (0, None::<(f64, Vec<f64>)>);
+    let (mut solves, mut breaks, mut best) = (0, 0, None::<(f64, Vec<f64>)>);
     cx.say(format!(
         "calibrate fit {}: {}, {}, {} particles, {} bonds",
         line.id,
@@ -53,12 +53,25 @@ pub fn run(
     loop {
         let now = tuned(style, words, &params)?;
         scene.restyle(now.as_ref());
-        model.solve(&scene, words, now.as_ref(), cx.span)?;
+        model.solve(&scene, words, cx.span)?;
         solves += 1;
-        let wrong = misses(words, &model);
-        let worst = wrong.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+        let mut wrong = misses(words, &model);
+        // The way to strength is long, and worth while only once the stiffnesses are right.
+        if words.aims(Quantity::Strength) && largest(&wrong) <= words.tol {
+            breaks += model.crumble(&scene, words, now.as_ref(), cx.span)?;
+            wrong = misses(words, &model);
+        }
         say_solve(cx, solves, words, &model, &values(style, words, &params)?);
+        let worst = largest(&wrong);
         if worst <= words.tol {
+            break;
+        }
+        if let Some(missing) = missing_strength(words, &wrong).filter(|_| proportional(style, &scene, words))
+        {
+            for (p, vary) in params.iter_mut().zip(&words.vary) {
+                *p += if vary.name == STRENGTH { missing } else { 0.0 };
+            }
+            model.strengthen(missing.exp());
             break;
         }
         if solves == MOST || !worst.is_finite() {
@@ -106,18 +119,46 @@ pub fn run(
     let now = tuned(style, words, &params)?;
     set(cx, words, now.as_ref(), &format!("calibrate fit {}", line.id))?;
     line.found.keep(cx.world, model.numbers(), &values(style, words, &params)?, model.tensor());
-    let (took, seconds) = (count(solves, "solve"), began.elapsed().as_secs_f64());
+    let mut took = count(solves, "solve");
+    if breaks > 0 {
+        took += &format!(", {}", count(breaks, "broken bond"));
+    }
+    let seconds = began.elapsed().as_secs_f64();
     cx.say(format!("  {}   {took}, {seconds:.2} s", reached(words, &model)));
     Ok(())
 }
 
-/// How far each target is: logarithms, for a Poisson's ratio below zero the part that is missing.
+/// How far each target is: logarithms, for a Poisson's ratio below zero the part that is missing; nothing for a strength that is not known.
 fn misses(words: &Words, model: &Model) -> Vec<f64> {
     let miss = |t: &Target| match model.value(t.quantity) {
+        now if now.is_nan() && t.quantity == Quantity::Strength => 0.0,
         now if now <= 0.0 && t.quantity == Quantity::Poisson => (t.value - now) / t.value,
         now => (t.value / now).ln(),
     };
     words.targets.iter().map(miss).collect()
+}
+
+fn largest(wrong: &[f64]) -> f64 {
+    wrong.iter().fold(0.0, |most, a| most.max(a.abs()))
+}
+
+/// What the strength lacks where it is the only target that is still missed, and once at most.
+fn missing_strength(words: &Words, wrong: &[f64]) -> Option<f64> {
+    let mut missed = words.targets.iter().zip(wrong).filter(|(_, a)| a.abs() > words.tol);
+    let (target, missing) = missed.next()?;
+    (target.quantity == Quantity::Strength && missed.next().is_none()).then_some(*missing)
+}
+
+/// Whether the coefficients that vary multiply the strengths of all bonds that can break: then that of the body is proportional to them.
+fn proportional(style: &dyn BondForce, scene: &Scene, words: &Words) -> bool {
+    let factors =
+        words.vary.iter().map(|vary| if vary.name == STRENGTH { std::f64::consts::LN_2 } else { 0.0 });
+    let Ok(twice) = tuned(style, words, &factors.collect::<Vec<_>>()) else { return false };
+    let used = |style: &dyn BondForce, said: &Said| style.used(&said.bearing([1.0; 4]));
+    scene.bonds.iter().all(|said| match (used(style, said), used(twice.as_ref(), said)) {
+        (Some(once), Some(half)) => (once - 2.0 * half).abs() <= 1e-9 * once,
+        (once, half) => once.is_none() && half.is_none(),
+    })
 }
 
 /// The style with all coefficients multiplied by exp(params).
@@ -227,8 +268,10 @@ fn slopes(
         for (column, change) in changes.iter().enumerate() {
             let poisson = target.quantity == Quantity::Poisson;
             if target.quantity == Quantity::Strength {
-                // Proportional to all strengths; what else changes it is made up for in the next solve.
-                out[(row, column)] = if words.vary[column].name == STRENGTH { 1.0 } else { 0.0 };
+                // Proportional to all strengths together; what else changes it is made up for in the next solve.
+                let varied = words.vary.iter().filter(|v| v.name == STRENGTH).count();
+                out[(row, column)] =
+                    if words.vary[column].name == STRENGTH { 1.0 / varied as f64 } else { 0.0 };
                 continue;
             }
             out[(row, column)] =
@@ -280,8 +323,11 @@ fn name(quantity: Quantity) -> &'static str {
 }
 
 fn reached(words: &Words, model: &Model) -> String {
-    let one = |t: &Target| format!("{} {}", name(t.quantity), general(model.value(t.quantity), 6));
-    words.targets.iter().map(one).collect::<Vec<_>>().join("   ")
+    let one = |t: &Target| {
+        let value = model.value(t.quantity);
+        (!value.is_nan()).then(|| format!("{} {}", name(t.quantity), general(value, 6)))
+    };
+    words.targets.iter().filter_map(one).collect::<Vec<_>>().join("   ")
 }
 
 fn say_solve(cx: &mut ActCx, solve: usize, words: &Words, model: &Model, values: &[f64]) {

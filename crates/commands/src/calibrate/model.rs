@@ -87,11 +87,11 @@ impl Model {
         }
     }
 
-    /// Solves at the present stiffnesses and strengths of the bonds, from the latest field.
+    /// Solves at the present stiffnesses of the bonds, from the latest field. What the strength was is forgotten.
     ///
     /// # Errors
     /// What the solvers refuse.
-    pub fn solve(&mut self, scene: &Scene, words: &Words, style: &dyn BondForce, span: Span) -> Result<()> {
+    pub fn solve(&mut self, scene: &Scene, words: &Words, span: Span) -> Result<()> {
         let tol = tolerance(words);
         match &mut self.kind {
             Kind::Dsm { setup, solved, adjoint, strength } => {
@@ -99,13 +99,7 @@ impl Model {
                 let found = setup.solve(scene, words, tol, from);
                 self.iterations += found.iterations;
                 self.done &= found.done;
-                if words.aims(Quantity::Strength) {
-                    let path = broken(setup, scene, words, style, found.field.clone(), span)?;
-                    self.iterations += path.iterations;
-                    self.done &= path.done;
-                    *strength = Tested::new(setup, &path).stress();
-                }
-                (*solved, *adjoint) = (Some(Box::new(found)), None);
+                (*solved, *adjoint, *strength) = (Some(Box::new(found)), None, f64::NAN);
             }
             Kind::Periodic { volume, cell } => {
                 let (found, _) = solve_cell(scene, words, tol, cell.take());
@@ -126,13 +120,39 @@ impl Model {
         Ok(())
     }
 
+    /// Breaks the body as it was solved, with the present strengths of the bonds; how many have broken.
+    ///
+    /// # Errors
+    /// What the solvers refuse.
+    pub fn crumble(
+        &mut self,
+        scene: &Scene,
+        words: &Words,
+        style: &dyn BondForce,
+        span: Span,
+    ) -> Result<usize> {
+        let Kind::Dsm { setup, solved: Some(found), strength, .. } = &mut self.kind else { return Ok(0) };
+        let path = broken(setup, scene, words, style, found.field.clone(), span)?;
+        self.iterations += path.iterations;
+        self.done &= path.done;
+        *strength = Tested::new(setup, &path).stress();
+        Ok(path.breaks.iter().map(|b| b.bonds.len()).sum())
+    }
+
+    /// Makes the strengths of all bonds larger by a factor: they break one after another as before.
+    pub fn strengthen(&mut self, factor: f64) {
+        if let Kind::Dsm { strength, .. } = &mut self.kind {
+            *strength *= factor;
+        }
+    }
+
     /// Makes all stiffnesses larger by a factor: the field stays, and ν with it.
     pub fn scale(&mut self, factor: f64) {
         self.factor *= factor;
         self.tensor = self.tensor.map(|c| c.map(|row| row.map(|a| a * factor)));
     }
 
-    /// A number of the latest solution.
+    /// A number of the latest solution; not a number where the body has not been broken yet.
     pub fn value(&self, quantity: Quantity) -> f64 {
         let [k, young, poisson, ..] = self.numbers();
         match quantity {

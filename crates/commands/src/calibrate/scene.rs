@@ -4,8 +4,9 @@ use super::words::{Shape, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::{Vec3, length};
 use perigrain_bonded::ends::Sample;
-use perigrain_bonded::network::Network;
+use perigrain_bonded::network::{Modes, Network};
 use perigrain_styles::BondForce;
+use perigrain_styles::bond::Loaded;
 use perigrain_styles::pull::{apart, find, periods};
 use perigrain_world::{GroupId, World};
 use std::f64::consts::PI;
@@ -37,6 +38,14 @@ pub struct Said {
     pub radii: [f64; 2],
     /// Their IDs.
     pub ids: [u32; 2],
+}
+
+impl Said {
+    /// The bond, as it bears this.
+    pub fn bearing(&self, bears: Modes) -> Loaded {
+        let Self { kind, length, radii, ids } = *self;
+        Loaded { kind, length, radii, ids, bears }
+    }
 }
 
 impl Scene {

@@ -5,7 +5,7 @@ use super::found::NUMBERS;
 use super::scene::{Said, Scene};
 use super::setup::Setup;
 use super::telling::{self, count, warn_loose, warn_unfinished};
-use super::words::{BREAKING, Words};
+use super::words::{BREAKING_IN_FITS, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::general;
 use perigrain_bonded::ends::Hold;
@@ -13,7 +13,6 @@ use perigrain_bonded::network::Modes;
 use perigrain_bonded::six::Six;
 use perigrain_bonded::strength::{Break, Limits, Path, crumble};
 use perigrain_out::file;
-use perigrain_styles::bond::Loaded;
 use perigrain_styles::{ActCx, BondForce};
 use std::path::Path as FilePath;
 use std::time::Instant;
@@ -110,23 +109,16 @@ pub fn broken(
     field: Vec<Six>,
     span: Span,
 ) -> Result<Path> {
-    let used = |said: &Said, bears: &Modes| {
-        style.used(&Loaded {
-            kind: said.kind,
-            length: said.length,
-            radii: said.radii,
-            ids: said.ids,
-            bears: *bears,
-        })
-    };
+    let used = |said: &Said, bears: &Modes| style.used(&said.bearing(*bears));
     if !scene.bonds.iter().any(|said| used(said, &[1.0; 4]).is_some()) {
         let text = format!("bonds of bond_style {} break under no load", style.name());
         let help =
             "give them a strength: `strength S1 S2` behind the coefficients of bpm/beam, with `break yes`";
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
     }
-    let tol = if words.targets.is_empty() { words.tol } else { BREAKING };
-    let limits = Limits { avalanche: words.avalanche, until: words.until, most: words.most, tol };
+    let tol = if words.targets.is_empty() { words.tol } else { BREAKING_IN_FITS };
+    let Words { avalanche, until, most, together, .. } = *words;
+    let limits = Limits { avalanche, until, most, tol, together };
     let share = |k: usize, bears: &Modes| used(&scene.bonds[k], bears).unwrap_or(0.0);
     let path = crumble(scene.network.clone(), &setup.held, field, &limits, share);
     if path.breaks.is_empty() {

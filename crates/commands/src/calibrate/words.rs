@@ -7,7 +7,11 @@ use perigrain_lang::Args;
 use perigrain_styles::common::axis;
 
 /// The part of what a break changes to which it is found, if nothing is said.
-pub const BREAKING: f64 = 1e-4;
+const BREAKING: f64 = 1e-4;
+/// The same for the way to strength of a fit.
+pub const BREAKING_IN_FITS: f64 = 1e-3;
+/// The part of the load that bonds may lack to break with another one in a fit, if nothing is said.
+const TOGETHER: f64 = 0.005;
 
 /// How the cross-section of a sample is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,6 +135,8 @@ pub struct Words {
     pub most: usize,
     /// What breaks together.
     pub avalanche: Avalanche,
+    /// The part of the load that bonds may lack to break with another one.
+    pub together: f64,
     /// A file for the breaks, and its word.
     pub curve: Option<(String, Span)>,
 }
@@ -138,7 +144,7 @@ pub struct Words {
 /// Of a body under a load.
 const LOAD: &[&str] = &["axis", "strain", "low", "high", "thick", "shape", "length"];
 /// Of breaks.
-const BREAKS: &[&str] = &["until", "most", "avalanche"];
+const BREAKS: &[&str] = &["until", "most", "avalanche", "together"];
 
 /// What of [`Words`] a kind of calibration has.
 pub fn keywords(kind: &str) -> Vec<&'static str> {
@@ -191,6 +197,7 @@ impl Words {
             until: 0.5,
             most: usize::MAX,
             avalanche: Avalanche::default(),
+            together: if kind == "fit" { TOGETHER } else { 0.0 },
             curve: None,
         };
         let known = keywords(kind);
@@ -254,7 +261,7 @@ impl Words {
                 }
             }
             "method" => self.method = method(a)?,
-            "until" | "most" | "avalanche" | "curve" => self.breaking(a, name)?,
+            "until" | "most" | "avalanche" | "together" | "curve" => self.breaking(a, name)?,
             "shape" | "length" | "fields" | "order" | "slabs" | "map" => self.measure(a, name)?,
             "target" => self.targets.push(target(a)?),
             _ => self.vary(a, types)?,
@@ -299,6 +306,12 @@ impl Words {
             "avalanche" => {
                 let one = a.choice("what breaks in an avalanche", &["one", "all"])? == "one";
                 self.avalanche = if one { Avalanche::One } else { Avalanche::All };
+            }
+            "together" => {
+                self.together = a.non_negative("the part of the load")?;
+                if self.together >= 1.0 {
+                    return fail(Code::BAD_VALUE, span, "the part of the load is to be below 1");
+                }
             }
             "most" => self.most = a.integer_from(1, "the number of breaks")? as usize,
             _ => {
