@@ -272,7 +272,7 @@ fn within(text: &str, width: usize) -> String {
         let mut long = 0;
         for word in line.split_inclusive(' ') {
             let more = word.trim_end().chars().count();
-            if long > SET_IN.len() && long + more > width {
+            if more > 0 && long > SET_IN.len() && long + more > width {
                 out.truncate(out.trim_end_matches(' ').len());
                 out += "\n";
                 out += SET_IN;

@@ -365,9 +365,9 @@ E_coul   =         0.0000 E_long   =         0.0000 Press    =         0.0244";
     fn a_narrow_screen_gets_whole_columns() {
         let mut t = custom("step atoms temp v_q");
         let values = [STEP, Value::Int(27), TEMP, Value::Float(3.25)];
-        // Texts end at 10, 22, 36 and 47 characters.
+        // Cells end at 11, 23, 38 and 53 characters, the blanks between them included; a heading without those at its end.
         let fit = |t: &Layout, width| t.fitting(width, 27, &values);
-        assert_eq!([10, 25, 35, 36, 80].map(|width| fit(&t, width)), [1, 2, 2, 3, 4]);
+        assert_eq!([10, 25, 37, 38, 80].map(|width| fit(&t, width)), [1, 2, 2, 3, 4]);
         assert_eq!(t.header_of(2), "   Step        Atoms");
         assert_eq!(t.row_of(3, 5, 0.0, 27, &values), "         5          27   0.025374402");
         t.format_float("%40.15g").unwrap();
