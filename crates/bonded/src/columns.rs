@@ -78,7 +78,9 @@ pub struct Columns<const C: usize> {
     /// The type of each group.
     pub kinds: Vec<u16>,
     /// 1, or 0 for what is broken or fills up a group.
-    pub alive: Vec<f64>,
+    alive: Vec<f64>,
+    /// Which groups have all their bonds still.
+    whole: Vec<bool>,
     /// Lengths at rest [length].
     pub length: Vec<f64>,
     /// Components of the axes.
@@ -101,6 +103,7 @@ impl<const C: usize> Default for Columns<C> {
             ends: Default::default(),
             kinds: vec![],
             alive: vec![],
+            whole: vec![],
             length: vec![],
             axis: Default::default(),
             turned: vec![],
@@ -138,11 +141,51 @@ impl<const C: usize> Columns<C> {
         self.enter(particles);
     }
 
+    /// The same bonds where particles have changed places: `moved[k]` is the new place of the one at `k`. As [`Columns::fill`] with the
+    /// bonds that hold, in the order in which they stand here.
+    pub fn follow(&mut self, moved: &[u32]) {
+        let old = std::mem::take(self);
+        let rows: Vec<u32> = old.living().map(|k| k as u32).collect();
+        let key = |k: &u32| Key {
+            kind: old.kind(*k as usize),
+            ends: old.pair(*k as usize).map(|place| moved[place]),
+        };
+        let keys: Vec<Key> = rows.iter().map(key).collect();
+        self.fill(&keys, moved.len(), |k| {
+            let row = rows[k] as usize;
+            Member {
+                kind: keys[k].kind,
+                ends: keys[k].ends,
+                length: old.length[row],
+                axis: [0, 1, 2].map(|d| old.axis[d][row]),
+                turned: old.turned.get(row).copied().unwrap_or(UNTURNED),
+                own: std::array::from_fn(|c| old.own[c][row]),
+            }
+        });
+    }
+
+    /// What holds: 1, or 0 for what is broken or fills up a group.
+    pub fn alive(&self) -> &[f64] {
+        &self.alive
+    }
+
+    /// Whether all bonds of a group hold.
+    #[inline(always)]
+    pub fn is_whole(&self, group: usize) -> bool {
+        self.whole[group]
+    }
+
+    /// A bond has broken.
+    pub fn lose(&mut self, bond: usize) {
+        (self.alive[bond], self.whole[bond / GROUP]) = (0.0, false);
+    }
+
     /// Empties the columns; their memory stays for the next bonds.
     fn clear(&mut self) {
         self.ends.iter_mut().for_each(Vec::clear);
         self.kinds.clear();
         self.alive.clear();
+        self.whole.clear();
         self.length.clear();
         self.axis.iter_mut().for_each(Vec::clear);
         self.turned.clear();
@@ -153,8 +196,12 @@ impl<const C: usize> Columns<C> {
     fn push(&mut self, bond: &Member<C>, alive: f64) {
         if self.alive.len().is_multiple_of(GROUP) {
             self.kinds.push(bond.kind);
+            self.whole.push(true);
         }
         self.alive.push(alive);
+        if alive == 0.0 {
+            self.whole[(self.alive.len() - 1) / GROUP] = false;
+        }
         self.length.push(bond.length);
         for k in 0..2 {
             self.ends[k].push(bond.ends[k]);
@@ -297,5 +344,15 @@ mod tests {
         let keys: Vec<Key> = bonds.iter().map(|b| Key { kind: b.kind, ends: b.ends }).collect();
         again.fill(&keys, 40, |k| bonds[k]);
         assert_eq!(format!("{again:?}"), format!("{new:?}"));
+        // Particles that change places take their bonds along, but for those that have broken.
+        let moved: Vec<u32> = (0..40).map(|k| (17 * k + 5) % 40).collect();
+        let gone = again.pair(7).map(|e| e as u32);
+        again.lose(7);
+        again.follow(&moved);
+        let mut left = sorted.clone();
+        let at = left.iter().position(|b| b.ends == gone && b.length == new.length[7]).unwrap();
+        left.remove(at);
+        left.iter_mut().for_each(|b| b.ends = b.ends.map(|e| moved[e as usize]));
+        assert_eq!(format!("{again:?}"), format!("{:?}", Columns::new(&left, 40)));
     }
 }

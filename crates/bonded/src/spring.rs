@@ -157,7 +157,7 @@ pub fn swell(columns: &mut Columns<2>, body: &Body, dimension: i32) {
     par::each(&mut powers[..], |first, powers| {
         for (k, power) in powers.iter_mut().enumerate() {
             let lengths = [distance(known, body, first + k), known.length[first + k]];
-            *power = lengths.map(|l| if known.alive[first + k] > 0.0 { l.powi(dimension) } else { 0.0 });
+            *power = lengths.map(|l| if known.alive()[first + k] > 0.0 { l.powi(dimension) } else { 0.0 });
         }
     });
     let mut volumes = vec![[0.0; 2]; known.particles()];
@@ -188,7 +188,7 @@ pub fn give_way(columns: &mut Columns<2>, body: &Body, limit: impl Fn(u16) -> f6
     for bond in 0..columns.rows() {
         let most = limit(columns.kind(bond)) * columns.length[bond];
         let (r, rest) = (distance(columns, body, bond), columns.own[1][bond]);
-        if columns.alive[bond] > 0.0 && (r - rest).abs() > most {
+        if columns.alive()[bond] > 0.0 && (r - rest).abs() > most {
             let now = if r > rest { r - most } else { r + most };
             columns.own[1][bond] = now;
             yielded.push((bond, now));

@@ -52,7 +52,7 @@ pub struct Out {
     pub force: Vec<[f64; 4]>,
     /// Torques on both ends; empty for laws without.
     pub torque: Vec<[[f64; 4]; 2]>,
-    /// How much of what each bears.
+    /// How much of what it can bear each bond of a group bears in which one breaks; what others hold means nothing, and is below 1.
     pub load: Vec<f64>,
     /// What dashpots turn into heat; empty where nobody asks.
     pub power: Vec<f64>,
@@ -150,13 +150,18 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
                     own[c] = column(&columns.own[c], row);
                 }
                 let acts = self.law.act(k, &own, &ends, motion.as_ref());
-                let mut alive = column::<N, V>(&columns.alive, row);
+                // Few groups have lost a bond: nothing is read for the others.
+                let mut alive =
+                    if columns.is_whole(row / GROUP) { one } else { column(columns.alive(), row) };
                 let load = V::choose(alive.above(none), acts.load, none);
                 let energy = V::choose(alive.above(none), acts.energy, none);
                 if self.pass.breaks {
                     let over = load.above(V::all(BELOW_ONE));
-                    broken |= V::any(over);
-                    alive = V::choose(over, none, alive);
+                    if V::any(over) {
+                        broken = true;
+                        self.load[at..at + N].copy_from_slice(&load.numbers());
+                        alive = V::choose(over, none, alive);
+                    }
                 }
                 let holds = alive.above(none);
                 let f = acts.force;
@@ -170,7 +175,6 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
                 for lane in 0..N {
                     rows[lane].store(self.force[at + lane].as_mut_ptr());
                 }
-                self.load[at..at + N].copy_from_slice(&load.numbers());
                 if let Some(power) = &mut self.power {
                     power[at..at + N].copy_from_slice(&V::choose(holds, acts.power, none).numbers());
                 }

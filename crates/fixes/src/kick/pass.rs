@@ -347,10 +347,17 @@ impl Kick {
                         threes::store(turn, torque[k].as_flattened_mut().as_mut_ptr());
                     }
                     if DRIFT && let Some(four) = quat.get_mut(k) {
-                        let rows = four.as_flattened_mut().as_mut_ptr();
-                        let q = F::transpose([0, 4, 8, 12].map(|at| F::load(rows.add(at))));
-                        let now = F::transpose(rolled(q, F::parted(spin), 0.5 * self.dt));
-                        now.into_iter().enumerate().for_each(|(l, row)| row.store(rows.add(4 * l)));
+                        let spin = F::parted(spin);
+                        let turns = (spin[0].abs() + spin[1].abs() + spin[2].abs()).above(zero);
+                        // Roots and quotients are most of this pass: where nobody turns there are none.
+                        if F::any(turns) {
+                            let rows = four.as_flattened_mut().as_mut_ptr();
+                            let q = F::transpose([0, 4, 8, 12].map(|at| F::load(rows.add(at))));
+                            let rolled = rolled(q, spin, 0.5 * self.dt);
+                            let now = [0, 1, 2, 3].map(|c| F::choose(turns, rolled[c], q[c]));
+                            let now = F::transpose(now);
+                            now.into_iter().enumerate().for_each(|(l, row)| row.store(rows.add(4 * l)));
+                        }
                     }
                 }
                 if clears_torque {
@@ -397,7 +404,11 @@ impl Kick {
             if SPIN {
                 let r = c.radius[i];
                 kick::<KICKS>(&mut c.omega[i], &c.torque[i], self.spin / (r * r * m));
-                if DRIFT && let Some(q) = c.quat.get_mut(i) {
+                let turns = c.omega[i].iter().map(|a| a.abs()).sum::<f64>() > 0.0;
+                if DRIFT
+                    && turns
+                    && let Some(q) = c.quat.get_mut(i)
+                {
                     *q = rolled(*q, c.omega[i], 0.5 * self.dt);
                 }
             }

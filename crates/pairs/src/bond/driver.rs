@@ -13,6 +13,7 @@ use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::pull::{Found, Pull, Stretched, apart, find, periods};
 use perigrain_world::bonds::ascending;
 use perigrain_world::field::{BONDS, BOX, F, Fields, LISTS, MEMO, OMEGA, QUAT, TAG, TALLY, TORQUE, V, X};
+use perigrain_world::index::Index;
 use perigrain_world::tally::add_share;
 use perigrain_world::{Bond, World};
 
@@ -169,6 +170,8 @@ pub struct Bonded<const C: usize, L: Driven<C>> {
     adapted: f64,
     /// At which places of particles and which bonds the columns were made.
     made: Option<[u64; 3]>,
+    /// The particles as they stood then.
+    tags: Vec<u32>,
     columns: Columns<C>,
     coeffs: Vec<Option<Coeffs<C, L>>>,
     out: Out,
@@ -178,7 +181,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
     /// With a law; types without coefficients are none of its business.
     pub fn new(law: L, span: Span) -> Self {
         let (columns, out) = (Columns::default(), Out::default());
-        Self { law, span, adapted: 0.0, made: None, columns, coeffs: vec![], out }
+        Self { law, span, adapted: 0.0, made: None, tags: vec![], columns, coeffs: vec![], out }
     }
 
     /// Finds bonds and their ends anew.
@@ -205,8 +208,27 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
             };
             Member { kind, ends, length: bond.length, axis: bond.axis, turned, own }
         });
+        self.tags.clone_from(&w.particles.tag);
         self.made = Some(stand(w));
         Ok(())
+    }
+
+    /// Follows particles that have only changed places since the columns were made; false if more than that has happened.
+    fn follow(&mut self, w: &World) -> bool {
+        let now = stand(w);
+        // What belongs to a bond may have changed with what it is reckoned from.
+        let same = self.law.reads().is_empty() && self.made.is_some_and(|made| made[1..] == now[1..]);
+        if !same || self.tags.len() != w.n() {
+            return false;
+        }
+        let (index, tags) = (Index::new(&w.particles.tag), &w.particles.tag);
+        let moved: Option<Vec<u32>> =
+            self.tags.iter().map(|id| index.find(*id, tags).map(|place| place as u32)).collect();
+        let Some(moved) = moved else { return false };
+        self.columns.follow(&moved);
+        self.tags.clone_from(tags);
+        self.made = Some(now);
+        true
     }
 
     /// Energies and virials, for those who ask.
@@ -267,7 +289,10 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         if w.bonds.counts_losses {
             w.bonds.released += energy;
         }
-        over.iter().for_each(|&k| self.columns.alive[k] = 0.0);
+        for &k in &over {
+            self.columns.lose(k);
+            self.out.load[k] = 0.0;
+        }
         self.made = mine.then_some(stand(w));
     }
 }
@@ -293,13 +318,13 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut anew = t.setup || self.made != Some(stand(w));
+        let mut anew = t.setup;
         if self.law.adapts() && self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
             self.law.adapt(w);
             anew = true;
         }
-        if anew {
+        if anew || (self.made != Some(stand(w)) && !self.follow(w)) {
             self.lay_out(w)?;
         }
         let periods = periods(w)?;

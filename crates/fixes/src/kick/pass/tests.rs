@@ -131,3 +131,30 @@ fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
         assert_eq!(most, f64::INFINITY, "{i}");
     }
 }
+
+#[test]
+fn who_does_not_turn_keeps_the_orientation_bit_by_bit() {
+    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1, oriented: true };
+    let (mut x, mut v, mut f, mut omega) = (some(1), some(2), some(4), some(5));
+    // One of the first four turns, all of the next, none of those behind.
+    (0..N).filter(|i| !(*i == 2 || (4..8).contains(i))).for_each(|i| omega[i] = [0.0; 3]);
+    let (spins, radius) = (omega.clone(), [0.5; N]);
+    // Lengths are 1 but for rounding, which an empty step would change.
+    let before: Vec<Quat> = (0..N).map(|i| [0.3 + 0.1 * i as f64, -0.2, 0.4, 0.1 * i as f64]).collect();
+    let (mut quat, mut torque) = (before.clone(), vec![[0.0; 3]; N]);
+    let c = Chunk {
+        x: &mut x,
+        v: &mut v,
+        f: &mut f,
+        mask: &[1; N],
+        omega: &mut omega,
+        torque: &mut torque,
+        radius: &radius,
+        quat: &mut quat,
+    };
+    k.chunk(c, Part::First, true, &Beside::default(), |_| [1.0; 4]);
+    for i in 0..N {
+        let turned = if spins[i] == [0.0; 3] { before[i] } else { rolled(before[i], spins[i], 0.01) };
+        assert_eq!(quat[i], turned, "{i}");
+    }
+}
