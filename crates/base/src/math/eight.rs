@@ -191,7 +191,7 @@ impl<const GATHERS: bool> Lanes<8> for Avx512<GATHERS> {
     unsafe fn pick(list: *const f64, at: *const u32) -> Self {
         unsafe {
             if GATHERS {
-                return Self(_mm512_i32gather_pd::<8>(places(at), list));
+                return Self(_mm512_i32gather_pd::<8>(_mm256_loadu_si256(at.cast()), list));
             }
             Self::of(numbers_at(list, at))
         }
@@ -200,8 +200,7 @@ impl<const GATHERS: bool> Lanes<8> for Avx512<GATHERS> {
     unsafe fn vectors(list: *const Vec3, at: *const u32) -> Vec3<Self> {
         unsafe {
             if GATHERS {
-                let first = places(at);
-                return gathered(list.cast(), _mm256_add_epi32(first, _mm256_add_epi32(first, first)));
+                return gathered(list.cast(), thrice(_mm256_loadu_si256(at.cast())));
             }
             let [x, y, z, _] = Self::of_rows(rows_at(list, at));
             [x, y, z]
@@ -214,7 +213,8 @@ impl<const GATHERS: bool> Lanes<8> for Avx512<GATHERS> {
                 let [x, y, z, _] = Self::of_rows(rows_apart(list, a, b, shifts));
                 return [x, y, z];
             }
-            let ([ax, ay, az], [bx, by, bz]) = (Self::vectors(list, a), Self::vectors(list, b));
+            let ([ax, ay, az], [bx, by, bz]) =
+                (Self::vectors(list, a), gathered(list.cast(), thrice(places(b))));
             let which = _mm256_srli_epi32::<{ PLACE_BITS as _ }>(_mm256_loadu_si256(b.cast()));
             let mut shift = [Self::all(0.0); 3];
             if _mm256_cmpneq_epi32_mask(which, _mm256_set1_epi32(NO_SHIFT as i32)) != 0 {
@@ -245,6 +245,12 @@ unsafe fn places(at: *const u32) -> __m256i {
     unsafe { _mm256_and_si256(_mm256_loadu_si256(at.cast()), _mm256_set1_epi32((1 << PLACE_BITS) - 1)) }
 }
 
+/// Where the vectors at these places begin in a list of numbers.
+#[inline(always)]
+unsafe fn thrice(at: __m256i) -> __m256i {
+    unsafe { _mm256_add_epi32(at, _mm256_add_epi32(at, at)) }
+}
+
 /// Three consecutive numbers from each of these places on, in lanes.
 #[inline(always)]
 unsafe fn gathered<const GATHERS: bool>(list: *const f64, at: __m256i) -> Vec3<Avx512<GATHERS>> {
@@ -261,6 +267,7 @@ unsafe fn gathered<const GATHERS: bool>(list: *const f64, at: __m256i) -> Vec3<A
 mod tests {
     use super::*;
     use crate::math::four::Four;
+    use crate::math::lanes::place;
 
     /// The same operations on eight numbers in these lanes.
     fn several<const N: usize, V: Lanes<N>>(rows: [V::Row; N]) -> Vec<[f64; N]> {
@@ -331,11 +338,12 @@ mod tests {
             let all = unsafe {
                 let own = own.as_ptr().add(k);
                 let others = [0, 1].map(|list: usize| other[list].as_ptr().add(k));
-                let r = V::pick(numbers.as_ptr(), others[0]);
+                let places: Vec<u32> = (0..N).map(|l| place(*others[1].add(l)) as u32).collect();
+                let r = V::pick(numbers.as_ptr(), places.as_ptr());
                 r.pack(r.above(V::all(0.06)), packed.as_mut_ptr().add(count));
                 count += V::put(r.above(V::all(0.06)), k as u32, hits.as_mut_ptr().add(count));
                 let [a, b] = others.map(|other| V::apart(list.as_ptr(), own, other, &shifts));
-                [a, b, V::vectors(list.as_ptr(), others[1]), [r; 3]]
+                [a, b, V::vectors(list.as_ptr(), places.as_ptr()), [r; 3]]
             };
             out.extend(all.map(|v| v.map(|v| v.numbers().map(f64::to_bits).to_vec())));
         }

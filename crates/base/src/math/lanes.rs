@@ -32,15 +32,15 @@ pub trait Lanes<const N: usize>: Real {
     /// The numbers at these places of a list.
     ///
     /// # Safety
-    /// `at` must be readable for as many entries as there are lanes, and their [`place`]s be places of the list.
+    /// `at` must be readable for as many places of the list as there are lanes.
     unsafe fn pick(list: *const f64, at: *const u32) -> Self;
     /// The vectors at these places of a list.
     ///
     /// # Safety
     /// As [`Lanes::pick`].
     unsafe fn vectors(list: *const Vec3, at: *const u32) -> Vec3<Self>;
-    /// a − (b + shift) of the vectors at these places of a list, where the entries of b tell which of the `shifts` it is;
-    /// [`NO_SHIFT`] is none.
+    /// a − (b + shift) of the vectors at these places of a list, where b has entries that tell [`place`] and which of the `shifts`
+    /// it is; [`NO_SHIFT`] is none.
     ///
     /// # Safety
     /// As [`Lanes::pick`], and there must be these shifts.
@@ -108,7 +108,8 @@ pub(super) unsafe fn rows_apart<F: Four, const N: usize>(
         for lane in 0..N {
             let (a, b) = (*a.add(lane), *b.add(lane));
             let shift = F::load(shifts.as_ptr().add((b >> PLACE_BITS) as usize).cast());
-            rows[lane] = F::load3(list.add(place(a)).cast()) - (F::load3(list.add(place(b)).cast()) + shift);
+            rows[lane] =
+                F::load3(list.add(a as usize).cast()) - (F::load3(list.add(place(b)).cast()) + shift);
         }
         rows
     }
@@ -124,7 +125,7 @@ pub(super) unsafe fn rows_at<F: Four, const N: usize>(list: *const Vec3, at: *co
     unsafe {
         let mut rows = [F::splat(0.0); N];
         for lane in 0..N {
-            rows[lane] = F::load3(list.add(place(*at.add(lane))).cast());
+            rows[lane] = F::load3(list.add(*at.add(lane) as usize).cast());
         }
         rows
     }
@@ -140,7 +141,7 @@ pub(super) unsafe fn numbers_at<const N: usize>(list: *const f64, at: *const u32
     unsafe {
         let mut numbers = [0.0; N];
         for lane in 0..N {
-            numbers[lane] = *list.add(place(*at.add(lane)));
+            numbers[lane] = *list.add(*at.add(lane) as usize);
         }
         numbers
     }

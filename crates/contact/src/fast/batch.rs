@@ -29,7 +29,8 @@ pub(super) struct Batch<V, const N: usize> {
     /// What each remembers.
     past: [*mut f64; BATCH],
     i: [u32; BATCH],
-    /// The others and their images.
+    j: [u32; BATCH],
+    /// Which images the second ones are, with their places.
     w: [u32; BATCH],
     /// x_i − x_j, coordinate by coordinate [length].
     apart: MaybeUninit<[[f64; BATCH + FILL]; 3]>,
@@ -143,6 +144,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             waiting: 0,
             past: [std::ptr::null_mut(); BATCH],
             i: [0; BATCH],
+            j: [0; BATCH],
             w: [0; BATCH],
             apart: MaybeUninit::uninit(),
             geometry: Room::new(),
@@ -183,7 +185,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             // SAFETY: passed on; there is room for all of them.
             unsafe {
                 *self.i.get_unchecked_mut(at) = *short.i.as_ptr().add(k);
-                *self.w.get_unchecked_mut(at) = *short.w.as_ptr().add(k);
+                let w = *short.w.as_ptr().add(k);
+                *self.w.get_unchecked_mut(at) = w;
+                *self.j.get_unchecked_mut(at) = place(w) as u32;
                 *self.past.get_unchecked_mut(at) = past.add(W * k);
             }
         }
@@ -251,6 +255,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             // SAFETY: passed on; the batch has room for whole groups.
             unsafe {
                 *self.i.get_unchecked_mut(at) = *self.i.get_unchecked(count - 1);
+                *self.j.get_unchecked_mut(at) = *self.j.get_unchecked(count - 1);
                 *self.w.get_unchecked_mut(at) = *self.w.get_unchecked(count - 1);
                 *self.past.get_unchecked_mut(at) = *self.past.get_unchecked(count - 1);
                 for d in 0..3 {
@@ -265,19 +270,19 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     unsafe fn meet<L: ContactLaw>(&mut self, cx: &Cx<L>, group: usize) -> bool {
         // SAFETY: passed on.
         unsafe {
-            let (i, w) = (self.i.as_ptr().add(N * group), self.w.as_ptr().add(N * group));
+            let (i, j) = (self.i.as_ptr().add(N * group), self.j.as_ptr().add(N * group));
             let [p, q, r] = [self.apart(0), self.apart(1), self.apart(2)];
             let (p, q, r) = (p.add(N * group).cast(), q.add(N * group).cast(), r.add(N * group).cast());
             let [x, y, z] = [V::of(*p), V::of(*q), V::of(*r)];
             let (r, m) = (cx.radius.as_ptr(), cx.mass.as_ptr());
             let sizes = match self.sizes {
                 Some(sizes) => sizes,
-                None => Sizes::of([V::pick(r, i), V::pick(r, w)]),
+                None => Sizes::of([V::pick(r, i), V::pick(r, j)]),
             };
             let mass = match (self.mass, cx.frozen) {
                 (Some(mass), false) => mass,
-                (None, false) => reduced(V::pick(m, i), V::pick(m, w)),
-                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, w), mass),
+                (None, false) => reduced(V::pick(m, i), V::pick(m, j)),
+                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, j), mass),
             };
             let g = geometry([x, y, z], &sizes, mass);
             self.geometry.put(group, g);
@@ -310,13 +315,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         // SAFETY: passed on.
         unsafe {
             let at = N * group;
-            let (i, w, past) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.past.as_ptr().add(at));
+            let (i, j, past) = (self.i.as_ptr().add(at), self.j.as_ptr().add(at), self.past.as_ptr().add(at));
             // (No closures in here: they are not compiled for AVX.)
             let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
             let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
-            let mut other = Motion { velocity: V::vectors(v, w), spin: V::vectors(spin, w) };
+            let mut other = Motion { velocity: V::vectors(v, j), spin: V::vectors(spin, j) };
             if let Some(drift) = cx.drift {
-                let added = drift.added::<N>(i, w);
+                let added = drift.added::<N>(i, self.w.as_ptr().add(at));
                 for d in 0..3 {
                     other.velocity[d] = other.velocity[d] + V::of(added[d]);
                 }
@@ -358,7 +363,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         // SAFETY: passed on.
         unsafe {
             let at = N * group + lane;
-            let (i, j) = (*self.i.get_unchecked(at), place(*self.w.get_unchecked(at)) as u32);
+            let (i, j) = (*self.i.get_unchecked(at), *self.j.get_unchecked(at));
             self.force.at(group).act::<V::Pair>(f, lane, i, j);
             let [own, other] = self.torque.at(group);
             own.add::<V::Pair>(t, lane, i);
@@ -400,7 +405,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                     curvature: number(&g.curvature, lane),
                     mass: number(&g.mass, lane),
                 };
-                let (i, j) = (self.i[at] as usize, place(self.w[at]));
+                let (i, j) = (self.i[at] as usize, self.j[at] as usize);
                 let into = law.conductance(&geometry) * (temperature[j] - temperature[i]);
                 *flow.as_ptr().add(i) += into;
                 *flow.as_ptr().add(j) -= into;

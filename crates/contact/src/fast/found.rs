@@ -25,10 +25,15 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// None.
+    /// None. Written field by field: as a constant all of it would be copied, room and all.
     #[inline(always)]
     pub fn new() -> Self {
-        Self { count: 0, numbers: MaybeUninit::uninit(), apart: MaybeUninit::uninit() }
+        let mut new = MaybeUninit::<Self>::uninit();
+        // SAFETY: the other fields may hold anything.
+        unsafe {
+            (&raw mut (*new.as_mut_ptr()).count).write(0);
+            new.assume_init()
+        }
     }
 
     /// How many there are.

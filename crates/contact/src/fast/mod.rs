@@ -140,6 +140,13 @@ fn one_of_all(list: &[f64]) -> Option<f64> {
     rest.iter().all(|a| a == first).then_some(*first)
 }
 
+/// Whether two lists hold the same numbers: eight at a time, as it is asked in each step where radii may change.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    let ((eights_a, rest_a), (eights_b, rest_b)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    let differ = |a: &[f64; 8], b: &[f64; 8]| a.iter().zip(b).fold(false, |differ, (a, b)| differ | (a != b));
+    a.len() == b.len() && rest_a == rest_b && !eights_a.iter().zip(eights_b).any(|(a, b)| differ(a, b))
+}
+
 /// Lists and contacts of all grains.
 #[derive(Clone, Debug)]
 pub struct Fast<L> {
@@ -386,7 +393,7 @@ impl<L: ContactLaw> Fast<L> {
     /// changed.
     pub fn weigh(&mut self, grains: &Grains) {
         self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
-        if self.measured != grains.radius {
+        if !same(&self.measured, grains.radius) {
             self.measured.clear();
             self.measured.extend_from_slice(grains.radius);
             let mut lists = std::mem::take(&mut self.lists);

@@ -141,7 +141,11 @@ impl<'a> Places<'a> {
         unsafe {
             let [x, y, z] = V::apart(self.x.as_ptr(), i, w, self.shifts);
             let r = self.radius.as_ptr();
-            let reach = V::pick(r, i) + V::pick(r, w) + extra;
+            let mut j = [0; N];
+            for lane in 0..N {
+                j[lane] = place(*w.add(lane)) as u32;
+            }
+            let reach = V::pick(r, i) + V::pick(r, j.as_ptr()) + extra;
             (reach * reach).above(x * x + y * y + z * z)
         }
     }

@@ -389,10 +389,14 @@ impl Kick {
         if let Some(pull) = &beside.pull {
             came.energy += pulled_each(c.f, c.x, m, c.mask, pull.bit, pull.a);
         }
-        hold(c.f, c.torque, c.mask, beside.held, &mut came.held);
-        flatten([c.v, c.f], c.mask, beside.flat);
-        if SPIN {
-            flatten_turning([c.omega, c.torque], c.mask, beside.flat);
+        if beside.held != 0 {
+            hold(c.f, c.torque, c.mask, beside.held, &mut came.held);
+        }
+        if beside.flat != 0 {
+            flatten([c.v, c.f], c.mask, beside.flat);
+            if SPIN {
+                flatten_turning([c.omega, c.torque], c.mask, beside.flat);
+            }
         }
         for (i, m) in (0..c.mask.len()).zip(m).filter(|(i, _)| c.mask[*i] & self.bit != 0) {
             let v = &mut c.v[i];
