@@ -316,7 +316,7 @@ impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Man
             // SAFETY: they are pairs of the list, and its entries grains; lists stay while contacts are evaluated.
             unsafe {
                 taken += batch.take::<W>(&mut slab.short, found, taken..ready);
-                if !batch.is_full() && !(ends && batch.waits()) {
+                if !(batch.is_full() || (ends && batch.waits())) {
                     return;
                 }
                 batch.run::<L, W>(cx, law, slab);
