@@ -411,7 +411,7 @@ mod tests {
 
     #[test]
     fn several_decks_are_checked_with_the_same_switches() {
-        let with = |name: &str| Options { compat: Compat::Lammps2025, ..deck(name) };
+        let with = |name: &str| Options { compat: Compat::Lammps2026, ..deck(name) };
         let task = Task::Check { decks: vec![with("a"), with("b")], json: true };
         assert_eq!(read("check a b --json -compat lammps").unwrap(), task);
         assert!(read("run a b").is_err());

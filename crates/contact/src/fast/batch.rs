@@ -4,15 +4,17 @@ use super::Alike;
 use super::found::Found;
 use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
-use crate::driver::DEEP;
 use crate::{ContactLaw, Geometry, Motion};
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, place};
-use perigrain_base::math::pair::Pair;
-use perigrain_base::math::real::Real;
-use perigrain_base::math::vec3::{SIX, Vec3, scale};
+use perigrain_base::math::vec3::SIX;
+use rooms::{Outgoing, Room};
+use sizes::{Sizes, beside_frozen, geometry, reduced, too_deep};
 use std::mem::MaybeUninit;
 use std::ops::Range;
+
+mod rooms;
+mod sizes;
 
 /// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
 /// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
@@ -43,81 +45,6 @@ pub(super) struct Batch<V, const N: usize> {
     force: Room<Outgoing<N>>,
     /// On i and on j, each about its centre [force × length].
     torque: Room<[Outgoing<N>; 2]>,
-}
-
-/// Room for something of each group, not cleared: that would take longer than the contacts of a slab of few.
-struct Room<T>(MaybeUninit<[T; GROUPS]>);
-
-impl<T: Copy> Room<T> {
-    /// With nothing in it.
-    #[inline(always)]
-    fn new() -> Self {
-        Self(MaybeUninit::uninit())
-    }
-
-    /// # Safety
-    /// It must be one of the groups.
-    #[inline(always)]
-    unsafe fn put(&mut self, group: usize, value: T) {
-        debug_assert!(group < GROUPS);
-        // SAFETY: the caller's promise.
-        unsafe { self.0.as_mut_ptr().cast::<T>().add(group).write(value) }
-    }
-
-    /// # Safety
-    /// Something must have been put there.
-    #[inline(always)]
-    unsafe fn at(&self, group: usize) -> &T {
-        // SAFETY: the caller's promise.
-        unsafe { &*self.0.as_ptr().cast::<T>().add(group) }
-    }
-}
-
-/// Vectors in lanes as they go to memory: x and y together, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and z.
-#[derive(Clone, Copy)]
-struct Outgoing<const N: usize> {
-    xy: [[f64; N]; 2],
-    z: [f64; N],
-}
-
-impl<const N: usize> Outgoing<N> {
-    #[inline(always)]
-    fn of<V: Lanes<N>>([x, y, z]: Vec3<V>) -> Self {
-        let [even, odd] = V::pairs(x, y);
-        Self { xy: [even.numbers(), odd.numbers()], z: z.numbers() }
-    }
-
-    #[inline(always)]
-    unsafe fn lane<P: Pair>(&self, lane: usize) -> (P, f64) {
-        // SAFETY: two numbers in one row of the array.
-        let xy = unsafe { P::load(self.xy.as_ptr().cast::<f64>().add(lane % 2 * N + lane / 2 * 2)) };
-        (xy, self.z[lane])
-    }
-
-    /// Adds the vector of a lane to that of grain `i`.
-    #[inline(always)]
-    unsafe fn add<P: Pair>(&self, to: *mut f64, lane: usize, i: u32) {
-        // SAFETY: passed on.
-        unsafe {
-            let ((xy, z), to) = (self.lane::<P>(lane), to.add(3 * i as usize));
-            xy.add_to(to);
-            *to.add(2) += z;
-        }
-    }
-
-    /// Adds the vector of a lane to that of grain `i` and takes it from that of grain `j`.
-    #[inline(always)]
-    unsafe fn act<P: Pair>(&self, to: *mut f64, lane: usize, i: u32, j: u32) {
-        // SAFETY: passed on.
-        unsafe {
-            let (xy, z) = self.lane::<P>(lane);
-            let (to, from) = (to.add(3 * i as usize), to.add(3 * j as usize));
-            xy.add_to(to);
-            *to.add(2) += z;
-            xy.take_from(from);
-            *from.add(2) -= z;
-        }
-    }
 }
 
 impl<V: Lanes<N>, const N: usize> Batch<V, N> {
@@ -423,58 +350,4 @@ unsafe fn number<V: Lanes<N>, const N: usize>(lanes: &V, lane: usize) -> f64 {
     const { assert!(size_of::<V>() == N * size_of::<f64>()) };
     // SAFETY: lanes are so many numbers, one behind the other.
     unsafe { *(&raw const *lanes).cast::<f64>().add(lane) }
-}
-
-/// Of two grains: their radii, the sum of these, and what is made of them.
-#[derive(Clone, Copy)]
-struct Sizes<R> {
-    radii: [R; 2],
-    sum: R,
-    /// The effective radius.
-    curvature: R,
-}
-
-impl<R: Real> Sizes<R> {
-    #[inline(always)]
-    fn of(radii: [R; 2]) -> Self {
-        let sum = radii[0] + radii[1];
-        Self { radii, sum, curvature: radii[0] * radii[1] / sum }
-    }
-}
-
-/// The geometry of touching spheres, as `Geometry::of_spheres`.
-#[inline(always)]
-fn geometry<R: Real>(d: Vec3<R>, sizes: &Sizes<R>, mass: R) -> Geometry<R> {
-    let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-    Geometry {
-        normal: scale(distance.like(1.0) / distance, d),
-        overlap: sizes.sum - distance,
-        radii: sizes.radii,
-        curvature: sizes.curvature,
-        mass,
-    }
-}
-
-/// Whether grains overlap by more than [`DEEP`] of the smaller radius.
-#[inline(always)]
-fn too_deep<R: Real>(g: &Geometry<R>) -> R::Mask {
-    g.overlap.above(g.radii[0].least(g.radii[1]) * DEEP)
-}
-
-/// The reduced mass.
-#[inline(always)]
-fn reduced<R: Real>(mi: R, mj: R) -> R {
-    mi * mj / (mi + mj)
-}
-
-/// The reduced mass where frozen grains have a minus sign and count as infinitely heavy; `free`: that of two that are not, if
-/// it is known.
-#[inline(always)]
-fn beside_frozen<R: Real>(mi: R, mj: R, free: Option<R>) -> R {
-    let (zero, a, b) = (mi.like(0.0), mi.abs(), mj.abs());
-    let free = match free {
-        Some(mass) => mass,
-        None => reduced(a, b),
-    };
-    R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, free))
 }

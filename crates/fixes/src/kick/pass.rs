@@ -3,15 +3,19 @@
 use super::super::enforce2d::{flatten, flatten_turning};
 use super::super::freeze::hold;
 use super::super::gravity::{pulled_each, pulled_four};
-use perigrain_base::math::body::{Quat, rolled};
+use chunk::{Chunk, Fours, chunk};
+pub(super) use kicks::faster;
+use kicks::{Parts, kick, kicked, only, parts_of};
+use perigrain_base::math::body::rolled;
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
-use perigrain_base::math::real::Real;
 use perigrain_base::math::threes::{self, Threes};
-use perigrain_base::math::vec3::Vec3;
 use perigrain_plan::{Beside, BlockSums, ParticleBlock};
 use perigrain_styles::matter::Masses;
 use std::ops::Range;
+
+mod chunk;
+mod kicks;
 
 /// What a pass makes of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,19 +26,6 @@ pub(super) enum Part {
     Second,
     /// The second half kick of a step, and first half kick and drift of the next one under the same forces.
     Both,
-}
-
-/// A block of particles. Spins and torques are empty where there are none.
-struct Chunk<'a> {
-    x: &'a mut [Vec3],
-    v: &'a mut [Vec3],
-    f: &'a mut [Vec3],
-    mask: &'a [u32],
-    omega: &'a mut [Vec3],
-    torque: &'a mut [Vec3],
-    radius: &'a [f64],
-    /// Empty where none are to follow spins.
-    quat: &'a mut [Quat],
 }
 
 /// What is the same for all particles.
@@ -59,34 +50,6 @@ struct Came {
     held: [f64; 3],
     /// The largest v² after a drift.
     most: f64,
-}
-
-/// A chunk in fours.
-struct Fours<'a> {
-    x: &'a mut [[Vec3; 4]],
-    v: &'a mut [[Vec3; 4]],
-    f: &'a mut [[Vec3; 4]],
-    omega: &'a mut [[Vec3; 4]],
-    torque: &'a mut [[Vec3; 4]],
-    radius: &'a [[f64; 4]],
-    quat: &'a mut [[Quat; 4]],
-}
-
-impl Fours<'_> {
-    /// Four of them, to be looked at one by one.
-    #[inline(always)]
-    fn one<'a>(&'a mut self, k: usize, mask: &'a [u32; 4]) -> Chunk<'a> {
-        Chunk {
-            x: &mut self.x[k],
-            v: &mut self.v[k],
-            f: &mut self.f[k],
-            mask,
-            omega: self.omega.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
-            torque: self.torque.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
-            radius: self.radius.get(k).map_or(&[][..], |four| &four[..]),
-            quat: self.quat.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
-        }
-    }
 }
 
 /// What comes of fours, lane by lane.
@@ -421,119 +384,6 @@ impl Kick {
             c.f.fill([0.0; 3]);
             c.torque.fill([0.0; 3]);
         }
-    }
-}
-
-/// Particles of a block as the loops see them: what they do not touch here is handed to them all the same, past all marks.
-fn chunk<'a>(
-    s: &'a mut ParticleBlock<'_>,
-    own: Range<usize>,
-    (spins, oriented, part): (bool, bool, Part),
-    beside: &Beside,
-) -> Chunk<'a> {
-    let rows = s.start + own.start..s.start + own.end;
-    let mask = &s.mask()[own.clone()];
-    let (omega, torque, radius) = match s.omega.is_empty() {
-        true => (&mut [][..], &mut [][..], &[][..]),
-        false => {
-            let zeroes = beside.held != 0 || beside.flat != 0 || beside.clears;
-            let omega = if spins { &mut s.omega[..] } else { s.omega.past_mut() };
-            let torque = match (zeroes, spins) {
-                (true, _) => &mut s.torque[..],
-                (false, true) => s.torque.read_mut(),
-                (false, false) => s.torque.past_mut(),
-            };
-            let radius = if spins { &s.all.radius[..] } else { s.all.radius.past() };
-            (&mut omega[own.clone()], &mut torque[own.clone()], &radius[rows])
-        }
-    };
-    let quat = match oriented && part != Part::Second && !s.quat.is_empty() {
-        true => &mut s.quat[own.clone()],
-        false => &mut [],
-    };
-    let x = match (part, beside.pull) {
-        (Part::Second, None) => s.x.past_mut(),
-        (Part::Second, Some(_)) => s.x.read_mut(),
-        _ => &mut s.x[..],
-    };
-    let f = if *beside == Beside::default() { s.f.read_mut() } else { &mut s.f[..] };
-    let (x, v, f) = (&mut x[own.clone()], &mut s.v[own.clone()], &mut f[own]);
-    Chunk { x, v, f, mask, omega, torque, radius, quat }
-}
-
-/// v += by · f, `KICKS` times.
-#[inline(always)]
-fn kick<const KICKS: usize>(v: &mut Vec3, f: &Vec3, by: f64) {
-    for d in 0..3 {
-        let dv = by * f[d];
-        for _ in 0..KICKS {
-            v[d] += dv;
-        }
-    }
-}
-
-/// Which parts of four vectors stay, where some do not.
-type Parts<F> = Option<[<F as Real>::Mask; 3]>;
-
-/// Those of each vector that are not zero.
-///
-/// # Safety
-/// The processor must have what the form needs.
-#[inline(always)]
-unsafe fn parts_of<F: Threes>(which: Vec3) -> [F::Mask; 3] {
-    // SAFETY: passed on.
-    unsafe {
-        let ([a, b, c], zero) = (threes::repeated::<F>(which), F::splat(0.0));
-        [a.above(zero), b.above(zero), c.above(zero)]
-    }
-}
-
-/// The parts that stay; the others are zero.
-///
-/// # Safety
-/// The processor must have what the form needs.
-#[inline(always)]
-unsafe fn only<F: Threes>([a, b, c]: [F; 3], parts: &Parts<F>) -> [F; 3] {
-    let Some([p, q, r]) = *parts else { return [a, b, c] };
-    // SAFETY: passed on.
-    let zero = unsafe { F::splat(0.0) };
-    [F::choose(p, a, zero), F::choose(q, b, zero), F::choose(r, c, zero)]
-}
-
-/// [`kick`] of four of which these parts stay, and what comes of it.
-///
-/// # Safety
-/// The processor must have what the form needs.
-#[inline(always)]
-unsafe fn kicked<F: Threes, const KICKS: usize>(
-    v: &mut [Vec3; 4],
-    parts: &Parts<F>,
-    [fa, fb, fc]: [F; 3],
-    by: F,
-) -> [F; 3] {
-    let p = v.as_flattened_mut().as_mut_ptr();
-    // SAFETY: twelve numbers; the rest is the caller's promise.
-    unsafe {
-        let ([a, b, c], [ba, bb, bc]) = (only(threes::load::<F>(p), parts), by.spread());
-        let (da, db, dc) = (ba * fa, bb * fb, bc * fc);
-        let mut now = [a, b, c];
-        for _ in 0..KICKS {
-            now = [now[0] + da, now[1] + db, now[2] + dc];
-        }
-        threes::store(now, p);
-        now
-    }
-}
-
-/// The larger one; a NaN counts as infinite.
-#[inline(always)]
-pub(super) fn faster(a: f64, b: f64) -> f64 {
-    if b <= a {
-        a
-    } else if b.is_nan() {
-        f64::INFINITY
-    } else {
-        b
     }
 }
 

@@ -1,6 +1,8 @@
 //! Kicks and drifts of a few particles, with and without what stands beside them.
 
 use super::*;
+use perigrain_base::math::body::Quat;
+use perigrain_base::math::vec3::Vec3;
 use perigrain_plan::Pull;
 
 const N: usize = 11;
