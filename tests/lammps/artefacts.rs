@@ -167,3 +167,13 @@ fn who_crosses_a_face_takes_its_present_speed() {
     // LAMMPS 22Jul2025, this deck: that of step 12.
     assert!(near(last("shrinking", "v_vx", &lammps(&[])), 72.9302288853243, SAME));
 }
+
+#[test]
+fn what_2026_has_mended_at_faces_that_keep_the_volume() {
+    // ly = 5/(1 + t/10) shrinks by 0.5/(1 + t/10)^2, at the crossing (step 8) as at any other time.
+    let right = 1.0 + 0.5 / (1.008f64 * 1.008);
+    assert!(near(last("kept_volume", "v_v", &[]), right, SAME));
+    assert!(near(last("kept_volume", "v_v", &["-compat", "lammps"]), right, SAME));
+    // LAMMPS 22Jul2025, this deck: a fifth of it, the rate over the length.
+    assert!(near(last("kept_volume", "v_v", &lammps(&[])), 1.09920634920634, SAME));
+}

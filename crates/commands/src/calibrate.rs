@@ -91,7 +91,7 @@ const DOC: &str = "\
     ends that stand still, and the IDs of the bond. `fields yes` keeps the motion at the largest force.\n\n\
     **fit** varies coefficients (`E`, `nu`, `radius`, `strength` of bpm/beam, `radius` the ratio where that is given, `kr ks kt kb strength` of bpm/rotational, `k` of springs) of bond types until the targets are reached to the part P (default 0.005), and sets \
     them as `bond_coeff` lines would; K is N/m of dsm and ste, the bulk modulus of periodic, strength the largest force over the section. `strength` multiplies all strengths of a type. \
-    A strength is looked for once the other targets are reached, with `together` 0.005 unless another part is given, and only once where all strengths vary: it is proportional to them. One coefficient that all bonds are proportional to takes one solve. Where \
+    A strength is looked for once the other targets are reached, with `together` 0.005 unless another part is given and to 1e-3 of what a break has changed, and only once where all strengths vary: it is proportional to them. One coefficient that all bonds are proportional to takes one solve. Where \
     there are fewer targets than coefficients the change is the smallest one, and the direction left open is told.\n\n\
     Results are a vector: c_ID[1] K, [2] E, [3] ν, [4] the lower and [5] the upper bound of K (NaN where there is none), [6] the force, [7] the displacement \
     Δ of the high end, [8] iterations (ste: the order), [9] the share of contacts and walls in the energy (ste: in Σ k L²), [10] particles left out. E = K l/A with the distance l of the \

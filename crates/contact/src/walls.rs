@@ -367,20 +367,28 @@ pub struct Planes {
     pub nearer: bool,
 }
 
+impl Planes {
+    /// Whether `x` is nearer than `reach` to one of them [length].
+    #[inline]
+    fn reached(&self, x: Vec3, reach: f64) -> bool {
+        let near = |plane: Option<f64>| plane.is_some_and(|p| (x[self.axis] - p).abs() < reach);
+        near(self.lo) || near(self.hi)
+    }
+}
+
 impl Wall for Planes {
     fn planes(&self) -> Option<&Planes> {
         Some(self)
     }
 
     #[inline]
-    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
-        let near = |plane: Option<f64>| plane.is_some_and(|p| (x[self.axis] - p).abs() < reach);
-        near(self.lo) || near(self.hi)
+    fn close(&self, x: Vec3, reach: f64, _: &mut Vec<Near>) -> bool {
+        self.reached(x, reach)
     }
 
     #[inline]
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
-        if !self.close(x, reach, &mut vec![]) {
+        if !self.reached(x, reach) {
             return;
         }
         let height = |plane: Option<f64>, sign: f64| plane.map(|p| sign * (x[self.axis] - p));

@@ -264,29 +264,20 @@ impl Inner {
     }
 }
 
-/// The text with lines of at most so many characters, where words are no longer; what goes on below is set in.
+/// The text with lines of at most so many columns, where words are no longer; what goes on below is set in.
 fn within(text: &str, width: usize) -> String {
-    let mut out = String::with_capacity(text.len());
-    for (k, line) in text.lines().enumerate() {
-        out.extend((k > 0).then_some('\n'));
-        let mut long = 0;
-        for word in line.split_inclusive(' ') {
-            let more = word.trim_end().chars().count();
-            if more > 0 && long > SET_IN.len() && long + more > width {
-                out.truncate(out.trim_end_matches(' ').len());
-                out += "\n";
-                out += SET_IN;
-                long = SET_IN.len();
-            }
-            out += word;
-            long += word.chars().count();
-        }
-    }
-    out
+    let line = |line: &str| {
+        let words = line.trim_start();
+        let options = textwrap::Options::new(width)
+            .initial_indent(&line[..line.len() - words.len()])
+            .subsequent_indent("  ")
+            .word_separator(textwrap::WordSeparator::AsciiSpace)
+            .word_splitter(textwrap::WordSplitter::NoHyphenation)
+            .break_words(false);
+        textwrap::fill(words, options)
+    };
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
-
-/// Stands before what is left of a line.
-const SET_IN: &str = "  ";
 
 /// A screen that keeps what it is told, for tests and bindings.
 #[derive(Clone, Debug, Default)]
@@ -364,7 +355,8 @@ mod tests {
     fn lines_break_between_words() {
         assert_eq!(within("results: a.txt, b.txt\nfast", 14), "results:\n  a.txt, b.txt\nfast");
         assert_eq!(within("results: a_long_name.txt b", 8), "results:\n  a_long_name.txt\n  b");
-        assert_eq!(within("  Step   Temp   ", 13), "  Step   Temp   ");
+        assert_eq!(within("  Step   Temp   ", 13), "  Step   Temp");
+        assert_eq!(within("  a_long_name.txt b", 8), "  a_long_name.txt\n  b");
     }
 
     #[test]

@@ -73,10 +73,7 @@ impl Placed {
         if clock.runs() {
             self.meter.reckon(self.op.bytes(w));
         }
-        match outcome {
-            Ok(outcome) => Ok(outcome),
-            Err(e) => Err(placed_error(e, self, t)),
-        }
+        outcome.map_err(|e| placed_error(e, self, t))
     }
 }
 

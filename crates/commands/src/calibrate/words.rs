@@ -8,7 +8,7 @@ use perigrain_styles::common::axis;
 
 /// The part of what a break changes to which it is found, if nothing is said.
 const BREAKING: f64 = 1e-4;
-/// The same for the way to strength of a fit.
+/// The same for the way to strength of a fit, where bonds that lack more than that of the load go together anyway.
 pub const BREAKING_IN_FITS: f64 = 1e-3;
 /// The part of the load that bonds may lack to break with another one in a fit, if nothing is said.
 const TOGETHER: f64 = 0.005;

@@ -157,7 +157,7 @@ pub struct FamilyOptions {
     pub compat_lammps: bool,
     /// Under that what LAMMPS has mended in 2026: each bond has the critical stretch of its own pair, and plastic bodies return
     /// to the yield surface.
-    #[serde(default, alias = "own_stretches")]
+    #[serde(default)]
     pub mended: bool,
     /// Broken bonds still push when they are shorter than at the start (`peri_modify broken compress`).
     pub compress: bool,
