@@ -195,13 +195,15 @@ impl State {
         }
     }
 
-    /// The line: bar, steps, and as much of speed, time left and the latest values as there is room for.
+    /// The line: bar, steps, and as much of speed, time left and the latest values as there is room for. The bar gives way to the
+    /// steps.
     fn line(&self, made: &Made, log: Option<&Log>, width: usize) -> String {
         let (done, all, [most, of]) = self.share(made);
-        let wide = if width < 100 { 10 } else { 20 };
+        let steps = format!("{} of {most}{} steps{of}", count(done as f64), count(all as f64));
+        let wide = if width < 100 { 10 } else { 20 }.min(width.saturating_sub(steps.chars().count() + 1));
         let full = (wide as f64 * done as f64 / all.max(1) as f64).floor().clamp(0.0, wide as f64) as usize;
-        let mut text = format!("{}{} ", "█".repeat(full), "░".repeat(wide - full));
-        text += &format!("{} of {most}{} steps{of}", count(done as f64), count(all as f64));
+        let gap = if wide == 0 { "" } else { " " };
+        let mut text = format!("{}{}{gap}{steps}", "█".repeat(full), "░".repeat(wide - full));
         let mut words = vec![];
         if let Some(rate) = self.rate.filter(|r| *r > 0.0) {
             let left = duration(((all - done) as f64 / rate).ceil());
@@ -307,6 +309,7 @@ mod tests {
         let state = State { asked: 10, done: 1, rate: Some(3.0), ..State::default() };
         let line = |width| state.line(&MADE, Some(&log), width);
         assert_eq!(line(60), "█░░░░░░░░░ 1 of 10 steps, 3 steps/s, 3 s left  step 121");
+        assert_eq!([25, 15, 14].map(line), ["█░░░░░░░░░ 1 of 10 steps", "░ 1 of 10 steps", "1 of 10 steps"]);
         assert!(line(94).ends_with("  step 121  t 1.210e-6  dt 1.000e-8  pe 0.3126"), "{}", line(94));
     }
 
