@@ -1,5 +1,6 @@
 //! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
 
+use super::together::Together;
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{SIX, Vec3, add, sub};
@@ -138,11 +139,13 @@ impl Grains<'_> {
         }
     }
 
+    #[inline]
     fn motion(&self, i: u32) -> Motion {
         Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
     }
 
     /// The motion of the second particle's image, which a growing box carries along.
+    #[inline]
     fn image_motion(&self, p: &Pair) -> Motion {
         let mut motion = self.motion(p.j);
         if let Some((flow, mask)) = &self.flow
@@ -166,28 +169,34 @@ impl Grains<'_> {
         if !gaps {
             return Meeting::Apart;
         }
-        let rule = rules.get(self.kind[p.i as usize], self.kind[p.j as usize]);
+        let rule = self.rule(p, rules);
         let far = sum + rule.map_or(0.0, |r| r.law.gap(ri * rj / sum));
         if square < far * far { Meeting::Near } else { Meeting::Apart }
     }
 
-    fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Option<Geometry> {
+    /// Where and how the two touch, or have touched and still hold.
+    #[inline]
+    fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Geometry {
         let (i, j) = (p.i as usize, p.j as usize);
         let d = difference(self.x, &self.period, p);
         let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
-        // Who is asked about touches, or has touched and still holds.
-        let mut g = Geometry::of_spheres(d, radii, masses, f64::INFINITY)?;
+        let mut g = Geometry::between(d, radii, masses);
         if let [true, _] | [_, true] = [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
             g.mass = if self.frozen[j] { masses[0] } else { masses[1] };
         }
         if rule.curvature == Curvature::Both {
-            return Some(g);
+            return g;
         }
         match (self.body(p.i) == NO_BODY, self.body(p.j) == NO_BODY) {
-            (true, false) => Some(g.with_curvature(g.radii[0])),
-            (false, true) => Some(g.with_curvature(g.radii[1])),
-            _ => Some(g),
+            (true, false) => g.with_curvature(g.radii[0]),
+            (false, true) => g.with_curvature(g.radii[1]),
+            _ => g,
         }
+    }
+
+    /// The rule for two particles.
+    fn rule<'r, L: Copy>(&self, p: &Pair, rules: &'r Rules<L>) -> Option<&'r Rule<L>> {
+        rules.get(self.kind[p.i as usize], self.kind[p.j as usize])
     }
 }
 
@@ -274,23 +283,39 @@ impl Sweep {
     ) {
         let width = rules.memory();
         self.share(grains, rules);
-        self.wrenches.clear();
+        // All of them are written.
         self.wrenches.resize(self.touching.len(), Wrench::default());
-        self.conductances.clear();
         self.conductances.resize(self.touching.len(), 0.0);
         let history = par::Rows { data: &mut memory.history[..], width };
         let done = (&mut self.wrenches[..], &mut self.conductances[..]);
         let columns = (done, history, &self.touching[..], &self.shares[..]);
         par::each(columns, |_, ((wrenches, conductances), history, pairs, shares)| {
-            let done = wrenches.iter_mut().zip(conductances);
-            for (k, (((w, conductance), p), share)) in done.zip(pairs).zip(shares).enumerate() {
-                let (a, b) = (grains.kind[p.i as usize], grains.kind[p.j as usize]);
-                let Some(rule) = rules.get(a, b) else { continue };
-                let Some(g) = grains.geometry(p, rule) else { continue };
-                let remembered = &mut history.data[k * width..][..width];
-                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.image_motion(p), remembered, step);
-                *conductance = rule.law.conductance(&g);
-                if *share != 1.0 {
+            let mut first = 0;
+            while first < pairs.len() {
+                let rule = grains.rule(&pairs[first], rules);
+                let next = |p: &&Pair| match (grains.rule(p, rules), rule) {
+                    (Some(own), Some(rule)) => std::ptr::eq(own, rule),
+                    (own, rule) => own.is_none() && rule.is_none(),
+                };
+                let alike = first..first + pairs[first..].iter().take_while(next).count();
+                first = alike.end;
+                let (wrenches, conductances) =
+                    (&mut wrenches[alike.clone()], &mut conductances[alike.clone()]);
+                let Some(rule) = rule else {
+                    wrenches.fill(Wrench::default());
+                    conductances.fill(0.0);
+                    continue;
+                };
+                let pairs = &pairs[alike.clone()];
+                let met = |k: usize| {
+                    let (p, g) = (&pairs[k], grains.geometry(&pairs[k], rule));
+                    conductances[k] = rule.law.conductance(&g);
+                    (g, [grains.motion(p.i), grains.image_motion(p)])
+                };
+                let history = &mut history.data[alike.start * width..alike.end * width];
+                Together { law: &rule.law, met, history, width, wrenches: &mut *wrenches, step }.evaluate();
+                for (w, share) in wrenches.iter_mut().zip(&shares[alike]).filter(|(_, share)| **share != 1.0)
+                {
                     *w = w.scaled(*share);
                 }
             }
@@ -336,8 +361,8 @@ impl Sweep {
         mut act: impl FnMut(Seen<'_, L>),
     ) {
         for (k, (pair, wrench)) in self.contacts().enumerate() {
-            let rule = rules.get(grains.kind[pair.i as usize], grains.kind[pair.j as usize]);
-            let Some((rule, g)) = rule.and_then(|r| Some((r, grains.geometry(pair, r)?))) else { continue };
+            let Some(rule) = grains.rule(pair, rules) else { continue };
+            let g = grains.geometry(pair, rule);
             let history = memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]);
             act(Seen { pair, law: &rule.law, geometry: g, history, wrench, share: self.shares[k] });
         }
@@ -410,11 +435,7 @@ impl Sweep {
     fn share<L: Copy>(&mut self, grains: &Grains, rules: &Rules<L>) {
         self.shares.clear();
         self.shares.resize(self.touching.len(), 1.0);
-        let average = |p: &Pair| {
-            rules
-                .get(grains.kind[p.i as usize], grains.kind[p.j as usize])
-                .map_or(Average::None, |r| r.average)
-        };
+        let average = |p: &Pair| grains.rule(p, rules).map_or(Average::None, |r| r.average);
         if rules.any(|r| r.average == Average::Particle) {
             self.counts.clear();
             self.counts.resize(grains.x.len(), 0);

@@ -188,8 +188,8 @@ impl ContactLaw for Granular {
         self.before_normal() + self.normal.memory()
     }
 
-    fn in_lanes(&self) -> bool {
-        self.normal.in_lanes()
+    fn is_told(&self) -> bool {
+        self.normal.is_told()
     }
 
     fn gap(&self, curvature: f64) -> f64 {

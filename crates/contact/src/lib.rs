@@ -16,6 +16,7 @@ pub mod mdr;
 pub mod normal;
 pub mod slider;
 pub mod tangential;
+mod together;
 pub mod turning;
 pub mod walls;
 
@@ -58,14 +59,20 @@ impl Geometry {
         if square >= (sum + gap) * (sum + gap) {
             return None;
         }
-        let distance = square.sqrt();
-        Some(Self {
+        Some(Self::between(d, radii, masses))
+    }
+
+    /// The same, however far apart they are.
+    #[inline]
+    pub fn between(d: Vec3, [ri, rj]: [f64; 2], masses: [f64; 2]) -> Self {
+        let (sum, distance) = (ri + rj, (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt());
+        Self {
             normal: perigrain_base::math::vec3::scale(1.0 / distance, d),
             overlap: sum - distance,
-            radii,
+            radii: [ri, rj],
             curvature: ri * rj / sum,
             mass: masses[0] * masses[1] / (masses[0] + masses[1]),
-        })
+        }
     }
 
     /// The same contact with another effective radius, for instance that of a sphere on a flat body.
@@ -136,10 +143,9 @@ pub trait ContactLaw: Copy + Sync {
     /// first three are negative, the others the same (`world::contacts::mirror`).
     fn memory(&self) -> usize;
 
-    /// Whether `contact` may be asked for several lanes at once; else it is asked for single contacts only, and not by the
-    /// fast loop.
-    fn in_lanes(&self) -> bool {
-        true
+    /// Whether somebody tells contacts their force before they are evaluated, for which the fast loop has no place.
+    fn is_told(&self) -> bool {
+        false
     }
 
     /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].

@@ -1,18 +1,13 @@
 //! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
 
-mod together;
 mod told;
 
-use super::fast::Form;
-use super::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
+use super::together::Together;
+use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_base::par;
 use perigrain_world::contacts::Contacts;
 pub use perigrain_world::region::Near;
-use together::Together;
-
-/// Fewer contacts than these are evaluated one by one: lanes that repeat a contact are in vain.
-const FEW: usize = 3;
 
 /// Something spheres lean on.
 pub trait Wall: Sync {
@@ -168,19 +163,14 @@ impl WallSweep {
         par::each(
             (&mut self.wrenches[..], history, &self.touching[..]),
             |_, (wrenches, history, touching)| {
-                if touching.len() >= FEW && law.in_lanes() && width <= MOST_MEMORY {
-                    let together = Together { law, grains, touching, history: history.data, wrenches, step };
-                    // SAFETY: this processor has what its own form needs.
-                    return unsafe { Form::here().run(together) };
-                }
-                for (k, (w, t)) in wrenches.iter_mut().zip(touching).enumerate() {
-                    let i = t.grain as usize;
-                    let motion = Motion { velocity: grains.v[i], spin: grains.omega[i] };
-                    let wall = Motion { velocity: t.near.velocity, spin: [0.0; 3] };
-                    let geometry = geometry(&t.near, grains.radius[i], grains.mass[i]);
-                    *w =
-                        law.contact(&geometry, &motion, &wall, &mut history.data[k * width..][..width], step);
-                }
+                let met = |k: usize| {
+                    let Touch { grain, near } = &touching[k];
+                    let i = *grain as usize;
+                    let own = Motion { velocity: grains.v[i], spin: grains.omega[i] };
+                    let wall = Motion { velocity: near.velocity, spin: [0.0; 3] };
+                    (geometry(near, grains.radius[i], grains.mass[i]), [own, wall])
+                };
+                Together { law, met, history: history.data, width, wrenches, step }.evaluate();
             },
         );
     }

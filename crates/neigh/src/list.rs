@@ -76,6 +76,10 @@ impl View<'_> {
 #[inline]
 pub fn difference(x: &[[f64; 3]], period: &Periods, p: &Pair) -> [f64; 3] {
     let (a, b) = (&x[p.i as usize], &x[p.j as usize]);
+    // Most pairs lie within the box.
+    if p.shift == [0; 3] {
+        return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    }
     let by = period.shift(p.shift.map(f64::from));
     std::array::from_fn(|d| a[d] - (b[d] + by[d]))
 }

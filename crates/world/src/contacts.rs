@@ -50,7 +50,7 @@ impl Contacts {
         if self.width == width && self.keys == keys {
             return;
         }
-        spare.clear();
+        // All of it is written.
         spare.resize(keys.len() * width, 0.0);
         let kept = width.min(self.width);
         let mut at = 0;
@@ -58,11 +58,12 @@ impl Contacts {
             while self.keys.get(at).is_some_and(|k| k < key) {
                 at += 1;
             }
+            let (row, mut filled) = (&mut spare[new * width..][..width], 0);
             if self.keys.get(at) == Some(key) {
-                let old = &self.history[at * self.width..][..kept];
-                spare[new * width..][..kept].copy_from_slice(old);
-                at += 1;
+                row[..kept].copy_from_slice(&self.history[at * self.width..][..kept]);
+                (at, filled) = (at + 1, kept);
             }
+            row[filled..].fill(0.0);
         }
         std::mem::swap(&mut self.history, spare);
         self.width = width;

@@ -3,7 +3,7 @@
 use super::four::{Avx2, operators};
 use super::lanes::{Lanes, NO_SHIFT, PLACE_BITS, numbers_at, rows_apart, rows_at};
 use super::pair::Sse;
-use super::real::Real;
+use super::real::{Real, lane_by_lane};
 use super::vec3::Vec3;
 use std::arch::x86_64::*;
 use std::hint::black_box;
@@ -120,6 +120,17 @@ impl<const GATHERS: bool> Real for Avx512<GATHERS> {
     #[inline(always)]
     fn each(self, f: impl Fn(f64) -> f64) -> Self {
         let a = self.numbers().map(f);
+        Self(unsafe { _mm512_loadu_pd(a.as_ptr()) })
+    }
+    #[inline(always)]
+    fn each_where<const K: usize>(
+        mask: Self::Mask,
+        of: [Self; K],
+        or: Self,
+        f: impl Fn([f64; K]) -> f64,
+    ) -> Self {
+        let set = Self::choose(mask, or.like(1.0), or.like(0.0));
+        let a = lane_by_lane(set.numbers(), of.map(Self::numbers), or.numbers(), f);
         Self(unsafe { _mm512_loadu_pd(a.as_ptr()) })
     }
 }

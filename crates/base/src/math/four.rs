@@ -1,7 +1,7 @@
 //! Four numbers side by side: a plain array for any processor, one AVX register where there is one, same bits.
 
 use super::pair::Pair;
-use super::real::Real;
+use super::real::{Real, lane_by_lane};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Four lanes that a formula is evaluated on at once, and the moves between rows in memory and lanes.
@@ -141,6 +141,16 @@ impl Real for Plain {
     fn each(self, f: impl Fn(f64) -> f64) -> Self {
         Self(self.0.map(f))
     }
+    #[inline(always)]
+    fn each_where<const K: usize>(
+        mask: Self::Mask,
+        of: [Self; K],
+        or: Self,
+        f: impl Fn([f64; K]) -> f64,
+    ) -> Self {
+        let set = Self::choose(mask, or.like(1.0), or.like(0.0));
+        Self(lane_by_lane(set.0, of.map(|a| a.0), or.0, f))
+    }
 }
 
 impl Four for Plain {
@@ -207,7 +217,9 @@ mod x86 {
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
     use super::{Four, Real};
+    use crate::math::lanes::Lanes;
     use crate::math::pair::Sse;
+    use crate::math::real::lane_by_lane;
 
     /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2: its
     /// constructors are unsafe and promise that.
@@ -275,6 +287,17 @@ mod x86 {
             let mut a = [0.0; 4];
             unsafe { _mm256_storeu_pd(a.as_mut_ptr(), self.0) };
             a = a.map(f);
+            Self(unsafe { _mm256_loadu_pd(a.as_ptr()) })
+        }
+        #[inline(always)]
+        fn each_where<const K: usize>(
+            mask: Self::Mask,
+            of: [Self; K],
+            or: Self,
+            f: impl Fn([f64; K]) -> f64,
+        ) -> Self {
+            let set = Self::choose(mask, or.like(1.0), or.like(0.0));
+            let a = lane_by_lane(set.numbers(), of.map(Self::numbers), or.numbers(), f);
             Self(unsafe { _mm256_loadu_pd(a.as_ptr()) })
         }
     }

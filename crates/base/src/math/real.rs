@@ -43,6 +43,13 @@ pub trait Real:
     fn any(mask: Self::Mask) -> bool;
     /// A function without a form in lanes (powers, angles), lane by lane.
     fn each(self, f: impl Fn(f64) -> f64) -> Self;
+    /// A function of several numbers without a form in lanes, lane by lane where the mask says so; elsewhere `or`.
+    fn each_where<const K: usize>(
+        mask: Self::Mask,
+        of: [Self; K],
+        or: Self,
+        f: impl Fn([f64; K]) -> f64,
+    ) -> Self;
 }
 
 impl Real for f64 {
@@ -89,4 +96,19 @@ impl Real for f64 {
     fn each(self, f: impl Fn(f64) -> f64) -> f64 {
         f(self)
     }
+    #[inline(always)]
+    fn each_where<const K: usize>(mask: bool, of: [f64; K], or: f64, f: impl Fn([f64; K]) -> f64) -> f64 {
+        if mask { f(of) } else { or }
+    }
+}
+
+/// [`Real::each_where`] of lanes as numbers, `set` telling with 1 where.
+#[inline]
+pub(super) fn lane_by_lane<const N: usize, const K: usize>(
+    set: [f64; N],
+    of: [[f64; N]; K],
+    or: [f64; N],
+    f: impl Fn([f64; K]) -> f64,
+) -> [f64; N] {
+    std::array::from_fn(|lane| if set[lane] == 1.0 { f(of.map(|a| a[lane])) } else { or[lane] })
 }

@@ -2,6 +2,7 @@
 
 use super::Material;
 use super::side::Ellipse;
+use perigrain_base::math::real::Real;
 use std::f64::consts::PI;
 
 /// Surfaces stick at most inside this part of the largest radius: at the rim of the ellipse springs are upright. LAMMPS
@@ -12,49 +13,65 @@ const STUCK: f64 = 0.99;
 /// LAMMPS' iteration for the radius inside which surfaces stick ends when its springs fit within this length.
 const COARSE: f64 = 1e-10;
 
-/// Force on a plane at elastic depth `d`, and the radius of contact for damping. Springs inside the radius `stuck` are
-/// glued to the plane until they are longer than √(2π a γ/E_c). `coarse`: with LAMMPS' iteration.
-pub fn force(
+/// Force on a plane at elastic depth `d`, and the radius of contact for damping. Where the contact `unloads`, springs inside the
+/// radius `stuck` are glued to the plane until they are longer than √(2π a γ/E_c). `coarse`: with LAMMPS' iteration.
+#[inline(always)]
+pub fn force<R: Real>(
     m: &Material,
-    shape: &Ellipse,
-    d: f64,
-    stuck: &mut f64,
-    loads: bool,
+    shape: &Ellipse<R>,
+    d: R,
+    stuck: &mut R,
+    unloads: R::Mask,
     coarse: bool,
-) -> (f64, f64) {
-    let plane = m.plane();
+) -> (R, R) {
+    let (plane, zero) = (m.plane(), d.like(0.0));
     let free = shape.radius(d);
     if m.cohesion == 0.0 {
         *stuck = free;
         return (shape.force(plane, d), free);
     }
-    if loads || free >= *stuck {
-        let pressed = if coarse { STUCK * free } else { free.min(0.5 * STUCK * shape.b) };
-        let before = std::mem::replace(stuck, pressed);
+    let pressed = if coarse { free * STUCK } else { free.least(shape.b * (0.5 * STUCK)) };
+    let before = *stuck;
+    let glued = R::both(unloads, before.above(free));
+    *stuck = R::choose(glued, before, pressed);
+    if !R::any(glued) {
         return (shape.force(plane, d), before);
     }
-    let springs = Springs { shape, depth: d, energy: 2.0 * PI * m.cohesion / plane };
-    if springs.misfit(*stuck) < 0.0 {
-        *stuck = springs.last(*stuck, coarse).unwrap_or(0.0);
+    let energy = 2.0 * PI * m.cohesion / plane;
+    let longer = R::both(glued, zero.above(misfit(shape, d, energy, before)));
+    if R::any(longer) {
+        let numbers = [shape.a, shape.b, d, before];
+        *stuck = R::each_where(longer, numbers, *stuck, |[a, b, depth, from]| {
+            let springs = Springs { shape: &Ellipse { a, b }, depth, energy };
+            springs.last(from, coarse).unwrap_or(0.0)
+        });
     }
     let a = *stuck;
-    if a == 0.0 {
-        return (0.0, 0.0);
-    }
     let rim = shape.depth(a);
-    (shape.force(plane, rim) + 2.0 * plane * (d - rim) * a, a)
+    let pushed = shape.force(plane, R::choose(glued, rim, d));
+    let pulled = R::choose(a.above(zero), pushed + (d - rim) * (2.0 * plane) * a, zero);
+    (R::choose(glued, pulled, pushed), R::choose(glued, a, before))
 }
 
 /// Energy of the springs at elastic depth `d`, of which those inside the radius `stuck` are glued to the plane:
 /// U(d_a) + F(d_a) (d − d_a) + E_c a (d − d_a)² where the plane has gone back from d_a, the depth of the rim.
-pub fn energy(m: &Material, shape: &Ellipse, d: f64, stuck: f64) -> f64 {
+#[inline(always)]
+pub fn energy<R: Real>(m: &Material, shape: &Ellipse<R>, d: R, stuck: R) -> R {
     let plane = m.plane();
-    if m.cohesion == 0.0 || shape.radius(d) >= stuck {
-        return shape.energy(plane, d);
+    let free = shape.energy(plane, d);
+    if m.cohesion == 0.0 {
+        return free;
     }
     let rim = shape.depth(stuck);
     let back = d - rim;
-    shape.energy(plane, rim) + shape.force(plane, rim) * back + plane * stuck * back * back
+    let glued = shape.energy(plane, rim) + shape.force(plane, rim) * back + stuck * plane * back * back;
+    R::choose(stuck.above(shape.radius(d)), glued, free)
+}
+
+/// By how much the springs at radius `a` are shorter than they can be; `energy`: 2π γ/E_c.
+#[inline(always)]
+fn misfit<R: Real>(shape: &Ellipse<R>, depth: R, energy: f64, a: R) -> R {
+    depth - shape.depth(a) + (a * energy).sqrt()
 }
 
 /// The springs of a contact that unloads.
@@ -67,9 +84,8 @@ struct Springs<'a> {
 }
 
 impl Springs<'_> {
-    /// By how much the springs at radius `a` are shorter than they can be.
     fn misfit(&self, a: f64) -> f64 {
-        self.depth - self.shape.depth(a) + (self.energy * a).sqrt()
+        misfit(self.shape, self.depth, self.energy, a)
     }
 
     fn slope(&self, a: f64) -> f64 {

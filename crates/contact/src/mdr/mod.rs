@@ -5,16 +5,21 @@
 //! displaced plastically, and answers with its bulk modulus where little of its surface is free ([`State`]).
 
 mod adhesion;
+mod deeds;
 mod pairs;
+mod press;
 mod screen;
 mod side;
 mod state;
 mod walls;
 
-pub use pairs::{Meetings, Sum};
+pub use deeds::Sum;
+pub use pairs::Meetings;
 pub use side::{Pressed, Side};
 pub use state::{State, begin, begun};
 pub use walls::{far_pushed, gather, press};
+
+use perigrain_base::math::real::Real;
 
 /// What grains of such a powder are made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +53,9 @@ impl Material {
     }
 
     /// p_Y, the mean pressure under which a grain of radius R flows at depth δ.
-    pub fn hardness(&self, depth: f64, radius: f64) -> f64 {
-        self.yield_stress * (1.75 * (-4.4 * depth / radius).exp() + 1.0)
+    #[inline(always)]
+    pub fn hardness<R: Real>(&self, depth: R, radius: R) -> R {
+        ((depth * -4.4 / radius).each(f64::exp) * 1.75 + 1.0) * self.yield_stress
     }
 }
 
@@ -65,9 +71,9 @@ pub struct Manner {
 }
 
 impl Manner {
-    /// The stiffness that damping sees: LAMMPS' setup takes that of the step before, none in a new contact.
-    fn damped(self, before: f64, now: f64) -> f64 {
-        if self.lammps && self.setup { before } else { now }
+    /// Whether damping sees the stiffness of the step before, none in a new contact, as in LAMMPS' setup.
+    fn takes_before(self) -> bool {
+        self.lammps && self.setup
     }
 }
 

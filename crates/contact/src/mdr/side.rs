@@ -1,10 +1,17 @@
 //! One grain pressed by a rigid plane: elastic, then plastic, then unloading with or without adhesion.
 
 use super::{Manner, Material, adhesion};
+use perigrain_base::math::real::Real;
 use std::f64::consts::PI;
 
 /// How many numbers a side remembers.
 pub const WIDTH: usize = 11;
+
+/// Where `depth` stands among the numbers.
+pub const DEPTH: usize = 0;
+
+/// Where `area` stands among the numbers.
+pub const AREA: usize = 8;
 
 /// Where `deepest` stands among the numbers.
 pub const DEEPEST: usize = 4;
@@ -14,88 +21,113 @@ pub const PLASTIC: usize = 10;
 
 /// What one grain remembers of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Side {
+pub struct Side<R = f64> {
     /// Depth δ of the plane below the surface of radius R [length].
-    pub depth: f64,
+    pub depth: R,
     /// Depth below the surface the grain had at first.
-    pub first_depth: f64,
+    pub first_depth: R,
     /// The part of δ that shears the contact.
-    pub shearing: f64,
+    pub shearing: R,
     /// The part of δ that squeezes the whole grain.
-    pub squeezing: f64,
+    pub squeezing: R,
     /// Largest `shearing` so far.
-    pub deepest: f64,
-    /// Whether it has yielded.
-    pub yielded: bool,
+    pub deepest: R,
+    /// 1 once it has yielded, 0 before.
+    pub yielded: R,
     /// c_A = π(δ_Y² − δ_Y R), by which the plastic area differs from that of a cap.
-    pub offset: f64,
+    pub offset: R,
     /// Radius inside which the surfaces stick.
-    pub stuck: f64,
+    pub stuck: R,
     /// Area of contact.
-    pub area: f64,
+    pub area: R,
     /// Part in the grain's mean volumetric strain.
-    pub strain: f64,
+    pub strain: R,
     /// Depth that would be left without load.
-    pub plastic: f64,
+    pub plastic: R,
 }
 
 /// What the plane feels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pressed {
+pub struct Pressed<R = f64> {
     /// Force of the contact itself, without the bulk's.
-    pub force: f64,
+    pub force: R,
     /// Radius of contact for damping.
-    pub radius: f64,
-    /// Whether plastic flow goes on.
-    pub flows: bool,
+    pub radius: R,
+    /// 1 where plastic flow goes on, else 0.
+    pub flows: R,
 }
 
 /// The ellipse of the method of dimensionality reduction: a plane pressed into springs of this profile has the force of
 /// the contact. Height A/2, width B.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ellipse {
+pub struct Ellipse<R = f64> {
     /// A [length].
-    pub a: f64,
+    pub a: R,
     /// B [length].
-    pub b: f64,
+    pub b: R,
 }
 
-impl Ellipse {
+impl<R: Real> Ellipse<R> {
+    /// d/A, from 0 to 1.
+    #[inline(always)]
+    fn part(&self, d: R) -> R {
+        let x = d / self.a;
+        x.like(1.0).least(x.like(0.0).most(x))
+    }
+
     /// Force on a plane at depth `d`: E_c A B/4 (acos(1 − 2x) − (1 − 2x) √(4x − 4x²)), x = d/A.
-    pub fn force(&self, plane: f64, d: f64) -> f64 {
-        let x = (d / self.a).clamp(0.0, 1.0);
-        0.25 * plane * self.a * self.b * segment(x)
+    #[inline(always)]
+    pub fn force(&self, plane: f64, d: R) -> R {
+        self.a * (0.25 * plane) * self.b * segment(self.part(d))
     }
 
     /// Energy of the springs on a plane at depth `d`, ∫ F dd: E_c A² B/8 (sin θ − θ cos θ − sin³ θ/3), θ = acos(1 − 2x).
-    pub fn energy(&self, plane: f64, d: f64) -> f64 {
-        let x = (d / self.a).clamp(0.0, 1.0);
-        0.25 * plane * self.a * self.a * self.b * bowl(x)
+    #[inline(always)]
+    pub fn energy(&self, plane: f64, d: R) -> R {
+        self.a * (0.25 * plane) * self.a * self.b * self.part(d).each(bowl)
     }
 
     /// Force at the depth A/2, where all springs are pressed: π/8 E_c A B.
-    fn whole_force(&self, plane: f64) -> f64 {
-        0.125 * PI * plane * self.a * self.b
+    #[inline(always)]
+    fn whole_force(&self, plane: f64) -> R {
+        self.a * (0.125 * PI * plane) * self.b
     }
 
     /// Radius of contact at depth `d`.
-    pub fn radius(&self, d: f64) -> f64 {
-        let x = (d / self.a).clamp(0.0, 1.0);
-        0.5 * self.b * (4.0 * x - 4.0 * x * x).max(0.0).sqrt()
+    #[inline(always)]
+    pub fn radius(&self, d: R) -> R {
+        let x = self.part(d);
+        self.b * 0.5 * x.like(0.0).most(x * 4.0 - x * 4.0 * x).sqrt()
     }
 
     /// Depth at which the radius of contact is `r`.
-    pub fn depth(&self, r: f64) -> f64 {
-        0.5 * self.a - self.a / self.b * (0.25 * self.b * self.b - r * r).max(0.0).sqrt()
+    #[inline(always)]
+    pub fn depth(&self, r: R) -> R {
+        let (a, b) = (self.a, self.b);
+        a * 0.5 - a / b * r.like(0.0).most(b * 0.25 * b - r * r).sqrt()
     }
 }
 
 /// acos(1 − 2x) − (1 − 2x) √(4x − 4x²) = ∫ 8 √(x − x²), without cancellation at small x.
-fn segment(x: f64) -> f64 {
-    if x > SMALL {
-        return 2.0 * x.sqrt().asin() - 2.0 * (1.0 - 2.0 * x) * (x * (1.0 - x)).sqrt();
+#[inline(always)]
+fn segment<R: Real>(x: R) -> R {
+    let far = x.above(x.like(SMALL));
+    if !R::any(far) {
+        return near_segment(x);
     }
-    SERIES.iter().rev().fold(0.0, |sum, c| c + x * sum) * x * x.sqrt()
+    let one = x.like(1.0);
+    let whole = x.sqrt().each(f64::asin) * 2.0 - (one - x * 2.0) * 2.0 * (x * (one - x)).sqrt();
+    if R::ONE { whole } else { R::choose(far, whole, near_segment(x)) }
+}
+
+/// [`segment`] by its series.
+#[inline(always)]
+fn near_segment<R: Real>(x: R) -> R {
+    let mut sum = x.like(0.0);
+    for c in SERIES.iter().rev() {
+        sum = x * sum + *c;
+    }
+    sum * x * x.sqrt()
 }
 
 /// ∫ [`segment`] from 0, without cancellation at small x.
@@ -127,6 +159,19 @@ impl Side {
     pub fn read(m: &[f64]) -> Self {
         let mut numbers = [0.0; WIDTH];
         numbers.iter_mut().zip(m).for_each(|(a, b)| *a = *b);
+        Self::of(numbers)
+    }
+
+    /// Into what a contact remembers.
+    pub fn write(&self, m: &mut [f64]) {
+        m.iter_mut().zip(self.numbers()).for_each(|(a, b)| *a = b);
+    }
+}
+
+impl<R: Real> Side<R> {
+    /// From its numbers.
+    #[inline(always)]
+    pub fn of(numbers: [R; WIDTH]) -> Self {
         let [depth, first_depth, shearing, squeezing, deepest, yielded, offset, stuck, area, strain, plastic] =
             numbers;
         Self {
@@ -135,7 +180,7 @@ impl Side {
             shearing,
             squeezing,
             deepest,
-            yielded: yielded != 0.0,
+            yielded,
             offset,
             stuck,
             area,
@@ -144,97 +189,125 @@ impl Side {
         }
     }
 
-    /// Into what a contact remembers.
-    pub fn write(&self, m: &mut [f64]) {
-        let yielded = f64::from(u8::from(self.yielded));
-        let (s, t) = ([self.depth, self.first_depth, self.shearing, self.squeezing], [self.deepest, yielded]);
-        let u = [self.offset, self.stuck, self.area, self.strain, self.plastic];
-        m.iter_mut().zip(s.into_iter().chain(t).chain(u)).for_each(|(a, b)| *a = b);
+    /// Its numbers.
+    #[inline(always)]
+    pub fn numbers(&self) -> [R; WIDTH] {
+        let Self {
+            depth,
+            first_depth,
+            shearing,
+            squeezing,
+            deepest,
+            yielded,
+            offset,
+            stuck,
+            area,
+            strain,
+            plastic,
+        } = *self;
+        [depth, first_depth, shearing, squeezing, deepest, yielded, offset, stuck, area, strain, plastic]
     }
 
     /// Moves the plane to depth `depth` below the surface of radius `radius`, what was squeezed staying so; `mean`: by how much the grain's planes
-    /// came nearer in this step, on average over their areas, where the bulk answers.
-    pub fn go(&mut self, depth: f64, radius: f64, first: f64, mean: Option<f64>) {
-        self.squeezing = mean.map_or(self.squeezing, |mean| (self.squeezing + mean).max(0.0));
+    /// came nearer in this step, on average over their areas, where the bulk answers, else 0.
+    #[inline(always)]
+    pub fn go(&mut self, depth: R, radius: R, first: R, mean: R) {
+        self.squeezing = depth.like(0.0).most(self.squeezing + mean);
         self.shearing = depth - self.squeezing;
         self.depth = depth;
         self.first_depth = depth - (radius - first);
     }
 
     /// The contact's force on the plane, for a grain of radius `radius`.
-    pub fn press(&mut self, m: &Material, radius: f64, manner: Manner) -> Pressed {
-        let plane = m.plane();
-        self.deepest = self.deepest.max(self.shearing);
+    #[inline(always)]
+    pub fn press(&mut self, m: &Material, radius: R, manner: Manner) -> Pressed<R> {
+        let (plane, zero, one) = (m.plane(), radius.like(0.0), radius.like(1.0));
+        self.deepest = self.deepest.most(self.shearing);
         let deepest = self.deepest;
         let hardness = m.hardness(deepest, radius);
-        // Mean pressure of Hertz' contact.
-        let flows = self.shearing >= deepest;
-        let may = flows && !(manner.lammps && manner.setup);
-        if !self.yielded && may && 4.0 * plane * deepest.sqrt() / (3.0 * PI * radius.sqrt()) > hardness {
-            self.yielded = true;
-            self.offset = PI * (deepest * deepest - deepest * radius);
+        let unloads = deepest.above(self.shearing);
+        let flows = R::choose(unloads, zero, one);
+        if !(manner.lammps && manner.setup) {
+            // Mean pressure of Hertz' contact.
+            let mean = deepest.sqrt() * (4.0 * plane) / (radius.sqrt() * (3.0 * PI));
+            let yields = R::both(R::both(flows.above(zero), mean.above(hardness)), one.above(self.yielded));
+            self.offset = R::choose(yields, (deepest * deepest - deepest * radius) * PI, self.offset);
+            self.yielded = R::choose(yields, one, self.yielded);
         }
         let (shape, lift) = self.shape(m, radius, hardness);
         let most = self.most(&shape);
         self.area = self.contact_area(radius);
         self.plastic = deepest - (most + lift);
-        if most <= 0.0 {
-            return Pressed { flows, ..Pressed::default() };
+        let pressed = most.above(zero);
+        if !R::any(pressed) {
+            return Pressed { force: zero, radius: zero, flows };
         }
+        let mut stuck = self.stuck;
         let elastic = self.elastic(most, lift);
-        let (force, contact) = adhesion::force(m, &shape, elastic, &mut self.stuck, flows, manner.lammps);
-        Pressed { force, radius: contact, flows }
+        let (force, contact) = adhesion::force(m, &shape, elastic, &mut stuck, unloads, manner.lammps);
+        self.stuck = R::choose(pressed, stuck, self.stuck);
+        Pressed { force: R::choose(pressed, force, zero), radius: R::choose(pressed, contact, zero), flows }
     }
 
     /// What the plane gets back if it goes as it does when it unloads: the energy of the springs, spread over the way by which the rim rises
     /// [energy].
-    pub fn energy(&self, m: &Material, radius: f64) -> f64 {
+    #[inline(always)]
+    pub fn energy(&self, m: &Material, radius: R) -> R {
+        let zero = radius.like(0.0);
         let (shape, lift) = self.shape(m, radius, m.hardness(self.deepest, radius));
         let most = self.most(&shape);
-        if most <= 0.0 {
-            return 0.0;
-        }
-        (1.0 + lift / most) * adhesion::energy(m, &shape, self.elastic(most, lift), self.stuck)
+        let springs = adhesion::energy(m, &shape, self.elastic(most, lift), self.stuck);
+        R::choose(most.above(zero), (lift / most + 1.0) * springs, zero)
+    }
+
+    /// Where it has yielded.
+    #[inline(always)]
+    pub fn has_yielded(&self) -> R::Mask {
+        self.yielded.above(self.yielded.like(0.0))
     }
 
     /// The elastic depth at the largest depth.
-    fn most(&self, shape: &Ellipse) -> f64 {
-        if self.yielded { 0.5 * shape.a } else { self.deepest }
+    #[inline(always)]
+    fn most(&self, shape: &Ellipse<R>) -> R {
+        R::choose(self.has_yielded(), shape.a * 0.5, self.deepest)
     }
 
     /// The elastic depth now.
-    fn elastic(&self, most: f64, lift: f64) -> f64 {
-        (self.shearing - self.deepest + most + lift) / (1.0 + lift / most)
+    #[inline(always)]
+    fn elastic(&self, most: R, lift: R) -> R {
+        (self.shearing - self.deepest + most + lift) / (lift / most + 1.0)
     }
 
     /// The ellipse, and δ_R, by which the rim of the contact lies lower while it is loaded.
-    fn shape(&self, m: &Material, radius: f64, hardness: f64) -> (Ellipse, f64) {
-        if !self.yielded {
-            return (Ellipse { a: 4.0 * radius, b: 2.0 * radius }, 0.0);
+    #[inline(always)]
+    fn shape(&self, m: &Material, radius: R, hardness: R) -> (Ellipse<R>, R) {
+        let zero = radius.like(0.0);
+        let whole = Ellipse { a: radius * 4.0, b: radius * 2.0 };
+        let yielded = self.has_yielded();
+        if !R::any(yielded) {
+            return (whole, zero);
         }
         let (deepest, plane, nu) = (self.deepest, m.plane(), m.poisson);
-        let square = 2.0 * deepest * radius - deepest * deepest + self.offset / PI;
-        let most = square.max(0.0).sqrt();
-        let shape = Ellipse { a: 4.0 * hardness * most / plane, b: 2.0 * most };
-        if most == 0.0 {
-            return (shape, 0.0);
-        }
+        let square = deepest * 2.0 * radius - deepest * deepest + self.offset / PI;
+        let most = zero.most(square).sqrt();
+        let shape = Ellipse { a: hardness * 4.0 * most / plane, b: most * 2.0 };
         // Boussinesq's displacement at depth z_R under a pressure spread over the contact.
-        let half = 0.5 * shape.a;
+        let half = shape.a * 0.5;
         let force = shape.whole_force(plane);
         let z = radius - (deepest - half);
         let far = (square + z * z).sqrt();
-        let lift = force * (2.0 * square * (nu - 1.0) - (2.0 * nu - 1.0) * z * (far - z))
-            / (2.0 * PI * square * m.shear() * far);
-        (shape, lift)
+        let lift = force * (square * 2.0 * (nu - 1.0) - z * (2.0 * nu - 1.0) * (far - z))
+            / (square * (2.0 * PI) * m.shear() * far);
+        let lift = R::choose(R::both(yielded, most.above(zero)), lift, zero);
+        let a = R::choose(yielded, shape.a, whole.a);
+        (Ellipse { a, b: R::choose(yielded, shape.b, whole.b) }, lift)
     }
 
-    fn contact_area(&self, radius: f64) -> f64 {
-        let d = self.depth;
-        if d <= 0.0 {
-            return 0.0;
-        }
-        let area = if self.yielded { PI * (2.0 * d * radius - d * d) + self.offset } else { PI * radius * d };
-        area.max(0.0)
+    #[inline(always)]
+    fn contact_area(&self, radius: R) -> R {
+        let (d, zero) = (self.depth, radius.like(0.0));
+        let flowed = (d * 2.0 * radius - d * d) * PI + self.offset;
+        let area = R::choose(self.has_yielded(), flowed, radius * PI * d);
+        R::choose(d.above(zero), zero.most(area), zero)
     }
 }

@@ -57,17 +57,22 @@ pub struct State {
 
 /// What contacts ask about a grain: see [`State`].
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Grain {
+#[repr(C)]
+pub struct Grain<R = f64> {
     /// First radius.
-    pub first: f64,
+    pub first: R,
     /// Volume under the mean stress.
-    pub volume: f64,
+    pub volume: R,
     /// Volume without what planes cut off.
-    pub left_volume: f64,
+    pub left_volume: R,
     /// Area of contact in the step before.
-    pub area_before: f64,
-    /// How the bulk answers: the mean approach of its planes where too little of its surface is free.
-    pub mean: Option<f64>,
+    pub area_before: R,
+    /// How the bulk answers: the mean approach of its planes where too little of its surface is free, else 0.
+    pub mean: R,
+    /// Radius.
+    pub radius: R,
+    /// Nothing: grains are read four numbers at a time.
+    pub spare: R,
 }
 
 impl State {
@@ -169,14 +174,16 @@ impl State {
         sums.into_iter().chain(&mut self.stress).for_each(|c| c.fill(0.0));
     }
 
-    /// What contacts ask about grain `k`.
-    pub fn grain(&self, m: &Material, k: usize) -> Grain {
+    /// What contacts ask about grain `k` of this radius.
+    pub fn grain(&self, m: &Material, k: usize, radius: f64) -> Grain {
         Grain {
             first: self.first[k],
             volume: self.volume[k],
             left_volume: self.left_volume[k],
             area_before: self.area_before[k],
-            mean: (self.free[k] < m.confinement).then(|| self.mean[k]),
+            mean: if self.free[k] < m.confinement { self.mean[k] } else { 0.0 },
+            radius,
+            spare: 0.0,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Contacts of a powder's grains with walls.
 
-use super::pairs::{Deed, side};
+use super::deeds::{Deed, side};
 use super::side::{Side, WIDTH};
 use super::{Manner, Material, State, TOLD};
 use perigrain_world::contacts::Contacts;
@@ -38,11 +38,11 @@ pub fn press(
     manner: Manner,
 ) -> Deed {
     let mut one = Side::read(&memory[..WIDTH]);
-    let (force, a, deed) = side(m, &s.grain(m, k), radius, depth, &mut one, 1.0, manner);
+    let (force, a, deed) = side(m, &s.grain(m, k, radius), depth, &mut one, 1.0, manner);
     one.write(memory);
     let far = far_pushed(one.first_depth, s.first[k]);
     let force = force * far;
-    let damped = manner.damped(told[1], 0.5 * m.plane() * a);
+    let damped = if manner.takes_before() { told[1] } else { 0.5 * m.plane() * a };
     told[..TOLD].copy_from_slice(&[force, damped, one.area, deed.energy * far]);
     deed
 }

@@ -73,7 +73,7 @@ pub struct Mdr {
 }
 
 impl NormalLaw for Mdr {
-    const IN_LANES: bool = false;
+    const IS_TOLD: bool = true;
     const FLOWS: bool = true;
     const MEMORY: usize = TOLD;
 

@@ -39,8 +39,8 @@ pub trait NormalLaw: Copy + Debug + PartialEq {
     const BY_RADIUS: bool = true;
     /// Whether friction counts from the force and [`Push::hold`], not from the damped force.
     const STICKS: bool = false;
-    /// Whether the law may be asked for several contacts at once.
-    const IN_LANES: bool = true;
+    /// Whether contacts remember the force that somebody has told them.
+    const IS_TOLD: bool = false;
     /// Whether what the force takes besides [`NormalLaw::energy`] is flow and torn surfaces, which the ledger books as such.
     const FLOWS: bool = false;
     /// How many numbers a contact remembers for it; they begin as zeros and are the same seen from j.
@@ -114,9 +114,9 @@ macro_rules! normal_laws {
                 match self { $(Self::$Law(_) => $module::$Law::STICKS,)* }
             }
 
-            /// See [`NormalLaw::IN_LANES`].
-            pub fn in_lanes(&self) -> bool {
-                match self { $(Self::$Law(_) => $module::$Law::IN_LANES,)* }
+            /// See [`NormalLaw::IS_TOLD`].
+            pub fn is_told(&self) -> bool {
+                match self { $(Self::$Law(_) => $module::$Law::IS_TOLD,)* }
             }
 
             /// See [`NormalLaw::FLOWS`].

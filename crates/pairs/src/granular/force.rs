@@ -380,7 +380,7 @@ impl Op for Force {
 /// The laws as the fast loop wants them; `None` where some rule is not for it.
 fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<Granular>> {
     let plain = rules.any(|r| {
-        !r.law.in_lanes()
+        r.law.is_told()
             || r.average != Average::None
             || r.curvature != Curvature::Both
             || r.law.memory() > MOST_MEMORY

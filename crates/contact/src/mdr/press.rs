@@ -1,0 +1,227 @@
+//! The loop that presses contacts among grains, several at a time.
+
+use super::deeds::{Deed, side};
+use super::pairs::cut;
+use super::side::{Side, WIDTH};
+use super::state::Grain;
+use super::{Manner, Material, PAIR, TOLD};
+use perigrain_base::math::form::InLanes;
+use perigrain_base::math::four::Four;
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
+
+/// Geometry of a contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seen {
+    /// Indices of both grains.
+    pub ends: [u32; 2],
+    /// Unit vector from the second to the first.
+    pub normal: Vec3,
+    /// How far the spheres overlap [length].
+    pub overlap: f64,
+    /// How deep the plane between them lies in each [length].
+    pub depths: [f64; 2],
+    /// The part of the force that other grains in between leave.
+    pub open: f64,
+}
+
+/// Contacts and what is read and written for them: as many rows of each column.
+pub(super) struct Press<'a> {
+    pub m: &'a Material,
+    pub manner: Manner,
+    /// All grains.
+    pub grains: &'a [Grain],
+    pub seen: &'a [Seen],
+    /// [`PAIR`] numbers of each contact.
+    pub memory: &'a mut [f64],
+    /// What the law is told, [`TOLD`] numbers at the end of each row.
+    pub told: par::Rows<'a, f64>,
+    pub deeds: &'a mut [[Deed; 2]],
+}
+
+/// Where what is known of the sides of some contacts stands.
+struct Places<const N: usize> {
+    grains: [[*const f64; N]; 2],
+    memory: [*mut f64; N],
+    told: [*mut f64; N],
+    deeds: [*mut f64; N],
+}
+
+impl InLanes for Press<'_> {
+    type Out = ();
+
+    /// The columns must have as many rows as contacts are seen.
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { m, manner, grains, seen, memory, told, deeds } = self;
+        let width = told.width;
+        assert!(memory.len() == seen.len() * PAIR && deeds.len() == seen.len());
+        assert!(told.data.len() == seen.len() * width && width >= TOLD);
+        let (memory, told, deeds) = (memory.as_mut_ptr(), told.data.as_mut_ptr(), deeds.as_mut_ptr());
+        for first in (0..seen.len()).step_by(N) {
+            let (null, mut at) = (std::ptr::null_mut(), [0; N]);
+            let mut places = Places::<N> {
+                grains: [[std::ptr::null(); N]; 2],
+                memory: [null; N],
+                told: [null; N],
+                deeds: [null; N],
+            };
+            for lane in 0..N {
+                // Past the last one it is repeated, and written as often, always the same.
+                let k = (first + lane).min(seen.len() - 1);
+                at[lane] = k;
+                for side in 0..2 {
+                    let grain: *const Grain = &raw const grains[seen[k].ends[side] as usize];
+                    places.grains[side][lane] = grain.cast();
+                }
+                // SAFETY: rows of column k, which there are, as was asked above.
+                unsafe {
+                    places.memory[lane] = memory.add(k * PAIR);
+                    places.told[lane] = told.add((k + 1) * width - TOLD);
+                    places.deeds[lane] = deeds.add(k).cast();
+                }
+            }
+            let mut numbers = [[0.0; N]; 4];
+            for lane in 0..N {
+                let seen = &seen[at[lane]];
+                let [a, b] = seen.depths;
+                [numbers[0][lane], numbers[1][lane]] = [a, b];
+                [numbers[2][lane], numbers[3][lane]] = [seen.overlap, seen.open];
+            }
+            // SAFETY: the caller's promise; the places are those of contacts and of their grains.
+            unsafe {
+                let [a, b, overlap, open] = numbers;
+                press::<N, V>(m, manner, &places, [V::of(a), V::of(b)], V::of(overlap), V::of(open));
+            }
+        }
+    }
+}
+
+/// Presses some contacts.
+///
+/// # Safety
+/// The processor must have what the lanes need; the places must be those of grains and of rows of contacts, which nobody else
+/// touches.
+#[inline(always)]
+unsafe fn press<const N: usize, V: Lanes<N>>(
+    m: &Material,
+    manner: Manner,
+    at: &Places<N>,
+    depths: [V; 2],
+    overlap: V,
+    open: V,
+) {
+    // SAFETY: passed on.
+    unsafe {
+        let grains = [grain::<N, V>(&at.grains[0]), grain::<N, V>(&at.grains[1])];
+        // The last number of the second side's rows is the largest overlap; that of the first side's the second's depth, which it
+        // gets itself.
+        let rows = [numbers::<N, V>(&at.memory, 0), numbers::<N, V>(&at.memory, WIDTH)];
+        let largest = rows[1][WIDTH].most(overlap);
+        let (mut force, mut contact, mut area) = (V::all(0.0), V::all(0.0), V::all(0.0));
+        let mut energies = [V::all(0.0); 2];
+        let mut plastic = energies;
+        for k in 0..2 {
+            let [a, b, c, d, e, f, g, h, i, j, l, _] = rows[k];
+            let mut one = Side::of([a, b, c, d, e, f, g, h, i, j, l]);
+            let (push, radius, deed) = side(m, &grains[k], depths[k], &mut one, open, manner);
+            force = force + push * 0.5;
+            contact = contact + radius;
+            area = area + one.area * 0.5;
+            (energies[k], plastic[k]) = (deed.energy, one.plastic);
+            let [a, b, c, d, e, f, g, h, i, j, l] = one.numbers();
+            put::<N, V>(&at.memory, k * WIDTH, [a, b, c, d]);
+            put::<N, V>(&at.memory, k * WIDTH + 4, [e, f, g, h]);
+            put::<N, V>(&at.memory, k * WIDTH + 8, [i, j, l, largest]);
+            put::<N, V>(&at.deeds, k * 8, [deed.strain, deed.cap, deed.area, deed.surface]);
+            put::<N, V>(&at.deeds, k * 8 + 4, [deed.displaced, deed.covered, deed.stress, deed.energy]);
+        }
+        let mut damped = contact * (2.0 * m.plane());
+        if manner.takes_before() {
+            damped = four::<N, V>(&at.told, 0)[1];
+        }
+        let mut energy = V::all(0.0);
+        if manner.booked {
+            energy = given_back([grains[0].radius, grains[1].radius], largest, plastic, energies);
+        }
+        put::<N, V>(&at.told, 0, [force, damped, area, energy]);
+    }
+}
+
+/// Four numbers from `part` on of rows, turned into lanes.
+///
+/// # Safety
+/// There must be such rows.
+#[inline(always)]
+unsafe fn four<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize) -> [V; 4] {
+    // SAFETY: passed on.
+    unsafe {
+        let mut four = [V::Row::splat(0.0); N];
+        for lane in 0..N {
+            four[lane] = V::Row::load(rows[lane].add(part));
+        }
+        V::of_rows(four)
+    }
+}
+
+/// Puts four numbers from `part` on into rows.
+///
+/// # Safety
+/// There must be such rows.
+#[inline(always)]
+unsafe fn put<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize, lanes: [V; 4]) {
+    let four = V::to_rows(lanes);
+    for lane in 0..N {
+        // SAFETY: passed on.
+        unsafe { four[lane].store(rows[lane].add(part)) };
+    }
+}
+
+/// What a side remembers, from `part` on, and what stands behind it.
+///
+/// # Safety
+/// There must be such rows.
+#[inline(always)]
+unsafe fn numbers<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize) -> [V; WIDTH + 1] {
+    // SAFETY: passed on.
+    unsafe {
+        let [a, b, c, d] = four::<N, V>(rows, part);
+        let [e, f, g, h] = four::<N, V>(rows, part + 4);
+        let [i, j, k, l] = four::<N, V>(rows, part + 8);
+        [a, b, c, d, e, f, g, h, i, j, k, l]
+    }
+}
+
+/// The grains at these places.
+///
+/// # Safety
+/// There must be grains.
+#[inline(always)]
+unsafe fn grain<const N: usize, V: Lanes<N>>(at: &[*const f64; N]) -> Grain<V> {
+    // SAFETY: passed on.
+    unsafe {
+        let (mut low, mut high) = ([V::Row::splat(0.0); N], [V::Row::splat(0.0); N]);
+        for lane in 0..N {
+            low[lane] = V::Row::load(at[lane]);
+            high[lane] = V::Row::load3(at[lane].add(4));
+        }
+        let ([first, volume, left_volume, area_before], [mean, radius, spare, _]) =
+            (V::of_rows(low), V::of_rows(high));
+        Grain { first, volume, left_volume, area_before, mean, radius, spare }
+    }
+}
+
+/// The work of the mean force of both sides on the way on which they unload, where each goes its part of the overlap.
+#[inline(always)]
+fn given_back<R: Real>(radii: [R; 2], largest: R, plastic: [R; 2], energies: [R; 2]) -> R {
+    let (most, way) = (cut(largest, radii), largest - plastic[0] - plastic[1]);
+    let zero = largest.like(0.0);
+    let mut sum = zero;
+    for k in 0..2 {
+        let own = most[k] - plastic[k];
+        sum = sum + R::choose(own.above(zero), energies[k] * way / own, zero);
+    }
+    sum * 0.5
+}
