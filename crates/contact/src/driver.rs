@@ -1,9 +1,9 @@
 //! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
 
-use super::together::Together;
+use super::together::{Met, Together};
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use perigrain_base::math::periods::Periods;
-use perigrain_base::math::vec3::{SIX, Vec3, add, sub};
+use perigrain_base::math::vec3::{SIX, Vec3, add, length, sub};
 use perigrain_base::par;
 use perigrain_neigh::list::{Pair, difference};
 use perigrain_world::Travel;
@@ -174,24 +174,25 @@ impl Grains<'_> {
         if square < far * far { Meeting::Near } else { Meeting::Apart }
     }
 
-    /// Where and how the two touch, or have touched and still hold.
+    /// Where and how the two touch, or have touched and still hold, and how far apart their centres are.
     #[inline]
-    fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Geometry {
+    fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> (Geometry, f64) {
         let (i, j) = (p.i as usize, p.j as usize);
         let d = difference(self.x, &self.period, p);
+        let distance = length(d);
         let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
-        let mut g = Geometry::between(d, radii, masses);
+        let mut g = Geometry::between(d, distance, radii, masses);
         if let [true, _] | [_, true] = [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
             g.mass = if self.frozen[j] { masses[0] } else { masses[1] };
         }
-        if rule.curvature == Curvature::Both {
-            return g;
+        if rule.curvature == Curvature::Impactor {
+            g = match [p.i, p.j].map(|k| self.body(k) == NO_BODY) {
+                [true, false] => g.with_curvature(g.radii[0]),
+                [false, true] => g.with_curvature(g.radii[1]),
+                _ => g,
+            };
         }
-        match (self.body(p.i) == NO_BODY, self.body(p.j) == NO_BODY) {
-            (true, false) => g.with_curvature(g.radii[0]),
-            (false, true) => g.with_curvature(g.radii[1]),
-            _ => g,
-        }
+        (g, distance)
     }
 
     /// The rule for two particles.
@@ -215,6 +216,35 @@ enum Meeting {
 /// Overlap over the smaller radius beyond which laws of contact mean little.
 pub const DEEP: f64 = 0.1;
 
+/// Pairs of grains that touch.
+struct Ends<'a> {
+    pairs: &'a [Pair],
+    grains: &'a Grains<'a>,
+}
+
+impl Met for Ends<'_> {
+    #[inline(always)]
+    fn own(&self, k: usize) -> u32 {
+        self.pairs[k].i
+    }
+
+    fn other(&self, k: usize) -> Motion {
+        self.grains.image_motion(&self.pairs[k])
+    }
+
+    #[inline(always)]
+    fn others<const N: usize>(&self, k: [usize; N]) -> Option<[u32; N]> {
+        if self.grains.flow.is_some() {
+            return None;
+        }
+        let mut others = [0; N];
+        for lane in 0..N {
+            others[lane] = self.pairs[k[lane]].j;
+        }
+        Some(others)
+    }
+}
+
 /// One contact of an evaluation.
 pub struct Seen<'a, L> {
     /// Who touches.
@@ -237,6 +267,10 @@ pub struct Sweep {
     flags: Vec<Meeting>,
     touching: Vec<Pair>,
     keys: Vec<[u32; 2]>,
+    /// Where and how they touch.
+    geometry: Vec<Geometry>,
+    /// How far apart their centres are [length].
+    distances: Vec<f64>,
     shares: Vec<f64>,
     counts: Vec<u32>,
     names: Vec<[u64; 2]>,
@@ -271,6 +305,16 @@ impl Sweep {
     ) {
         self.find(list, grains, rules, memory);
         memory.carry(&self.keys, rules.memory(), &mut self.spare);
+        // All of them are written.
+        self.geometry.resize(self.touching.len(), Geometry::default());
+        self.distances.resize(self.touching.len(), 0.0);
+        let columns = (&mut self.geometry[..], &mut self.distances[..], &self.touching[..]);
+        par::each(columns, |_, (geometry, distances, pairs)| {
+            for ((g, distance), p) in geometry.iter_mut().zip(distances).zip(pairs) {
+                (*g, *distance) =
+                    grains.rule(p, rules).map_or_else(Default::default, |rule| grains.geometry(p, rule));
+            }
+        });
     }
 
     /// Evaluates the contacts that were found, the second half.
@@ -288,8 +332,8 @@ impl Sweep {
         self.conductances.resize(self.touching.len(), 0.0);
         let history = par::Rows { data: &mut memory.history[..], width };
         let done = (&mut self.wrenches[..], &mut self.conductances[..]);
-        let columns = (done, history, &self.touching[..], &self.shares[..]);
-        par::each(columns, |_, ((wrenches, conductances), history, pairs, shares)| {
+        let columns = (done, history, &self.touching[..], &self.geometry[..], &self.shares[..]);
+        par::each(columns, |_, ((wrenches, conductances), history, pairs, geometry, shares)| {
             let mut first = 0;
             while first < pairs.len() {
                 let rule = grains.rule(&pairs[first], rules);
@@ -306,20 +350,33 @@ impl Sweep {
                     conductances.fill(0.0);
                     continue;
                 };
-                let pairs = &pairs[alike.clone()];
-                let met = |k: usize| {
-                    let (p, g) = (&pairs[k], grains.geometry(&pairs[k], rule));
-                    conductances[k] = rule.law.conductance(&g);
-                    (g, [grains.motion(p.i), grains.image_motion(p)])
+                let geometry = &geometry[alike.clone()];
+                for (conductance, g) in conductances.iter_mut().zip(geometry) {
+                    *conductance = rule.law.conductance(g);
+                }
+                let together = Together {
+                    law: &rule.law,
+                    geometry,
+                    met: Ends { pairs: &pairs[alike.clone()], grains },
+                    v: grains.v,
+                    omega: grains.omega,
+                    history: &mut history.data[alike.start * width..alike.end * width],
+                    width,
+                    wrenches: &mut *wrenches,
+                    step,
                 };
-                let history = &mut history.data[alike.start * width..alike.end * width];
-                Together { law: &rule.law, met, history, width, wrenches: &mut *wrenches, step }.evaluate();
+                together.evaluate();
                 for (w, share) in wrenches.iter_mut().zip(&shares[alike]).filter(|(_, share)| **share != 1.0)
                 {
                     *w = w.scaled(*share);
                 }
             }
         });
+    }
+
+    /// Where and how those touch that were found, and how far apart their centres are [length].
+    pub fn geometry(&self) -> (&[Geometry], &[f64]) {
+        (&self.geometry, &self.distances)
     }
 
     /// Number of contacts of the last evaluation.
@@ -333,7 +390,7 @@ impl Sweep {
         let p = self.deep?;
         let [ri, rj] = [p.i, p.j].map(|k| grains.radius[k as usize]);
         let d = difference(grains.x, &grains.period, &p);
-        let part = (ri + rj - perigrain_base::math::vec3::length(d)) / ri.min(rj);
+        let part = (ri + rj - length(d)) / ri.min(rj);
         Some(([p.i, p.j].map(|k| grains.tag[k as usize]), part))
     }
 
@@ -362,7 +419,7 @@ impl Sweep {
     ) {
         for (k, (pair, wrench)) in self.contacts().enumerate() {
             let Some(rule) = grains.rule(pair, rules) else { continue };
-            let g = grains.geometry(pair, rule);
+            let (g, _) = grains.geometry(pair, rule);
             let history = memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]);
             act(Seen { pair, law: &rule.law, geometry: g, history, wrench, share: self.shares[k] });
         }

@@ -34,7 +34,8 @@ use perigrain_base::math::vec3::{Vec3, sub};
 pub const MOST_MEMORY: usize = 11;
 
 /// Where and how two spheres i and j touch; a wall is a j of radius 0 and infinite mass.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Geometry<R = f64> {
     /// Unit vector from j to i.
     pub normal: Vec3<R>,
@@ -59,13 +60,13 @@ impl Geometry {
         if square >= (sum + gap) * (sum + gap) {
             return None;
         }
-        Some(Self::between(d, radii, masses))
+        Some(Self::between(d, square.sqrt(), radii, masses))
     }
 
-    /// The same, however far apart they are.
+    /// The same, however far apart they are: `distance` is the length of `d`.
     #[inline]
-    pub fn between(d: Vec3, [ri, rj]: [f64; 2], masses: [f64; 2]) -> Self {
-        let (sum, distance) = (ri + rj, (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt());
+    pub fn between(d: Vec3, distance: f64, [ri, rj]: [f64; 2], masses: [f64; 2]) -> Self {
+        let sum = ri + rj;
         Self {
             normal: perigrain_base::math::vec3::scale(1.0 / distance, d),
             overlap: sum - distance,
@@ -102,6 +103,7 @@ pub struct Advance {
 
 /// What a contact does: `force` on i (its opposite on j) and the torques on both.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Wrench<R = f64> {
     /// Force on i [force].
     pub force: Vec3<R>,

@@ -3,16 +3,36 @@
 
 use super::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::vec3::Vec3;
 
-/// Fewer contacts are evaluated one by one.
+/// Fewer contacts are evaluated one by one: lanes that repeat a contact are in vain.
 const FEW: usize = 3;
+
+/// Four numbers of a row.
+const FOUR: usize = 4;
+
+/// Who meets in each of some contacts.
+pub(super) trait Met {
+    /// The grain on the first side of contact `k`.
+    fn own(&self, k: usize) -> u32;
+    /// How the second side moves.
+    fn other(&self, k: usize) -> Motion;
+    /// The grains on the second sides, where these move as grains do.
+    fn others<const N: usize>(&self, k: [usize; N]) -> Option<[u32; N]>;
+}
 
 /// Contacts of one law.
 pub(super) struct Together<'a, L, M> {
     pub law: &'a L,
-    /// Where and how contact k touches: geometry, how the first and the second side move.
+    /// Where and how they touch.
+    pub geometry: &'a [Geometry],
     pub met: M,
+    /// Velocities of all grains.
+    pub v: &'a [Vec3],
+    /// Angular velocities.
+    pub omega: &'a [Vec3],
     /// What each contact remembers: rows of `width` numbers.
     pub history: &'a mut [f64],
     pub width: usize,
@@ -21,127 +41,152 @@ pub(super) struct Together<'a, L, M> {
     pub step: Advance,
 }
 
-impl<L: ContactLaw, M: FnMut(usize) -> (Geometry, [Motion; 2])> Together<'_, L, M> {
+impl<L: ContactLaw, M: Met> Together<'_, L, M> {
     /// Evaluates them all.
-    pub fn evaluate(mut self) {
-        if self.wrenches.len() >= FEW && self.width <= MOST_MEMORY {
-            // SAFETY: this processor has what its own form needs.
+    pub fn evaluate(self) {
+        let n = self.geometry.len();
+        assert!(self.wrenches.len() == n && self.history.len() == n * self.width);
+        if n >= FEW && (FOUR..=MOST_MEMORY).contains(&self.width) {
+            assert_eq!(self.v.len(), self.omega.len());
+            // SAFETY: this processor has what its own form needs; the columns have as many rows as there are contacts.
             return unsafe { Form::here().run(self) };
         }
         for (k, w) in self.wrenches.iter_mut().enumerate() {
-            let (geometry, [own, other]) = (self.met)(k);
+            let i = self.met.own(k) as usize;
+            let own = Motion { velocity: self.v[i], spin: self.omega[i] };
             let remembered = &mut self.history[k * self.width..][..self.width];
-            *w = self.law.contact(&geometry, &own, &other, remembered, self.step);
-        }
-    }
-}
-
-/// Lanes of numbers by contact.
-struct Gathered<const N: usize> {
-    normal: [[f64; N]; 3],
-    overlap: [f64; N],
-    radii: [[f64; N]; 2],
-    curvature: [f64; N],
-    mass: [f64; N],
-    velocity: [[[f64; N]; 3]; 2],
-    spin: [[[f64; N]; 3]; 2],
-    history: [[f64; N]; MOST_MEMORY],
-}
-
-impl<const N: usize> Gathered<N> {
-    /// With nothing in the lanes.
-    #[inline(always)]
-    fn new() -> Self {
-        Self {
-            normal: [[0.0; N]; 3],
-            overlap: [0.0; N],
-            radii: [[0.0; N]; 2],
-            curvature: [0.0; N],
-            mass: [0.0; N],
-            velocity: [[[0.0; N]; 3]; 2],
-            spin: [[[0.0; N]; 3]; 2],
-            history: [[0.0; N]; MOST_MEMORY],
+            *w = self.law.contact(&self.geometry[k], &own, &self.met.other(k), remembered, self.step);
         }
     }
 
-    /// A contact in a lane.
-    #[inline(always)]
-    fn take(&mut self, lane: usize, (g, motions): (Geometry, [Motion; 2]), remembered: &[f64]) {
-        for d in 0..3 {
-            self.normal[d][lane] = g.normal[d];
-            for side in 0..2 {
-                self.velocity[side][d][lane] = motions[side].velocity[d];
-                self.spin[side][d][lane] = motions[side].spin[d];
-            }
-        }
-        self.overlap[lane] = g.overlap;
-        self.radii[0][lane] = g.radii[0];
-        self.radii[1][lane] = g.radii[1];
-        self.curvature[lane] = g.curvature;
-        self.mass[lane] = g.mass;
-        for (part, number) in remembered.iter().enumerate() {
-            self.history[part][lane] = *number;
-        }
-    }
-
-    /// How one side moves.
+    /// How grains move.
     ///
     /// # Safety
     /// The processor must have what the lanes need.
     #[inline(always)]
-    unsafe fn motion<V: Lanes<N>>(&self, side: usize) -> Motion<V> {
-        let ([a, b, c], [x, y, z]) = (self.velocity[side], self.spin[side]);
+    unsafe fn motion<const N: usize, V: Lanes<N>>(&self, grains: [u32; N]) -> Motion<V> {
+        for grain in grains {
+            assert!((grain as usize) < self.v.len());
+        }
+        let at = grains.as_ptr();
+        // SAFETY: passed on; there are such grains, and as many angular velocities.
+        unsafe {
+            Motion { velocity: V::vectors(self.v.as_ptr(), at), spin: V::vectors(self.omega.as_ptr(), at) }
+        }
+    }
+
+    /// How the second sides move.
+    ///
+    /// # Safety
+    /// As [`Together::motion`].
+    #[inline(always)]
+    unsafe fn other<const N: usize, V: Lanes<N>>(&self, k: [usize; N]) -> Motion<V> {
         // SAFETY: passed on.
-        unsafe { Motion { velocity: [V::of(a), V::of(b), V::of(c)], spin: [V::of(x), V::of(y), V::of(z)] } }
+        unsafe {
+            if let Some(grains) = self.met.others(k) {
+                return self.motion(grains);
+            }
+            let (mut velocity, mut spin) = ([[0.0; N]; 3], [[0.0; N]; 3]);
+            for lane in 0..N {
+                let motion = self.met.other(k[lane]);
+                for d in 0..3 {
+                    velocity[d][lane] = motion.velocity[d];
+                    spin[d][lane] = motion.spin[d];
+                }
+            }
+            let ([a, b, c], [x, y, z]) = (velocity, spin);
+            Motion { velocity: [V::of(a), V::of(b), V::of(c)], spin: [V::of(x), V::of(y), V::of(z)] }
+        }
     }
 }
 
-impl<L: ContactLaw, M: FnMut(usize) -> (Geometry, [Motion; 2])> InLanes for Together<'_, L, M> {
+impl<L: ContactLaw, M: Met> InLanes for Together<'_, L, M> {
     type Out = ();
 
+    /// There must be at least one contact, and rows of [`FOUR`] numbers at least for each.
     #[inline(always)]
-    unsafe fn run<const N: usize, V: Lanes<N>>(mut self) {
-        let (count, width) = (self.wrenches.len(), self.width);
-        // Each group writes all of its lanes.
-        let mut all = Gathered::<N>::new();
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let (count, width) = (self.geometry.len(), self.width);
+        let (geometry, history) = (self.geometry.as_ptr().cast::<f64>(), self.history.as_mut_ptr());
+        let wrenches = self.wrenches.as_mut_ptr().cast::<f64>();
         for first in (0..count).step_by(N) {
+            let (mut k, mut own) = ([0; N], [0; N]);
             for lane in 0..N {
-                // Lanes without a contact repeat the last one.
-                let k = (first + lane).min(count - 1);
-                all.take(lane, (self.met)(k), &self.history[k * width..][..width]);
+                // Lanes without a contact repeat the last one, in whose place they write the same.
+                k[lane] = (first + lane).min(count - 1);
+                own[lane] = self.met.own(k[lane]);
             }
-            // SAFETY: the processor has what the form needs.
-            let (wrench, history) = unsafe {
-                let [x, y, z] = all.normal;
-                let geometry = Geometry {
-                    normal: [V::of(x), V::of(y), V::of(z)],
-                    overlap: V::of(all.overlap),
-                    radii: [V::of(all.radii[0]), V::of(all.radii[1])],
-                    curvature: V::of(all.curvature),
-                    mass: V::of(all.mass),
-                };
-                let (own, other) = (all.motion::<V>(0), all.motion::<V>(1));
-                let mut history = [V::all(0.0); MOST_MEMORY];
-                for part in 0..width {
-                    history[part] = V::of(all.history[part]);
+            // SAFETY: the processor has what the form needs; each of these contacts has its rows.
+            unsafe {
+                let [nx, ny, nz, overlap] = load::<N, V>(geometry, size_of::<Geometry>() / 8, 0, k);
+                let [ri, rj, curvature, mass] = load::<N, V>(geometry, size_of::<Geometry>() / 8, FOUR, k);
+                let g = Geometry { normal: [nx, ny, nz], overlap, radii: [ri, rj], curvature, mass };
+                let (own, other) = (self.motion::<N, V>(own), self.other::<N, V>(k));
+                let mut past = [V::all(0.0); MOST_MEMORY];
+                let mut part = 0;
+                while part < width {
+                    // The last four may have been read in part.
+                    let at = part.min(width - FOUR);
+                    [past[at], past[at + 1], past[at + 2], past[at + 3]] =
+                        load::<N, V>(history, width, at, k);
+                    part += FOUR;
                 }
-                (self.law.contact(&geometry, &own, &other, &mut history[..width], self.step), history)
-            };
-            let past = &mut self.history[first * width..(first + N).min(count) * width];
-            for part in 0..width {
-                let numbers = history[part].numbers();
-                for lane in 0..N.min(count - first) {
-                    past[lane * width + part] = numbers[lane];
+                let w = self.law.contact(&g, &own, &other, &mut past[..width], self.step);
+                let mut part = 0;
+                while part < width {
+                    let at = part.min(width - FOUR);
+                    let four = [past[at], past[at + 1], past[at + 2], past[at + 3]];
+                    store::<N, V>(history, width, at, k, four);
+                    part += FOUR;
                 }
-            }
-            for d in 0..3 {
-                let (force, own, other) =
-                    (wrench.force[d].numbers(), wrench.torque_i[d].numbers(), wrench.torque_j[d].numbers());
-                for lane in 0..N.min(count - first) {
-                    let w = &mut self.wrenches[first + lane];
-                    (w.force[d], w.torque_i[d], w.torque_j[d]) = (force[lane], own[lane], other[lane]);
+                let ([a, b, c], [d, e, f], [x, y, z]) = (w.force, w.torque_i, w.torque_j);
+                store::<N, V>(wrenches, size_of::<Wrench>() / 8, 0, k, [a, b, c, d]);
+                store::<N, V>(wrenches, size_of::<Wrench>() / 8, FOUR, k, [e, f, x, y]);
+                let z = z.numbers();
+                for lane in 0..N {
+                    *wrenches.add(k[lane] * (size_of::<Wrench>() / 8) + 8) = z[lane];
                 }
             }
         }
+    }
+}
+
+/// Four numbers from `part` on of rows `k`, of `width` numbers each, turned into lanes.
+///
+/// # Safety
+/// The processor must have what the lanes need, and there must be such rows.
+#[inline(always)]
+unsafe fn load<const N: usize, V: Lanes<N>>(
+    column: *const f64,
+    width: usize,
+    part: usize,
+    k: [usize; N],
+) -> [V; 4] {
+    // SAFETY: passed on.
+    unsafe {
+        let mut rows = [V::Row::splat(0.0); N];
+        for lane in 0..N {
+            rows[lane] = V::Row::load(column.add(k[lane] * width + part));
+        }
+        V::of_rows(rows)
+    }
+}
+
+/// Puts four numbers from `part` on into rows `k`.
+///
+/// # Safety
+/// As [`load`].
+#[inline(always)]
+unsafe fn store<const N: usize, V: Lanes<N>>(
+    column: *mut f64,
+    width: usize,
+    part: usize,
+    k: [usize; N],
+    lanes: [V; 4],
+) {
+    let rows = V::to_rows(lanes);
+    for lane in 0..N {
+        // SAFETY: passed on.
+        unsafe { rows[lane].store(column.add(k[lane] * width + part)) };
     }
 }

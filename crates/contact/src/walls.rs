@@ -2,7 +2,7 @@
 
 mod told;
 
-use super::together::Together;
+use super::together::{Met, Together};
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_base::par;
@@ -65,6 +65,25 @@ pub struct Touch {
     pub near: Near,
 }
 
+/// Spheres that touch a wall.
+struct Touches<'a>(&'a [Touch]);
+
+impl Met for Touches<'_> {
+    #[inline(always)]
+    fn own(&self, k: usize) -> u32 {
+        self.0[k].grain
+    }
+
+    fn other(&self, k: usize) -> Motion {
+        Motion { velocity: self.0[k].near.velocity, spin: [0.0; 3] }
+    }
+
+    #[inline(always)]
+    fn others<const N: usize>(&self, _: [usize; N]) -> Option<[u32; N]> {
+        None
+    }
+}
+
 /// One evaluation of all contacts with a wall; keeps its room from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct WallSweep {
@@ -72,6 +91,8 @@ pub struct WallSweep {
     list: Vec<u32>,
     touching: Vec<Touch>,
     keys: Vec<[u32; 2]>,
+    /// Where and how they touch.
+    geometry: Vec<Geometry>,
     wrenches: Vec<Wrench>,
     /// Heat into the particles, contact by contact.
     heat: Vec<f64>,
@@ -154,25 +175,21 @@ impl WallSweep {
     /// Evaluates the contacts that were found, the second half.
     pub fn act<L: ContactLaw>(&mut self, grains: &Spheres, law: &L, memory: &mut Contacts, step: Advance) {
         let width = law.memory();
-        self.wrenches.clear();
         if self.touching.is_empty() {
-            return;
+            return self.wrenches.clear();
         }
+        // All of them are written.
         self.wrenches.resize(self.touching.len(), Wrench::default());
+        self.geometry.clear();
+        let spheres = self.touching.iter().map(|t| (t, t.grain as usize));
+        self.geometry.extend(spheres.map(|(t, i)| geometry(&t.near, grains.radius[i], grains.mass[i])));
         let history = par::Rows { data: &mut memory.history[..], width };
-        par::each(
-            (&mut self.wrenches[..], history, &self.touching[..]),
-            |_, (wrenches, history, touching)| {
-                let met = |k: usize| {
-                    let Touch { grain, near } = &touching[k];
-                    let i = *grain as usize;
-                    let own = Motion { velocity: grains.v[i], spin: grains.omega[i] };
-                    let wall = Motion { velocity: near.velocity, spin: [0.0; 3] };
-                    (geometry(near, grains.radius[i], grains.mass[i]), [own, wall])
-                };
-                Together { law, met, history: history.data, width, wrenches, step }.evaluate();
-            },
-        );
+        let columns = (&mut self.wrenches[..], history, &self.touching[..], &self.geometry[..]);
+        par::each(columns, |_, (wrenches, history, touching, geometry)| {
+            let (v, omega, history) = (grains.v, grains.omega, history.data);
+            let met = Touches(touching);
+            Together { law, geometry, met, v, omega, history, width, wrenches, step }.evaluate();
+        });
     }
 
     fn find<W: Wall + ?Sized, L: ContactLaw>(

@@ -138,3 +138,61 @@ fn the_same_bits_for_any_number_of_threads() {
     perigrain_base::par::set_threads(1);
     assert_eq!(one, two);
 }
+
+/// What contacts of a row of grains remember and do, evaluated several at a time or one by one.
+fn row(law: &Granular, flowing: bool, alone: bool) -> (Vec<f64>, Vec<Wrench>) {
+    let n = 21;
+    let vector = |k: u32| [0.618, 0.755, 0.329].map(|a| (f64::from(k) * a).fract() - 0.5);
+    let x: Vec<Vec3> = (0..n).map(|k| [1.95 * f64::from(k), 0.0, 0.0]).collect();
+    let (v, omega): (Vec<Vec3>, Vec<Vec3>) = (0..n).map(|k| (vector(k), vector(k + n))).unzip();
+    let (radius, mass) = (vec![1.0; n as usize], vec![2.0; n as usize]);
+    let (kind, mask, tag): (Vec<u16>, Vec<u32>, Vec<u32>) =
+        (vec![1; n as usize], vec![1; n as usize], (1..=n).collect());
+    let flow = Flow { group: perigrain_world::GroupId::ALL, rate: [0.1, 0.0, 0.0], tilt: [0.0; 3] };
+    let grains = Grains {
+        x: &x,
+        v: &v,
+        omega: &omega,
+        radius: &radius,
+        mass: &mass,
+        kind: &kind,
+        tag: &tag,
+        period: Default::default(),
+        flow: flowing.then_some((flow, &mask[..])),
+        body: &[],
+        frozen: &[],
+        travel: Default::default(),
+    };
+    let mut rules = Rules::new(1);
+    rules.set(1, 1, Rule { law: *law, average: Average::None, curvature: Curvature::Both });
+    let list: Vec<Pair> = (1..n).map(|j| Pair { i: j - 1, j, shift: [0; 3] }).collect();
+    let (mut history, mut wrenches) = (vec![], vec![]);
+    for part in list.chunks(if alone { 1 } else { list.len() }) {
+        let (mut sweep, mut memory) = (Sweep::default(), Contacts::default());
+        let step = Advance { dt: 0.01, history: true };
+        (0..5).for_each(|_| sweep.run(part, &grains, &rules, &mut memory, step));
+        history.append(&mut memory.history);
+        wrenches.append(&mut sweep.wrenches);
+    }
+    (history, wrenches)
+}
+
+#[test]
+fn contacts_together_have_the_bits_of_single_ones() {
+    let normal = Normal::new(&normal::HERTZ_MATERIAL, &[1e3, 0.8, 0.25]);
+    let plain = Tangential::new(Friction::LinearNohistory, Some(0.0), 0.5, 0.3);
+    let spring = Tangential::new(Friction::Mindlin, None, 0.5, 0.3);
+    let slider = crate::Sds { stiffness: 10.0, damping: 1.0, mu: 0.2 };
+    let (rolling, twisting) = (crate::Rolling::Sds(slider), crate::Twisting::Sds(slider));
+    let model = |friction| Model::new(normal, Damping::Tsuji, friction);
+    let turning = Model { rolling, ..model(spring) };
+    let models = [model(plain), model(spring), turning, Model { twisting, ..turning }];
+    for (law, memory) in models.map(|m| m.law(Compat::Perigrain)).iter().zip([0, 3, 6, 7]) {
+        assert_eq!(law.memory(), memory);
+        for flowing in [false, true] {
+            let together = row(law, flowing, false);
+            assert_eq!((together.0.len(), together.1.len()), (20 * memory, 20));
+            assert_eq!(together, row(law, flowing, true), "{memory} {flowing}");
+        }
+    }
+}

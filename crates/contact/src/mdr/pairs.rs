@@ -5,9 +5,9 @@ use super::press::{Press, Seen};
 use super::side::{AREA, DEPTH, PLASTIC, WIDTH};
 use super::state::Grain;
 use super::{Manner, Material, PAIR, State, screen};
+use crate::Geometry;
 use perigrain_base::math::form::Form;
 use perigrain_base::math::real::Real;
-use perigrain_base::math::vec3::{Vec3, length, scale};
 use perigrain_base::par;
 use perigrain_neigh::list::Pair;
 use perigrain_world::contacts::Contacts;
@@ -27,40 +27,37 @@ pub struct Meetings {
 }
 
 impl Meetings {
-    /// Brings `memory` to the contacts `keys` of `pairs`, and gathers how much nearer their planes come.
-    /// `distance(k)`: vector from j to i.
+    /// Brings `memory` to the contacts `keys` of `pairs`, which touch like this, their centres so far apart; gathers how much nearer
+    /// their planes come.
     pub fn meet(
         &mut self,
-        pairs: &[Pair],
-        keys: &[[u32; 2]],
+        (pairs, keys): (&[Pair], &[[u32; 2]]),
+        (geometry, distances): (&[Geometry], &[f64]),
         radius: &[f64],
         s: &mut State,
         memory: &mut Contacts,
-        distance: impl Fn(&Pair) -> Vec3,
         lammps: bool,
     ) {
         memory.carry(keys, PAIR, &mut self.spare);
         self.seen.clear();
         self.lines.clear();
-        for (pair, history) in pairs.iter().zip(memory.history.chunks_exact_mut(PAIR)) {
-            let d = distance(pair);
-            let length = length(d);
+        let contacts = pairs.iter().zip(geometry).zip(distances);
+        for (((pair, g), length), history) in contacts.zip(memory.history.chunks_exact_mut(PAIR)) {
             let (i, j) = (pair.i as usize, pair.j as usize);
-            let overlap = radius[i] + radius[j] - length;
-            let normal = scale(1.0 / length, d);
-            self.lines.push(screen::Line { ends: [pair.i, pair.j], normal, length });
+            let (ends, Geometry { normal, overlap, .. }) = ([pair.i, pair.j], *g);
+            self.lines.push(screen::Line { ends, normal, length: *length });
             // LAMMPS forgets contacts that only this step's growth has kept.
             if lammps && overlap <= s.grown[i] + s.grown[j] {
                 history.fill(0.0);
             }
             let plastic = [history[PLASTIC], history[WIDTH + PLASTIC]];
-            let depths = split(overlap, [radius[i], radius[j]], history[PAIR - 1], plastic);
+            let depths = split(overlap, g.radii, history[PAIR - 1], plastic);
             for ((k, depth), side) in [i, j].into_iter().zip(depths).zip(history.chunks(WIDTH)) {
                 if s.area_before[k] > 0.0 {
                     s.mean[k] += side[AREA] * (depth - side[DEPTH]) / s.area_before[k];
                 }
             }
-            self.seen.push(Seen { ends: [pair.i, pair.j], normal, overlap, depths, open: 1.0 });
+            self.seen.push(Seen { ends, normal, overlap, depths, open: 1.0 });
         }
         self.screen.open(&self.lines, radius.len(), &mut self.open);
         self.seen.iter_mut().zip(&self.open).for_each(|(c, open)| c.open = *open);

@@ -23,10 +23,16 @@ pub struct Line {
 struct Spoke {
     /// The other grain.
     to: u32,
-    /// Unit vector towards it.
-    along: Vec3,
-    /// Distance of the centres.
-    length: f64,
+    /// Which line it is.
+    line: u32,
+}
+
+impl Spoke {
+    /// Unit vector towards the other grain.
+    fn along(&self, lines: &[Line]) -> Vec3 {
+        let Line { ends, normal, .. } = &lines[self.line as usize];
+        scale(if ends[1] == self.to { -1.0 } else { 1.0 }, *normal)
+    }
 }
 
 /// The contacts of each grain; keeps its room from step to step.
@@ -49,25 +55,28 @@ impl Screen {
     /// nearer to both than they are to each other, and sees them under the angle θ.
     pub fn open(&mut self, lines: &[Line], grains: usize, out: &mut Vec<f64>) {
         self.sort(lines, grains);
-        out.clear();
+        // All of them are written.
         out.resize(lines.len(), 0.0);
-        par::each((&mut out[..], lines), |_, (out, lines)| {
-            out.iter_mut().zip(lines).for_each(|(open, line)| *open = (1.0 - self.closed(line)).max(0.0));
+        par::each(&mut out[..], |first, out| {
+            let own = lines[first..].iter();
+            out.iter_mut()
+                .zip(own)
+                .for_each(|(open, line)| *open = (1.0 - self.closed(line, lines)).max(0.0));
         });
     }
 
     /// What the grains between the ends of this contact close of it.
-    fn closed(&self, line: &Line) -> f64 {
+    fn closed(&self, line: &Line, lines: &[Line]) -> f64 {
         let [i, j] = line.ends;
         let touched = self.touched[j as usize];
-        let shorter = |c: &&Spoke| c.length < line.length && touched & bit(c.to) != 0;
+        let shorter = |c: &Spoke| lines[c.line as usize].length < line.length;
         let mut closed = 0.0;
-        for from in self.of(i).iter().filter(shorter) {
+        for from in self.of(i).iter().filter(|c| touched & bit(c.to) != 0 && shorter(c)) {
             let Some(on) = self.of(from.to).iter().find(|c| c.to == j) else { continue };
-            if on.length >= line.length {
+            if !shorter(on) {
                 continue;
             }
-            let angle = (-dot(from.along, on.along)).clamp(-1.0, 1.0).acos();
+            let angle = (-dot(from.along(lines), on.along(lines))).clamp(-1.0, 1.0).acos();
             closed += 1.0 / (1.0 + (-SHARPNESS * (angle / PI - 0.5)).exp());
         }
         closed
@@ -93,12 +102,11 @@ impl Screen {
         self.spokes.resize(sum as usize, Spoke::default());
         self.touched.clear();
         self.touched.resize(grains, 0);
-        for line in lines {
+        for (line, number) in lines.iter().zip(0..) {
             let [i, j] = line.ends;
-            for (own, to, sign) in [(i, j, -1.0), (j, i, 1.0)] {
+            for (own, to) in [(i, j), (j, i)] {
                 let at = &mut self.start[own as usize + 1];
-                self.spokes[*at as usize] =
-                    Spoke { to, along: scale(sign, line.normal), length: line.length };
+                self.spokes[*at as usize] = Spoke { to, line: number };
                 *at += 1;
                 self.touched[own as usize] |= bit(to);
             }

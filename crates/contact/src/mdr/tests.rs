@@ -1,7 +1,11 @@
 //! Plastic grains against closed forms.
 
+use super::deeds::Deed;
+use super::press::{Press, Seen};
 use super::side::Ellipse;
+use super::state::Grain;
 use super::*;
+use perigrain_base::math::form::Form;
 use std::f64::consts::PI;
 
 const SOFT: Material =
@@ -211,5 +215,81 @@ fn flow_and_torn_surfaces_take_energy() {
         // What flow has taken never comes back, but for the rule's errors and the 6 % of Hertz' energy by which the ellipse of a
         // contact that just yields holds more.
         assert!(taken > 0.0 && fell < 2e-3 * taken, "{cohesion}: {taken} {fell}");
+    }
+}
+
+/// What eleven contacts that load, unload, tear and load again remember, tell and do for their grains in the end, some of them
+/// hemmed in, in this form or one by one.
+fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
+    const CONTACTS: usize = 11;
+    let grain = |k: usize| {
+        let radius = 1.0 + 0.05 * (k as f64 * 0.618).fract();
+        let (part, volume) = (k as f64 / 12.0, 4.0 / 3.0 * PI * radius.powi(3));
+        let mean = if k.is_multiple_of(3) { 1e-4 * (part - 0.4) } else { 0.0 };
+        Grain { first: 1.0, volume, left_volume: 0.9 * volume, area_before: part, mean, radius, spare: 0.0 }
+    };
+    let grains: Vec<Grain> = (0..=CONTACTS).map(grain).collect();
+    let (mut memory, mut told) = (vec![0.0; CONTACTS * PAIR], vec![0.0; CONTACTS * (TOLD + 1)]);
+    let mut deeds = vec![[Deed::default(); 2]; CONTACTS];
+    for step in 0..160 {
+        let contact = |k: usize| {
+            let depth = 0.018 + 0.02 * (0.05 * f64::from(step) * (1.0 + 0.1 * k as f64)).sin();
+            let (ends, open) = ([k as u32, k as u32 + 1], if k % 4 == 1 { 0.7 } else { 1.0 });
+            Seen { ends, normal: [1.0, 0.0, 0.0], overlap: 2.0 * depth, depths: [depth, 0.9 * depth], open }
+        };
+        let seen: Vec<Seen> = (0..CONTACTS).map(contact).collect();
+        let manner = Manner { lammps: setup, setup: setup && step == 159, booked: step % 2 == 1 };
+        let groups = if form.is_some() { CONTACTS } else { 1 };
+        let columns = memory.chunks_mut(groups * PAIR).zip(told.chunks_mut(groups * (TOLD + 1)));
+        for ((seen, deeds), (memory, told)) in seen.chunks(groups).zip(deeds.chunks_mut(groups)).zip(columns)
+        {
+            let told = perigrain_base::par::Rows { data: told, width: TOLD + 1 };
+            let press = Press { m, manner, grains: &grains, seen, memory, told, deeds };
+            // SAFETY: a form of this processor.
+            unsafe { form.unwrap_or(Form::Plain).run(press) };
+        }
+    }
+    let done = deeds
+        .iter()
+        .flatten()
+        .flat_map(|d| [d.strain, d.cap, d.area, d.surface, d.displaced, d.covered, d.stress, d.energy]);
+    [memory, told, done.collect()]
+}
+
+#[test]
+fn all_forms_press_to_the_same_bits() {
+    for cohesion in [0.0, 3.0] {
+        let m = Material { cohesion, ..SOFT };
+        for setup in [false, true] {
+            let alone = pressed(&m, None, setup);
+            // Contacts have yielded, and energies are told.
+            let yielded = |row: &[f64]| Side::read(row).yielded == 1.0;
+            assert!(alone[0].chunks(PAIR).all(yielded) && alone[1].iter().any(|a| *a > 0.0));
+            for form in Form::all() {
+                assert_eq!(pressed(&m, Some(form), setup), alone, "{form:?} {cohesion} {setup}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_contact_of_like_grains_is_pressed_as_by_a_wall() {
+    let m = Material { cohesion: 2.0, ..SOFT };
+    let volume = 4.0 / 3.0 * PI;
+    let (first, radius, left_volume) = (1.0, 1.0, volume);
+    let grain = Grain { first, volume, left_volume, area_before: 0.0, mean: 0.0, radius, spare: 0.0 };
+    let (mut one, mut memory, mut told) = (Side::default(), vec![0.0; PAIR], vec![0.0; TOLD]);
+    let (mut deeds, normal) = (vec![[Deed::default(); 2]], [0.0, 0.0, 1.0]);
+    for depth in there_and_back(0.04) {
+        let seen = [Seen { ends: [0, 1], normal, overlap: 2.0 * depth, depths: [depth; 2], open: 1.0 }];
+        let manner = Manner::default();
+        let (force, contact, _) = deeds::side(&m, &grain, depth, &mut one, 1.0, manner);
+        let (grains, memory) = (&[grain; 2], &mut memory[..]);
+        let row = perigrain_base::par::Rows { data: &mut told[..], width: TOLD };
+        let press = Press { m: &m, manner, grains, seen: &seen, memory, told: row, deeds: &mut deeds };
+        // SAFETY: a form of this processor.
+        unsafe { Form::here().run(press) };
+        assert_eq!(told[..2], [force, 2.0 * m.plane() * (2.0 * contact)], "{depth}");
+        assert_eq!(Side::read(&memory[..]), one);
     }
 }

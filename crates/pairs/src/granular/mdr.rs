@@ -3,7 +3,6 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Grains, Sweep};
 use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, State, TOLD, begin, undo};
-use perigrain_neigh::list::{Pair, difference};
 use perigrain_plan::Tick;
 use perigrain_world::World;
 use perigrain_world::contacts::{Contacts, PLASTIC};
@@ -37,10 +36,9 @@ impl Press {
     pub fn act(&mut self, grains: &Grains, sweep: &Sweep, memory: &mut Contacts, manner: Manner) {
         // In setup forces are only evaluated.
         let kept = manner.setup.then(|| self.state.clone());
-        let (touching, keys) = sweep.touching();
-        let distance = |p: &Pair| difference(grains.x, &grains.period, p);
         let (state, plastic) = (&mut self.state, &mut self.plastic);
-        self.meetings.meet(touching, keys, grains.radius, state, plastic, distance, manner.lammps);
+        let (touching, geometry) = (sweep.touching(), sweep.geometry());
+        self.meetings.meet(touching, geometry, grains.radius, state, plastic, manner.lammps);
         if manner.setup {
             // Nothing has moved.
             state.mean.fill(0.0);

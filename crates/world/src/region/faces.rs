@@ -21,6 +21,10 @@ impl Finder<'_> {
     /// As `add` for the distance vector from the surface; `normal` serves where that is zero.
     fn add_apart(&mut self, part: u32, apart: Vec3, normal: Vec3, radius: f64) {
         let distance = length(apart);
+        // Most are far away.
+        if distance >= self.reach {
+            return;
+        }
         let normal = if distance > 0.0 { scale(1.0 / distance, apart) } else { normal };
         self.add(part, normal, distance, radius);
     }
