@@ -71,6 +71,7 @@ pub fn all<const C: usize, L: BondLaw<C>>(law: &L, pass: &Sweep<'_, C, L::Coeffs
     let (rows, particles) = (pass.columns.rows(), pass.body.x.len());
     assert!(pass.columns.reach <= particles && (!pass.damped || pass.body.v.len() == particles));
     assert!(!L::TURNS || (pass.body.quat.len() == particles && pass.body.omega.len() == particles));
+    assert!(!L::TURNS || pass.columns.axis.iter().all(|axis| axis.len() == rows));
     assert!(particles < 1 << perigrain_base::math::lanes::PLACE_BITS);
     out.force.resize(rows, [0.0; 4]);
     out.load.resize(rows, 0.0);
