@@ -201,10 +201,9 @@ impl<const C: usize> Columns<C> {
         &self.alive
     }
 
-    /// Whether all bonds of a group hold.
-    #[inline(always)]
-    pub fn is_whole(&self, group: usize) -> bool {
-        self.whole[group]
+    /// Which groups have all their bonds still.
+    pub fn whole(&self) -> &[bool] {
+        &self.whole
     }
 
     /// A bond has broken.
