@@ -35,39 +35,49 @@ pub struct Key {
 /// Bonds by type, place of the lower end and place of the upper one; alike ones as they were.
 fn in_order(keys: &[Key], particles: usize) -> Vec<u32> {
     // Ends stand near each other and have few bonds each: counting is faster than comparing.
-    let lower = |key: &Key| key.ends[0].min(key.ends[1]) as usize;
-    let upper = |k: u32| keys[k as usize].ends[0].max(keys[k as usize].ends[1]);
-    let (starts, mut order) = counted(particles, keys.len(), |k| lower(&keys[k]), |k| k);
+    let lower = |k: usize| keys[k].ends[0].min(keys[k].ends[1]) as usize;
+    let upper = |k: usize| u64::from(keys[k].ends[0].max(keys[k].ends[1]));
+    let (starts, mut order) = counted(particles, keys.len(), lower, |k| upper(k) << 32 | k as u64);
     for range in starts.windows(2) {
-        order[range[0] as usize..range[1] as usize].sort_by_key(|k| upper(*k));
+        order[range[0] as usize..range[1] as usize].sort_unstable();
+    }
+    let by_place: Vec<u32> = order.iter().map(|k| *k as u32).collect();
+    if keys.iter().all(|key| key.kind == keys[0].kind) {
+        return by_place;
     }
     let kinds = keys.iter().map(|key| usize::from(key.kind) + 1).max().unwrap_or(0);
-    if keys.iter().all(|key| key.kind == keys[0].kind) {
-        return order;
-    }
-    let by_place = order;
-    counted(kinds, keys.len(), |k| usize::from(keys[by_place[k] as usize].kind), |k| by_place[k] as usize).1
+    counted(kinds, keys.len(), |k| usize::from(keys[by_place[k] as usize].kind), |k| by_place[k]).1
 }
 
 /// Things in the order of a small number of each, those alike as they come: where each number begins, and `what` stands there.
-fn counted(
+fn counted<T: Copy + Default>(
     numbers: usize,
     things: usize,
     number: impl Fn(usize) -> usize,
-    what: impl Fn(usize) -> usize,
-) -> (Vec<u32>, Vec<u32>) {
+    what: impl Fn(usize) -> T,
+) -> (Vec<u32>, Vec<T>) {
     let mut starts = vec![0u32; numbers + 1];
     (0..things).for_each(|k| starts[number(k) + 1] += 1);
     for k in 0..numbers {
         starts[k + 1] += starts[k];
     }
-    let (mut next, mut out) = (starts.clone(), vec![0; things]);
+    let (mut next, mut out) = (starts.clone(), vec![T::default(); things]);
     for k in 0..things {
         let at = &mut next[number(k)];
-        out[*at as usize] = what(k) as u32;
+        out[*at as usize] = what(k);
         *at += 1;
     }
     (starts, out)
+}
+
+/// The numbers of a column in another order; `room` changes places with the column.
+fn rearrange<T: Copy>(column: &mut Vec<T>, rows: &[u32], room: &mut Vec<T>) {
+    if column.is_empty() {
+        return;
+    }
+    room.clear();
+    room.extend(rows.iter().map(|row| column[*row as usize]));
+    std::mem::swap(column, room);
 }
 
 /// Bonds by type and place, padded to whole groups with dead ones.
@@ -83,7 +93,7 @@ pub struct Columns<const C: usize> {
     whole: Vec<bool>,
     /// Lengths at rest [length].
     pub length: Vec<f64>,
-    /// Components of the axes.
+    /// Components of the axes; empty where no bond has one.
     pub axis: [Vec<f64>; 3],
     /// The turns at birth; empty where all ends were alike.
     pub turned: Vec<Quat>,
@@ -126,42 +136,64 @@ impl<const C: usize> Columns<C> {
 
     /// Puts other bonds into the columns: as many as there are keys, of `particles` particles in storage.
     pub fn fill(&mut self, keys: &[Key], particles: usize, bond: impl Fn(usize) -> Member<C>) {
-        self.clear();
-        let order = in_order(keys, particles);
-        let mut next = order.iter().peekable();
-        while let Some(&k) = next.next() {
-            let k = k as usize;
-            let one = bond(k);
-            self.push(&one, 1.0);
-            let last = next.peek().is_none_or(|k| keys[**k as usize].kind != one.kind);
-            while last && !self.alive.len().is_multiple_of(GROUP) {
-                self.push(&one, 0.0);
-            }
+        let rows = self.arrange(keys, particles);
+        self.length.clear();
+        self.axis.iter_mut().for_each(Vec::clear);
+        self.turned.clear();
+        self.own.iter_mut().for_each(Vec::clear);
+        for k in rows {
+            self.push(&bond(k as usize));
         }
-        self.enter(particles);
     }
 
     /// The same bonds where particles have changed places: `moved[k]` is the new place of the one at `k`. As [`Columns::fill`] with the
     /// bonds that hold, in the order in which they stand here.
     pub fn follow(&mut self, moved: &[u32]) {
-        let old = std::mem::take(self);
-        let rows: Vec<u32> = old.living().map(|k| k as u32).collect();
-        let key = |k: &u32| Key {
-            kind: old.kind(*k as usize),
-            ends: old.pair(*k as usize).map(|place| moved[place]),
+        let living: Vec<u32> = self.living().map(|row| row as u32).collect();
+        let key = |row: &u32| Key {
+            kind: self.kind(*row as usize),
+            ends: [0, 1].map(|end: usize| moved[self.ends[end][*row as usize] as usize]),
         };
-        let keys: Vec<Key> = rows.iter().map(key).collect();
-        self.fill(&keys, moved.len(), |k| {
-            let row = rows[k] as usize;
-            Member {
-                kind: keys[k].kind,
-                ends: keys[k].ends,
-                length: old.length[row],
-                axis: [0, 1, 2].map(|d| old.axis[d][row]),
-                turned: old.turned.get(row).copied().unwrap_or(UNTURNED),
-                own: std::array::from_fn(|c| old.own[c][row]),
-            }
-        });
+        let keys: Vec<Key> = living.iter().map(key).collect();
+        let mut rows = self.arrange(&keys, moved.len());
+        rows.iter_mut().for_each(|row| *row = living[*row as usize]);
+        let mut room = Vec::with_capacity(rows.len());
+        // Column by column: bond by bond, all of them would grow in new memory at once.
+        let numbers = self.own.iter_mut().chain(&mut self.axis).chain([&mut self.length]);
+        numbers.for_each(|column| rearrange(column, &rows, &mut room));
+        rearrange(&mut self.turned, &rows, &mut vec![]);
+        if self.turned.iter().all(|turned| *turned == UNTURNED) {
+            self.turned.clear();
+        }
+    }
+
+    /// Makes rows for these bonds: which of them stands in each.
+    fn arrange(&mut self, keys: &[Key], particles: usize) -> Vec<u32> {
+        let (order, mut rows) = (in_order(keys, particles), Vec::with_capacity(keys.len() + GROUP));
+        self.kinds.clear();
+        self.alive.clear();
+        self.whole.clear();
+        let mut rest = &order[..];
+        while let Some(first) = rest.first() {
+            let kind = keys[*first as usize].kind;
+            let (alike, others) = rest.split_at(rest.partition_point(|k| keys[*k as usize].kind == kind));
+            rows.extend_from_slice(alike);
+            self.alive.resize(rows.len(), 1.0);
+            rows.resize(rows.len().next_multiple_of(GROUP), alike[alike.len() - 1]);
+            self.kinds.resize(rows.len() / GROUP, kind);
+            // What fills up is dead.
+            self.whole.resize(self.alive.len() / GROUP, true);
+            self.whole.resize(rows.len() / GROUP, false);
+            self.alive.resize(rows.len(), 0.0);
+            rest = others;
+        }
+        for (end, places) in self.ends.iter_mut().enumerate() {
+            places.clear();
+            places.extend(rows.iter().map(|k| keys[*k as usize].ends[end]));
+        }
+        self.reach = self.ends.iter().filter_map(|e| e.iter().max()).max().map_or(0, |k| *k as usize + 1);
+        self.enter(particles);
+        rows
     }
 
     /// What holds: 1, or 0 for what is broken or fills up a group.
@@ -169,10 +201,9 @@ impl<const C: usize> Columns<C> {
         &self.alive
     }
 
-    /// Whether all bonds of a group hold.
-    #[inline(always)]
-    pub fn is_whole(&self, group: usize) -> bool {
-        self.whole[group]
+    /// Which groups have all their bonds still.
+    pub fn whole(&self) -> &[bool] {
+        &self.whole
     }
 
     /// A bond has broken.
@@ -180,39 +211,19 @@ impl<const C: usize> Columns<C> {
         (self.alive[bond], self.whole[bond / GROUP]) = (0.0, false);
     }
 
-    /// Empties the columns; their memory stays for the next bonds.
-    fn clear(&mut self) {
-        self.ends.iter_mut().for_each(Vec::clear);
-        self.kinds.clear();
-        self.alive.clear();
-        self.whole.clear();
-        self.length.clear();
-        self.axis.iter_mut().for_each(Vec::clear);
-        self.turned.clear();
-        self.own.iter_mut().for_each(Vec::clear);
-        self.reach = 0;
-    }
-
-    fn push(&mut self, bond: &Member<C>, alive: f64) {
-        if self.alive.len().is_multiple_of(GROUP) {
-            self.kinds.push(bond.kind);
-            self.whole.push(true);
-        }
-        self.alive.push(alive);
-        if alive == 0.0 {
-            self.whole[(self.alive.len() - 1) / GROUP] = false;
-        }
+    /// What the next row tells of its bond.
+    fn push(&mut self, bond: &Member<C>) {
+        let rows = self.length.len();
         self.length.push(bond.length);
-        for k in 0..2 {
-            self.ends[k].push(bond.ends[k]);
-            self.reach = self.reach.max(bond.ends[k] as usize + 1);
-        }
+        // Until the first one that has an axis, or is turned, there is none.
         for k in 0..3 {
-            self.axis[k].push(bond.axis[k]);
+            if bond.axis != [0.0; 3] || !self.axis[k].is_empty() {
+                self.axis[k].resize(rows, 0.0);
+                self.axis[k].push(bond.axis[k]);
+            }
         }
-        // Until the first one that is turned there is none.
         if bond.turned != UNTURNED || !self.turned.is_empty() {
-            self.turned.resize(self.alive.len() - 1, UNTURNED);
+            self.turned.resize(rows, UNTURNED);
             self.turned.push(bond.turned);
         }
         for k in 0..C {
@@ -226,8 +237,9 @@ impl<const C: usize> Columns<C> {
         starts.clear();
         starts.resize(particles + 1, 0);
         let living = || (0..self.alive.len()).filter(|&k| self.alive[k] > 0.0);
-        for k in living() {
-            self.ends.iter().for_each(|e| starts[e[k] as usize + 1] += 1);
+        for places in &self.ends {
+            let rows = places.iter().zip(&self.alive).filter(|(_, alive)| **alive > 0.0);
+            rows.for_each(|(place, _)| starts[*place as usize + 1] += 1);
         }
         for k in 0..particles {
             starts[k + 1] += starts[k];
@@ -280,7 +292,9 @@ impl<const C: usize> Columns<C> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let per_row = 8 + 8 * (5 + C) + if self.turned.is_empty() { 0 } else { 32 };
+        let axis = if self.axis[0].is_empty() { 0 } else { 24 };
+        let turned = if self.turned.is_empty() { 0 } else { 32 };
+        let per_row = 8 + 8 * (2 + C) + axis + turned;
         self.rows() * per_row + 4 * (self.starts.len() + self.entries.len())
     }
 }

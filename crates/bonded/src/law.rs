@@ -3,7 +3,7 @@
 use crate::sweep::{Out, Sweep};
 use perigrain_base::math::body::Quat;
 use perigrain_base::math::real::Real;
-use perigrain_base::math::vec3::Vec3;
+use perigrain_base::math::vec3::{Vec3, choose};
 
 /// A bond as its ends stand. The first end is that with the lower ID.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,27 @@ pub struct Acts<R> {
     pub load: R,
     /// What its dashpots turn into heat [force length/time].
     pub power: R,
+}
+
+impl<R: Real> Acts<R> {
+    /// Nothing; `zero` is 0.
+    #[inline(always)]
+    pub fn none(zero: R) -> Self {
+        let none = [zero; 3];
+        Self { force: none, torque: [none; 2], energy: zero, load: zero, power: zero }
+    }
+
+    /// `yes` where the mask says so, else `no`.
+    #[inline(always)]
+    pub fn choose(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            force: choose(mask, yes.force, no.force),
+            torque: [choose(mask, yes.torque[0], no.torque[0]), choose(mask, yes.torque[1], no.torque[1])],
+            energy: R::choose(mask, yes.energy, no.energy),
+            load: R::choose(mask, yes.load, no.load),
+            power: R::choose(mask, yes.power, no.power),
+        }
+    }
 }
 
 /// A law: what one bond does. It knows neither lists nor threads nor instruction sets.

@@ -38,4 +38,6 @@ mod tests_statics;
 #[cfg(test)]
 mod tests_strength;
 #[cfg(test)]
+mod tests_sweep;
+#[cfg(test)]
 mod tests_tensors;

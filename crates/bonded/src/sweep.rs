@@ -2,7 +2,7 @@
 //! the order of the columns: the same bits for any number of threads and any form of lanes.
 
 use crate::columns::{Columns, GROUP};
-use crate::law::{BondLaw, Ends, Motion};
+use crate::law::{Acts, BondLaw, Ends, Motion};
 use perigrain_base::math::body::{Quat, after};
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::Four;
@@ -11,6 +11,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, sub};
 use perigrain_base::par;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is known of the particles. Shapes: one row per particle.
@@ -45,13 +46,18 @@ pub struct Sweep<'a, const C: usize, K> {
     pub counts: bool,
 }
 
+/// Four numbers that lie within a line of a cache: rows across two of them are read at half the pace.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(32))]
+pub struct Row(pub [f64; 4]);
+
 /// What bonds do: a row per bond.
 #[derive(Clone, Debug, Default)]
 pub struct Out {
     /// Force on the first end, and the energy, which a bond that breaks has had.
-    pub force: Vec<[f64; 4]>,
+    pub force: Vec<Row>,
     /// Torques on both ends; empty for laws without.
-    pub torque: Vec<[[f64; 4]; 2]>,
+    pub torque: Vec<[Row; 2]>,
     /// How much of what it can bear each bond of a group bears in which one breaks; what others hold means nothing, and is below 1.
     pub load: Vec<f64>,
     /// What dashpots turn into heat; empty where nobody asks.
@@ -68,21 +74,37 @@ pub const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 /// # Panics
 /// If columns refer to particles that are not there, or to types without coefficients.
 pub fn all<const C: usize, L: BondLaw<C>>(law: &L, pass: &Sweep<'_, C, L::Coeffs>, out: &mut Out) {
+    // SAFETY: a form of this processor.
+    unsafe { all_in(Form::here(), law, pass, out) };
+}
+
+/// The same in a form.
+///
+/// # Safety
+/// The processor must have what the form needs.
+pub(crate) unsafe fn all_in<const C: usize, L: BondLaw<C>>(
+    form: Form,
+    law: &L,
+    pass: &Sweep<'_, C, L::Coeffs>,
+    out: &mut Out,
+) {
     let (rows, particles) = (pass.columns.rows(), pass.body.x.len());
     assert!(pass.columns.reach <= particles && (!pass.damped || pass.body.v.len() == particles));
     assert!(!L::TURNS || (pass.body.quat.len() == particles && pass.body.omega.len() == particles));
+    assert!(!L::TURNS || pass.columns.axis.iter().all(|axis| axis.len() == rows));
+    assert!(pass.columns.own.iter().all(|own| own.len() == rows));
     assert!(particles < 1 << perigrain_base::math::lanes::PLACE_BITS);
-    out.force.resize(rows, [0.0; 4]);
+    out.force.resize(rows, Row::default());
     out.load.resize(rows, 0.0);
-    out.torque.resize(if L::TURNS { rows } else { 0 }, [[0.0; 4]; 2]);
+    out.torque.resize(if L::TURNS { rows } else { 0 }, [Row::default(); 2]);
     out.power.resize(if pass.counts { rows } else { 0 }, 0.0);
-    let (broken, form) = (AtomicBool::new(false), Form::here());
+    let broken = AtomicBool::new(false);
     let torque = L::TURNS.then_some(&mut out.torque[..]);
     let power = pass.counts.then_some(&mut out.power[..]);
     let columns = (&mut out.force[..], &mut out.load[..], torque, power);
     par::each(columns, |first, (force, load, torque, power)| {
         let chunk = Chunk { law, pass, first, force, load, torque, power };
-        // SAFETY: the form is one of this processor, and the lists are as long as the assertions above say.
+        // SAFETY: the form is one of this processor (the caller), and the lists are as long as the assertions above say.
         if unsafe { form.run(chunk) } {
             broken.store(true, Ordering::Relaxed);
         }
@@ -95,9 +117,9 @@ struct Chunk<'a, 'b, const C: usize, L: BondLaw<C>> {
     law: &'a L,
     pass: &'a Sweep<'b, C, L::Coeffs>,
     first: usize,
-    force: &'a mut [[f64; 4]],
+    force: &'a mut [Row],
     load: &'a mut [f64],
-    torque: Option<&'a mut [[[f64; 4]; 2]]>,
+    torque: Option<&'a mut [[Row; 2]]>,
     power: Option<&'a mut [f64]>,
 }
 
@@ -107,89 +129,115 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
 
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(mut self) -> bool {
-        let (columns, body) = (self.pass.columns, &self.pass.body);
+        let (mut at, mut broken) = (0, false);
+        // Chunks consist of whole groups.
+        let groups = self.first / GROUP..(self.first + self.force.len()) / GROUP;
+        // SAFETY: passed on; all rows are of this chunk.
+        unsafe {
+            for alike in self.pass.columns.kinds[groups].chunk_by(|a, b| a == b) {
+                let to = at + alike.len() * GROUP;
+                if let Some(k) = self.pass.coeffs[usize::from(alike[0])] {
+                    broken |= match self.pass.damped {
+                        true => self.stretch::<N, V, true>(at..to, k),
+                        false => self.stretch::<N, V, false>(at..to, k),
+                    };
+                }
+                at = to;
+            }
+        }
+        broken
+    }
+}
+
+impl<const C: usize, L: BondLaw<C>> Chunk<'_, '_, C, L> {
+    /// Rows of this chunk whose bonds are of one type. Whether some bond broke.
+    ///
+    /// # Safety
+    /// As of [`InLanes::run`].
+    #[inline(always)]
+    unsafe fn stretch<const N: usize, V: Lanes<N>, const DAMPED: bool>(
+        &mut self,
+        rows: Range<usize>,
+        k: L::Coeffs,
+    ) -> bool {
+        // What is looked up here is not looked up for each group: stores of forces could change it, for all the compiler knows.
+        let (columns, Body { x, v, omega, quat, periods }) = (self.pass.columns, self.pass.body);
+        let (x, v, omega) = (x.as_ptr(), v.as_ptr(), omega.as_ptr());
+        let [firsts, seconds] = [0, 1].map(|end: usize| columns.ends[end].as_ptr());
+        let (lengths, whole) = (columns.length.as_ptr(), columns.whole().as_ptr());
+        let owns: [*const f64; C] = std::array::from_fn(|c| columns.own[c].as_ptr());
+        let (repeats, breaks) = (periods.length != [0.0; 3], self.pass.breaks);
+        let force = self.force.as_mut_ptr();
         let mut broken = false;
         // SAFETY: the processor has what the lanes need (the caller); all columns have as many rows as forces, in whole groups,
         // and all places are particles (checked in `all`).
         unsafe {
             let (none, one) = (V::all(0.0), V::all(1.0));
-            for at in (0..self.force.len()).step_by(N) {
+            for at in rows.step_by(N) {
                 let row = self.first + at;
-                let Some(k) = &self.pass.coeffs[usize::from(columns.kinds[row / GROUP])] else { continue };
-                let (first, second) = (columns.ends[0].as_ptr().add(row), columns.ends[1].as_ptr().add(row));
-                let x = body.x.as_ptr();
+                let (first, second) = (firsts.add(row), seconds.add(row));
                 let mut ends = Ends {
-                    r: nearest(sub(V::vectors(x, first), V::vectors(x, second)), &body.periods),
-                    length: column(&columns.length, row),
+                    r: sub(V::vectors(x, first), V::vectors(x, second)),
+                    length: column(lengths.add(row)),
                     axis: [none, none, one],
                     quat: [[one, none, none, none]; 2],
                 };
+                if repeats {
+                    ends.r = nearest(ends.r, &periods);
+                }
                 if L::TURNS {
                     ends.axis = [
-                        column(&columns.axis[0], row),
-                        column(&columns.axis[1], row),
-                        column(&columns.axis[2], row),
+                        column(columns.axis[0].as_ptr().add(row)),
+                        column(columns.axis[1].as_ptr().add(row)),
+                        column(columns.axis[2].as_ptr().add(row)),
                     ];
-                    ends.quat = [quats::<N, V>(body.quat, first), quats::<N, V>(body.quat, second)];
+                    ends.quat = [quats::<N, V>(quat, first), quats::<N, V>(quat, second)];
                     if !columns.turned.is_empty() {
                         ends.quat[0] = after(ends.quat[0], rows_of::<N, V>(&columns.turned[row..]));
                     }
                 }
                 let mut motion = None;
-                if self.pass.damped {
-                    let v = body.v.as_ptr();
-                    let mut omega = [[none; 3]; 2];
+                if DAMPED {
+                    let mut spins = [[none; 3]; 2];
                     if L::TURNS {
-                        let o = body.omega.as_ptr();
-                        omega = [V::vectors(o, first), V::vectors(o, second)];
+                        spins = [V::vectors(omega, first), V::vectors(omega, second)];
                     }
-                    motion = Some(Motion { v: sub(V::vectors(v, first), V::vectors(v, second)), omega });
+                    let v = sub(V::vectors(v, first), V::vectors(v, second));
+                    motion = Some(Motion { v, omega: spins });
                 }
                 let mut own = [none; C];
                 for c in 0..C {
-                    own[c] = column(&columns.own[c], row);
+                    own[c] = column(owns[c].add(row));
                 }
-                let acts = self.law.act(k, &own, &ends, motion.as_ref());
+                let mut acts = self.law.act(&k, &own, &ends, motion.as_ref());
                 // Few groups have lost a bond: nothing is read for the others.
-                let mut alive =
-                    if columns.is_whole(row / GROUP) { one } else { column(columns.alive(), row) };
-                let load = V::choose(alive.above(none), acts.load, none);
-                let energy = V::choose(alive.above(none), acts.energy, none);
-                if self.pass.breaks {
-                    let over = load.above(V::all(BELOW_ONE));
+                if !*whole.add(row / GROUP) {
+                    let holds = column::<N, V>(columns.alive().as_ptr().add(row)).above(none);
+                    acts = Acts::choose(holds, acts, Acts::none(none));
+                }
+                if breaks {
+                    let over = acts.load.above(V::all(BELOW_ONE));
                     if V::any(over) {
                         broken = true;
-                        self.load[at..at + N].copy_from_slice(&load.numbers());
-                        alive = V::choose(over, none, alive);
+                        self.load[at..at + N].copy_from_slice(&acts.load.numbers());
+                        let energy = acts.energy;
+                        acts = Acts { energy, ..Acts::choose(over, Acts::none(none), acts) };
                     }
                 }
-                let holds = alive.above(none);
                 let f = acts.force;
-                let f = [
-                    V::choose(holds, f[0], none),
-                    V::choose(holds, f[1], none),
-                    V::choose(holds, f[2], none),
-                    energy,
-                ];
-                let rows = V::to_rows(f);
+                let rows = V::to_rows([f[0], f[1], f[2], acts.energy]);
                 for lane in 0..N {
-                    rows[lane].store(self.force[at + lane].as_mut_ptr());
+                    rows[lane].store(force.add(at + lane).cast());
                 }
                 if let Some(power) = &mut self.power {
-                    power[at..at + N].copy_from_slice(&V::choose(holds, acts.power, none).numbers());
+                    power[at..at + N].copy_from_slice(&acts.power.numbers());
                 }
-                if let Some(torque) = &mut self.torque {
+                if let Some(torque) = self.torque.as_mut().filter(|_| L::TURNS) {
                     for end in 0..2 {
                         let t = acts.torque[end];
-                        let t = [
-                            V::choose(holds, t[0], none),
-                            V::choose(holds, t[1], none),
-                            V::choose(holds, t[2], none),
-                            none,
-                        ];
-                        let rows = V::to_rows(t);
+                        let rows = V::to_rows([t[0], t[1], t[2], none]);
                         for lane in 0..N {
-                            rows[lane].store(torque[at + lane][end].as_mut_ptr());
+                            rows[lane].store(torque[at + lane][end].0.as_mut_ptr());
                         }
                     }
                 }
@@ -199,14 +247,14 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
     }
 }
 
-/// Numbers of a column from a row on.
+/// Numbers of a column.
 ///
 /// # Safety
-/// The processor must have what the lanes need; a whole group must follow.
+/// The processor must have what the lanes need; there must be as many numbers as lanes.
 #[inline(always)]
-unsafe fn column<const N: usize, V: Lanes<N>>(column: &[f64], row: usize) -> V {
-    // SAFETY: columns consist of whole groups, and `row` begins N numbers of one.
-    unsafe { V::of(*column.as_ptr().add(row).cast::<[f64; N]>()) }
+unsafe fn column<const N: usize, V: Lanes<N>>(from: *const f64) -> V {
+    // SAFETY: the caller's promise.
+    unsafe { V::of(from.cast::<[f64; N]>().read()) }
 }
 
 /// Rows of four numbers as lanes.
@@ -283,14 +331,31 @@ fn across<R: Real>(d: R, period: f64) -> R {
 /// # Panics
 /// If there are fewer particles than the columns know, or no row for each bond.
 pub fn add_up<const C: usize>(columns: &Columns<C>, out: &Out, f: &mut [Vec3], torque: Option<&mut [Vec3]>) {
+    // SAFETY: a form of this processor.
+    unsafe { add_up_in(Form::here(), columns, out, f, torque) };
+}
+
+/// The same in a form.
+///
+/// # Safety
+/// The processor must have what the form needs.
+pub(crate) unsafe fn add_up_in<const C: usize>(
+    form: Form,
+    columns: &Columns<C>,
+    out: &Out,
+    f: &mut [Vec3],
+    torque: Option<&mut [Vec3]>,
+) {
     assert!(f.len() <= columns.particles() && out.force.len() == columns.rows());
     assert!(torque.is_none() || out.torque.len() == columns.rows());
-    let form = Form::here();
     par::each((f, torque), |first, (f, torque)| {
-        // SAFETY: a form of this processor; entries are bonds, and each has a row (asserted above).
+        // SAFETY: a form of this processor (the caller); entries are bonds, and each has a row (asserted above).
         unsafe { form.run(AddUp { columns, out, first, f, torque }) };
     });
 }
+
+/// What a bond's force counts as at its ends. Not an array of the loop, which each turn would write anew.
+static SIGNS: [f64; 2] = [1.0, -1.0];
 
 struct AddUp<'a, const C: usize> {
     columns: &'a Columns<C>,
@@ -315,10 +380,9 @@ impl<const C: usize> InLanes for AddUp<'_, C> {
                 let (mut force, mut turning) = (V::Row::splat(0.0), V::Row::splat(0.0));
                 for entry in entries {
                     let (bond, end) = (*entry as usize / 2, *entry as usize % 2);
-                    let sign = [1.0, -1.0][end];
-                    force = force + V::Row::load(self.out.force.as_ptr().add(bond).cast()) * sign;
+                    force = force + V::Row::load(self.out.force.as_ptr().add(bond).cast()) * SIGNS[end];
                     if self.torque.is_some() {
-                        let row = self.out.torque.as_ptr().add(bond).cast::<[f64; 4]>().add(end);
+                        let row = self.out.torque.as_ptr().add(bond).cast::<Row>().add(end);
                         turning = turning + V::Row::load(row.cast());
                     }
                 }

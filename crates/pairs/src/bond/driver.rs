@@ -234,14 +234,14 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
     /// Energies and virials, for those who ask.
     fn tally(&self, w: &mut World, t: &Tick, periods: &Periods) {
         if t.energy {
-            let energy = par::sum(self.columns.rows(), |k| self.out.force[k][3]);
+            let energy = par::sum(self.columns.rows(), |k| self.out.force[k].0[3]);
             w.tally.bond += energy;
         }
         if t.atom_energy {
             let energies = &mut w.tally.bond_atom;
             energies.resize(w.particles.x.len(), 0.0);
             for k in self.columns.living() {
-                self.columns.pair(k).iter().for_each(|&i| energies[i] += 0.5 * self.out.force[k][3]);
+                self.columns.pair(k).iter().for_each(|&i| energies[i] += 0.5 * self.out.force[k].0[3]);
             }
         }
         if t.virial {
@@ -249,7 +249,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
             for k in self.columns.living() {
                 let ends @ [a, b] = self.columns.pair(k);
                 let d = nearest(sub(x[a], x[b]), periods);
-                let f = &self.out.force[k];
+                let f = &self.out.force[k].0;
                 let atoms = t.atom_virial.then_some(&mut tally.atom_bonds[..]);
                 add_share(&mut tally.bond_virial, atoms, ends, d, [f[0], f[1], f[2]]);
             }
@@ -284,7 +284,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         w.bonds.lose(&broken);
         // Lists of contacts leave bonded pairs out.
         w.rebuild.freed.extend(broken.iter().map(|(ends, _)| *ends));
-        let energies = over.iter().map(|&k| std::mem::take(&mut self.out.force[k][3]));
+        let energies = over.iter().map(|&k| std::mem::take(&mut self.out.force[k].0[3]));
         let energy: f64 = energies.sum();
         if w.bonds.counts_losses {
             w.bonds.released += energy;
