@@ -4,6 +4,7 @@ use super::*;
 use crate::{Damping, Friction, Granular, Model, Normal, Tangential, normal};
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
 use perigrain_world::Compat;
+use perigrain_world::domain::Flow;
 
 struct Scene {
     x: Vec<Vec3>,
@@ -68,7 +69,7 @@ fn evaluate(s: &Scene, average: Average, curvature: Curvature) -> (Vec<Vec3>, Ve
         period,
         body: &s.body,
         frozen: &[],
-        travel: Travel::default(),
+        travel: Default::default(),
     };
     let mut sweep = Sweep::default();
     let mut memory = Contacts::default();

@@ -1,0 +1,161 @@
+//! The particles as contacts see them: who touches, where and how.
+
+use super::rules::{Curvature, Rule, Rules};
+use crate::together::Met;
+use crate::{ContactLaw, Geometry, Motion};
+use perigrain_base::math::periods::Periods;
+use perigrain_base::math::vec3::{Vec3, add, length};
+use perigrain_neigh::list::{Pair, difference};
+use perigrain_world::Travel;
+use perigrain_world::domain::Flow;
+
+/// The particles as contacts see them: columns of equal length.
+#[derive(Clone, Copy)]
+pub struct Grains<'a> {
+    /// Positions [length].
+    pub x: &'a [Vec3],
+    /// Velocities [length/time].
+    pub v: &'a [Vec3],
+    /// Angular velocities [1/time].
+    pub omega: &'a [Vec3],
+    /// Radii [length].
+    pub radius: &'a [f64],
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Types, from 1.
+    pub kind: &'a [u16],
+    /// Identities.
+    pub tag: &'a [u32],
+    /// Edges of the box; zero where it does not repeat.
+    pub period: Periods,
+    /// How the box grows, and groups by particle, where images move with it.
+    pub flow: Option<(Flow, &'a [u32])>,
+    /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
+    pub body: &'a [u32],
+    /// Particles that nothing moves, of infinite mass to others; may be empty.
+    pub frozen: &'a [bool],
+    /// How far they may have gone.
+    pub travel: Travel,
+}
+
+/// The body of a particle that belongs to no solid.
+pub const NO_BODY: u32 = u32::MAX;
+
+impl Grains<'_> {
+    fn body(&self, i: u32) -> u32 {
+        self.body.get(i as usize).copied().unwrap_or(NO_BODY)
+    }
+
+    /// A name for the body of particle `i`, unlike all others: solids first, then grains.
+    pub(super) fn body_name(&self, i: u32) -> u64 {
+        match self.body(i) {
+            NO_BODY => (1 << 32) + u64::from(i),
+            solid => u64::from(solid),
+        }
+    }
+
+    #[inline]
+    fn motion(&self, i: u32) -> Motion {
+        Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
+    }
+
+    /// The motion of the second particle's image, which a growing box carries along.
+    #[inline]
+    fn image_motion(&self, p: &Pair) -> Motion {
+        let mut motion = self.motion(p.j);
+        if let Some((flow, mask)) = &self.flow
+            && mask[p.j as usize] & flow.group.bit() != 0
+        {
+            motion.velocity = add(motion.velocity, flow.velocity(p.shift.map(f64::from)));
+        }
+        motion
+    }
+
+    /// Whether the two touch, or would still hold together if they had touched (`gaps`: some law lets them).
+    #[inline]
+    pub(super) fn meeting<L: ContactLaw>(&self, p: &Pair, rules: &Rules<L>, gaps: bool) -> Meeting {
+        let d = difference(self.x, &self.period, p);
+        let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
+        let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
+        if square < sum * sum {
+            let deep = sum - DEEP * ri.min(rj);
+            return if square < deep * deep { Meeting::Deep } else { Meeting::Touch };
+        }
+        if !gaps {
+            return Meeting::Apart;
+        }
+        let rule = self.rule(p, rules);
+        let far = sum + rule.map_or(0.0, |r| r.law.gap(ri * rj / sum));
+        if square < far * far { Meeting::Near } else { Meeting::Apart }
+    }
+
+    /// Where and how the two touch, or have touched and still hold, and how far apart their centres are.
+    #[inline]
+    pub(super) fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> (Geometry, f64) {
+        let (i, j) = (p.i as usize, p.j as usize);
+        let d = difference(self.x, &self.period, p);
+        let distance = length(d);
+        let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
+        let mut g = Geometry::between(d, distance, radii, masses);
+        if let [true, _] | [_, true] = [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
+            g.mass = if self.frozen[j] { masses[0] } else { masses[1] };
+        }
+        if rule.curvature == Curvature::Impactor {
+            g = match [p.i, p.j].map(|k| self.body(k) == NO_BODY) {
+                [true, false] => g.with_curvature(g.radii[0]),
+                [false, true] => g.with_curvature(g.radii[1]),
+                _ => g,
+            };
+        }
+        (g, distance)
+    }
+
+    /// The rule for two particles.
+    pub(super) fn rule<'r, L: Copy>(&self, p: &Pair, rules: &'r Rules<L>) -> Option<&'r Rule<L>> {
+        rules.get(self.kind[p.i as usize], self.kind[p.j as usize])
+    }
+}
+
+/// How close two grains are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Meeting {
+    #[default]
+    Apart,
+    /// Beyond touch, but within what an existing contact spans.
+    Near,
+    Touch,
+    /// Overlapping by more than `DEEP` of the smaller radius.
+    Deep,
+}
+
+/// Overlap over the smaller radius beyond which laws of contact mean little.
+pub const DEEP: f64 = 0.1;
+
+/// Pairs of grains that touch.
+pub(super) struct Ends<'a> {
+    pub pairs: &'a [Pair],
+    pub grains: &'a Grains<'a>,
+}
+
+impl Met for Ends<'_> {
+    #[inline(always)]
+    fn own(&self, k: usize) -> u32 {
+        self.pairs[k].i
+    }
+
+    fn other(&self, k: usize) -> Motion {
+        self.grains.image_motion(&self.pairs[k])
+    }
+
+    #[inline(always)]
+    fn others<const N: usize>(&self, k: [usize; N]) -> Option<[u32; N]> {
+        if self.grains.flow.is_some() {
+            return None;
+        }
+        let mut others = [0; N];
+        for lane in 0..N {
+            others[lane] = self.pairs[k[lane]].j;
+        }
+        Some(others)
+    }
+}

@@ -1,0 +1,87 @@
+//! What contacts of each pair of types obey.
+
+use crate::ContactLaw;
+
+/// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
+/// momentum-conserving: every contact's force and its reaction are divided by the same N).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Average {
+    /// N = 1: forces add up.
+    #[default]
+    None,
+    /// N = the larger of the two particles' numbers of contacts.
+    Particle,
+    /// N = the number of contacts between the two bodies; a body is a grain or a peridynamic solid.
+    Body,
+}
+
+/// The effective radius R̄ of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Curvature {
+    /// R_i R_j / (R_i + R_j).
+    #[default]
+    Both,
+    /// The grain's radius where it meets a peridynamic solid, whose surface counts as flat.
+    Impactor,
+}
+
+/// What contacts of one pair of types obey.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule<L> {
+    /// The law.
+    pub law: L,
+    /// Sharing.
+    pub average: Average,
+    /// Effective radius.
+    pub curvature: Curvature,
+}
+
+/// Rules by pair of types (from 1), symmetric.
+#[derive(Clone, Debug)]
+pub struct Rules<L> {
+    types: usize,
+    table: Vec<Option<Rule<L>>>,
+}
+
+impl<L: Copy> Rules<L> {
+    /// No rules yet.
+    pub fn new(types: usize) -> Self {
+        Self { types, table: vec![None; types * types] }
+    }
+
+    /// Sets the rule of two types.
+    pub fn set(&mut self, a: u16, b: u16, rule: Rule<L>) {
+        let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
+        self.table[a * self.types + b] = Some(rule);
+        self.table[b * self.types + a] = Some(rule);
+    }
+
+    /// The rule of two types.
+    #[inline]
+    pub fn get(&self, a: u16, b: u16) -> Option<&Rule<L>> {
+        self.table[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
+    }
+
+    /// How many numbers a contact remembers at most.
+    pub fn memory(&self) -> usize
+    where
+        L: ContactLaw,
+    {
+        self.table.iter().flatten().map(|r| r.law.memory()).max().unwrap_or(0)
+    }
+
+    /// The rules by which contacts are looked at once more ([`ContactLaw::again`]).
+    #[must_use]
+    pub fn again(&self, setup: bool) -> Self
+    where
+        L: ContactLaw,
+    {
+        let again = |rule: &Rule<L>| Rule { law: rule.law.again(setup), ..*rule };
+        Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
+    }
+
+    /// Whether some rule is of this kind.
+    pub fn any(&self, is: impl Fn(&Rule<L>) -> bool) -> bool {
+        self.table.iter().flatten().any(is)
+    }
+}
