@@ -66,13 +66,14 @@ fn read(table: &Path) -> BTreeMap<(String, String), Vec<Row>> {
     runs
 }
 
-/// What the deck prints, run in a folder of its own.
+/// What the deck prints, run in a folder of its own, with one thread: other tests run beside it.
 fn run(deck: &Path, args: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let out = Command::new(env!("CARGO_BIN_EXE_perigrain"))
         .arg("-in")
         .arg(deck)
         .args(args.split_whitespace())
+        .args(["-threads", "1"])
         .current_dir(folder.path())
         .output()
         .unwrap();
