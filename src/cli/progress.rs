@@ -200,7 +200,9 @@ impl State {
     fn line(&self, made: &Made, log: Option<&Log>, width: usize) -> String {
         let (done, all, [most, of]) = self.share(made);
         let steps = format!("{} of {most}{} steps{of}", count(done as f64), count(all as f64));
-        let wide = if width < 100 { 10 } else { 20 }.min(width.saturating_sub(steps.chars().count() + 1));
+        let (usual, room) =
+            (if width < 100 { 10 } else { 20 }, width.saturating_sub(steps.chars().count() + 1));
+        let wide = usual.min(room);
         let full = (wide as f64 * done as f64 / all.max(1) as f64).floor().clamp(0.0, wide as f64) as usize;
         let gap = if wide == 0 { "" } else { " " };
         let mut text = format!("{}{}{gap}{steps}", "█".repeat(full), "░".repeat(wide - full));

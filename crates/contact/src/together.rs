@@ -3,8 +3,7 @@
 
 use super::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::form::{Form, InLanes};
-use perigrain_base::math::four::Four;
-use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::vec3::Vec3;
 
 /// Fewer contacts are evaluated one by one: lanes that repeat a contact are in vain.
@@ -46,7 +45,7 @@ impl<L: ContactLaw, M: Met> Together<'_, L, M> {
     pub fn evaluate(self) {
         let n = self.geometry.len();
         assert!(self.wrenches.len() == n && self.history.len() == n * self.width);
-        if n >= FEW && (FOUR..=MOST_MEMORY).contains(&self.width) {
+        if n >= FEW && self.width <= MOST_MEMORY {
             assert_eq!(self.v.len(), self.omega.len());
             // SAFETY: this processor has what its own form needs; the columns have as many rows as there are contacts.
             return unsafe { Form::here().run(self) };
@@ -103,90 +102,101 @@ impl<L: ContactLaw, M: Met> Together<'_, L, M> {
 impl<L: ContactLaw, M: Met> InLanes for Together<'_, L, M> {
     type Out = ();
 
-    /// There must be at least one contact, and rows of [`FOUR`] numbers at least for each.
+    /// There must be at least one contact, and a row of each column for each.
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let (count, width) = (self.geometry.len(), self.width);
-        let (geometry, history) = (self.geometry.as_ptr().cast::<f64>(), self.history.as_mut_ptr());
-        let wrenches = self.wrenches.as_mut_ptr().cast::<f64>();
+        let (geometry, history) = (self.geometry.as_ptr().cast_mut(), self.history.as_mut_ptr());
+        let wrenches = self.wrenches.as_mut_ptr();
         for first in (0..count).step_by(N) {
-            let (mut k, mut own) = ([0; N], [0; N]);
+            let (null, mut k, mut own) = (std::ptr::null_mut::<f64>(), [0; N], [0; N]);
+            let (mut touch, mut past, mut done) = ([null; N], [null; N], [null; N]);
             for lane in 0..N {
                 // Lanes without a contact repeat the last one, in whose place they write the same.
                 k[lane] = (first + lane).min(count - 1);
                 own[lane] = self.met.own(k[lane]);
+                // SAFETY: each of these contacts has its rows. Geometry is only read.
+                unsafe {
+                    touch[lane] = geometry.add(k[lane]).cast();
+                    past[lane] = history.add(k[lane] * width);
+                    done[lane] = wrenches.add(k[lane]).cast();
+                }
             }
-            // SAFETY: the processor has what the form needs; each of these contacts has its rows.
+            // SAFETY: the processor has what the form needs; a geometry is eight numbers, a wrench nine.
             unsafe {
-                let [nx, ny, nz, overlap] = load::<N, V>(geometry, size_of::<Geometry>() / 8, 0, k);
-                let [ri, rj, curvature, mass] = load::<N, V>(geometry, size_of::<Geometry>() / 8, FOUR, k);
+                let [nx, ny, nz, overlap] = load_rows(&touch, 0);
+                let [ri, rj, curvature, mass] = load_rows(&touch, FOUR);
                 let g = Geometry { normal: [nx, ny, nz], overlap, radii: [ri, rj], curvature, mass };
                 let (own, other) = (self.motion::<N, V>(own), self.other::<N, V>(k));
-                let mut past = [V::all(0.0); MOST_MEMORY];
-                let mut part = 0;
-                while part < width {
-                    // The last four may have been read in part.
-                    let at = part.min(width - FOUR);
-                    [past[at], past[at + 1], past[at + 2], past[at + 3]] =
-                        load::<N, V>(history, width, at, k);
-                    part += FOUR;
-                }
-                let w = self.law.contact(&g, &own, &other, &mut past[..width], self.step);
-                let mut part = 0;
-                while part < width {
-                    let at = part.min(width - FOUR);
-                    let four = [past[at], past[at + 1], past[at + 2], past[at + 3]];
-                    store::<N, V>(history, width, at, k, four);
-                    part += FOUR;
-                }
+                let mut history = remembered::<N, V>(&past, width);
+                let w = self.law.contact(&g, &own, &other, &mut history[..width], self.step);
+                remember(&past, &history[..width]);
                 let ([a, b, c], [d, e, f], [x, y, z]) = (w.force, w.torque_i, w.torque_j);
-                store::<N, V>(wrenches, size_of::<Wrench>() / 8, 0, k, [a, b, c, d]);
-                store::<N, V>(wrenches, size_of::<Wrench>() / 8, FOUR, k, [e, f, x, y]);
+                store_rows(&done, 0, [a, b, c, d]);
+                store_rows(&done, FOUR, [e, f, x, y]);
                 let z = z.numbers();
                 for lane in 0..N {
-                    *wrenches.add(k[lane] * (size_of::<Wrench>() / 8) + 8) = z[lane];
+                    *done[lane].add(2 * FOUR) = z[lane];
                 }
             }
         }
     }
 }
 
-/// Four numbers from `part` on of rows `k`, of `width` numbers each, turned into lanes.
+/// Where four of `width` numbers begin that go on from `part`: the last four may repeat some.
+#[inline(always)]
+fn four_of(width: usize, part: usize) -> usize {
+    part.min(width - FOUR)
+}
+
+/// What contacts remember: `width` numbers of each row, then zeros.
 ///
 /// # Safety
 /// The processor must have what the lanes need, and there must be such rows.
 #[inline(always)]
-unsafe fn load<const N: usize, V: Lanes<N>>(
-    column: *const f64,
-    width: usize,
-    part: usize,
-    k: [usize; N],
-) -> [V; 4] {
+unsafe fn remembered<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], width: usize) -> [V; MOST_MEMORY] {
     // SAFETY: passed on.
     unsafe {
-        let mut rows = [V::Row::splat(0.0); N];
-        for lane in 0..N {
-            rows[lane] = V::Row::load(column.add(k[lane] * width + part));
+        let mut lanes = [V::all(0.0); MOST_MEMORY];
+        if width < FOUR {
+            for part in 0..width {
+                let mut numbers = [0.0; N];
+                for lane in 0..N {
+                    numbers[lane] = *rows[lane].add(part);
+                }
+                lanes[part] = V::of(numbers);
+            }
+            return lanes;
         }
-        V::of_rows(rows)
+        for part in (0..width).step_by(FOUR) {
+            let at = four_of(width, part);
+            [lanes[at], lanes[at + 1], lanes[at + 2], lanes[at + 3]] = load_rows(rows, at);
+        }
+        lanes
     }
 }
 
-/// Puts four numbers from `part` on into rows `k`.
+/// The way back.
 ///
 /// # Safety
-/// As [`load`].
+/// As [`remembered`].
 #[inline(always)]
-unsafe fn store<const N: usize, V: Lanes<N>>(
-    column: *mut f64,
-    width: usize,
-    part: usize,
-    k: [usize; N],
-    lanes: [V; 4],
-) {
-    let rows = V::to_rows(lanes);
-    for lane in 0..N {
-        // SAFETY: passed on.
-        unsafe { rows[lane].store(column.add(k[lane] * width + part)) };
+unsafe fn remember<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], lanes: &[V]) {
+    let width = lanes.len();
+    // SAFETY: passed on.
+    unsafe {
+        if width < FOUR {
+            for part in 0..width {
+                let numbers = lanes[part].numbers();
+                for lane in 0..N {
+                    *rows[lane].add(part) = numbers[lane];
+                }
+            }
+            return;
+        }
+        for part in (0..width).step_by(FOUR) {
+            let at = four_of(width, part);
+            store_rows(rows, at, [lanes[at], lanes[at + 1], lanes[at + 2], lanes[at + 3]]);
+        }
     }
 }

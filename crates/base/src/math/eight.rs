@@ -118,19 +118,8 @@ impl<const GATHERS: bool> Real for Avx512<GATHERS> {
         mask != 0
     }
     #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> Self {
-        let a = self.numbers().map(f);
-        Self(unsafe { _mm512_loadu_pd(a.as_ptr()) })
-    }
-    #[inline(always)]
-    fn each_where<const K: usize>(
-        mask: Self::Mask,
-        of: [Self; K],
-        or: Self,
-        f: impl Fn([f64; K]) -> f64,
-    ) -> Self {
-        let set = Self::choose(mask, or.like(1.0), or.like(0.0));
-        let a = lane_by_lane(set.numbers(), of.map(Self::numbers), or.numbers(), f);
+    fn each_of<const K: usize>(of: [Self; K], f: impl Fn([f64; K]) -> f64) -> Self {
+        let a = lane_by_lane(of.map(Self::numbers), f);
         Self(unsafe { _mm512_loadu_pd(a.as_ptr()) })
     }
 }

@@ -138,18 +138,8 @@ impl Real for Plain {
         mask.iter().any(|m| *m)
     }
     #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(f))
-    }
-    #[inline(always)]
-    fn each_where<const K: usize>(
-        mask: Self::Mask,
-        of: [Self; K],
-        or: Self,
-        f: impl Fn([f64; K]) -> f64,
-    ) -> Self {
-        let set = Self::choose(mask, or.like(1.0), or.like(0.0));
-        Self(lane_by_lane(set.0, of.map(|a| a.0), or.0, f))
+    fn each_of<const K: usize>(of: [Self; K], f: impl Fn([f64; K]) -> f64) -> Self {
+        Self(lane_by_lane(of.map(|a| a.0), f))
     }
 }
 
@@ -283,21 +273,8 @@ mod x86 {
             unsafe { _mm256_movemask_pd(mask) != 0 }
         }
         #[inline(always)]
-        fn each(self, f: impl Fn(f64) -> f64) -> Self {
-            let mut a = [0.0; 4];
-            unsafe { _mm256_storeu_pd(a.as_mut_ptr(), self.0) };
-            a = a.map(f);
-            Self(unsafe { _mm256_loadu_pd(a.as_ptr()) })
-        }
-        #[inline(always)]
-        fn each_where<const K: usize>(
-            mask: Self::Mask,
-            of: [Self; K],
-            or: Self,
-            f: impl Fn([f64; K]) -> f64,
-        ) -> Self {
-            let set = Self::choose(mask, or.like(1.0), or.like(0.0));
-            let a = lane_by_lane(set.numbers(), of.map(Self::numbers), or.numbers(), f);
+        fn each_of<const K: usize>(of: [Self; K], f: impl Fn([f64; K]) -> f64) -> Self {
+            let a = lane_by_lane(of.map(Self::numbers), f);
             Self(unsafe { _mm256_loadu_pd(a.as_ptr()) })
         }
     }

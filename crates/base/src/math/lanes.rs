@@ -147,6 +147,35 @@ pub(super) unsafe fn numbers_at<const N: usize>(list: *const f64, at: *const u32
     }
 }
 
+/// Four numbers from `part` on of each of these rows, turned into lanes.
+///
+/// # Safety
+/// The processor must have what the lanes need, and there must be such rows.
+#[inline(always)]
+pub unsafe fn load_rows<V: Lanes<N>, const N: usize>(rows: &[*mut f64; N], part: usize) -> [V; 4] {
+    // SAFETY: passed on.
+    unsafe {
+        let mut four = [V::Row::splat(0.0); N];
+        for lane in 0..N {
+            four[lane] = V::Row::load(rows[lane].add(part));
+        }
+        V::of_rows(four)
+    }
+}
+
+/// The way back: four numbers from `part` on of each of these rows, one row after the other.
+///
+/// # Safety
+/// As [`load_rows`].
+#[inline(always)]
+pub unsafe fn store_rows<V: Lanes<N>, const N: usize>(rows: &[*mut f64; N], part: usize, lanes: [V; 4]) {
+    let four = V::to_rows(lanes);
+    for lane in 0..N {
+        // SAFETY: passed on.
+        unsafe { four[lane].store(rows[lane].add(part)) };
+    }
+}
+
 impl<F: Four> Lanes<4> for F {
     type Row = F;
     #[inline(always)]

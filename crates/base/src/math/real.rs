@@ -41,15 +41,13 @@ pub trait Real:
     fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Whether some lane says yes.
     fn any(mask: Self::Mask) -> bool;
+    /// A function of several numbers without a form in lanes, lane by lane.
+    fn each_of<const K: usize>(of: [Self; K], f: impl Fn([f64; K]) -> f64) -> Self;
     /// A function without a form in lanes (powers, angles), lane by lane.
-    fn each(self, f: impl Fn(f64) -> f64) -> Self;
-    /// A function of several numbers without a form in lanes, lane by lane where the mask says so; elsewhere `or`.
-    fn each_where<const K: usize>(
-        mask: Self::Mask,
-        of: [Self; K],
-        or: Self,
-        f: impl Fn([f64; K]) -> f64,
-    ) -> Self;
+    #[inline(always)]
+    fn each(self, f: impl Fn(f64) -> f64) -> Self {
+        Self::each_of([self], |[a]| f(a))
+    }
 }
 
 impl Real for f64 {
@@ -93,22 +91,16 @@ impl Real for f64 {
         mask
     }
     #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> f64 {
-        f(self)
-    }
-    #[inline(always)]
-    fn each_where<const K: usize>(mask: bool, of: [f64; K], or: f64, f: impl Fn([f64; K]) -> f64) -> f64 {
-        if mask { f(of) } else { or }
+    fn each_of<const K: usize>(of: [f64; K], f: impl Fn([f64; K]) -> f64) -> f64 {
+        f(of)
     }
 }
 
-/// [`Real::each_where`] of lanes as numbers, `set` telling with 1 where.
-#[inline]
+/// [`Real::each_of`] of the numbers in lanes.
+#[inline(always)]
 pub(super) fn lane_by_lane<const N: usize, const K: usize>(
-    set: [f64; N],
     of: [[f64; N]; K],
-    or: [f64; N],
     f: impl Fn([f64; K]) -> f64,
 ) -> [f64; N] {
-    std::array::from_fn(|lane| if set[lane] == 1.0 { f(of.map(|a| a[lane])) } else { or[lane] })
+    std::array::from_fn(|lane| f(of.map(|a| a[lane])))
 }

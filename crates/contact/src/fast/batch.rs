@@ -5,8 +5,7 @@ use super::found::Found;
 use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
 use crate::{ContactLaw, Geometry, Motion};
-use perigrain_base::math::four::Four;
-use perigrain_base::math::lanes::{Lanes, place};
+use perigrain_base::math::lanes::{Lanes, load_rows, place, store_rows};
 use perigrain_base::math::vec3::SIX;
 use rooms::{Outgoing, Room};
 use sizes::{Sizes, beside_frozen, geometry, reduced, too_deep};
@@ -217,19 +216,6 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Four numbers from `part` on of what contacts remember, turned into lanes.
-    #[inline(always)]
-    unsafe fn records(past: *const *mut f64, part: usize) -> [V; 4] {
-        // SAFETY: passed on.
-        unsafe {
-            let mut rows = [V::Row::splat(0.0); N];
-            for lane in 0..N {
-                rows[lane] = V::Row::load((*past.add(lane)).add(part));
-            }
-            V::of_rows(rows)
-        }
-    }
-
     /// Second stage: forces, torques and what is remembered.
     #[inline(always)]
     unsafe fn act<L: ContactLaw, const W: usize>(
@@ -242,7 +228,8 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         // SAFETY: passed on.
         unsafe {
             let at = N * group;
-            let (i, j, past) = (self.i.as_ptr().add(at), self.j.as_ptr().add(at), self.past.as_ptr().add(at));
+            let (i, j) = (self.i.as_ptr().add(at), self.j.as_ptr().add(at));
+            let past = &*self.past.as_ptr().add(at).cast::<[*mut f64; N]>();
             // (No closures in here: they are not compiled for AVX.)
             let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
             let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
@@ -256,8 +243,8 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 
             let mut history = [V::all(0.0); W];
             for part in (0..W).step_by(4) {
-                let lanes = Self::records(past, part);
-                [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
+                [history[part], history[part + 1], history[part + 2], history[part + 3]] =
+                    load_rows(past, part);
             }
             let lasts = history[W - 1].above(V::all(cx.now - 0.5));
             for part in 0..W - 1 {
@@ -273,12 +260,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             }
             history[W - 1] = V::all(cx.now + 1.0);
             for part in (0..W).step_by(4) {
-                let rows =
-                    V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
+                let four = [history[part], history[part + 1], history[part + 2], history[part + 3]];
                 // Lanes without a contact repeat the last one, in whose place they would write the same.
-                for lane in 0..N {
-                    rows[lane].store((*past.add(lane)).add(part));
-                }
+                store_rows(past, part, four);
             }
         }
     }

@@ -40,10 +40,12 @@ pub fn force<R: Real>(
     let energy = 2.0 * PI * m.cohesion / plane;
     let longer = R::both(glued, zero.above(misfit(shape, d, energy, before)));
     if R::any(longer) {
-        let numbers = [shape.a, shape.b, d, before];
-        *stuck = R::each_where(longer, numbers, *stuck, |[a, b, depth, from]| {
-            let springs = Springs { shape: &Ellipse { a, b }, depth, energy };
-            springs.last(from, coarse).unwrap_or(0.0)
+        let torn = R::choose(longer, d.like(1.0), zero);
+        *stuck = R::each_of([torn, shape.a, shape.b, d, *stuck], |[torn, a, b, depth, from]| {
+            if torn == 0.0 {
+                return from;
+            }
+            Springs { shape: &Ellipse { a, b }, depth, energy }.last(from, coarse).unwrap_or(0.0)
         });
     }
     let a = *stuck;

@@ -1,7 +1,7 @@
 //! Contacts among the grains of a powder: depths on both sides, forces, what they mean for the grains.
 
 use super::deeds::{Deed, Sum};
-use super::press::{Press, Seen};
+use super::press::{Contact, Press};
 use super::side::{AREA, DEPTH, PLASTIC, WIDTH};
 use super::state::Grain;
 use super::{Manner, Material, PAIR, State, screen};
@@ -16,7 +16,7 @@ use perigrain_world::contacts::Contacts;
 #[derive(Clone, Debug, Default)]
 pub struct Meetings {
     /// Geometry by contact.
-    seen: Vec<Seen>,
+    seen: Vec<Contact>,
     deeds: Vec<[Deed; 2]>,
     lines: Vec<screen::Line>,
     screen: screen::Screen,
@@ -57,7 +57,7 @@ impl Meetings {
                     s.mean[k] += side[AREA] * (depth - side[DEPTH]) / s.area_before[k];
                 }
             }
-            self.seen.push(Seen { ends, normal, overlap, depths, open: 1.0 });
+            self.seen.push(Contact { ends, normal, overlap, depths, open: 1.0 });
         }
         self.screen.open(&self.lines, radius.len(), &mut self.open);
         self.seen.iter_mut().zip(&self.open).for_each(|(c, open)| c.open = *open);

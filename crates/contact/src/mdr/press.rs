@@ -6,15 +6,14 @@ use super::side::{Side, WIDTH};
 use super::state::Grain;
 use super::{Manner, Material, PAIR, TOLD};
 use perigrain_base::math::form::InLanes;
-use perigrain_base::math::four::Four;
-use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 
 /// Geometry of a contact.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct Contact {
     /// Indices of both grains.
     pub ends: [u32; 2],
     /// Unit vector from the second to the first.
@@ -33,7 +32,7 @@ pub(super) struct Press<'a> {
     pub manner: Manner,
     /// All grains.
     pub grains: &'a [Grain],
-    pub seen: &'a [Seen],
+    pub seen: &'a [Contact],
     /// [`PAIR`] numbers of each contact.
     pub memory: &'a mut [f64],
     /// What the law is told, [`TOLD`] numbers at the end of each row.
@@ -43,7 +42,7 @@ pub(super) struct Press<'a> {
 
 /// Where what is known of the sides of some contacts stands.
 struct Places<const N: usize> {
-    grains: [[*const f64; N]; 2],
+    grains: [[*mut f64; N]; 2],
     memory: [*mut f64; N],
     told: [*mut f64; N],
     deeds: [*mut f64; N],
@@ -62,19 +61,16 @@ impl InLanes for Press<'_> {
         let (memory, told, deeds) = (memory.as_mut_ptr(), told.data.as_mut_ptr(), deeds.as_mut_ptr());
         for first in (0..seen.len()).step_by(N) {
             let (null, mut at) = (std::ptr::null_mut(), [0; N]);
-            let mut places = Places::<N> {
-                grains: [[std::ptr::null(); N]; 2],
-                memory: [null; N],
-                told: [null; N],
-                deeds: [null; N],
-            };
+            let mut places =
+                Places::<N> { grains: [[null; N]; 2], memory: [null; N], told: [null; N], deeds: [null; N] };
             for lane in 0..N {
                 // Past the last one it is repeated, and written as often, always the same.
                 let k = (first + lane).min(seen.len() - 1);
                 at[lane] = k;
                 for side in 0..2 {
-                    let grain: *const Grain = &raw const grains[seen[k].ends[side] as usize];
-                    places.grains[side][lane] = grain.cast();
+                    // Grains are only read.
+                    let grain = &raw const grains[seen[k].ends[side] as usize];
+                    places.grains[side][lane] = grain.cast_mut().cast();
                 }
                 // SAFETY: rows of column k, which there are, as was asked above.
                 unsafe {
@@ -132,50 +128,21 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
             area = area + one.area * 0.5;
             (energies[k], plastic[k]) = (deed.energy, one.plastic);
             let [a, b, c, d, e, f, g, h, i, j, l] = one.numbers();
-            put::<N, V>(&at.memory, k * WIDTH, [a, b, c, d]);
-            put::<N, V>(&at.memory, k * WIDTH + 4, [e, f, g, h]);
-            put::<N, V>(&at.memory, k * WIDTH + 8, [i, j, l, largest]);
-            put::<N, V>(&at.deeds, k * 8, [deed.strain, deed.cap, deed.area, deed.surface]);
-            put::<N, V>(&at.deeds, k * 8 + 4, [deed.displaced, deed.covered, deed.stress, deed.energy]);
+            store_rows(&at.memory, k * WIDTH, [a, b, c, d]);
+            store_rows(&at.memory, k * WIDTH + 4, [e, f, g, h]);
+            store_rows(&at.memory, k * WIDTH + 8, [i, j, l, largest]);
+            store_rows(&at.deeds, k * 8, [deed.strain, deed.cap, deed.area, deed.surface]);
+            store_rows(&at.deeds, k * 8 + 4, [deed.displaced, deed.covered, deed.stress, deed.energy]);
         }
         let mut damped = contact * (2.0 * m.plane());
         if manner.takes_before() {
-            damped = four::<N, V>(&at.told, 0)[1];
+            damped = load_rows::<V, N>(&at.told, 0)[1];
         }
         let mut energy = V::all(0.0);
         if manner.booked {
             energy = given_back([grains[0].radius, grains[1].radius], largest, plastic, energies);
         }
-        put::<N, V>(&at.told, 0, [force, damped, area, energy]);
-    }
-}
-
-/// Four numbers from `part` on of rows, turned into lanes.
-///
-/// # Safety
-/// There must be such rows.
-#[inline(always)]
-unsafe fn four<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize) -> [V; 4] {
-    // SAFETY: passed on.
-    unsafe {
-        let mut four = [V::Row::splat(0.0); N];
-        for lane in 0..N {
-            four[lane] = V::Row::load(rows[lane].add(part));
-        }
-        V::of_rows(four)
-    }
-}
-
-/// Puts four numbers from `part` on into rows.
-///
-/// # Safety
-/// There must be such rows.
-#[inline(always)]
-unsafe fn put<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize, lanes: [V; 4]) {
-    let four = V::to_rows(lanes);
-    for lane in 0..N {
-        // SAFETY: passed on.
-        unsafe { four[lane].store(rows[lane].add(part)) };
+        store_rows(&at.told, 0, [force, damped, area, energy]);
     }
 }
 
@@ -187,9 +154,9 @@ unsafe fn put<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize, la
 unsafe fn numbers<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize) -> [V; WIDTH + 1] {
     // SAFETY: passed on.
     unsafe {
-        let [a, b, c, d] = four::<N, V>(rows, part);
-        let [e, f, g, h] = four::<N, V>(rows, part + 4);
-        let [i, j, k, l] = four::<N, V>(rows, part + 8);
+        let [a, b, c, d] = load_rows::<V, N>(rows, part);
+        let [e, f, g, h] = load_rows::<V, N>(rows, part + 4);
+        let [i, j, k, l] = load_rows::<V, N>(rows, part + 8);
         [a, b, c, d, e, f, g, h, i, j, k, l]
     }
 }
@@ -199,18 +166,11 @@ unsafe fn numbers<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize
 /// # Safety
 /// There must be grains.
 #[inline(always)]
-unsafe fn grain<const N: usize, V: Lanes<N>>(at: &[*const f64; N]) -> Grain<V> {
-    // SAFETY: passed on.
-    unsafe {
-        let (mut low, mut high) = ([V::Row::splat(0.0); N], [V::Row::splat(0.0); N]);
-        for lane in 0..N {
-            low[lane] = V::Row::load(at[lane]);
-            high[lane] = V::Row::load3(at[lane].add(4));
-        }
-        let ([first, volume, left_volume, area_before], [mean, radius, spare, _]) =
-            (V::of_rows(low), V::of_rows(high));
-        Grain { first, volume, left_volume, area_before, mean, radius, spare }
-    }
+unsafe fn grain<const N: usize, V: Lanes<N>>(at: &[*mut f64; N]) -> Grain<V> {
+    // SAFETY: passed on; a grain is six numbers.
+    let ([first, volume, left_volume, area_before], [_, _, mean, radius]) =
+        unsafe { (load_rows::<V, N>(at, 0), load_rows::<V, N>(at, 2)) };
+    Grain { first, volume, left_volume, area_before, mean, radius }
 }
 
 /// The work of the mean force of both sides on the way on which they unload, where each goes its part of the overlap.

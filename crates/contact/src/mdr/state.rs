@@ -71,8 +71,6 @@ pub struct Grain<R = f64> {
     pub mean: R,
     /// Radius.
     pub radius: R,
-    /// Nothing: grains are read four numbers at a time.
-    pub spare: R,
 }
 
 impl State {
@@ -183,7 +181,6 @@ impl State {
             area_before: self.area_before[k],
             mean: if self.free[k] < m.confinement { self.mean[k] } else { 0.0 },
             radius,
-            spare: 0.0,
         }
     }
 }

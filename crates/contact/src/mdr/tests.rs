@@ -1,7 +1,7 @@
 //! Plastic grains against closed forms.
 
 use super::deeds::Deed;
-use super::press::{Press, Seen};
+use super::press::{Contact, Press};
 use super::side::Ellipse;
 use super::state::Grain;
 use super::*;
@@ -226,7 +226,7 @@ fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
         let radius = 1.0 + 0.05 * (k as f64 * 0.618).fract();
         let (part, volume) = (k as f64 / 12.0, 4.0 / 3.0 * PI * radius.powi(3));
         let mean = if k.is_multiple_of(3) { 1e-4 * (part - 0.4) } else { 0.0 };
-        Grain { first: 1.0, volume, left_volume: 0.9 * volume, area_before: part, mean, radius, spare: 0.0 }
+        Grain { first: 1.0, volume, left_volume: 0.9 * volume, area_before: part, mean, radius }
     };
     let grains: Vec<Grain> = (0..=CONTACTS).map(grain).collect();
     let (mut memory, mut told) = (vec![0.0; CONTACTS * PAIR], vec![0.0; CONTACTS * (TOLD + 1)]);
@@ -235,9 +235,15 @@ fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
         let contact = |k: usize| {
             let depth = 0.018 + 0.02 * (0.05 * f64::from(step) * (1.0 + 0.1 * k as f64)).sin();
             let (ends, open) = ([k as u32, k as u32 + 1], if k % 4 == 1 { 0.7 } else { 1.0 });
-            Seen { ends, normal: [1.0, 0.0, 0.0], overlap: 2.0 * depth, depths: [depth, 0.9 * depth], open }
+            Contact {
+                ends,
+                normal: [1.0, 0.0, 0.0],
+                overlap: 2.0 * depth,
+                depths: [depth, 0.9 * depth],
+                open,
+            }
         };
-        let seen: Vec<Seen> = (0..CONTACTS).map(contact).collect();
+        let seen: Vec<Contact> = (0..CONTACTS).map(contact).collect();
         let manner = Manner { lammps: setup, setup: setup && step == 159, booked: step % 2 == 1 };
         let groups = if form.is_some() { CONTACTS } else { 1 };
         let columns = memory.chunks_mut(groups * PAIR).zip(told.chunks_mut(groups * (TOLD + 1)));
@@ -277,11 +283,11 @@ fn a_contact_of_like_grains_is_pressed_as_by_a_wall() {
     let m = Material { cohesion: 2.0, ..SOFT };
     let volume = 4.0 / 3.0 * PI;
     let (first, radius, left_volume) = (1.0, 1.0, volume);
-    let grain = Grain { first, volume, left_volume, area_before: 0.0, mean: 0.0, radius, spare: 0.0 };
+    let grain = Grain { first, volume, left_volume, area_before: 0.0, mean: 0.0, radius };
     let (mut one, mut memory, mut told) = (Side::default(), vec![0.0; PAIR], vec![0.0; TOLD]);
     let (mut deeds, normal) = (vec![[Deed::default(); 2]], [0.0, 0.0, 1.0]);
     for depth in there_and_back(0.04) {
-        let seen = [Seen { ends: [0, 1], normal, overlap: 2.0 * depth, depths: [depth; 2], open: 1.0 }];
+        let seen = [Contact { ends: [0, 1], normal, overlap: 2.0 * depth, depths: [depth; 2], open: 1.0 }];
         let manner = Manner::default();
         let (force, contact, _) = deeds::side(&m, &grain, depth, &mut one, 1.0, manner);
         let (grains, memory) = (&[grain; 2], &mut memory[..]);
