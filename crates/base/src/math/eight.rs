@@ -3,7 +3,7 @@
 use super::four::{Avx2, operators};
 use super::lanes::{Lanes, NO_SHIFT, PLACE_BITS, numbers_at, rows_apart, rows_at};
 use super::pair::Sse;
-use super::real::{Real, lane_by_lane};
+use super::real::{EXPONENT, Real, lane_by_lane};
 use super::vec3::Vec3;
 use std::arch::x86_64::*;
 use std::hint::black_box;
@@ -92,6 +92,11 @@ impl<const GATHERS: bool> Real for Avx512<GATHERS> {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(unsafe { _mm512_andnot_pd(_mm512_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        let bits = unsafe { _mm512_castpd_si512((self + EXPONENT).0) };
+        Self(unsafe { _mm512_castsi512_pd(_mm512_slli_epi64::<52>(bits)) })
     }
     #[inline(always)]
     fn most(self, other: Self) -> Self {

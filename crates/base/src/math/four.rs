@@ -209,7 +209,7 @@ mod x86 {
     use super::{Four, Real};
     use crate::math::lanes::Lanes;
     use crate::math::pair::Sse;
-    use crate::math::real::lane_by_lane;
+    use crate::math::real::{EXPONENT, lane_by_lane};
 
     /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2: its
     /// constructors are unsafe and promise that.
@@ -247,6 +247,11 @@ mod x86 {
         #[inline(always)]
         fn abs(self) -> Self {
             Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+        #[inline(always)]
+        fn power_of_two(self) -> Self {
+            let bits = unsafe { _mm256_castpd_si256((self + EXPONENT).0) };
+            Self(unsafe { _mm256_castsi256_pd(_mm256_slli_epi64::<52>(bits)) })
         }
         #[inline(always)]
         fn most(self, other: Self) -> Self {

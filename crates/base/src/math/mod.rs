@@ -6,6 +6,7 @@ pub mod cell;
 pub mod cformat;
 #[cfg(target_arch = "x86_64")]
 mod eight;
+pub mod elementary;
 pub mod forest;
 pub mod form;
 pub mod four;
@@ -17,5 +18,6 @@ pub mod real;
 pub mod rng;
 pub mod scatter;
 pub mod threes;
+pub mod twice;
 pub mod triangle;
 pub mod vec3;

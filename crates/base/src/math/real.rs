@@ -41,6 +41,11 @@ pub trait Real:
     fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Whether some lane says yes.
     fn any(mask: Self::Mask) -> bool;
+    /// 2ⁿ of whole numbers n from −1022 to 1023.
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        self.each(power_of_two)
+    }
     /// A function of several numbers without a form in lanes, lane by lane.
     fn each_of<const K: usize>(of: [Self; K], f: impl Fn([f64; K]) -> f64) -> Self;
     /// A function without a form in lanes (powers, angles), lane by lane.
@@ -94,6 +99,15 @@ impl Real for f64 {
     fn each_of<const K: usize>(of: [f64; K], f: impl Fn([f64; K]) -> f64) -> f64 {
         f(of)
     }
+}
+
+/// Added to a whole number n this makes the last bits those of n + 1023, the exponent of 2ⁿ.
+pub(super) const EXPONENT: f64 = 6_755_399_441_055_744.0 + 1023.0;
+
+/// [`Real::power_of_two`].
+#[inline(always)]
+fn power_of_two(n: f64) -> f64 {
+    f64::from_bits((n + EXPONENT).to_bits() << 52)
 }
 
 /// [`Real::each_of`] of the numbers in lanes.

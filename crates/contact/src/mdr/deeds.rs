@@ -28,6 +28,15 @@ pub struct Deed<R = f64> {
     pub energy: R,
 }
 
+impl<R: Copy> Deed<R> {
+    /// Its numbers, as they stand in memory.
+    #[inline(always)]
+    pub fn numbers(&self) -> [R; 8] {
+        let Self { strain, cap, area, surface, displaced, covered, stress, energy } = *self;
+        [strain, cap, area, surface, displaced, covered, stress, energy]
+    }
+}
+
 /// What all contacts of a grain mean for it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sum {

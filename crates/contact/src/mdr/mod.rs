@@ -19,6 +19,7 @@ pub use side::{Pressed, Side};
 pub use state::{State, begin, begun};
 pub use walls::{far_pushed, gather, press};
 
+use perigrain_base::math::elementary::exp;
 use perigrain_base::math::real::Real;
 
 /// What grains of such a powder are made of.
@@ -55,7 +56,7 @@ impl Material {
     /// p_Y, the mean pressure under which a grain of radius R flows at depth δ.
     #[inline(always)]
     pub fn hardness<R: Real>(&self, depth: R, radius: R) -> R {
-        ((depth * -4.4 / radius).each(f64::exp) * 1.75 + 1.0) * self.yield_stress
+        (exp(depth * -4.4 / radius) * 1.75 + 1.0) * self.yield_stress
     }
 }
 

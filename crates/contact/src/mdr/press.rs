@@ -8,6 +8,7 @@ use super::{Manner, Material, PAIR, TOLD};
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::real::Real;
+use perigrain_base::math::twice::Twice;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 
@@ -116,24 +117,23 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
         // gets itself.
         let rows = [numbers::<N, V>(&at.memory, 0), numbers::<N, V>(&at.memory, WIDTH)];
         let largest = rows[1][WIDTH].most(overlap);
-        let (mut force, mut contact, mut area) = (V::all(0.0), V::all(0.0), V::all(0.0));
-        let mut energies = [V::all(0.0); 2];
-        let mut plastic = energies;
+        // Both sides in turns: the results of one alone wait for each other.
+        let mut sides = Side::of(twice([&rows[0], &rows[1]]));
+        let (grain, open) = (both_grains(&grains), Twice([open; 2]));
+        let (push, radius, deed) = side(m, &grain, Twice(depths), &mut sides, open, manner);
+        let numbers = sides.numbers();
         for k in 0..2 {
-            let [a, b, c, d, e, f, g, h, i, j, l, _] = rows[k];
-            let mut one = Side::of([a, b, c, d, e, f, g, h, i, j, l]);
-            let (push, radius, deed) = side(m, &grains[k], depths[k], &mut one, open, manner);
-            force = force + push * 0.5;
-            contact = contact + radius;
-            area = area + one.area * 0.5;
-            (energies[k], plastic[k]) = (deed.energy, one.plastic);
-            let [a, b, c, d, e, f, g, h, i, j, l] = one.numbers();
+            let [a, b, c, d, e, f, g, h, i, j, l] = of_side(&numbers, k);
             store_rows(&at.memory, k * WIDTH, [a, b, c, d]);
             store_rows(&at.memory, k * WIDTH + 4, [e, f, g, h]);
             store_rows(&at.memory, k * WIDTH + 8, [i, j, l, largest]);
-            store_rows(&at.deeds, k * 8, [deed.strain, deed.cap, deed.area, deed.surface]);
-            store_rows(&at.deeds, k * 8 + 4, [deed.displaced, deed.covered, deed.stress, deed.energy]);
+            let [a, b, c, d, e, f, g, h] = of_side(&deed.numbers(), k);
+            store_rows(&at.deeds, k * 8, [a, b, c, d]);
+            store_rows(&at.deeds, k * 8 + 4, [e, f, g, h]);
         }
+        let (force, contact) = (push.0[0] * 0.5 + push.0[1] * 0.5, radius.0[0] + radius.0[1]);
+        let area = sides.area.0[0] * 0.5 + sides.area.0[1] * 0.5;
+        let (plastic, energies) = (sides.plastic.0, deed.energy.0);
         let mut damped = contact * (2.0 * m.plane());
         if manner.takes_before() {
             damped = load_rows::<V, N>(&at.told, 0)[1];
@@ -158,6 +158,39 @@ unsafe fn numbers<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize
         let [e, f, g, h] = load_rows::<V, N>(rows, part + 4);
         let [i, j, k, l] = load_rows::<V, N>(rows, part + 8);
         [a, b, c, d, e, f, g, h, i, j, k, l]
+    }
+}
+
+/// The first numbers of both sides side by side.
+#[inline(always)]
+fn twice<V: Copy, const K: usize, const M: usize>(of: [&[V; K]; 2]) -> [Twice<V>; M] {
+    let mut both = [Twice([of[0][0], of[1][0]]); M];
+    for k in 1..M {
+        both[k] = Twice([of[0][k], of[1][k]]);
+    }
+    both
+}
+
+/// The numbers of side `k`.
+#[inline(always)]
+fn of_side<V: Copy, const K: usize>(both: &[Twice<V>; K], k: usize) -> [V; K] {
+    let mut own = [both[0].0[k]; K];
+    for l in 1..K {
+        own[l] = both[l].0[k];
+    }
+    own
+}
+
+/// Both grains side by side.
+#[inline(always)]
+fn both_grains<V: Copy>([a, b]: &[Grain<V>; 2]) -> Grain<Twice<V>> {
+    Grain {
+        first: Twice([a.first, b.first]),
+        volume: Twice([a.volume, b.volume]),
+        left_volume: Twice([a.left_volume, b.left_volume]),
+        area_before: Twice([a.area_before, b.area_before]),
+        mean: Twice([a.mean, b.mean]),
+        radius: Twice([a.radius, b.radius]),
     }
 }
 

@@ -1,6 +1,7 @@
 //! One grain pressed by a rigid plane: elastic, then plastic, then unloading with or without adhesion.
 
 use super::{Manner, Material, adhesion};
+use perigrain_base::math::elementary::polynomial;
 use perigrain_base::math::real::Real;
 use std::f64::consts::PI;
 
@@ -84,7 +85,7 @@ impl<R: Real> Ellipse<R> {
     /// Energy of the springs on a plane at depth `d`, ∫ F dd: E_c A² B/8 (sin θ − θ cos θ − sin³ θ/3), θ = acos(1 − 2x).
     #[inline(always)]
     pub fn energy(&self, plane: f64, d: R) -> R {
-        self.a * (0.25 * plane) * self.a * self.b * self.part(d).each(bowl)
+        self.a * (0.25 * plane) * self.a * self.b * bowl(self.part(d))
     }
 
     /// Force at the depth A/2, where all springs are pressed: π/8 E_c A B.
@@ -111,48 +112,61 @@ impl<R: Real> Ellipse<R> {
 /// acos(1 − 2x) − (1 − 2x) √(4x − 4x²) = ∫ 8 √(x − x²), without cancellation at small x.
 #[inline(always)]
 fn segment<R: Real>(x: R) -> R {
-    let far = x.above(x.like(SMALL));
-    if !R::any(far) {
-        return near_segment(x);
-    }
-    let one = x.like(1.0);
-    let whole = x.sqrt().each(f64::asin) * 2.0 - (one - x * 2.0) * 2.0 * (x * (one - x)).sqrt();
-    if R::ONE { whole } else { R::choose(far, whole, near_segment(x)) }
-}
-
-/// [`segment`] by its series.
-#[inline(always)]
-fn near_segment<R: Real>(x: R) -> R {
-    let mut sum = x.like(0.0);
-    for c in SERIES.iter().rev() {
-        sum = x * sum + *c;
-    }
-    sum * x * x.sqrt()
+    let (half, less) = (x.above(x.like(0.5)), x.least(x.like(1.0) - x));
+    let near = polynomial(less, &SEGMENT) * less * less.sqrt();
+    // It is a number less itself about the middle.
+    R::choose(half, x.like(PI) - near, near)
 }
 
 /// ∫ [`segment`] from 0, without cancellation at small x.
-fn bowl(x: f64) -> f64 {
-    if x > SMALL {
-        let (theta, sine) = (2.0 * x.sqrt().asin(), 2.0 * (x * (1.0 - x)).sqrt());
-        return 0.5 * (sine - theta * (1.0 - 2.0 * x) - sine * sine * sine / 3.0);
-    }
-    let terms = SERIES.iter().zip(0..10u8).rev();
-    terms.fold(0.0, |sum, (c, k)| c / (f64::from(k) + 2.5) + x * sum) * x * x * x.sqrt()
+#[inline(always)]
+fn bowl<R: Real>(x: R) -> R {
+    let (half, less) = (x.above(x.like(0.5)), x.least(x.like(1.0) - x));
+    let near = polynomial(less, &BOWL) * less * less * less.sqrt();
+    R::choose(half, (x - 0.5) * PI + near, near)
 }
 
-/// Up to here the series leaves less than 1e-17 of its sum.
-pub(super) const SMALL: f64 = 0.0223;
+/// [`segment`] over x^(3/2) up to a half, where its series is Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k: interpolates within 8e-17.
+const SEGMENT: [f64; 18] = [
+    5.333333333333333,
+    -1.6000000000000307,
+    -0.2857142857076886,
+    -0.1111111116704721,
+    -0.05681815688432099,
+    -0.03365452008845939,
+    -0.021862988313889827,
+    -0.015314354863134807,
+    -0.009694913653913936,
+    -0.017065513677532167,
+    0.036566590351932,
+    -0.1637928077233139,
+    0.4336575603430235,
+    -0.8954429106702919,
+    1.3033538925850352,
+    -1.3088019480772977,
+    0.8036034155478353,
+    -0.23747588555199495,
+];
 
-/// The integral's series, x^(3/2) Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k.
-const SERIES: [f64; 10] = {
-    let (mut series, mut binomial, mut k) = ([0.0; 10], 1.0, 0);
-    while k < 10 {
-        series[k] = 8.0 * binomial / (k as f64 + 1.5);
-        binomial *= (k as f64 - 0.5) / (k as f64 + 1.0);
-        k += 1;
-    }
-    series
-};
+/// [`bowl`] over x^(5/2) up to a half, likewise.
+const BOWL: [f64; 16] = [
+    2.1333333333333333,
+    -0.4571428571429041,
+    -0.06349206348411514,
+    -0.020202020732052517,
+    -0.008741240252004482,
+    -0.004487567786921956,
+    -0.002568203821263391,
+    -0.001646520838079092,
+    -0.0007153464577438112,
+    -0.0023318599436322716,
+    0.005091070956434357,
+    -0.014451594580818088,
+    0.024603976920906122,
+    -0.02985790004501196,
+    0.021401708996664666,
+    -0.007615001423107151,
+];
 
 impl Side {
     /// From what a contact remembers.

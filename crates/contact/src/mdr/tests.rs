@@ -96,14 +96,25 @@ fn adhesion_of_elastic_grains_is_that_of_johnson_kendall_and_roberts() {
 }
 
 #[test]
-fn the_ellipse_is_smooth_where_its_series_begins() {
+fn force_and_energy_of_the_ellipse_are_what_the_formulas_say() {
     let shape = Ellipse { a: 4.0, b: 2.0 };
-    // Slopes on both sides agree as far as differences of 1e-6 can tell.
-    let x = 4.0 * super::side::SMALL;
-    let at = |d: f64| shape.force(1.0, d);
-    let [low, high] = [[x - 2e-6, x - 1e-6], [x + 1e-6, x + 2e-6]].map(|[a, b]| (at(b) - at(a)) / (b - a));
-    assert!((low / high - 1.0).abs() < 1e-4, "{low} {high}");
-    assert!((at(x * (1.0 - 1e-15)) / at(x * (1.0 + 1e-15)) - 1.0).abs() < 1e-13);
+    for k in 1..2000 {
+        let x = f64::from(k) / 2000.0;
+        let (theta, sine) = ((1.0 - 2.0 * x).acos(), (4.0 * x - 4.0 * x * x).sqrt());
+        // Forces and energies of springs over a whole depth: A B/4 and A² B/8 times these.
+        let force = 2.0 * (theta - (1.0 - 2.0 * x) * sine);
+        let energy = 4.0 * (sine - theta * (1.0 - 2.0 * x) - sine.powi(3) / 3.0);
+        // Here the formulas' terms cancel each other, all but x^(3/2) and x^(5/2) of them.
+        let (own, held) = (shape.force(1.0, 4.0 * x), shape.energy(1.0, 4.0 * x));
+        assert!((own - force).abs() < 1e-14 && (held - energy).abs() < 1e-14, "{x}: {own} {force} {held} {energy}");
+    }
+    // Where the plane only touches, 16/3 x^(3/2) (1 − 3x/10) and 32/15 x^(5/2) (1 − 3x/14).
+    for x in [1e-12, 1e-8, 1e-6] {
+        let force = 2.0 * 16.0 / 3.0 * x * x.sqrt() * (1.0 - 0.3 * x);
+        let energy = 8.0 * 32.0 / 15.0 * x * x * x.sqrt() * (1.0 - 3.0 / 14.0 * x);
+        let (own, held) = (shape.force(1.0, 4.0 * x), shape.energy(1.0, 4.0 * x));
+        assert!((own / force - 1.0).abs() < 1e-13 && (held / energy - 1.0).abs() < 1e-12, "{x}");
+    }
 }
 
 #[test]

@@ -3,12 +3,13 @@
 use super::deeds::{Deed, side};
 use super::side::{Side, WIDTH};
 use super::{Manner, Material, State, TOLD};
+use perigrain_base::math::elementary::exp;
 use perigrain_world::contacts::Contacts;
 
 /// By which factor a wall pushes more, far beyond what contact laws hold for, so that no grain is pressed through it:
 /// 1 + exp(10.7 δ/R − 10) with the depth below the first surface, as LAMMPS has it.
 pub fn far_pushed(depth: f64, first: f64) -> f64 {
-    1.0 + (10.7 * depth / first - 10.0).exp()
+    1.0 + exp(10.7 * depth / first - 10.0)
 }
 
 /// Gathers how much nearer the wall comes to each grain: grains and depths of the contacts `memory` is about.
