@@ -35,6 +35,8 @@ pub struct Seen<'a, L> {
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
     flags: Vec<Meeting>,
+    /// Which of the listed pairs touch, and room for the others.
+    places: Vec<u32>,
     touching: Vec<Pair>,
     keys: Vec<[u32; 2]>,
     /// Where and how they touch.
@@ -230,7 +232,7 @@ impl Sweep {
 
     fn find<L: ContactLaw>(&mut self, list: &[Pair], grains: &Grains, rules: &Rules<L>, memory: &Contacts) {
         let gaps = rules.any(|r| r.law.gap(1.0) > 0.0);
-        self.flags.clear();
+        // All of them are written.
         self.flags.resize(list.len(), Meeting::Apart);
         par::each((&mut self.flags[..], list), |_, (flags, list)| {
             for (flag, p) in flags.iter_mut().zip(list) {
@@ -238,24 +240,27 @@ impl Sweep {
             }
         });
         let tags = |p: &Pair| [grains.tag[p.i as usize], grains.tag[p.j as usize]];
-        self.touching.clear();
-        self.keys.clear();
-        self.deep = None;
-        for (p, meeting) in list.iter().zip(&self.flags) {
-            let holds = match meeting {
-                Meeting::Apart => false,
-                Meeting::Near => memory.get(tags(p)).is_some(),
-                Meeting::Touch => true,
-                Meeting::Deep => {
-                    self.deep.get_or_insert(*p);
-                    true
+        if gaps {
+            for (p, meeting) in list.iter().zip(&mut self.flags) {
+                if *meeting == Meeting::Near && memory.get(tags(p)).is_none() {
+                    *meeting = Meeting::Apart;
                 }
-            };
-            if holds {
-                self.touching.push(*p);
-                self.keys.push(tags(p));
             }
         }
+        // Nobody can foretell which of the listed pairs touch: their places are written in any case, and kept where they do.
+        self.places.resize(list.len(), 0);
+        let mut count = 0;
+        for (k, meeting) in self.flags.iter().enumerate() {
+            self.places[count] = k as u32;
+            count += usize::from(*meeting != Meeting::Apart);
+        }
+        let places = &self.places[..count];
+        self.touching.clear();
+        self.touching.extend(places.iter().map(|k| list[*k as usize]));
+        self.keys.clear();
+        self.keys.extend(self.touching.iter().map(tags));
+        let deep = places.iter().find(|k| self.flags[**k as usize] == Meeting::Deep);
+        self.deep = deep.map(|k| list[*k as usize]);
     }
 
     /// 1/N for every contact.

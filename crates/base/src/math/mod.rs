@@ -18,6 +18,6 @@ pub mod real;
 pub mod rng;
 pub mod scatter;
 pub mod threes;
-pub mod twice;
 pub mod triangle;
+pub mod twice;
 pub mod vec3;

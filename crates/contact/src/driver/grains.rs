@@ -77,12 +77,13 @@ impl Grains<'_> {
         let d = difference(self.x, &self.period, p);
         let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
         let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
-        if square < sum * sum {
-            let deep = sum - DEEP * ri.min(rj);
-            return if square < deep * deep { Meeting::Deep } else { Meeting::Touch };
-        }
-        if !gaps {
-            return Meeting::Apart;
+        let deep = sum - DEEP * ri.min(rj);
+        // Without branches on what nobody can foretell.
+        let [touches, deep] = [square < sum * sum, square < deep * deep];
+        let meeting =
+            [Meeting::Apart, Meeting::Touch, Meeting::Deep][usize::from(touches) + usize::from(deep)];
+        if !gaps || touches {
+            return meeting;
         }
         let rule = self.rule(p, rules);
         let far = sum + rule.map_or(0.0, |r| r.law.gap(ri * rj / sum));

@@ -110,12 +110,11 @@ pub(super) fn cut<R: Real>(overlap: R, radii: [R; 2]) -> [R; 2] {
 
 /// The depth of the plane on each side: through the circle in which the spheres cut each other while the overlap grows beyond the
 /// `largest` one; on the way back each side gives in proportion to what is elastic of it.
-fn split(overlap: f64, radii: [f64; 2], largest: f64, plastic: [f64; 2]) -> [f64; 2] {
-    if overlap >= largest {
-        return cut(overlap, radii);
-    }
+#[inline(always)]
+fn split<R: Real>(overlap: R, radii: [R; 2], largest: R, plastic: [R; 2]) -> [R; 2] {
+    let (unloads, most) = (largest.above(overlap), cut(largest.most(overlap), radii));
     let rest = plastic[0] + plastic[1];
     let part = (overlap - rest) / (largest - rest);
-    let most = cut(largest, radii);
-    std::array::from_fn(|k| plastic[k] + (most[k] - plastic[k]) * part)
+    let one = R::choose(unloads, plastic[0] + (most[0] - plastic[0]) * part, most[0]);
+    [one, R::choose(unloads, plastic[1] + (most[1] - plastic[1]) * part, most[1])]
 }

@@ -1,5 +1,8 @@
 //! Grains between grains: contacts that reach through a third grain push less.
 
+use perigrain_base::math::elementary::{asin, exp};
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::vec3::{Vec3, dot, scale};
 use perigrain_base::par;
 use std::f64::consts::PI;
@@ -35,6 +38,58 @@ impl Spoke {
     }
 }
 
+/// So many grains between others are gathered before what they close is evaluated.
+const MANY: usize = 64;
+
+/// Grains between the ends of contacts.
+struct Between {
+    /// −cos θ of the angle under which each sees them, then what it closes.
+    cosines: [f64; MANY],
+    /// Whose ends.
+    lines: [u32; MANY],
+    count: usize,
+}
+
+impl Between {
+    /// One that sees the ends of contact `line`; room for it is made where all is taken.
+    fn add(&mut self, cosine: f64, line: usize, out: &mut [f64]) {
+        if self.count == MANY {
+            self.close(out);
+        }
+        (self.cosines[self.count], self.lines[self.count]) = (cosine, line as u32);
+        self.count += 1;
+    }
+
+    /// Adds what each closes to its contact, in the order in which they were found, and forgets them.
+    fn close(&mut self, out: &mut [f64]) {
+        // SAFETY: the form is one of this processor.
+        unsafe { Form::here().run(Close(&mut self.cosines)) };
+        let found = self.lines.iter().zip(&self.cosines).take(self.count);
+        found.for_each(|(line, closes)| out[*line as usize] += closes);
+        self.count = 0;
+    }
+}
+
+/// 1/(1 + exp(−50 (θ/π − 1/2))) of −cos θ, where θ/π − 1/2 = asin(−cos θ)/π.
+struct Close<'a>(&'a mut [f64; MANY]);
+
+impl InLanes for Close<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        for some in self.0.chunks_exact_mut(N) {
+            let mut cosines = [0.0; N];
+            cosines.copy_from_slice(some);
+            // SAFETY: passed on.
+            let x = unsafe { V::of(cosines) };
+            let one = x.like(1.0);
+            let x = one.least((-one).most(x));
+            some.copy_from_slice(&(one / (exp(asin(x) * (-SHARPNESS / PI)) + 1.0)).numbers());
+        }
+    }
+}
+
 /// The contacts of each grain; keeps its room from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Screen {
@@ -58,28 +113,27 @@ impl Screen {
         // All of them are written.
         out.resize(lines.len(), 0.0);
         par::each(&mut out[..], |first, out| {
-            let own = lines[first..].iter();
-            out.iter_mut()
-                .zip(own)
-                .for_each(|(open, line)| *open = (1.0 - self.closed(line, lines)).max(0.0));
+            let mut between = Between { cosines: [0.0; MANY], lines: [0; MANY], count: 0 };
+            out.fill(0.0);
+            for (k, line) in lines[first..first + out.len()].iter().enumerate() {
+                self.look(line, lines, |cosine| between.add(cosine, k, out));
+            }
+            between.close(out);
+            out.iter_mut().for_each(|open| *open = (1.0 - *open).max(0.0));
         });
     }
 
-    /// What the grains between the ends of this contact close of it.
-    fn closed(&self, line: &Line, lines: &[Line]) -> f64 {
+    /// Grains between the ends of this contact: −cos θ of the angle under which each sees them.
+    fn look(&self, line: &Line, lines: &[Line], mut found: impl FnMut(f64)) {
         let [i, j] = line.ends;
         let touched = self.touched[j as usize];
         let shorter = |c: &Spoke| lines[c.line as usize].length < line.length;
-        let mut closed = 0.0;
         for from in self.of(i).iter().filter(|c| touched & bit(c.to) != 0 && shorter(c)) {
             let Some(on) = self.of(from.to).iter().find(|c| c.to == j) else { continue };
-            if !shorter(on) {
-                continue;
+            if shorter(on) {
+                found(dot(from.along(lines), on.along(lines)));
             }
-            let angle = (-dot(from.along(lines), on.along(lines))).clamp(-1.0, 1.0).acos();
-            closed += 1.0 / (1.0 + (-SHARPNESS * (angle / PI - 0.5)).exp());
         }
-        closed
     }
 
     /// The contacts of grain `k`, in the order of the lines.

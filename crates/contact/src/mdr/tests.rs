@@ -106,7 +106,10 @@ fn force_and_energy_of_the_ellipse_are_what_the_formulas_say() {
         let energy = 4.0 * (sine - theta * (1.0 - 2.0 * x) - sine.powi(3) / 3.0);
         // Here the formulas' terms cancel each other, all but x^(3/2) and x^(5/2) of them.
         let (own, held) = (shape.force(1.0, 4.0 * x), shape.energy(1.0, 4.0 * x));
-        assert!((own - force).abs() < 1e-14 && (held - energy).abs() < 1e-14, "{x}: {own} {force} {held} {energy}");
+        assert!(
+            (own - force).abs() < 1e-14 && (held - energy).abs() < 1e-14,
+            "{x}: {own} {force} {held} {energy}"
+        );
     }
     // Where the plane only touches, 16/3 x^(3/2) (1 − 3x/10) and 32/15 x^(5/2) (1 − 3x/14).
     for x in [1e-12, 1e-8, 1e-6] {
