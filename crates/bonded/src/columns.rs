@@ -2,6 +2,7 @@
 
 use perigrain_base::math::body::{Quat, UNTURNED};
 use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
 
 /// Bonds of a type stand in groups of this many, so that whatever works on several at a time has one type.
 pub const GROUP: usize = 8;
@@ -71,12 +72,13 @@ fn counted<T: Copy + Default>(
 }
 
 /// The numbers of a column in another order; `room` changes places with the column.
-fn rearrange<T: Copy>(column: &mut Vec<T>, rows: &[u32], room: &mut Vec<T>) {
-    if column.is_empty() {
-        return;
-    }
-    room.clear();
-    room.extend(rows.iter().map(|row| column[*row as usize]));
+fn rearrange<T: Copy + Send + Sync>(column: &mut Vec<T>, rows: &[u32], room: &mut Vec<T>) {
+    let Some(any) = column.first() else { return };
+    // All of it is written.
+    room.resize(rows.len(), *any);
+    par::each((&mut room[..], rows), |_, (room, rows)| {
+        room.iter_mut().zip(rows).for_each(|(to, row)| *to = column[*row as usize]);
+    });
     std::mem::swap(column, room);
 }
 
@@ -101,10 +103,45 @@ pub struct Columns<const C: usize> {
     pub own: [Vec<f64>; C],
     /// One more than the highest place of an end.
     pub reach: usize,
+    holders: Holders,
+}
+
+/// Who has which bonds.
+#[derive(Clone, Debug)]
+struct Holders {
     /// For each particle, where its entries begin; one more.
     starts: Vec<u32>,
-    /// Twice the place of a bond, and one more at its second end.
+    /// Twice the place of a bond, and one more at its second end; ascending.
     entries: Vec<u32>,
+}
+
+impl Holders {
+    /// Enters the bonds that are alive.
+    fn enter(&mut self, ends: &[Vec<u32>; 2], alive: &[f64], particles: usize) {
+        let Self { starts, entries } = self;
+        starts.clear();
+        starts.resize(particles + 1, 0);
+        let living = || (0..alive.len()).filter(|&k| alive[k] > 0.0);
+        for places in ends {
+            let rows = places.iter().zip(alive).filter(|(_, alive)| **alive > 0.0);
+            rows.for_each(|(place, _)| starts[*place as usize + 1] += 1);
+        }
+        for k in 0..particles {
+            starts[k + 1] += starts[k];
+        }
+        entries.clear();
+        entries.resize(starts[particles] as usize, 0);
+        for k in living() {
+            for (end, places) in ends.iter().enumerate() {
+                // A particle's beginning goes to its end, which is the beginning of the next.
+                let at = &mut starts[places[k] as usize];
+                entries[*at as usize] = (2 * k + end) as u32;
+                *at += 1;
+            }
+        }
+        starts.rotate_right(1);
+        starts[0] = 0;
+    }
 }
 
 impl<const C: usize> Default for Columns<C> {
@@ -119,8 +156,7 @@ impl<const C: usize> Default for Columns<C> {
             turned: vec![],
             own: std::array::from_fn(|_| vec![]),
             reach: 0,
-            starts: vec![0],
-            entries: vec![],
+            holders: Holders { starts: vec![0], entries: vec![] },
         }
     }
 }
@@ -136,7 +172,8 @@ impl<const C: usize> Columns<C> {
 
     /// Puts other bonds into the columns: as many as there are keys, of `particles` particles in storage.
     pub fn fill(&mut self, keys: &[Key], particles: usize, bond: impl Fn(usize) -> Member<C>) {
-        let rows = self.arrange(keys, particles);
+        let rows = self.arrange(keys);
+        self.holders.enter(&self.ends, &self.alive, particles);
         self.length.clear();
         self.axis.iter_mut().for_each(Vec::clear);
         self.turned.clear();
@@ -150,26 +187,37 @@ impl<const C: usize> Columns<C> {
     /// bonds that hold, in the order in which they stand here.
     pub fn follow(&mut self, moved: &[u32]) {
         let living: Vec<u32> = self.living().map(|row| row as u32).collect();
-        let key = |row: &u32| Key {
-            kind: self.kind(*row as usize),
-            ends: [0, 1].map(|end: usize| moved[self.ends[end][*row as usize] as usize]),
-        };
-        let keys: Vec<Key> = living.iter().map(key).collect();
-        let mut rows = self.arrange(&keys, moved.len());
+        let mut keys = vec![Key { kind: 0, ends: [0; 2] }; living.len()];
+        par::each((&mut keys[..], &living[..]), |_, (keys, living)| {
+            for (key, row) in keys.iter_mut().zip(living) {
+                let ends = self.pair(*row as usize).map(|place| moved[place]);
+                *key = Key { kind: self.kind(*row as usize), ends };
+            }
+        });
+        let mut rows = self.arrange(&keys);
         rows.iter_mut().for_each(|row| *row = living[*row as usize]);
         let mut room = Vec::with_capacity(rows.len());
-        // Column by column: bond by bond, all of them would grow in new memory at once.
-        let numbers = self.own.iter_mut().chain(&mut self.axis).chain([&mut self.length]);
-        numbers.for_each(|column| rearrange(column, &rows, &mut room));
-        rearrange(&mut self.turned, &rows, &mut vec![]);
-        if self.turned.iter().all(|turned| *turned == UNTURNED) {
-            self.turned.clear();
-        }
+        let Self { ends, alive, length, axis, turned, own, holders, .. } = self;
+        par::both(
+            rows.len(),
+            || holders.enter(ends, alive, moved.len()),
+            || {
+                // Column by column: bond by bond, all of them would grow in new memory at once.
+                let numbers = own.iter_mut().chain(axis).chain([length]);
+                numbers.for_each(|column| rearrange(column, &rows, &mut room));
+                rearrange(turned, &rows, &mut vec![]);
+                if turned.iter().all(|turned| *turned == UNTURNED) {
+                    turned.clear();
+                }
+            },
+        );
     }
 
-    /// Makes rows for these bonds: which of them stands in each.
-    fn arrange(&mut self, keys: &[Key], particles: usize) -> Vec<u32> {
-        let (order, mut rows) = (in_order(keys, particles), Vec::with_capacity(keys.len() + GROUP));
+    /// Makes rows for these bonds: which of them stands in each. Who has which bonds is another matter.
+    fn arrange(&mut self, keys: &[Key]) -> Vec<u32> {
+        let reach = keys.iter().map(|key| key.ends[0].max(key.ends[1])).max();
+        self.reach = reach.map_or(0, |place| place as usize + 1);
+        let (order, mut rows) = (in_order(keys, self.reach), Vec::with_capacity(keys.len() + GROUP));
         self.kinds.clear();
         self.alive.clear();
         self.whole.clear();
@@ -188,11 +236,12 @@ impl<const C: usize> Columns<C> {
             rest = others;
         }
         for (end, places) in self.ends.iter_mut().enumerate() {
-            places.clear();
-            places.extend(rows.iter().map(|k| keys[*k as usize].ends[end]));
+            // All of them are written.
+            places.resize(rows.len(), 0);
+            par::each((&mut places[..], &rows[..]), |_, (places, rows)| {
+                places.iter_mut().zip(rows).for_each(|(place, k)| *place = keys[*k as usize].ends[end]);
+            });
         }
-        self.reach = self.ends.iter().filter_map(|e| e.iter().max()).max().map_or(0, |k| *k as usize + 1);
-        self.enter(particles);
         rows
     }
 
@@ -231,34 +280,6 @@ impl<const C: usize> Columns<C> {
         }
     }
 
-    /// Who has which bonds, ascending.
-    fn enter(&mut self, particles: usize) {
-        let (mut starts, mut entries) = (std::mem::take(&mut self.starts), std::mem::take(&mut self.entries));
-        starts.clear();
-        starts.resize(particles + 1, 0);
-        let living = || (0..self.alive.len()).filter(|&k| self.alive[k] > 0.0);
-        for places in &self.ends {
-            let rows = places.iter().zip(&self.alive).filter(|(_, alive)| **alive > 0.0);
-            rows.for_each(|(place, _)| starts[*place as usize + 1] += 1);
-        }
-        for k in 0..particles {
-            starts[k + 1] += starts[k];
-        }
-        entries.clear();
-        entries.resize(starts[particles] as usize, 0);
-        for k in living() {
-            for (end, places) in self.ends.iter().enumerate() {
-                // A particle's beginning goes to its end, which is the beginning of the next.
-                let at = &mut starts[places[k] as usize];
-                entries[*at as usize] = (2 * k + end) as u32;
-                *at += 1;
-            }
-        }
-        starts.rotate_right(1);
-        starts[0] = 0;
-        (self.starts, self.entries) = (starts, entries);
-    }
-
     /// Places, with what fills up.
     pub fn rows(&self) -> usize {
         self.alive.len()
@@ -267,7 +288,8 @@ impl<const C: usize> Columns<C> {
     /// The bonds of a particle: twice their place, and one more at the second end.
     #[inline]
     pub fn of(&self, particle: usize) -> &[u32] {
-        &self.entries[self.starts[particle] as usize..self.starts[particle + 1] as usize]
+        let Holders { starts, entries } = &self.holders;
+        &entries[starts[particle] as usize..starts[particle + 1] as usize]
     }
 
     /// The ends of a bond.
@@ -277,7 +299,7 @@ impl<const C: usize> Columns<C> {
 
     /// How many particles know their bonds.
     pub fn particles(&self) -> usize {
-        self.starts.len() - 1
+        self.holders.starts.len() - 1
     }
 
     /// The type of a bond.
@@ -295,7 +317,7 @@ impl<const C: usize> Columns<C> {
         let axis = if self.axis[0].is_empty() { 0 } else { 24 };
         let turned = if self.turned.is_empty() { 0 } else { 32 };
         let per_row = 8 + 8 * (2 + C) + axis + turned;
-        self.rows() * per_row + 4 * (self.starts.len() + self.entries.len())
+        self.rows() * per_row + 4 * (self.holders.starts.len() + self.holders.entries.len())
     }
 }
 
