@@ -2,7 +2,7 @@
 
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::math::vec3::{add, sub};
+use perigrain_base::math::vec3::{add, same, sub};
 use perigrain_base::par;
 use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way};
 use perigrain_world::bonds::LostBond;
@@ -84,7 +84,7 @@ impl Op for Reneighbor {
 fn corners_moved(w: &World) -> f64 {
     let (Some(domain), Some([lo, hi])) = (&*w.domain, w.rebuild.corners) else { return 0.0 };
     let tilt = w.rebuild.tilt;
-    if (domain.lo, domain.hi) == (lo, hi) && domain.tilt.is_none_or(|now| now == tilt) {
+    if same(domain.lo, lo) && same(domain.hi, hi) && domain.tilt.is_none_or(|now| now == tilt) {
         return 0.0;
     }
     let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();

@@ -127,13 +127,15 @@ impl WallSweep {
         skin: f64,
     ) {
         let some = |range: std::ops::Range<usize>| {
-            let mut spare = vec![];
-            let member = |i: &usize| mask[*i] & group != 0;
-            let near = |i: &usize| {
-                let radius = grains.radius[*i];
-                wall.close(grains.x[*i], radius + law.gap(radius) + skin, &mut spare)
-            };
-            range.filter(member).filter(near).map(|i| i as u32).collect::<Vec<u32>>()
+            let (mut list, mut spare) = (vec![], vec![]);
+            let rows =
+                grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]).zip(&mask[range.clone()]);
+            for (((x, radius), mask), i) in rows.zip(range.start as u32..) {
+                if mask & group != 0 && wall.close(*x, radius + law.gap(*radius) + skin, &mut spare) {
+                    list.push(i);
+                }
+            }
+            list
         };
         self.list = par::reduce(grains.x.len(), some, join).unwrap_or_default();
         self.list.sort_unstable_by_key(|i| grains.tag[*i as usize]);
@@ -207,6 +209,9 @@ impl WallSweep {
                 near.clear();
                 // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
                 wall.near(grains.x[i], radius + 2.0 * law.gap(radius), near);
+                if near.is_empty() {
+                    continue;
+                }
                 if near.len() > 1 {
                     near.sort_by_key(|n| n.part);
                 }
@@ -378,8 +383,37 @@ impl Planes {
     /// Whether `x` is nearer than `reach` to one of them [length].
     #[inline]
     fn reached(&self, x: Vec3, reach: f64) -> bool {
-        let near = |plane: Option<f64>| plane.is_some_and(|p| (x[self.axis] - p).abs() < reach);
-        near(self.lo) || near(self.hi)
+        // A plane that is not there is reached by nobody.
+        let [lo, hi] = [self.lo, self.hi].map(|plane| plane.unwrap_or(f64::INFINITY));
+        (x[self.axis] - lo).abs() < reach || (x[self.axis] - hi).abs() < reach
+    }
+
+    /// Where one of them is reached.
+    fn met(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let x = x[self.axis];
+        let mut meet = |part: u32, height: f64, sign: f64| {
+            let distance = height.abs();
+            if distance < reach {
+                let mut normal = [0.0; 3];
+                // What is beyond the plane is pushed on, as from its other side (LAMMPS).
+                normal[self.axis] = if height < 0.0 { -sign } else { sign };
+                out.push(Near { part, normal, distance, radius: 0.0, velocity: self.velocity });
+            }
+        };
+        match (self.lo.map(|lo| x - lo), self.hi.map(|hi| -(x - hi))) {
+            (Some(above), Some(below)) if self.nearer => match above < below {
+                true => meet(0, above, 1.0),
+                false => meet(1, below, -1.0),
+            },
+            (above, below) => {
+                if let Some(above) = above {
+                    meet(0, above, 1.0);
+                }
+                if let Some(below) = below {
+                    meet(1, below, -1.0);
+                }
+            }
+        }
     }
 }
 
@@ -393,26 +427,10 @@ impl Wall for Planes {
         self.reached(x, reach)
     }
 
-    #[inline]
+    #[inline(always)]
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
-        if !self.reached(x, reach) {
-            return;
-        }
-        let height = |plane: Option<f64>, sign: f64| plane.map(|p| sign * (x[self.axis] - p));
-        let sides = [height(self.lo, 1.0), height(self.hi, -1.0)];
-        let hidden = match sides {
-            [Some(lo), Some(hi)] if self.nearer => Some(usize::from(lo < hi)),
-            _ => None,
-        };
-        for (part, sign) in [1.0, -1.0].into_iter().enumerate().filter(|(part, _)| hidden != Some(*part)) {
-            let Some(height) = sides[part] else { continue };
-            let mut normal = [0.0; 3];
-            // What is beyond the plane is pushed on, as from its other side (LAMMPS).
-            normal[self.axis] = if height < 0.0 { -sign } else { sign };
-            let (distance, part) = (height.abs(), part as u32);
-            if distance < reach {
-                out.push(Near { part, normal, distance, radius: 0.0, velocity: self.velocity });
-            }
+        if self.reached(x, reach) {
+            self.met(x, reach, out);
         }
     }
 }

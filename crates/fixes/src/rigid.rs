@@ -1,6 +1,7 @@
 //! fix rigid, rigid/small: groups of particles that move as rigid bodies.
 
 mod bodies;
+mod follow;
 mod infile;
 mod motion;
 mod nve;

@@ -40,6 +40,24 @@ pub struct Slabs {
     pub order: Vec<u32>,
 }
 
+/// Cells along one axis, for points of the box made upright.
+#[derive(Clone, Copy)]
+struct Line {
+    axis: usize,
+    lo: f64,
+    per_length: f64,
+    /// The last cell.
+    most: i32,
+}
+
+impl Line {
+    /// The cell of a point; the first or last one for what is beyond.
+    #[inline]
+    fn cell(&self, x: &[f64; 3]) -> u32 {
+        (((x[self.axis] - self.lo) * self.per_length) as i32).clamp(0, self.most) as u32
+    }
+}
+
 /// A run of neighbouring places and the image they are seen in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
@@ -100,8 +118,13 @@ impl Slabs {
         let straight = straightened(x, lo, period);
         self.lay_out(&straight, [edge, reach], lo, period);
         let mut cell = vec![0; x.len()];
+        let (lines, [nx, ny, _]) = ([0, 1, 2].map(|k| self.line(k)), self.cells.map(|n| n as u32));
         par::each((&mut cell[..], &straight[..]), |_, (cell, x)| {
-            cell.iter_mut().zip(x).for_each(|(cell, x)| *cell = self.cell_of(x));
+            let of = |x| lines.map(|line| line.cell(x));
+            cell.iter_mut().zip(x).for_each(|(cell, x)| {
+                let [x, y, z] = of(x);
+                *cell = (z * ny + y) * nx + x;
+            });
         });
         self.start.clear();
         self.start.resize(self.cells.iter().product::<usize>() + 1, 0);
@@ -155,13 +178,13 @@ impl Slabs {
 
     /// The layer of cells that a point lies in.
     pub fn layer_of(&self, x: &[f64; 3]) -> usize {
-        self.along(2, &self.period.straightened(*x, self.corner))
+        self.line(2).cell(&self.period.straightened(*x, self.corner)) as usize
     }
 
-    /// Which cell along one of the axes, of which 2 is the slow one, for a point of the box made upright.
-    fn along(&self, k: usize, x: &[f64; 3]) -> usize {
-        // A float below zero becomes 0 in the cast.
-        (((x[self.axes[k]] - self.lo[k]) * self.per_length[k]) as usize).min(self.cells[k] - 1)
+    /// Cells along one of the axes, of which 2 is the slow one.
+    fn line(&self, k: usize) -> Line {
+        let most = self.cells[k].saturating_sub(1) as i32;
+        Line { axis: self.axes[k], lo: self.lo[k], per_length: self.per_length[k], most }
     }
 
     /// For points of the box made upright.
@@ -210,11 +233,6 @@ impl Slabs {
         self.per_length = self.axes.map(per_length);
     }
 
-    fn cell_of(&self, x: &[f64; 3]) -> u32 {
-        let at = [0, 1, 2].map(|k| self.along(k, x));
-        ((at[2] * self.cells[1] + at[1]) * self.cells[0] + at[0]) as u32
-    }
-
     /// The places of a cell.
     pub fn places(&self, cell: usize) -> Range<usize> {
         self.start[cell] as usize..self.start[cell + 1] as usize
@@ -225,14 +243,47 @@ impl Slabs {
     pub fn runs(&self, cell: usize, out: &mut Vec<Run>) {
         out.clear();
         let [nx, ny, _] = self.cells;
-        let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        let (row, layer) = (cell / nx, cell / nx / ny);
+        let at = [cell - row * nx, row - layer * ny, layer];
+        let within = |k: usize| at[k] > 0 && at[k] + 1 < self.cells[k];
+        if (0..3).all(|k| !self.repeats[k] || within(k)) {
+            return self.rows_within(at, out);
+        }
         for (dx, dy, dz) in [(1..2, 0, 0), (-1..2, 1, 0), (-1..2, -1, 1), (-1..2, 0, 1), (-1..2, 1, 1)] {
             self.row(at, (dx, dy, dz), out);
         }
     }
 
+    /// [`Slabs::runs`] of a cell of which no neighbour is an image: a run in each row of cells that is there.
+    fn rows_within(&self, [x, y, z]: [usize; 3], out: &mut Vec<Run>) {
+        let [nx, ny, nz] = self.cells;
+        let mut put = |row: usize, first: usize, last: usize| {
+            let run =
+                Run { from: self.start[row * nx + first], to: self.start[row * nx + last + 1], image: HERE };
+            if run.from < run.to {
+                out.push(run);
+            }
+        };
+        let (row, first, last) = (z * ny + y, x.saturating_sub(1), (x + 1).min(nx - 1));
+        if x < last {
+            put(row, last, last);
+        }
+        if y + 1 < ny {
+            put(row + 1, first, last);
+        }
+        if z + 1 < nz {
+            let above = row + ny;
+            if y > 0 {
+                put(above - 1, first, last);
+            }
+            put(above, first, last);
+            if y + 1 < ny {
+                put(above + 1, first, last);
+            }
+        }
+    }
+
     /// Cells at offsets along the fast axis in one row.
-    #[inline]
     fn row(&self, at: [usize; 3], (dx, dy, dz): (Range<i32>, i32, i32), out: &mut Vec<Run>) {
         let wrapped = |k: usize, offset: i32| {
             let (c, n) = (at[k] as i32 + offset, self.cells[k] as i32);
@@ -301,7 +352,9 @@ impl Cut<'_> {
     /// The slab of each layer of cells.
     pub fn of_layers(&self) -> Vec<usize> {
         let layer = self.of.cells[0] * self.of.cells[1];
-        (0..self.count()).flat_map(|k| vec![k; self.slab(k).len() / layer]).collect()
+        let mut of = Vec::with_capacity(self.of.cells[2]);
+        (0..self.count()).for_each(|k| of.resize(self.slab(k).end / layer, k));
+        of
     }
 }
 

@@ -68,9 +68,9 @@ impl Placed {
             let _names_are_known = Acting::op();
             act(&mut *self.op, w)
         };
-        self.meter.time += clock.lap();
         self.meter.calls += 1;
         if clock.runs() {
+            self.meter.time += clock.lap();
             self.meter.reckon(self.op.bytes(w));
         }
         outcome.map_err(|e| placed_error(e, self, t))
@@ -238,12 +238,18 @@ impl StepPlan {
 
     /// [`StepPlan::run`] in a step in which only what acts in every step acts.
     fn run_usual(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
-        let mut clock = None;
-        for at in self.usually.of(stages) {
+        let places = self.usually.of(stages);
+        if places.is_empty() {
+            return Ok(());
+        }
+        // Of steps of one length all act whose stages follow each other without a gap.
+        let all =
+            t.phase.levels == 1 && stages[stages.len() - 1] as usize + 1 - stages[0] as usize == stages.len();
+        let mut clock = self.timing.clock(t);
+        for at in places {
             let p = &mut self.ops[self.usually.at(at)];
-            if stages.contains(&p.about.stage) && p.about.level.acts(&t.phase) {
-                let clock = clock.get_or_insert_with(|| self.timing.clock(t));
-                p.alone(w, t, clock, |op, w| op.run(w, t))?;
+            if all || (stages.contains(&p.about.stage) && p.about.level.acts(&t.phase)) {
+                p.alone(w, t, &mut clock, |op, w| op.run(w, t))?;
             }
         }
         Ok(())

@@ -35,8 +35,8 @@ impl StepPlan {
         std::mem::take(&mut self.begun)
     }
 
-    /// Makes one step up to its outputs. Ops that act on each particle by itself are fused after the forces. Where `more`
-    /// steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
+    /// Makes one step up to its outputs. Ops that act on each particle by itself are fused after the forces, of more than a chunk of
+    /// particles while forces are added up. Where `more` steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
     ///
     /// # Errors
     /// The first op's that fails.
@@ -47,11 +47,20 @@ impl StepPlan {
         if !self.goes_on() {
             self.run(w, t, &[InitialIntegrate])?;
         }
-        self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
         let ending = self.ending(t);
-        if !self.force_and_end(w, t, &ending, &more)? {
-            self.run(w, t, &[Stage::Force])?;
+        if w.n() <= CHUNK {
+            self.run(
+                w,
+                t,
+                &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce, Stage::Force],
+            )?;
             self.end_as(w, t, &ending, more)?;
+        } else {
+            self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
+            if !self.force_and_end(w, t, &ending, &more)? {
+                self.run(w, t, &[Stage::Force])?;
+                self.end_as(w, t, &ending, more)?;
+            }
         }
         self.keep_ending(t, ending);
         Ok(())
@@ -59,7 +68,7 @@ impl StepPlan {
 
     /// Where one op alone adds forces and all that follows acts on each particle by itself: particles that have all their forces
     /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
-    /// that is not so, and nothing has been done. Of few particles all are moved at the end anyway.
+    /// that is not so, and nothing has been done.
     fn force_and_end(
         &mut self,
         w: &mut World,
@@ -68,7 +77,7 @@ impl StepPlan {
         more: &impl Fn(&World) -> bool,
     ) -> Result<bool> {
         let order = &ending.order[..];
-        let Some(force) = ending.force.filter(|_| w.n() > CHUNK && !needs::collecting()) else {
+        let Some(force) = ending.force.filter(|_| !needs::collecting()) else {
             return Ok(false);
         };
         if order.is_empty() || !order.iter().all(|k| self.ops[*k].about.fuses || self.rests(w, t, *k)) {
@@ -138,7 +147,10 @@ impl StepPlan {
     ) -> (usize, Option<usize>) {
         let (mut last, mut asked, mut on) = (None, false, None);
         self.rooms.ops.clear();
-        self.rooms.acts.resize_with(self.ops.len(), Room::default);
+        if self.rooms.acts.len() != self.ops.len() {
+            self.rooms.acts.resize_with(self.ops.len(), Room::default);
+        }
+        let collecting = needs::collecting();
         for (at, &k) in ops.iter().enumerate() {
             let turns = ending.last == Some(k) || ending.clears == Some(k);
             if turns && !asked {
@@ -151,7 +163,7 @@ impl StepPlan {
                     p.op.way(w, on, room)
                 }
                 // Who says what it does is asked for all of it.
-                false if needs::collecting() && !p.about.fuses => Way::Alone,
+                false if collecting && !p.about.fuses => Way::Alone,
                 false => p.op.way(w, t, room),
             };
             match way {
@@ -159,7 +171,7 @@ impl StepPlan {
                 Way::Rests => p.meter.calls += 1,
                 Way::Alone => return (at, last),
             }
-            if needs::collecting() {
+            if collecting {
                 return (at + 1, last);
             }
         }

@@ -34,6 +34,8 @@ pub struct Allowed<'a> {
     surfaces: Vec<[u32; 2]>,
     /// Families of solids that have hybrid particles.
     families: Option<(&'a Families, Periods)>,
+    /// Whether there is no rule at all.
+    free: bool,
 }
 
 /// Pairs of ids, found by the lower one.
@@ -74,7 +76,10 @@ impl<'a> Allowed<'a> {
         let bits = w.groups.surfaces().iter().map(|(g, s)| [s.parent.bit(), g.bit()]);
         let surfaces: Vec<[u32; 2]> = bits.collect();
         let families = w.families.as_ref().filter(|_| !surfaces.is_empty()).map(|f| (f, w.periods()));
-        Self { barred: Barred::new(w.bonds.barred()), surfaces, families, ..Self::excluded(w) }
+        let excluded = Self::excluded(w);
+        let barred = Barred::new(w.bonds.barred());
+        let free = excluded.free && surfaces.is_empty() && barred.pairs.is_empty();
+        Self { barred, surfaces, families, free, ..excluded }
     }
 
     /// Of `neigh_modify exclude` alone.
@@ -85,11 +90,17 @@ impl<'a> Allowed<'a> {
             barred: Barred::default(),
             surfaces: vec![],
             families: None,
+            free: excluded(w).is_none(),
         }
     }
 
     /// Whether pair forces act between these two.
+    #[inline]
     pub fn pair(&self, i: usize, j: usize) -> bool {
+        self.free || self.by_rules(i, j)
+    }
+
+    fn by_rules(&self, i: usize, j: usize) -> bool {
         let p = self.particles;
         !self.excluded.pair(i, j)
             && (self.surfaces.is_empty() || self.meet(i, j))

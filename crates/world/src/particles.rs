@@ -158,8 +158,9 @@ impl Particles {
             let mut spare = Vec::new();
             for column in columns.iter_mut().filter(|c| !c.is_empty()) {
                 spare.resize(old.len(), column[0]);
+                let from = &column[..];
                 par::each((&mut spare[..], old), |_, (spare, old)| {
-                    spare.iter_mut().zip(old).for_each(|(to, &k)| *to = column[k]);
+                    spare.iter_mut().zip(old).for_each(|(to, &k)| *to = from[k]);
                 });
                 std::mem::swap(*column, &mut spare);
             }

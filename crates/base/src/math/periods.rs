@@ -1,15 +1,22 @@
 //! The edges of a box that repeats, upright or tilted: where its images are.
 
-use super::vec3::Vec3;
+use super::vec3::{Vec3, same};
 
 /// Three edges a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz); a length is zero where the box does not repeat, which may lean all
 /// the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Periods {
     /// lx, ly, lz [length].
     pub length: Vec3,
     /// xy, xz, yz [length].
     pub tilt: Vec3,
+}
+
+impl PartialEq for Periods {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        same(self.length, other.length) && same(self.tilt, other.tilt)
+    }
 }
 
 impl Periods {
@@ -35,6 +42,12 @@ impl Periods {
     pub fn shift(&self, n: [f64; 3]) -> Vec3 {
         let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
         [n[0] * lx + n[1] * xy + n[2] * xz, n[1] * ly + n[2] * yz, n[2] * lz]
+    }
+
+    /// [`Periods::shift`] of an image that somebody is in; nearly all are in the one that is nowhere else.
+    #[inline]
+    pub fn shift_of(&self, image: [i32; 3]) -> Vec3 {
+        if image == [0; 3] { [0.0; 3] } else { self.shift(image.map(f64::from)) }
     }
 
     /// Along each edge the part of it at which a place lies that is `d` away from the corner, 0 there and 1 at the other end.
@@ -164,5 +177,6 @@ mod tests {
         let open = Periods { length: [0.0, 2.0, 0.0], tilt: [7.0, 0.0, 0.0] };
         assert_eq!(open.heights(), [0.0, 2.0, 0.0]);
         assert_eq!(open.shift([0.0, -1.0, 0.0]), [-7.0, -2.0, 0.0]);
+        assert_eq!([open.shift_of([0, -1, 0]), open.shift_of([0; 3])], [[-7.0, -2.0, 0.0], [0.0; 3]]);
     }
 }

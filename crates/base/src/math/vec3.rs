@@ -20,6 +20,12 @@ pub fn sub<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// Whether a = b: compared in line, where `==` of arrays is a loop.
+#[inline(always)]
+pub fn same(a: Vec3, b: Vec3) -> bool {
+    a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
+}
+
 /// s a.
 #[inline(always)]
 pub fn scale<R: Real>(s: R, a: Vec3<R>) -> Vec3<R> {

@@ -187,6 +187,11 @@ pub fn for_rows(n: usize, f: impl Fn(usize) + Sync) {
     });
 }
 
+/// [`for_rows`] where that is `worth` another thread's while, else part by part.
+pub fn for_rows_if(worth: bool, n: usize, f: impl Fn(usize) + Sync) {
+    if worth { for_rows(n, f) } else { (0..n).for_each(f) }
+}
+
 /// Calls `f` for the parts 0, 2, 4, ..., and for each of 1, 3, 5, ... after the two beside it: part `k` may write into part
 /// `k + 1` as well (the last one into the first if there is an even number of them), and every particle receives its additions in
 /// the same order for any number of threads.
@@ -274,13 +279,15 @@ mod tests {
     fn every_part_runs_once() {
         for n in [0, 1, 2, 7, 64] {
             let hits: Vec<AtomicUsize> = (0..n).map(|_| AtomicUsize::new(0)).collect();
-            for_rows(n, |k| {
-                hits[k].fetch_add(1, Ordering::Relaxed);
-            });
+            for worth in [false, true] {
+                for_rows_if(worth, n, |k| {
+                    hits[k].fetch_add(1, Ordering::Relaxed);
+                });
+            }
             two_colours(n, |k| {
                 hits[k].fetch_add(1, Ordering::Relaxed);
             });
-            assert!(hits.iter().all(|h| h.load(Ordering::Relaxed) == 2));
+            assert!(hits.iter().all(|h| h.load(Ordering::Relaxed) == 3));
         }
     }
 

@@ -17,6 +17,9 @@ use std::ops::Range;
 /// The part of the thin skin that grains of a slab may use up before it gets a new list at the next look.
 const WORN: f64 = 0.5;
 
+/// So few grains are looked at before another thread has seen that there is work.
+const FEW: usize = 1024;
+
 /// Positions and radii where a slab's list was made.
 type Place = [f64; 4];
 
@@ -228,6 +231,9 @@ impl ListValidity {
     /// The slabs whose grains may have come closer by `thin`, or `all`, and some that are near that; their lists are taken to be made
     /// from the present positions.
     pub fn strayed(&mut self, grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
+        if self.members.is_empty() {
+            return vec![];
+        }
         if thin == f64::INFINITY {
             // Nobody gets out of lists that are the long ones.
             return if all { (0..self.members.len()).collect() } else { vec![] };
@@ -271,7 +277,7 @@ impl ListValidity {
         ways.clear();
         ways.resize(self.members.len(), [Ways::NONE; 2]);
         let (this, shared) = (&*self, par::Shared::new(&mut ways));
-        par::for_rows(this.members.len(), |k| {
+        par::for_rows_if(this.own.len() > FEW, this.members.len(), |k| {
             let ways = this.ways(grains, k);
             // SAFETY: each part writes its own slab.
             unsafe { shared.get(k..k + 1)[0] = ways };

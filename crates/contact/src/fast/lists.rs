@@ -86,9 +86,17 @@ impl Slab {
 /// How long it takes to evaluate a contact, in units of what it takes to find out that a listed pair does not touch.
 const CONTACT: usize = 8;
 
-/// How much work each short list is.
-pub fn weights(lists: &[Slab]) -> Vec<usize> {
-    lists.iter().map(|list| list.short.i.len() + CONTACT * list.touching).collect()
+/// The lists of so few grains are made before another thread has seen that there is work.
+const FEW: usize = 64;
+
+/// And contacts of so little work are evaluated before: some microseconds, in these units.
+const LITTLE: usize = 1024;
+
+/// How much work each short list is; nothing where all of them are little.
+pub fn weights(lists: &[Slab]) -> Option<Vec<usize>> {
+    let weight = |list: &Slab| list.short.i.len() + CONTACT * list.touching;
+    let all: usize = lists.iter().map(weight).sum();
+    (all > LITTLE).then(|| lists.iter().map(weight).collect())
 }
 
 impl<L: ContactLaw> Fast<L> {
@@ -105,7 +113,7 @@ impl<L: ContactLaw> Fast<L> {
         lists.resize(slabs.near().count(), Slab::default());
         let shared = par::Shared::new(&mut lists);
         let this = &*self;
-        par::for_rows(slabs.near().count(), |k| {
+        par::for_rows_if(grains.x.len() > FEW, slabs.near().count(), |k| {
             // SAFETY: each part writes its own slab.
             let slab = unsafe { &mut shared.get(k..k + 1)[0] };
             this.search(grains, (slabs, &at), k, skin, keep, &mut slab.long);
@@ -165,13 +173,14 @@ impl<L: ContactLaw> Fast<L> {
         if which.is_empty() {
             return;
         }
+        self.idle = false;
         let book = self.book.take();
         let mut lists = std::mem::take(&mut self.lists);
         let spare = Mutex::new(std::mem::take(&mut self.spare));
         let open = || spare.lock().unwrap_or_else(PoisonError::into_inner);
         let slabs = par::Shared::new(&mut lists);
         let this = &*self;
-        par::for_rows(which.len(), |k| {
+        par::for_rows_if(grains.x.len() > FEW, which.len(), |k| {
             // SAFETY: each part writes its own slab.
             let slab = unsafe { &mut slabs.get(which[k]..which[k] + 1)[0] };
             let mut room = open().pop().unwrap_or_default();

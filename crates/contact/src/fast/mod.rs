@@ -182,6 +182,8 @@ pub struct Fast<L> {
     span: f64,
     /// Whether long lists are younger than short ones.
     stale: bool,
+    /// Whether short lists are known to be empty, and to have found nothing.
+    idle: bool,
     /// Number of the present step among those that remember; contacts of the last one carry it.
     now: f64,
     /// Numbers per pair in the short list: what is remembered and the step it was.
@@ -221,6 +223,7 @@ impl<L: ContactLaw> Fast<L> {
             upkeep: Upkeep::default(),
             span: 0.0,
             stale: true,
+            idle: false,
             now: 0.0,
             width,
             due: vec![],
@@ -337,13 +340,15 @@ impl<L: ContactLaw> Fast<L> {
     /// `heat` is given.
     pub fn run(&mut self, grains: &Grains, sums: Sums, step: Advance, store: bool, virial: bool) -> [f64; 6] {
         self.begin(grains);
-        if self.lists.iter().any(|l| !l.short.i.is_empty()) {
-            self.sweep(grains, sums, step, (store, virial), None);
-        } else {
-            self.lists.iter_mut().for_each(|l| l.found([0.0; 6], false, 0));
-        }
-        if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
-            self.deep = self.find_deep(grains, &self.lists);
+        if !self.idle {
+            self.idle = self.lists.iter().all(|l| l.short.i.is_empty());
+            match self.idle {
+                true => self.lists.iter_mut().for_each(|l| l.found([0.0; 6], false, 0)),
+                false => self.sweep(grains, sums, step, (store, virial), None),
+            }
+            if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
+                self.deep = self.find_deep(grains, &self.lists);
+            }
         }
         self.now += if store { 1.0 } else { 0.0 };
         let mut total = [0.0; 6];
@@ -371,14 +376,11 @@ impl<L: ContactLaw> Fast<L> {
         self.make_short(grains, &strayed);
     }
 
-    /// Calls `f` for lists of these weights (none where there is one thread) in two rounds, for those of slabs and then for those of
-    /// large grains: a list may write to its slab and the next one.
+    /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to
+    /// its slab and the next one.
     fn each_list(&self, weights: &[usize], f: impl Fn(usize) + Sync) {
         let first = self.validity.lists();
-        match weights.get(..first) {
-            Some(weights) => par::neighbours(weights, &f),
-            None => par::two_colours(first, &f),
-        }
+        par::neighbours(&weights[..first], &f);
         par::two_colours(self.validity_of_large.lists(), |k| f(first + k));
     }
 
@@ -398,7 +400,7 @@ impl<L: ContactLaw> Fast<L> {
             self.measured.extend_from_slice(grains.radius);
             let mut lists = std::mem::take(&mut self.lists);
             let (this, shared) = (&*self, par::Shared::new(&mut lists));
-            par::for_rows(shared.len(), |k| {
+            par::for_rows_if(grains.x.len() > par::CHUNK, shared.len(), |k| {
                 // SAFETY: each part writes its own list.
                 this.measure(grains, unsafe { &mut shared.get(k..k + 1)[0].short });
             });

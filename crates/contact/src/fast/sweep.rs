@@ -128,8 +128,7 @@ impl<L: ContactLaw> Fast<L> {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
         // One thread takes lists as they come.
-        let shared = only.is_none() && par::threads() > 1;
-        let weights = if shared { weights(&lists) } else { vec![] };
+        let weights = if only.is_none() && par::threads() > 1 { weights(&lists) } else { None };
         let slabs = par::Shared::new(&mut lists);
         let drift = Drift::of(grains);
         let cx = Cx {
@@ -164,10 +163,10 @@ impl<L: ContactLaw> Fast<L> {
                 }
             }
         };
-        match only {
-            None if shared => self.each_list(&weights, |k| contacts(&[k])),
-            None => contacts(&self.order),
-            Some(k) => contacts(&[k]),
+        match (only, weights) {
+            (Some(k), _) => contacts(&[k]),
+            (None, Some(weights)) => self.each_list(&weights, |k| contacts(&[k])),
+            (None, None) => contacts(&self.order),
         }
         self.lists = lists;
     }

@@ -1,9 +1,10 @@
 //! One step of rigid bodies and of the particles that follow them.
 
+use super::follow::{Came, Follow, Holds, farther};
 use super::pass::{POSE, Part, Pass};
 use super::{COLUMNS, Declared, Keys};
-use perigrain_base::math::body::{apply, apply_transposed, matrix};
-use perigrain_base::math::vec3::{SIX, Vec3, add, cross, dot, sub};
+use perigrain_base::math::body::{apply_transposed, matrix};
+use perigrain_base::math::vec3::{dot, sub};
 use perigrain_base::par;
 use perigrain_plan::Tick;
 use perigrain_styles::matter::{self, Masses};
@@ -126,48 +127,17 @@ impl Declared {
         let edges = w.edges();
         let p = &mut w.particles;
         let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
-        let (image, f) = (&p.image, &p.f);
         let number = w.columns.get_scalar(crew.keys.body).unwrap_or_default();
         let place = w.columns.get_vector(crew.keys.place).unwrap_or_default();
         let n = number.len().min(place.len());
+        let holds = tally.then_some(Holds { masses, f: &p.f, half });
+        let follow = Follow { poses: &crew.poses, image: &p.image, edges, moving, holds };
         // Points do not turn.
         let turning = p.style.sphere.then(|| (&mut p.omega[..n], &p.radius[..n]));
         let columns = (&mut p.x[..n], &mut p.v[..n], turning, &number[..n], &place[..n]);
-        let follow = |start: usize, (x, v, mut turning, number, place): Columns<'_>| {
-            let (mut total, mut farthest) = ([0.0; 6], 0.0);
-            for (k, ((x, v), (number, place))) in
-                x.iter_mut().zip(v).zip(number.iter().zip(place)).enumerate()
-            {
-                let Some(pose) = crew.poses.get((*number as usize).wrapping_sub(1)) else { continue };
-                let three = |k: usize| [pose[k], pose[k + 1], pose[k + 2]];
-                let (i, omega) = (start + k, three(15));
-                let away = apply(&[three(0), three(3), three(6)], *place);
-                let shift: Vec3 = edges.shift(image[i].map(f64::from));
-                let old = (*x, *v);
-                *v = add(cross(omega, away), three(12));
-                if let Some((spin, radius)) = &mut turning
-                    && radius[k] > 0.0
-                {
-                    spin[k] = omega;
-                }
-                if moving {
-                    *x = sub(add(away, three(9)), shift);
-                    let way = sub(*x, old.0);
-                    farthest = farther(farthest, dot(way, way));
-                }
-                if !tally {
-                    continue;
-                }
-                let (m, old_x) = (masses.get(i), add(old.0, shift));
-                let hold: Vec3 = std::array::from_fn(|d| m * (v[d] - old.1[d]) / half - f[i][d]);
-                for (s, (a, c)) in total.iter_mut().zip(SIX) {
-                    *s += 0.5 * old_x[a] * hold[c];
-                }
-            }
-            (total, farthest)
-        };
-        let both = |a: ([f64; 6], f64), b: ([f64; 6], f64)| (matter::add(a.0, b.0), farther(a.1, b.1));
-        let (virial, farthest) = par::reduce_each(columns, follow, both).unwrap_or_default();
+        let both = |a: Came, b: Came| (matter::add(a.0, b.0), farther(a.1, b.1));
+        let came = par::reduce_each(columns, |start, columns| follow.chunk(start, columns), both);
+        let (virial, farthest) = came.unwrap_or_default();
         if moving {
             w.travel.went(farthest.sqrt());
         }
@@ -215,19 +185,4 @@ impl Declared {
 /// Half a step in units that turn force/mass into velocity.
 fn half(w: &World, t: &Tick) -> f64 {
     0.5 * t.dt * w.settings.units.constants().ftm2v
-}
-
-/// Positions, velocities, spins and radii, number of the body, place in it.
-type Columns<'a> =
-    (&'a mut [Vec3], &'a mut [Vec3], Option<(&'a mut [Vec3], &'a [f64])>, &'a [f64], &'a [Vec3]);
-
-/// The larger one; a NaN counts as infinite.
-fn farther(a: f64, b: f64) -> f64 {
-    if b <= a {
-        a
-    } else if b.is_nan() {
-        f64::INFINITY
-    } else {
-        b
-    }
 }

@@ -1,16 +1,17 @@
-//! The motion of rigid bodies themselves: forces, kicks, drift and turn, four bodies at a time where the processor can.
+//! The motion of rigid bodies themselves: forces, kicks, drift and turn, as many bodies at a time as the processor can.
 
 use super::Declared;
 use perigrain_base::math::body::{Quat, matrix, no_squish, richardson, spin};
-use perigrain_base::math::four::{Four, has_avx2};
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_styles::rigid_bodies::WIDTH;
 use perigrain_world::Particles;
 
-/// Numbers of a body's place: matrix, centre, velocity, angular velocity; two spare ones make it whole rows of four.
-pub const POSE: usize = 20;
+/// Numbers of a body's place: the columns of its matrix, centre, velocity, angular velocity, each in a row of four with a spare one.
+pub const POSE: usize = 24;
 
 /// Numbers of a body that its motion takes up: whole rows of four, up to the first image count.
 const MOVING: usize = 28;
@@ -119,14 +120,14 @@ impl<R: Real> Moving<R> {
         }
     }
 
-    /// The matrix, the centre, the velocity, the angular velocity.
+    /// The columns of the matrix, the centre, the velocity, the angular velocity.
     #[inline(always)]
     fn pose(&self) -> [R; POSE] {
         let ([a, b, c], x, v, o) = (matrix(self.q), self.x, self.v, self.omega);
         let none = x[0].like(0.0);
         [
-            a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], x[0], x[1], x[2], v[0], v[1], v[2], o[0],
-            o[1], o[2], none, none,
+            a[0], b[0], c[0], none, a[1], b[1], c[1], none, a[2], b[2], c[2], none, x[0], x[1], x[2], none,
+            v[0], v[1], v[2], none, o[0], o[1], o[2], none,
         ]
     }
 }
@@ -137,13 +138,11 @@ impl Pass<'_> {
         if self.part.gathers() {
             rows.iter_mut().enumerate().for_each(|(k, row)| self.gather(start + k, row));
         }
-        let mut done = 0;
-        #[cfg(target_arch = "x86_64")]
-        if has_avx2() && !self.fix.exact() {
-            done = rows.len() / 4 * 4;
-            // SAFETY: the processor has AVX2.
-            unsafe { self.avx2(start, &mut rows[..done], &mut poses[..done]) };
-        }
+        let done = match self.fix.exact() {
+            true => 0,
+            // SAFETY: the processor has what its form needs, and the loop asks for nothing else.
+            false => unsafe { Form::here().run(Groups { pass: self, start, rows, poses }) },
+        };
         let rest = rows[done..].iter_mut().zip(&mut poses[done..]);
         for (k, (row, pose)) in rest.enumerate() {
             // Bodies have more numbers than those of their motion: see `columns`.
@@ -157,44 +156,37 @@ impl Pass<'_> {
         }
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn avx2(&self, start: usize, rows: &mut [[f64; WIDTH]], poses: &mut [[f64; POSE]]) {
-        let (rows, poses) = (rows.as_chunks_mut::<4>().0, poses.as_chunks_mut::<4>().0);
-        for (k, (rows, poses)) in rows.iter_mut().zip(poses).enumerate() {
-            // SAFETY: this form has what `Avx2` needs.
-            unsafe { self.four::<perigrain_base::math::four::Avx2>(start + 4 * k, rows, poses) };
-        }
-    }
-
-    /// Four bodies.
+    /// As many bodies as there are lanes; `all`: what counts of forces and torques, where that is the same for all bodies.
     ///
     /// # Safety
     /// The processor must have what the form needs.
     #[inline(always)]
-    unsafe fn four<F: Four>(&self, first: usize, rows: &mut [[f64; WIDTH]; 4], poses: &mut [[f64; POSE]; 4]) {
+    unsafe fn group<const N: usize, V: Lanes<N>>(
+        &self,
+        first: usize,
+        all: Option<[Vec3; 2]>,
+        rows: &mut [[f64; WIDTH]; N],
+        poses: &mut [[f64; POSE]; N],
+    ) {
         // Closures would keep the compiler from putting these operations in line.
-        let allowed = [0, 1, 2, 3].map(|l| self.fix.allowed(first + l, self.flat));
-        let mut on = [[[0.0; 4]; 3]; 2];
-        for (l, own) in allowed.iter().enumerate() {
+        let mut on = [[[0.0; N]; 3]; 2];
+        for l in 0..N {
+            let own = match all {
+                Some(all) => all,
+                None => self.fix.allowed(first + l, self.flat),
+            };
             for (s, d) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
                 on[s][d][l] = own[s][d];
             }
         }
-        let [[fx, fy, fz], [tx, ty, tz]] = &on;
-        // SAFETY: by the caller's promise; arrays of four numbers.
-        let on = unsafe {
-            [
-                [F::load(fx.as_ptr()), F::load(fy.as_ptr()), F::load(fz.as_ptr())],
-                [F::load(tx.as_ptr()), F::load(ty.as_ptr()), F::load(tz.as_ptr())],
-            ]
-        };
-        // SAFETY: likewise.
+        let [[fx, fy, fz], [tx, ty, tz]] = on;
+        // SAFETY: by the caller's promise.
         unsafe {
-            let mut b = Moving::of(&columns::<F, WIDTH, MOVING>(rows));
+            let on = [[V::of(fx), V::of(fy), V::of(fz)], [V::of(tx), V::of(ty), V::of(tz)]];
+            let mut b = Moving::of(&columns::<N, V, WIDTH, MOVING>(rows));
             self.go(&mut b, &on, |_| None);
-            put::<F, WIDTH, MOVING>(rows, &b.numbers());
-            put::<F, POSE, POSE>(poses, &b.pose());
+            put::<N, V, WIDTH, MOVING>(rows, &b.numbers());
+            put::<N, V, POSE, POSE>(poses, &b.pose());
         }
     }
 
@@ -233,7 +225,7 @@ impl Pass<'_> {
         let p = self.p;
         for &i in &self.members[self.first[k]..self.first[k + 1]] {
             let (x, image) = (p.x[i], p.image[i]);
-            let there = add(x, self.edges.shift(image.map(f64::from)));
+            let there = add(x, self.edges.shift_of(image));
             force = add(force, p.f[i]);
             torque = add(torque, cross(sub(there, centre), p.f[i]));
             if let Some(own) = p.torque.get(i) {
@@ -245,24 +237,45 @@ impl Pass<'_> {
     }
 }
 
-/// The first `M` numbers of four rows as lanes; `M` is a multiple of four.
+/// The loop over bodies several at a time; how many that were.
+struct Groups<'a, 'b> {
+    pass: &'a Pass<'b>,
+    start: usize,
+    rows: &'a mut [[f64; WIDTH]],
+    poses: &'a mut [[f64; POSE]],
+}
+
+impl InLanes for Groups<'_, '_> {
+    type Out = usize;
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) -> usize {
+        let Self { pass, start, rows, poses } = self;
+        let (rows, poses) = (rows.as_chunks_mut::<N>().0, poses.as_chunks_mut::<N>().0);
+        let all = if pass.fix.switches.is_empty() { Some(pass.fix.allowed(start, pass.flat)) } else { None };
+        for (k, (rows, poses)) in rows.iter_mut().zip(poses).enumerate() {
+            // SAFETY: passed on.
+            unsafe { pass.group::<N, V>(start + N * k, all, rows, poses) };
+        }
+        N * rows.len()
+    }
+}
+
+/// The first `M` numbers of some rows as lanes; `M` is a multiple of four.
 ///
 /// # Safety
 /// The processor must have what the form needs.
 #[inline(always)]
-unsafe fn columns<F: Four, const N: usize, const M: usize>(rows: &[[f64; N]; 4]) -> [F; M] {
-    const { assert!(M <= N && M.is_multiple_of(4)) };
+unsafe fn columns<const N: usize, V: Lanes<N>, const W: usize, const M: usize>(
+    rows: &mut [[f64; W]; N],
+) -> [V; M] {
+    const { assert!(M <= W && M.is_multiple_of(4)) };
+    let at = starts(rows);
     // SAFETY: by the caller's promise, and within the rows by the assertion.
     unsafe {
-        let mut out = [F::splat(0.0); M];
+        let mut out = [V::all(0.0); M];
         for (k, four) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-            let [a, b, c, d] = rows;
-            *four = F::transpose([
-                F::load(a.as_ptr().add(4 * k)),
-                F::load(b.as_ptr().add(4 * k)),
-                F::load(c.as_ptr().add(4 * k)),
-                F::load(d.as_ptr().add(4 * k)),
-            ]);
+            *four = load_rows::<V, N>(&at, 4 * k);
         }
         out
     }
@@ -273,13 +286,24 @@ unsafe fn columns<F: Four, const N: usize, const M: usize>(rows: &[[f64; N]; 4])
 /// # Safety
 /// The processor must have what the form needs.
 #[inline(always)]
-unsafe fn put<F: Four, const N: usize, const M: usize>(rows: &mut [[f64; N]; 4], lanes: &[F; M]) {
-    const { assert!(M <= N && M.is_multiple_of(4)) };
+unsafe fn put<const N: usize, V: Lanes<N>, const W: usize, const M: usize>(
+    rows: &mut [[f64; W]; N],
+    lanes: &[V; M],
+) {
+    const { assert!(M <= W && M.is_multiple_of(4)) };
+    let at = starts(rows);
     for (k, four) in lanes.as_chunks::<4>().0.iter().enumerate() {
-        let back = F::transpose(*four);
-        for l in 0..4 {
-            // SAFETY: within the rows by the assertion.
-            unsafe { back[l].store(rows[l].as_mut_ptr().add(4 * k)) };
-        }
+        // SAFETY: within the rows by the assertion.
+        unsafe { store_rows::<V, N>(&at, 4 * k, *four) };
     }
+}
+
+/// Where rows begin.
+#[inline(always)]
+fn starts<const N: usize, const W: usize>(rows: &mut [[f64; W]; N]) -> [*mut f64; N] {
+    let mut at = [std::ptr::null_mut(); N];
+    for (at, row) in at.iter_mut().zip(rows) {
+        *at = row.as_mut_ptr();
+    }
+    at
 }

@@ -18,6 +18,7 @@ use perigrain_world::field::{
     WALL_CONTACTS, X,
 };
 use perigrain_world::{Key, Numbers, Seen, SlotId, World};
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
@@ -290,7 +291,10 @@ fn take(w: &mut World, key: Key<Contacts>) -> Contacts {
 
 /// Puts it back.
 fn give(w: &mut World, key: Key<Contacts>, memory: Contacts) {
-    w.wall_contacts.insert(key, memory);
+    match w.wall_contacts.get_mut(key) {
+        Some(place) => *place = memory,
+        None => drop(w.wall_contacts.insert(key, memory)),
+    }
 }
 
 /// One wall as two ops, for plastic grains: who meets it before all forces, and what it does after those of pairs.
@@ -395,7 +399,12 @@ impl Op for WallOp {
         if let Some(plastic) = &mut self.plastic {
             plastic.press(w, t, &self.sweep, &mut memory);
         }
-        let (p, masses) = (&w.particles, w.contact_masses());
+        let p = &w.particles;
+        // Bodies lend their masses to those who touch.
+        let masses = match self.sweep.touching().0 {
+            [] => Cow::Borrowed(&p.mass[..]),
+            _ => w.contact_masses(),
+        };
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
         let step = Advance { dt: t.dt, history: !t.setup };

@@ -37,6 +37,8 @@ pub struct Force {
     frozen: Vec<bool>,
     /// Whether nobody changes masses, radii and groups in a step.
     steady: bool,
+    /// Masses where rigid bodies lend theirs.
+    lent: Option<Vec<f64>>,
     /// The rebuild the lists were made at.
     generation: Option<u64>,
     plain: Plain,
@@ -75,6 +77,7 @@ impl Force {
             name: format!("pair {style}"),
             frozen: vec![],
             steady: false,
+            lent: None,
             generation: None,
             plain: Plain::default(),
             fast,
@@ -153,16 +156,15 @@ impl Force {
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let mut heat = Heating::take(w, &self.rules);
-        let masses = w.contact_masses();
-        let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
-        if anew || matches!(masses, Cow::Owned(_)) {
+        let mass = masses(&self.lent, w);
+        let grains = Grains { mass, ..grains(w, period, &[], &self.frozen)? };
+        if anew {
             fast.weigh(&grains);
         }
         let heating = heat.as_mut().map(|heat| (&heat.temperature[..], &mut heat.flow[..]));
         let sums = Sums { force: &mut f, torque: &mut torque, heat: heating };
         let virial = fast.run(&grains, sums, step, store, t.virial);
         let deep = fast.deep;
-        drop(masses);
         (w.particles.f, w.particles.torque) = (f, torque);
         if let Some(heat) = heat {
             heat.give(w);
@@ -187,7 +189,7 @@ impl Force {
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
         let plain = !t.virial && !t.contacts && !conducts(&self.rules);
-        let alone = matches!(w.contact_masses(), Cow::Borrowed(_));
+        let alone = self.lent.is_none();
         let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_list());
         let Some(fast) = fast else { return Ok(false) };
         let seen = grains(w, period, &[], &self.frozen)?;
@@ -228,6 +230,11 @@ impl Force {
         let anew = renewed || t.setup || !self.steady;
         if anew {
             find_frozen(w, &mut self.frozen);
+            // Particles join bodies where lists are made anew.
+            self.lent = match w.contact_masses() {
+                Cow::Owned(masses) => Some(masses),
+                Cow::Borrowed(_) => None,
+            };
         }
         Ok((w.periods(), store, anew))
     }
@@ -246,8 +253,8 @@ impl Force {
         let manner =
             Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
         let (plain, press) = (&mut self.plain, &mut self.press);
-        let masses = w.contact_masses();
-        let grains = Grains { mass: &masses, ..grains(w, period, &plain.body, &self.frozen)? };
+        let mass = masses(&self.lent, w);
+        let grains = Grains { mass, ..grains(w, period, &plain.body, &self.frozen)? };
         let step = Advance { dt: t.dt, history: !t.setup };
         plain.sweep.meet(&plain.list, &grains, &self.rules, &mut memory);
         if let Some(press) = press {
@@ -256,7 +263,6 @@ impl Force {
         plain.sweep.act(&grains, &self.rules, &mut memory, step);
         // Plastic grains are made for deep contacts.
         let deep = if press.is_none() { plain.sweep.deep(&grains) } else { None };
-        drop(masses);
         let kept = match press {
             Some(press) => {
                 press.check(w, &plain.sweep, t)?;
@@ -391,6 +397,11 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
         return None;
     }
     Laws::new(types, |a, b| rules.get(a, b).map(|r| r.law))
+}
+
+/// Masses in contacts.
+fn masses<'a>(lent: &'a Option<Vec<f64>>, w: &'a World) -> &'a [f64] {
+    lent.as_deref().unwrap_or(&w.particles.mass)
 }
 
 /// What contacts see of the particles.
