@@ -168,6 +168,29 @@ fn every_file_opens_with_one_sentence() {
 }
 
 #[test]
+fn code_in_comments_is_tested() {
+    let silent = |manifest: &Path| fs::read_to_string(manifest).unwrap().contains("\ndoctest = false\n");
+    let rooms =
+        crates().into_iter().map(|name| (root().join("crates").join(&name), format!("crates/{name}/src")));
+    for (room, folder) in rooms.chain([(root().to_owned(), "src".into())]) {
+        if !silent(&room.join("Cargo.toml")) {
+            continue;
+        }
+        for file in rust_files(&folder) {
+            let text = fs::read_to_string(&file).unwrap();
+            let comments = text.lines().filter_map(|l| {
+                let l = l.trim_start();
+                l.strip_prefix("///").or(l.strip_prefix("//!"))
+            });
+            let fences: Vec<&str> = comments.map(str::trim).filter(|l| l.starts_with("```")).collect();
+            // Every other one ends a block.
+            let code = fences.iter().step_by(2).find(|f| **f != "```text");
+            assert!(code.is_none(), "{}: its crate says `doctest = false`", file.display());
+        }
+    }
+}
+
+#[test]
 fn no_file_is_two_files() {
     let mut wrong = String::new();
     let mut lengths: Vec<(usize, PathBuf)> = ["src", "crates"]

@@ -64,29 +64,79 @@ fn pool() -> Option<Arc<Pool>> {
 pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         None => work(),
-        Some(pool) => pool.threads.install(work),
-    }
-}
-
-/// Runs `work` inside the pool if there is one and `parts` are worth it, else right here.
-pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) -> R {
-    if parts < 2 {
-        return work(false);
-    }
-    pays::shares();
-    if pays::alone() {
-        return work(false);
-    }
-    match pool() {
-        None => work(false),
         Some(pool) => {
-            pool.wake();
-            pool.threads.install(|| work(true))
+            let mut work = Once::new(work);
+            pool.install(&mut || work.run());
+            work.out()
         }
     }
 }
 
+/// Runs `work` inside the pool if there is one and `parts` are worth it, else right here.
+#[inline]
+pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) -> R {
+    match entered(parts) {
+        None => work(false),
+        Some(pool) => {
+            let mut work = Once::new(|| work(true));
+            pool.install(&mut || work.run());
+            work.out()
+        }
+    }
+}
+
+/// The pool, awake, if there is one and `parts` are worth it.
+#[inline]
+fn entered(parts: usize) -> Option<Arc<Pool>> {
+    if parts < 2 {
+        return None;
+    }
+    woken()
+}
+
+/// The pool, awake, if there is one.
+fn woken() -> Option<Arc<Pool>> {
+    pays::shares();
+    if pays::alone() {
+        return None;
+    }
+    let pool = pool()?;
+    pool.wake();
+    Some(pool)
+}
+
+/// What threads are handed: work known by its address. All that hands over between threads is compiled once then, here, and not again
+/// for each loop of each crate, where it was a quarter to a half of what had to be compiled; a call by an address costs nothing
+/// beside handing over.
+type Work<'a> = &'a mut (dyn FnMut() + Send);
+
+/// Work to be done once, and what comes of it.
+struct Once<F, R> {
+    work: Option<F>,
+    out: Option<R>,
+}
+
+impl<R, F: FnOnce() -> R> Once<F, R> {
+    fn new(work: F) -> Self {
+        Self { work: Some(work), out: None }
+    }
+
+    fn run(&mut self) {
+        self.out = self.work.take().map(|work| work());
+    }
+
+    fn out(self) -> R {
+        let Some(out) = self.out else { unreachable!("work that has not been done has ended") };
+        out
+    }
+}
+
 impl Pool {
+    /// Does the work on a thread of the pool.
+    fn install(&self, work: Work) {
+        self.threads.install(work);
+    }
+
     /// Has the other threads look out for work of this one for a while: between two loops of a step they would fall asleep, and
     /// to wake one takes longer than many a loop. Who is not of the pool waits for a thread anyway.
     fn wake(&self) {
@@ -144,9 +194,16 @@ fn look_out(awake: &AtomicUsize) {
 /// Does both, the second on another thread if one looks out for work. A thread that has done its part does other work until the other
 /// part ends, and looks out for that: [`rayon::join`] alone falls asleep soon.
 pub(super) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    let (mut a, mut b) = (Once::new(a), Once::new(b));
+    join_work(&mut || a.run(), &mut || b.run());
+    (a.out(), b.out())
+}
+
+/// As [`join`].
+fn join_work(a: Work, b: Work) {
     let done = AtomicBool::new(false);
     let first = || {
-        let out = a();
+        a();
         let looked = LOOKS_OUT.replace(Looks::ForAnEnd);
         let since = Instant::now();
         while !done.load(Ordering::Acquire) && since.elapsed() < PATIENCE {
@@ -155,14 +212,12 @@ pub(super) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnc
             }
         }
         LOOKS_OUT.set(looked);
-        out
     };
     let second = || {
-        let out = b();
+        b();
         done.store(true, Ordering::Release);
-        out
     };
-    rayon::join(first, second)
+    rayon::join(first, second);
 }
 
 /// Does two things at the same time, if there are threads and more rows to work on than one chunk: another thread takes longer to
@@ -262,13 +317,13 @@ pub fn neighbours(weights: &[usize], f: impl Fn(usize) + Sync) {
 const FEW: usize = 4;
 
 /// Halves a range of parts until one is left; idle threads steal the upper halves.
-fn halve(lo: usize, hi: usize, f: &(impl Fn(usize) + Sync)) {
+fn halve(lo: usize, hi: usize, f: &(dyn Fn(usize) + Sync)) {
     if hi - lo < 2 {
         (lo..hi).for_each(f);
         return;
     }
     let mid = lo.midpoint(hi);
-    join(|| halve(lo, mid, f), || halve(mid, hi, f));
+    join_work(&mut || halve(lo, mid, f), &mut || halve(mid, hi, f));
 }
 
 #[cfg(test)]

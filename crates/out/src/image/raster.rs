@@ -169,19 +169,19 @@ fn draw(
                 continue;
             }
             let half = rest.sqrt();
-            let lo = (cx - half).ceil().max(x[0] as f32) as usize;
             let hi = ((cx + half).floor() + 1.0).clamp(0.0, x[1] as f32) as usize;
+            let lo = ((cx - half).ceil().max(x[0] as f32) as usize).min(hi);
             let slope = d.rz / d.r;
-            for column in lo..hi.max(lo) {
-                let at = row * width + column;
-                if front <= strip.depth[at] {
+            let across = row * width + lo..row * width + hi;
+            let samples = strip.depth[across.clone()].iter_mut().zip(&mut strip.seen[across]);
+            for ((depth, seen), column) in samples.zip(lo..) {
+                if front <= *depth {
                     continue;
                 }
                 let dx = column as f32 - cx;
                 let z = d.z + slope * (rest - dx * dx).max(0.0).sqrt();
-                if z > strip.depth[at] {
-                    strip.depth[at] = z;
-                    strip.seen[at] = i;
+                if z > *depth {
+                    (*depth, *seen) = (z, i);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Light, shade in gaps, haze and averaging of samples.
 
-use super::raster::{Disc, NOTHING, ROTATIONS, Raster, spirals};
+use super::raster::{Disc, NOTHING, RAYS, ROTATIONS, Raster, spirals};
 use super::{Colour, Frame, Image, Look, Scene};
 use crate::make;
 
@@ -16,7 +16,7 @@ const HALF: [f32; 3] = [-0.2470, 0.3459, 0.9052];
 /// Colours every pixel.
 pub(super) fn shade(scene: &Scene<'_>, raster: &Raster, look: &Look, frame: &Frame) -> Image {
     let n = look.samples.max(1);
-    let reach = reach(raster, frame, n);
+    let around = reach(raster, frame, n).map(Around::new);
     let rows = make(look.height, |y| {
         let ground = look.background[0].mix(look.background[1], y as f32 / look.height as f32);
         let pixel = |x: usize| {
@@ -28,7 +28,7 @@ pub(super) fn shade(scene: &Scene<'_>, raster: &Raster, look: &Look, frame: &Fra
                     i => {
                         // Every pixel has the same spirals, so that no pattern shows.
                         let lit = Sample::new(raster, i, [sx, sy], sample * ROTATIONS / (n * n));
-                        lit.colour(scene.colours[i as usize], raster, look, reach, ground)
+                        lit.colour(scene.colours[i as usize], raster, look, &around, ground)
                     }
                 };
                 (0..3).for_each(|k| sum[k] += colour.0[k]);
@@ -49,6 +49,29 @@ fn reach(raster: &Raster, frame: &Frame, n: usize) -> [f32; 2] {
     [(3.0 * radius).min(0.5 * wide).max(3.0 * n as f32), wide.max(4.0 * radius)]
 }
 
+/// Where the shade looks from every sample: offsets in whole samples, which take longer to round than to look at.
+struct Around {
+    reach: f32,
+    spirals: [[Offset; RAYS]; ROTATIONS],
+}
+
+/// An offset, as what is added to places and as a length.
+#[derive(Clone, Copy)]
+struct Offset {
+    places: [i32; 2],
+    length: [f32; 2],
+}
+
+impl Around {
+    fn new(reach: f32) -> Self {
+        let offset = |at: [f32; 2]| {
+            let length = at.map(|o| (o * reach).round());
+            Offset { places: length.map(|l| l as i32), length }
+        };
+        Self { reach, spirals: spirals().map(|rays| rays.map(offset)) }
+    }
+}
+
 /// One sample on a sphere.
 struct Sample {
     x: usize,
@@ -67,11 +90,18 @@ impl Sample {
         Self { x, y, spiral, depth: raster.depth(x, y), normal: [nx, ny, nz] }
     }
 
-    fn colour(&self, base: Colour, raster: &Raster, look: &Look, reach: [f32; 2], ground: Colour) -> Colour {
+    fn colour(
+        &self,
+        base: Colour,
+        raster: &Raster,
+        look: &Look,
+        around: &[Around; 2],
+        ground: Colour,
+    ) -> Colour {
         let n = self.normal;
         let dot = |l: [f32; 3]| n[0] * l[0] + n[1] * l[1] + n[2] * l[2];
-        let near = self.openness(raster, reach[0]);
-        let wide = self.openness(raster, reach[1]);
+        let near = self.openness(raster, &around[0]);
+        let wide = self.openness(raster, &around[1]);
         let open = 1.0 - look.occlusion * (1.0 - near * wide);
         // More light from above than from below; the sum of all lights is about one where a surface faces us.
         let ambient = (0.40 + 0.12 * n[1]) * open;
@@ -84,13 +114,12 @@ impl Sample {
 
     /// The part of the sky that is not hidden by what lies within `reach`, by points of the depth buffer
     /// (after McGuire et al., "Scalable Ambient Obscurance", HPG 2012).
-    fn openness(&self, raster: &Raster, reach: f32) -> f32 {
-        let rays = &spirals()[self.spiral % ROTATIONS];
-        let limit = reach * reach;
+    fn openness(&self, raster: &Raster, around: &Around) -> f32 {
+        let rays = &around.spirals[self.spiral % ROTATIONS];
+        let limit = around.reach * around.reach;
         let mut hidden = 0.0;
-        for [ox, oy] in rays {
-            let (dx, dy) = ((ox * reach).round(), (oy * reach).round());
-            let Some(depth) = raster.depth_at(self.x as i32 + dx as i32, self.y as i32 + dy as i32) else {
+        for Offset { places, length: [dx, dy] } in rays {
+            let Some(depth) = raster.depth_at(self.x as i32 + places[0], self.y as i32 + places[1]) else {
                 continue;
             };
             let dz = depth - self.depth;
