@@ -36,6 +36,9 @@ const WORTH_A_LOOK: Duration = Duration::from_micros(4);
 const MOST_TOGETHER: u32 = 16;
 /// Of two that take nearly the same time the one that is in use stays.
 const CLEARLY: f64 = 0.95;
+/// A step with threads counts as so many times as long: what saves less than a tenth takes from others on the machine what it does not
+/// need, and where they are busy it loses more in some windows than it gains in others.
+const DEAR: f64 = 1.1;
 /// And of two that differ by more than this the trial has been no accident.
 const FAR: f64 = 0.8;
 /// Windows between the first two trials that tell little.
@@ -194,6 +197,7 @@ impl Trial {
 
     /// Goes on with what is faster: the `other` way or `this` one [seconds per step].
     fn judge(&mut self, other: f64, this: f64) -> Phase {
+        let [other, this] = if self.found.alone { [DEAR * other, this] } else { [other, DEAR * this] };
         if other < CLEARLY * this {
             self.found = Found { alone: !self.found.alone, rest: FIRST_REST };
         } else {
@@ -242,8 +246,13 @@ mod tests {
         // Another program takes a core.
         assert!(part_alone(&mut trial, 1000, [0.3, 0.2]) > 0.85);
         assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.3);
-        // Of two ways alike the one in use stays.
-        assert!(part_alone(&mut trial, 1000, [0.1, 0.1]) < 0.2);
+        // What saves a fifteenth is used, and not begun.
+        assert!(part_alone(&mut trial, 1000, [0.14, 0.15]) < 0.2);
+        assert!(part_alone(&mut trial, 1000, [0.3, 0.2]) > 0.85);
+        assert!(part_alone(&mut trial, 1000, [0.14, 0.15]) > 0.9);
+        assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.3);
+        // What saves nothing is left.
+        assert!(part_alone(&mut trial, 1000, [0.1, 0.1]) > 0.9);
         drop(trial);
         assert!(!alone());
     }
