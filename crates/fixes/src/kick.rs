@@ -3,8 +3,9 @@
 mod pass;
 
 use super::nve::half_step;
-use pass::{Kick, Part, faster};
+use pass::{Kick, Part};
 use perigrain_base::diag::Result;
+use perigrain_base::math::real::largest;
 use perigrain_plan::{BlockSums, ParticleBlock, Room, Solids, Tick};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::step_op::StepOp;
@@ -99,7 +100,7 @@ fn some(
         let drifts = short || !solid || mask[0] & solids.twice != 0;
         let part = if drifts { part } else { Part::Second };
         if solid || !short {
-            most = faster(most, k.part_of(s, own.clone(), spins, part, masses));
+            most = largest(most, k.part_of(s, own.clone(), spins, part, masses));
         }
         from = own.end;
     }

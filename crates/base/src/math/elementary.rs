@@ -1,12 +1,10 @@
 //! Exponential function and arcsine for numbers in lanes, with the same bits for one number and in all lanes.
 //!
-//! Where formulas call the mathematical library lane by lane, a step of plastic grains spends a tenth of its time there.
+//! Where formulas call the mathematical library lane by lane, a step of plastic grains spends a tenth of its time there. Coefficients
+//! interpolate at Chebyshev's points, reckoned with 60 digits.
 
-use super::real::Real;
+use super::real::{ROUND, Real};
 use std::f64::consts::{FRAC_PI_2, LOG2_E};
-
-/// Added to and taken from a number of up to 2⁵¹ this rounds it to whole numbers.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// ln 2 in two parts: whole multiples of up to 2¹¹ of the first are exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];

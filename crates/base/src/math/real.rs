@@ -101,13 +101,28 @@ impl Real for f64 {
     }
 }
 
+/// 3·2⁵¹: added to and taken from a number of up to 2⁵¹ this rounds it to a whole one.
+pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
+
 /// Added to a whole number n this makes the last bits those of n + 1023, the exponent of 2ⁿ.
-pub(super) const EXPONENT: f64 = 6_755_399_441_055_744.0 + 1023.0;
+pub(super) const EXPONENT: f64 = ROUND + 1023.0;
 
 /// [`Real::power_of_two`].
 #[inline(always)]
 fn power_of_two(n: f64) -> f64 {
     f64::from_bits((n + EXPONENT).to_bits() << 52)
+}
+
+/// The larger one; a NaN counts as infinite.
+#[inline(always)]
+pub fn largest(a: f64, b: f64) -> f64 {
+    if b <= a {
+        a
+    } else if b.is_nan() {
+        f64::INFINITY
+    } else {
+        b
+    }
 }
 
 /// [`Real::each_of`] of the numbers in lanes.

@@ -112,15 +112,14 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
 ) {
     // SAFETY: passed on.
     unsafe {
-        let grains = [grain::<N, V>(&at.grains[0]), grain::<N, V>(&at.grains[1])];
+        // Both sides in turns: the results of one alone wait for each other.
+        let grains = Grain::of(twice([&grain::<N, V>(&at.grains[0]), &grain::<N, V>(&at.grains[1])]));
         // The last number of the second side's rows is the largest overlap; that of the first side's the second's depth, which it
         // gets itself.
         let rows = [numbers::<N, V>(&at.memory, 0), numbers::<N, V>(&at.memory, WIDTH)];
         let largest = rows[1][WIDTH].most(overlap);
-        // Both sides in turns: the results of one alone wait for each other.
         let mut sides = Side::of(twice([&rows[0], &rows[1]]));
-        let (grain, open) = (both_grains(&grains), Twice([open; 2]));
-        let (push, radius, deed) = side(m, &grain, Twice(depths), &mut sides, open, manner);
+        let (push, radius, deed) = side(m, &grains, Twice(depths), &mut sides, Twice([open; 2]), manner);
         let numbers = sides.numbers();
         for k in 0..2 {
             let [a, b, c, d, e, f, g, h, i, j, l] = of_side(&numbers, k);
@@ -140,7 +139,7 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
         }
         let mut energy = V::all(0.0);
         if manner.booked {
-            energy = given_back([grains[0].radius, grains[1].radius], largest, plastic, energies);
+            energy = given_back(grains.radius.0, largest, plastic, energies);
         }
         store_rows(&at.told, 0, [force, damped, area, energy]);
     }
@@ -181,29 +180,15 @@ fn of_side<V: Copy, const K: usize>(both: &[Twice<V>; K], k: usize) -> [V; K] {
     own
 }
 
-/// Both grains side by side.
-#[inline(always)]
-fn both_grains<V: Copy>([a, b]: &[Grain<V>; 2]) -> Grain<Twice<V>> {
-    Grain {
-        first: Twice([a.first, b.first]),
-        volume: Twice([a.volume, b.volume]),
-        left_volume: Twice([a.left_volume, b.left_volume]),
-        area_before: Twice([a.area_before, b.area_before]),
-        mean: Twice([a.mean, b.mean]),
-        radius: Twice([a.radius, b.radius]),
-    }
-}
-
-/// The grains at these places.
+/// The numbers of the grains at these places.
 ///
 /// # Safety
 /// There must be grains.
 #[inline(always)]
-unsafe fn grain<const N: usize, V: Lanes<N>>(at: &[*mut f64; N]) -> Grain<V> {
+unsafe fn grain<const N: usize, V: Lanes<N>>(at: &[*mut f64; N]) -> [V; 6] {
     // SAFETY: passed on; a grain is six numbers.
-    let ([first, volume, left_volume, area_before], [_, _, mean, radius]) =
-        unsafe { (load_rows::<V, N>(at, 0), load_rows::<V, N>(at, 2)) };
-    Grain { first, volume, left_volume, area_before, mean, radius }
+    let ([a, b, c, d], [_, _, e, f]) = unsafe { (load_rows::<V, N>(at, 0), load_rows::<V, N>(at, 2)) };
+    [a, b, c, d, e, f]
 }
 
 /// The work of the mean force of both sides on the way on which they unload, where each goes its part of the overlap.

@@ -114,7 +114,7 @@ impl<R: Real> Ellipse<R> {
 fn segment<R: Real>(x: R) -> R {
     let (half, less) = (x.above(x.like(0.5)), x.least(x.like(1.0) - x));
     let near = polynomial(less, &SEGMENT) * less * less.sqrt();
-    // It is a number less itself about the middle.
+    // segment(x) + segment(1 − x) = π.
     R::choose(half, x.like(PI) - near, near)
 }
 
@@ -123,10 +123,11 @@ fn segment<R: Real>(x: R) -> R {
 fn bowl<R: Real>(x: R) -> R {
     let (half, less) = (x.above(x.like(0.5)), x.least(x.like(1.0) - x));
     let near = polynomial(less, &BOWL) * less * less * less.sqrt();
+    // bowl(x) − bowl(1 − x) = π (x − 1/2).
     R::choose(half, (x - 0.5) * PI + near, near)
 }
 
-/// [`segment`] over x^(3/2) up to a half, where its series is Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k: interpolates within 8e-17.
+/// [`segment`] over x^(3/2) for x up to a half: interpolates Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k within 8e-17 of it.
 const SEGMENT: [f64; 18] = [
     5.333333333333333,
     -1.6000000000000307,
@@ -148,7 +149,7 @@ const SEGMENT: [f64; 18] = [
     -0.23747588555199495,
 ];
 
-/// [`bowl`] over x^(5/2) up to a half, likewise.
+/// [`bowl`] over x^(5/2) for x up to a half, where each term is divided by k + 5/2, likewise.
 const BOWL: [f64; 16] = [
     2.1333333333333333,
     -0.4571428571429041,

@@ -73,6 +73,14 @@ pub struct Grain<R = f64> {
     pub radius: R,
 }
 
+impl<R> Grain<R> {
+    /// From its numbers, as they stand in memory.
+    #[inline(always)]
+    pub fn of([first, volume, left_volume, area_before, mean, radius]: [R; 6]) -> Self {
+        Self { first, volume, left_volume, area_before, mean, radius }
+    }
+}
+
 impl State {
     fn all(&mut self) -> [&mut Vec<f64>; 21] {
         let [xx, yy, zz, xy, xz, yz] = &mut self.stress;

@@ -104,7 +104,7 @@ fn force_and_energy_of_the_ellipse_are_what_the_formulas_say() {
         // Forces and energies of springs over a whole depth: A B/4 and A² B/8 times these.
         let force = 2.0 * (theta - (1.0 - 2.0 * x) * sine);
         let energy = 4.0 * (sine - theta * (1.0 - 2.0 * x) - sine.powi(3) / 3.0);
-        // Here the formulas' terms cancel each other, all but x^(3/2) and x^(5/2) of them.
+        // The formulas' terms, up to 4 π, are rounded, and cancel each other but for x^(3/2) and x^(5/2).
         let (own, held) = (shape.force(1.0, 4.0 * x), shape.energy(1.0, 4.0 * x));
         assert!(
             (own - force).abs() < 1e-14 && (held - energy).abs() < 1e-14,

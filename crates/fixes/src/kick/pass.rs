@@ -4,11 +4,11 @@ use super::super::enforce2d::{flatten, flatten_turning};
 use super::super::freeze::hold;
 use super::super::gravity::{pulled_each, pulled_four};
 use chunk::{Chunk, Fours, chunk};
-pub(super) use kicks::faster;
 use kicks::{Parts, kick, kicked, only, parts_of};
 use perigrain_base::math::body::rolled;
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::real::largest;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_plan::{Beside, BlockSums, ParticleBlock};
 use perigrain_styles::matter::Masses;
@@ -246,7 +246,7 @@ impl Kick {
                 }
             }
         }
-        came.most = (sums.fastest + sums.wrong).numbers().into_iter().fold(came.most, faster);
+        came.most = (sums.fastest + sums.wrong).numbers().into_iter().fold(came.most, largest);
         came.energy += sums.energy.numbers().iter().sum::<f64>();
         came
     }
@@ -366,7 +366,7 @@ impl Kick {
             kick::<KICKS>(v, &c.f[i], self.half / m);
             if DRIFT {
                 (0..3).for_each(|d| c.x[i][d] += self.dt * v[d]);
-                came.most = faster(came.most, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+                came.most = largest(came.most, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
             }
             if SPIN {
                 let r = c.radius[i];

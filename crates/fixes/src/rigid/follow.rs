@@ -5,6 +5,7 @@ use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, load_rows};
 use perigrain_base::math::periods::Periods;
+use perigrain_base::math::real::largest;
 use perigrain_base::math::vec3::{SIX, Vec3, add, cross, dot, sub};
 use perigrain_styles::matter::Masses;
 use perigrain_world::Images;
@@ -81,7 +82,7 @@ impl InLanes for Chunk<'_> {
                 unsafe { self.one::<V::Row>(k, &mut came) };
             }
         }
-        came.1 = (farthest + wrong).numbers().into_iter().fold(came.1, farther);
+        came.1 = (farthest + wrong).numbers().into_iter().fold(came.1, largest);
         came
     }
 }
@@ -162,7 +163,7 @@ impl Chunk<'_> {
         if follow.moving {
             x[k] = sub(three(away + centre), follow.edges.shift_of(follow.image[*start + k]));
             let way = sub(x[k], old[0]);
-            *farthest = farther(*farthest, dot(way, way));
+            *farthest = largest(*farthest, dot(way, way));
         }
         if let Some(holds) = &follow.holds {
             follow.held(holds, *start + k, &old, v[k], total);
@@ -213,15 +214,4 @@ unsafe fn carried<F: Four>(pose: &[f64; POSE], place: &Vec3) -> [F; 3] {
 fn three<F: Four>(lanes: F) -> Vec3 {
     let [x, y, z, _] = lanes.numbers();
     [x, y, z]
-}
-
-/// The larger one; a NaN counts as infinite.
-pub fn farther(a: f64, b: f64) -> f64 {
-    if b <= a {
-        a
-    } else if b.is_nan() {
-        f64::INFINITY
-    } else {
-        b
-    }
 }

@@ -1,9 +1,10 @@
 //! One step of rigid bodies and of the particles that follow them.
 
-use super::follow::{Came, Follow, Holds, farther};
+use super::follow::{Came, Follow, Holds};
 use super::pass::{POSE, Part, Pass};
 use super::{COLUMNS, Declared, Keys};
 use perigrain_base::math::body::{apply_transposed, matrix};
+use perigrain_base::math::real::largest;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_base::par;
 use perigrain_plan::Tick;
@@ -135,7 +136,7 @@ impl Declared {
         // Points do not turn.
         let turning = p.style.sphere.then(|| (&mut p.omega[..n], &p.radius[..n]));
         let columns = (&mut p.x[..n], &mut p.v[..n], turning, &number[..n], &place[..n]);
-        let both = |a: Came, b: Came| (matter::add(a.0, b.0), farther(a.1, b.1));
+        let both = |a: Came, b: Came| (matter::add(a.0, b.0), largest(a.1, b.1));
         let came = par::reduce_each(columns, |start, columns| follow.chunk(start, columns), both);
         let (virial, farthest) = came.unwrap_or_default();
         if moving {

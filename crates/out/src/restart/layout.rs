@@ -260,8 +260,7 @@ impl<'de> VariantAccess<'de> for Chosen<'_> {
 mod tests {
     use super::*;
 
-    #[derive(serde::Deserialize)]
-    #[allow(dead_code)]
+    #[derive(serde::Deserialize, serde::Serialize)]
     enum Shape {
         Point,
         Ball { radius: f64 },
@@ -269,8 +268,7 @@ mod tests {
     }
 
     mod other {
-        #[derive(serde::Deserialize)]
-        #[allow(dead_code)]
+        #[derive(serde::Deserialize, serde::Serialize)]
         pub enum Shape {
             Point,
             Ball { radius: f32 },

@@ -67,15 +67,3 @@ pub(super) unsafe fn kicked<F: Threes, const KICKS: usize>(
         now
     }
 }
-
-/// The larger one; a NaN counts as infinite.
-#[inline(always)]
-pub(in crate::kick) fn faster(a: f64, b: f64) -> f64 {
-    if b <= a {
-        a
-    } else if b.is_nan() {
-        f64::INFINITY
-    } else {
-        b
-    }
-}

@@ -65,7 +65,7 @@ fn the_formula_of_a_kick_and_a_drift() {
         }
     }
     assert_eq!(fastest, most);
-    assert_eq!([faster(1.0, f64::NAN), faster(f64::INFINITY, 2.0)], [f64::INFINITY; 2]);
+    assert_eq!([largest(1.0, f64::NAN), largest(f64::INFINITY, 2.0)], [f64::INFINITY; 2]);
 }
 
 #[test]

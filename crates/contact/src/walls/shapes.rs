@@ -1,0 +1,113 @@
+//! Walls that formulas describe: planes across an axis, an endless cylinder.
+
+use super::{Near, Wall};
+use perigrain_base::math::vec3::{Vec3, add, scale};
+
+/// Planes across one axis, facing each other: part 0 the lower, part 1 the upper one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planes {
+    /// The axis, 0 to 2.
+    pub axis: usize,
+    /// Where they are.
+    pub lo: Option<f64>,
+    /// Where they are.
+    pub hi: Option<f64>,
+    /// How they move.
+    pub velocity: Vec3,
+    /// Of two planes only the nearer one acts, as LAMMPS has it.
+    pub nearer: bool,
+}
+
+impl Planes {
+    /// Whether `x` is nearer than `reach` to one of them [length].
+    #[inline]
+    fn reached(&self, x: Vec3, reach: f64) -> bool {
+        // A plane that is not there is reached by nobody.
+        let [lo, hi] = [self.lo, self.hi].map(|plane| plane.unwrap_or(f64::INFINITY));
+        (x[self.axis] - lo).abs() < reach || (x[self.axis] - hi).abs() < reach
+    }
+
+    /// Where one of them is reached.
+    fn met(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let x = x[self.axis];
+        let mut meet = |part: u32, height: f64, sign: f64| {
+            let distance = height.abs();
+            if distance < reach {
+                let mut normal = [0.0; 3];
+                // What is beyond the plane is pushed on, as from its other side (LAMMPS).
+                normal[self.axis] = if height < 0.0 { -sign } else { sign };
+                out.push(Near { part, normal, distance, radius: 0.0, velocity: self.velocity });
+            }
+        };
+        match (self.lo.map(|lo| x - lo), self.hi.map(|hi| -(x - hi))) {
+            (Some(above), Some(below)) if self.nearer => match above < below {
+                true => meet(0, above, 1.0),
+                false => meet(1, below, -1.0),
+            },
+            (above, below) => {
+                if let Some(above) = above {
+                    meet(0, above, 1.0);
+                }
+                if let Some(below) = below {
+                    meet(1, below, -1.0);
+                }
+            }
+        }
+    }
+}
+
+impl Wall for Planes {
+    fn planes(&self) -> Option<&Planes> {
+        Some(self)
+    }
+
+    #[inline]
+    fn close(&self, x: Vec3, reach: f64, _: &mut Vec<Near>) -> bool {
+        self.reached(x, reach)
+    }
+
+    #[inline(always)]
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        if self.reached(x, reach) {
+            self.met(x, reach, out);
+        }
+    }
+}
+
+/// An endless cylinder about the z axis, felt from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tube {
+    /// Its radius.
+    pub radius: f64,
+    /// How it moves as a whole.
+    pub velocity: Vec3,
+    /// Speed of its surface about the axis: clockwise seen from above where positive.
+    pub spin: f64,
+    /// Sticky spheres hold on from outside only, as LAMMPS has it.
+    pub lammps: bool,
+}
+
+impl Wall for Tube {
+    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
+        (x[0].hypot(x[1]) - self.radius).abs() < reach
+    }
+
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let r = (x[0] * x[0] + x[1] * x[1]).sqrt();
+        let depth = self.radius - r;
+        let away = if r > 0.0 { [x[0] / r, x[1] / r, 0.0] } else { [1.0, 0.0, 0.0] };
+        if depth.abs() < reach {
+            out.push(Near {
+                part: 0,
+                normal: scale(if depth >= 0.0 { -1.0 } else { 1.0 }, away),
+                distance: depth.abs(),
+                radius: if depth > 0.0 { -2.0 * self.radius } else { 2.0 * self.radius },
+                velocity: add(self.velocity, [self.spin * away[1], -self.spin * away[0], 0.0]),
+            });
+        }
+    }
+
+    fn holds(&self, near: &Near) -> bool {
+        !self.lammps || near.radius > 0.0
+    }
+}
