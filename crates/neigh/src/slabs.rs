@@ -7,8 +7,12 @@ use perigrain_base::par;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
-const LAYERS: usize = 1;
+/// Points in a slab, on average, up to which it pays to have fewer and thicker ones: what each list costs by itself is then little
+/// beside what its points cost.
+const CROWD: usize = 128;
+/// Slabs for threads to share, and so few points do not pay to be shared.
+const SHARES: usize = 8;
+const FEW: usize = 256;
 /// Layers that pairs may reach over: more than there can be.
 const FARTHEST: f64 = 1e9;
 /// Largest radius in units of the smallest up to which one grid of cells serves all.
@@ -32,7 +36,8 @@ pub struct Slabs {
     period: Periods,
     lo: [f64; 3],
     per_length: [f64; 3],
-    /// Layers of cells in a slab, so that pairs of cells reach into the next slab at most, and so that all pairs do.
+    /// Layers of cells in a slab, so that pairs of cells reach into the next slab at most, and so that all pairs do: a function of
+    /// the points alone, because it decides the order in which forces are added up.
     layers: [usize; 2],
     /// First place of each cell, and the number of all places.
     start: Vec<u32>,
@@ -215,8 +220,7 @@ impl Slabs {
         };
         // Spheres larger than all that is there reach over all of it.
         let layers = (reach / size).ceil().min(FARTHEST) as usize;
-        let far = if reach > size { LAYERS.max(layers) } else { LAYERS };
-        self.layers = [LAYERS, far];
+        let far = if reach > size { layers.max(1) } else { 1 };
         // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin. A box that leans along x
         // with y alone is mostly sheared so: grains of a slab across y go the same way.
         let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
@@ -226,6 +230,9 @@ impl Slabs {
         let mut rest = [0, 1, 2].into_iter().filter(|&d| d != slowest);
         self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
         self.cells = self.axes.map(|d| count[d]);
+        let slabs = if x.len() < FEW { 1 } else { SHARES.max(x.len() / CROWD) };
+        let near = self.cells[2].div_ceil(slabs);
+        self.layers = [near, far.max(near)];
         self.repeats = self.axes.map(|d| !open(d));
         self.lo = self.axes.map(|d| origin[d]);
         let per_length =
