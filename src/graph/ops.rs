@@ -2,14 +2,14 @@
 
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::math::vec3::{add, same, sub};
+use perigrain_base::math::vec3::{Vec3, add, same, sub};
 use perigrain_base::par;
 use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
 use perigrain_world::index::Index;
-use perigrain_world::{Domain, Extent, Kept, Particles, Seen, World};
+use perigrain_world::{Domain, Extent, Kept, Particles, Seen, World, extent};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -128,18 +128,12 @@ fn carry(domain: &Domain, p: &mut Particles) {
 /// Largest squared displacement since the last rebuild.
 fn farthest(w: &World, t: &Tick) -> Result<f64> {
     let (x, held) = (&w.particles.x, w.held());
-    let square = |i: usize| {
-        let d = [x[i][0] - held[i][0], x[i][1] - held[i][1], x[i][2] - held[i][2]];
-        let s = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        // A NaN must not be overlooked by the maximum.
-        if s.is_finite() { s } else { f64::INFINITY }
-    };
-    let most = par::max(x.len(), square);
-    if x.is_empty() || most.is_finite() {
-        return Ok(most.max(0.0));
+    let most = extent::farthest(x, held);
+    if most.is_finite() {
+        return Ok(most);
     }
-    let bad = (0..x.len()).find(|&i| !square(i).is_finite()).unwrap_or(0);
-    Err(not_finite(w, bad, t))
+    let lost = |(x, held): (&Vec3, &Vec3)| !sub(*x, *held).iter().map(|a| a * a).sum::<f64>().is_finite();
+    Err(not_finite(w, x.iter().zip(held).position(lost).unwrap_or(0), t))
 }
 
 fn not_finite(w: &World, i: usize, t: &Tick) -> perigrain_base::diag::Diagnostics {

@@ -1,16 +1,4 @@
-//! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
+//! Peridynamic scenes of the program: lattices against lists, weights of bonds.
 
 mod bond_weights;
-mod endurance;
-mod golden;
-mod lattices;
-mod layouts;
-mod limits;
-mod patch;
-mod released;
 mod scatter;
-mod scene;
-mod softening;
-mod states;
-mod textbook;
-mod waves;

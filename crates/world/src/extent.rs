@@ -1,7 +1,7 @@
 //! One look at all positions: how far they reach, who is nowhere, and who has left a box that repeats.
 
 use super::Domain;
-use perigrain_base::math::vec3::Vec3;
+use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_base::par;
 
 /// What a look at all positions finds.
@@ -68,6 +68,19 @@ fn corners(x: &[Vec3]) -> ([Vec3; 2], bool) {
     ([lo, hi], zero == [0.0; 3])
 }
 
+/// The square of the longest way between two lists of positions [length²]; infinite where one is no number.
+pub fn farthest(x: &[Vec3], held: &[Vec3]) -> f64 {
+    let of = |range: std::ops::Range<usize>| {
+        x[range.clone()].iter().zip(&held[range]).fold(0.0, |most, (x, held)| {
+            let d = sub(*x, *held);
+            // What is no number must not be overlooked: of it and another one the other is the lesser.
+            let square = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).min(f64::INFINITY);
+            if square > most { square } else { most }
+        })
+    };
+    par::reduce(x.len(), of, f64::max).unwrap_or(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,5 +107,16 @@ mod tests {
         assert_eq!(found.out, [7, 4100]);
         (x[3000][2], x[4000][1]) = (f64::NAN, f64::INFINITY);
         assert_eq!(Extent::of(&x, &domain).unwrap().bad, Some(3000));
+    }
+
+    #[test]
+    fn the_longest_way_of_all_counts_and_nobody_who_is_nowhere_is_overlooked() {
+        let held: Vec<Vec3> = (0..5000).map(|i| [f64::from(i), 1.0, -2.0]).collect();
+        let mut x = held.clone();
+        assert_eq!((farthest(&[], &[]), farthest(&x, &held)), (0.0, 0.0));
+        (x[17][0], x[4711][2]) = (18.0, -4.0);
+        assert_eq!(farthest(&x, &held), 4.0);
+        x[2000][1] = f64::NAN;
+        assert_eq!(farthest(&x, &held), f64::INFINITY);
     }
 }

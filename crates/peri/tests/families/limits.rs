@@ -1,7 +1,7 @@
 //! The exact limit of the time step: against Bloch waves of the infinite lattice, and between steps that stay and that grow.
 
 use super::scene::Scene;
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 const PI: f64 = std::f64::consts::PI;
 

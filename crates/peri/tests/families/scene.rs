@@ -1,6 +1,6 @@
 //! Scenes of the reference decks set up by hand, and a velocity-Verlet loop to move them.
 
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 /// Particles, families and a step size.
 #[derive(Clone)]

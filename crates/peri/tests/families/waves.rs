@@ -1,6 +1,6 @@
 //! Dispersion: speeds of plane waves on the lattice against the relation of the discrete sum and the continuum's limit.
 
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 use super::scene::Scene;
 

@@ -1,7 +1,7 @@
 //! All layouts against the textbook loop, and against themselves on several threads and without skipping.
 
-use perigrain::par;
-use perigrain::peri::families::*;
+use perigrain_base::par;
+use perigrain_peri::families::*;
 
 use super::scene::Scene;
 use super::textbook::Textbook;
@@ -279,7 +279,7 @@ fn deleted_particles_take_their_bonds_along() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
-    let _alone = super::super::threads::alone();
+    let _alone = super::threads::alone();
     let mut late = impact(1);
     // At rest until the smaller block arrives.
     late.v.iter_mut().for_each(|v| *v = if v[0] < 0.0 { *v } else { [0.0; 3] });

@@ -1,7 +1,7 @@
 //! LAMMPS' numbers (22Jul2025) for four decks, with its artefacts switched on.
 
 use super::scene::Scene;
-use perigrain::peri::families::Layout;
+use perigrain_peri::families::Layout;
 
 /// A golden table: column names and rows.
 struct Table {
@@ -10,8 +10,9 @@ struct Table {
 }
 
 fn table(name: &str) -> Table {
-    let text = std::fs::read_to_string(format!("{}/tests/lammps/golden/{name}", env!("CARGO_MANIFEST_DIR")))
-        .unwrap();
+    let text =
+        std::fs::read_to_string(format!("{}/../../tests/lammps/golden/{name}", env!("CARGO_MANIFEST_DIR")))
+            .unwrap();
     let mut lines = text.lines();
     let names = lines.next().unwrap().split(',').map(str::to_owned).collect();
     let rows = lines.map(|l| l.split(',').map(|w| w.parse().unwrap()).collect()).collect();

@@ -1,6 +1,6 @@
 //! What breaking bonds set free is what the energy of all bonds falls by where they are.
 
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 use super::scene::Scene;
 

@@ -1,7 +1,7 @@
 //! State-based laws: against plain loops over both ends of every bond, patch tests, closed forms, layouts, bits.
 
-use perigrain::par;
-use perigrain::peri::families::*;
+use perigrain_base::par;
+use perigrain_peri::families::*;
 
 use super::layouts::{impact, impact_of_types, periodic, rubble};
 use super::scene::Scene;
@@ -216,7 +216,7 @@ fn influence_and_volume_rules() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
-    let _alone = super::super::threads::alone();
+    let _alone = super::threads::alone();
     for (kind, compat_lammps) in [
         (LawKind::Lps, false),
         (LawKind::Ves, false),

@@ -1,7 +1,7 @@
 //! Bodies on all lattices that decks make, along the axes and turned: rows against the textbook loop, lists and themselves.
 
-use perigrain::par;
-use perigrain::peri::families::*;
+use perigrain_base::par;
+use perigrain_peri::families::*;
 
 use super::layouts::{DX, Scatter, check_in, coeff};
 use super::scene::Scene;
@@ -327,7 +327,7 @@ fn layouts_say_the_same_while_bonds_break() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
-    let _alone = super::super::threads::alone();
+    let _alone = super::threads::alone();
     for (name, turn, kind) in [
         ("fcc", anyhow(), LawKind::Pmb),
         ("hcp", UPRIGHT, LawKind::ElasticPlastic),

@@ -1,6 +1,6 @@
 //! The plain textbook loop: every bond from both ends, every pair tested for contact. The reference for all layouts.
 
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 /// Families as full lists.
 #[derive(Clone)]
@@ -85,16 +85,21 @@ impl Textbook {
     }
 
     fn short_range(&self, view: &PeriView, f: &mut [[f64; 3]]) {
+        let reach = 1.35 * self.options.lattice_spacing;
         for i in 0..view.x.len() {
             for j in i + 1..view.x.len() {
-                let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { continue };
-                let d = between(view.x, i, j, view);
-                let r = length(d);
-                if r >= 1.35 * self.options.lattice_spacing {
+                // Who is far along one axis, where there are no images, need not be looked at.
+                let far = |k: usize| !view.bounds.periodic[k] && (view.x[i][k] - view.x[j][k]).abs() >= reach;
+                if far(0) || far(1) || far(2) {
                     continue;
                 }
-                let contact =
-                    (0.9 * length(between(view.x0, i, j, view))).min(1.35 * self.options.lattice_spacing);
+                let d = between(view.x, i, j, view);
+                let r = length(d);
+                if r >= reach {
+                    continue;
+                }
+                let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { continue };
+                let contact = (0.9 * length(between(view.x0, i, j, view))).min(reach);
                 if r >= contact {
                     continue;
                 }

@@ -1,8 +1,8 @@
 //! Bonds that soften: against a plain loop over pairs, in both layouts, in lanes and without, for any number of threads.
 
-use perigrain::par;
-use perigrain::peri::families::*;
-use perigrain::peri::softening::REST;
+use perigrain_base::par;
+use perigrain_peri::families::*;
+use perigrain_peri::softening::REST;
 
 use super::scene::Scene;
 
@@ -161,7 +161,7 @@ fn forces_and_losses_are_those_of_a_plain_loop() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
-    let _alone = super::super::threads::alone();
+    let _alone = super::threads::alone();
     for (kind, layout) in KINDS.into_iter().flat_map(|k| [(k, Layout::Auto), (k, Layout::List)]) {
         let mut bits = vec![];
         for (threads, skip_rest) in [(1, true), (2, true), (7, true), (2, false)] {

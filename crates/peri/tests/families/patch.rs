@@ -1,6 +1,6 @@
 //! Uniform strain: the energy of a bond lattice against its closed sum and the table of its bulk moduli.
 
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 use super::scene::Scene;
 

@@ -1,6 +1,6 @@
 //! Many plastic loops: a bar that flows in tension and compression, 10⁵ steps long.
 
-use perigrain::peri::families::*;
+use perigrain_peri::families::*;
 
 use super::scene::Scene;
 
