@@ -2,7 +2,7 @@
 
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::math::vec3::{Vec3, add, same, sub};
+use perigrain_base::math::vec3::{add, same, sub};
 use perigrain_base::par;
 use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way};
 use perigrain_world::bonds::LostBond;
@@ -132,8 +132,8 @@ fn farthest(w: &World, t: &Tick) -> Result<f64> {
     if most.is_finite() {
         return Ok(most);
     }
-    let lost = |(x, held): (&Vec3, &Vec3)| !sub(*x, *held).iter().map(|a| a * a).sum::<f64>().is_finite();
-    Err(not_finite(w, x.iter().zip(held).position(lost).unwrap_or(0), t))
+    let lost = |i: &usize| !extent::farthest(&x[*i..=*i], &held[*i..=*i]).is_finite();
+    Err(not_finite(w, (0..x.len()).find(lost).unwrap_or(0), t))
 }
 
 fn not_finite(w: &World, i: usize, t: &Tick) -> perigrain_base::diag::Diagnostics {

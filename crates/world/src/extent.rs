@@ -1,4 +1,4 @@
-//! One look at all positions: how far they reach, who is nowhere, and who has left a box that repeats.
+//! One look at all positions: how far they reach, who is nowhere, who has left a box that repeats, and how far they have come.
 
 use super::Domain;
 use perigrain_base::math::vec3::{Vec3, sub};
@@ -68,7 +68,8 @@ fn corners(x: &[Vec3]) -> ([Vec3; 2], bool) {
     ([lo, hi], zero == [0.0; 3])
 }
 
-/// The square of the longest way between two lists of positions [length²]; infinite where one is no number.
+/// The square of the longest way from positions `held` to positions `x`, a row for each particle in both [length²]: 0 for nobody,
+/// infinite where some way is no finite number.
 pub fn farthest(x: &[Vec3], held: &[Vec3]) -> f64 {
     let of = |range: std::ops::Range<usize>| {
         x[range.clone()].iter().zip(&held[range]).fold(0.0, |most, (x, held)| {

@@ -88,7 +88,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    // Frequencies of lattices are compared with Bloch waves in crates/peri/tests.
+    // Frequencies of lattices are compared with Bloch waves in crates/peri/tests/families/limits.rs.
     #[test]
     fn the_top_of_a_chain() {
         // −1 2 −1: eigenvalues 2 − 2 cos(kπ/(n+1)).
