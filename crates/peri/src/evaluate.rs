@@ -121,6 +121,7 @@ impl Families {
             heat: 0.0,
             relaxing: None,
             counts_losses: false,
+            four_lanes: false,
             almost: vec![],
             weighed: None,
             scratch: Scratch::default(),
@@ -244,7 +245,7 @@ impl Families {
         tally: Option<&mut PeriTally>,
     ) {
         #[cfg(target_arch = "x86_64")]
-        if !self.options.portable && has_avx512() {
+        if !self.options.portable && !self.four_lanes && has_avx512() {
             return self.force_with::<Avx512>(view, f, advance, tally);
         }
         #[cfg(target_arch = "x86_64")]

@@ -400,6 +400,9 @@ pub struct Families {
     /// Count both.
     #[serde(skip)]
     pub counts_losses: bool,
+    /// Take kernels of four lanes even where the processor has eight: to compare them.
+    #[serde(skip)]
+    pub four_lanes: bool,
     /// Bodies that were meant to be on a lattice, when families were built.
     #[serde(skip)]
     pub almost: Vec<AlmostLattice>,

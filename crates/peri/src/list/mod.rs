@@ -5,8 +5,6 @@ pub mod energy;
 pub mod kernel;
 mod laws;
 pub mod sweep;
-#[cfg(test)]
-mod tests;
 
 use crate::families::lattice::RowMotion;
 use crate::families::list::{GROUP, ListBody, PairConstants};

@@ -1,16 +1,22 @@
 //! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+mod cuts;
 mod endurance;
 mod golden;
+mod kinematics;
+mod lanes;
 mod lattices;
 mod layouts;
 mod limits;
 mod patch;
 mod released;
 mod scene;
+mod slackest;
 mod softening;
+mod squeezed;
 mod states;
+mod strengths;
 mod textbook;
 #[path = "../../../../tests/common/threads.rs"]
 mod threads;

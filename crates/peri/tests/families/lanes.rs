@@ -1,29 +1,22 @@
 //! Lists are the same to the last bit in four and in eight lanes, and to rounding in portable ones.
 
-use std::sync::Mutex;
-
-use crate::evaluate::periods;
-use crate::families::{
-    Bounds, Families, FamilyOptions, Influence, Law, LawKind, Layout, Moduli, PeriView, PmbCoeff, PmbTable,
-    VolumeRule, Window,
-};
-use crate::lanes::Portable;
-use crate::lanes::isa::Isa;
-use crate::lattice::settling;
-use crate::lattice::sweep::Mode;
-use crate::list::kernel::Rules;
-use crate::list::{breaking, gather, keep, sweep};
-#[cfg(target_arch = "x86_64")]
-use crate::{lanes::Avx2, lanes::avx512::Avx512};
 use perigrain_base::math::rng::ParkMiller;
-use perigrain_base::par::Shared;
+use perigrain_peri::families::*;
 
 /// What a few steps of a body that is shaken come to: forces, memory, measures, and the bonds that live.
 type Outcome = (Vec<[f64; 3]>, Vec<f64>, Vec<f64>, Vec<u8>);
 
+/// Kernels that a processor with eight lanes has.
+#[derive(Clone, Copy, PartialEq)]
+enum Kernels {
+    Portable,
+    Four,
+    Widest,
+}
+
 const SIDE: i32 = 7;
 
-fn shaken<K: Isa>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
+fn shaken(kernels: Kernels, law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
     let mut random = ParkMiller::new(4711);
     let mut near = |x: [f64; 3], by: f64| x.map(|a| a + by * (random.uniform() - 0.5));
     let place = |i: i32| [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE].map(f64::from);
@@ -40,6 +33,8 @@ fn shaken<K: Isa>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
         layout: Layout::List,
         volume: VolumeRule::Lammps,
         compat_lammps,
+        no_repulsion: true,
+        portable: kernels == Kernels::Portable,
         ..FamilyOptions::new(1.0)
     };
     macro_rules! view {
@@ -48,27 +43,15 @@ fn shaken<K: Isa>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
         };
     }
     let mut families = Families::build_of(&view!(&x0), &table, options, law.clone()).unwrap();
-    let (windows, period) = ([Mutex::new(Window::default())], periods(&bounds));
-    let list = &mut families.list;
+    families.four_lanes = kernels == Kernels::Four;
     let mut f = vec![];
-    let mut found = vec![];
     for step in 0..6 {
         let x: Vec<[f64; 3]> = x0.iter().map(|x| near(*x, 0.006 * f64::from(step))).collect();
-        gather(list, &view!(&x), false);
         f = vec![[0.0; 3]; n];
-        let mode = Mode { advance: true, breaking_enabled: step > 0, skip: true };
-        let settling = settling((law, &table), &options, (true, false, false));
-        let to = (&windows[..], period);
-        sweep::forces::<K>(list, &view!(&x), &Shared::new(&mut f), (mode, &options), &settling, to);
-        if step > 0 {
-            let rules = Rules::new(period, &options, law);
-            breaking::candidates::<K>(list, (&rules, &options), &windows, &mut found);
-            list.break_all(&mut found, &|_| false);
-        }
-        keep(list);
-        breaking::roll(list);
+        families.force(&view!(&x), &mut f, true, None);
     }
-    (f, list.state.memory.clone(), list.limits.least.clone(), list.alive.clone())
+    let list = families.list;
+    (f, list.state.memory, list.limits.least, list.alive)
 }
 
 #[test]
@@ -86,23 +69,18 @@ fn bits_do_not_depend_on_how_many_lanes_there_are() {
         for (compat, periodic) in [(false, false), (true, false), (false, true)] {
             let moduli = vec![own; 2];
             let law = Law { kind, influence, moduli, dt: 1.0, ..Law::default() };
-            let (f, memory, least, alive) = shaken::<Portable>(&law, compat, periodic);
+            let (f, memory, least, alive) = shaken(Kernels::Portable, &law, compat, periodic);
             let living: u32 = alive.iter().map(|b| b.count_ones()).sum();
             assert!(living > 1000 && f.len() == SIDE.pow(3) as usize);
             assert!(kind.memory() == 0 || memory.iter().any(|m| *m != 0.0), "{kind:?} remembers");
             assert!(least.iter().filter(|z| **z < 0.0).count() > 300, "{kind:?} has measures");
-            #[cfg(target_arch = "x86_64")]
-            if crate::lanes::has_avx2() {
-                let four = shaken::<Avx2>(&law, compat, periodic);
-                assert_eq!(four.3, alive);
-                let most = f.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
-                let off = f.iter().flatten().zip(four.0.iter().flatten()).map(|(a, b)| (a - b).abs());
-                // Sums of some hundred forces, rounded once or twice for each product.
-                assert!(off.fold(0.0, f64::max) < 1e-12 * most, "{kind:?} {compat} {periodic}");
-                if crate::lanes::avx512::has_avx512() {
-                    assert!(four == shaken::<Avx512>(&law, compat, periodic), "{kind:?} {compat} {periodic}");
-                }
-            }
+            let four = shaken(Kernels::Four, &law, compat, periodic);
+            assert_eq!(four.3, alive);
+            let most = f.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+            let off = f.iter().flatten().zip(four.0.iter().flatten()).map(|(a, b)| (a - b).abs());
+            // Sums of some hundred forces, rounded once or twice for each product.
+            assert!(off.fold(0.0, f64::max) < 1e-12 * most, "{kind:?} {compat} {periodic}");
+            assert!(four == shaken(Kernels::Widest, &law, compat, periodic), "{kind:?} {compat} {periodic}");
         }
     }
 }
