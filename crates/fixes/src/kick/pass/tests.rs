@@ -1,4 +1,5 @@
-//! Kicks and drifts of a few particles, with and without what stands beside them.
+//! Kicks and drifts of a few particles, with and without what stands beside them. Masses are found as the program finds them: every other
+//! way would be compiled for all forms of a pass.
 
 use super::*;
 use perigrain_base::math::body::Quat;
@@ -19,14 +20,15 @@ fn moved(parts: &[Part], wide: bool) -> (Vec<Vec3>, Vec<Vec3>, Vec<Vec3>, f64) {
     let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
     let mask: Vec<u32> = (0..N).map(|i| if i == 6 { 1 } else { 3 }).collect();
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2, oriented: false };
-    let masses = |k: usize| std::array::from_fn(|l| 1.0 + (4 * k + l) as f64 / 3.0);
+    let mass: Vec<f64> = (0..N).map(|i| 1.0 + i as f64 / 3.0).collect();
+    let masses = |k: usize| std::array::from_fn(|l| mass.get(4 * k + l).copied().unwrap_or(1.0));
     let mut fastest = 0.0;
     for part in parts {
         let (x, v, f, omega, torque) = (&mut x[..], &mut v[..], &mut f[..], &mut omega[..], &mut torque[..]);
         let c = Chunk { x, v, f, mask: &mask, omega, torque, radius: &radius, quat: &mut [] };
         let beside = Beside::default();
         fastest = match (part, wide) {
-            (_, true) => k.chunk(c, *part, true, &beside, masses),
+            (_, true) => k.block(c, true, *part, &Masses::Own(&mass), 0, &beside),
             // SAFETY: the portable form needs nothing.
             (Part::First, _) => unsafe { k.four::<Plain, 1, true, true>(c, &beside, masses) },
             // SAFETY: as above.
@@ -73,7 +75,6 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
     let (pull, held) = (Pull { bit: 1, a: [0.3, -0.7, 1.1] }, 4);
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2, oriented: false };
     let mass: Vec<f64> = (0..N).map(|i| 1.0 + i as f64 / 3.0).collect();
-    let masses = |k: usize| std::array::from_fn(|l| mass.get(4 * k + l).copied().unwrap_or(1.0));
     let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
     // All alike, one that is held, one that is not pulled, one that stays.
     let masks = [[3; N], [3, 3, 3, 3, 7, 3, 3, 3, 3, 3, 7], [3, 3, 3, 3, 3, 2, 3, 3, 1, 3, 3]];
@@ -103,7 +104,7 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
                 quat: &mut [],
             };
             let with = if together { beside } else { Beside::default() };
-            let came = k.chunk(c, Part::Both, true, &with, masses);
+            let came = k.block(c, true, Part::Both, &Masses::Own(&mass), 0, &with);
             if together {
                 (energy, taken) = (came.energy, came.held);
             }
@@ -129,7 +130,7 @@ fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
         v[i][1] = f64::NAN;
         let (x, v, f) = (&mut x[..], &mut v[..], &mut f[..]);
         let c = Chunk { x, v, f, mask: &[1; N], omega: &mut [], torque: &mut [], radius: &[], quat: &mut [] };
-        let most = k.chunk(c, Part::First, false, &Beside::default(), |_| [1.0; 4]).most;
+        let most = k.block(c, false, Part::First, &Masses::Own(&[1.0; N]), 0, &Beside::default()).most;
         assert_eq!(most, f64::INFINITY, "{i}");
     }
 }
@@ -154,7 +155,7 @@ fn who_does_not_turn_keeps_the_orientation_bit_by_bit() {
         radius: &radius,
         quat: &mut quat,
     };
-    k.chunk(c, Part::First, true, &Beside::default(), |_| [1.0; 4]);
+    k.block(c, true, Part::First, &Masses::Own(&[1.0; N]), 0, &Beside::default());
     for i in 0..N {
         let turned = if spins[i] == [0.0; 3] { before[i] } else { rolled(before[i], spins[i], 0.01) };
         assert_eq!(quat[i], turned, "{i}");
