@@ -11,6 +11,8 @@ use std::path::Path;
 use perigrain::session::{Options, Session};
 use perigrain::world::Compat;
 
+mod jpeg;
+
 /// All files of a folder by name.
 fn files(folder: &Path) -> BTreeMap<String, String> {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap());

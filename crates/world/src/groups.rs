@@ -1,7 +1,14 @@
 //! Named sets of particles, one bit each, and how dynamic ones choose theirs.
 
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
 use super::region::Variable;
 use super::surface::Surface;
+
+/// How many there may be (as LAMMPS): a bit each.
+const MOST: usize = 32;
 
 /// Index of a group; its bit in every particle's mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
@@ -33,18 +40,44 @@ pub struct Dynamic {
 /// The names of the groups in use (at most 32, as LAMMPS).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Groups {
-    names: [Option<String>; 32],
-    dynamic: [Option<Dynamic>; 32],
+    #[serde(deserialize_with = "one_after_another")]
+    names: [Option<String>; MOST],
+    #[serde(deserialize_with = "one_after_another")]
+    dynamic: [Option<Dynamic>; MOST],
     /// Groups of hybrid particles.
     #[serde(default)]
     surfaces: Vec<(GroupId, Surface)>,
 }
 
+/// An array as it is written, read in a loop: serde spells out all 32, once more for each kind of file, which was a tenth of what the
+/// compiler made of `out`.
+fn one_after_another<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<[T; MOST], D::Error> {
+    struct Each<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for Each<T> {
+        type Value = [T; MOST];
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            write!(f, "an array of length {MOST}")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+            let mut all = Vec::with_capacity(MOST);
+            while all.len() < MOST
+                && let Some(one) = seq.next_element()?
+            {
+                all.push(one);
+            }
+            all.try_into().map_err(|all: Vec<T>| A::Error::invalid_length(all.len(), &self))
+        }
+    }
+    from.deserialize_tuple(MOST, Each(PhantomData))
+}
+
 impl Default for Groups {
     fn default() -> Self {
-        let mut names = [const { None }; 32];
+        let mut names = [const { None }; MOST];
         names[0] = Some("all".to_string());
-        Self { names, dynamic: [const { None }; 32], surfaces: vec![] }
+        Self { names, dynamic: [const { None }; MOST], surfaces: vec![] }
     }
 }
 
