@@ -7,7 +7,7 @@ pub use grains::{DEEP, Grains, NO_BODY};
 pub use rules::{Average, Curvature, Rule, Rules};
 
 use super::together::Together;
-use super::{Advance, ContactLaw, Geometry, Wrench};
+use super::{Advance, Geometry, Granular, Wrench};
 use grains::{Ends, Meeting};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{SIX, Vec3, add, length, sub};
@@ -16,11 +16,11 @@ use perigrain_neigh::list::{Pair, difference};
 use perigrain_world::contacts::Contacts;
 
 /// One contact of an evaluation.
-pub struct Seen<'a, L> {
+pub struct Seen<'a> {
     /// Who touches.
     pub pair: &'a Pair,
     /// By which law.
-    pub law: &'a L,
+    pub law: &'a Granular,
     /// How.
     pub geometry: Geometry,
     /// What the contact remembers.
@@ -55,11 +55,11 @@ pub struct Sweep {
 
 impl Sweep {
     /// Evaluates the contacts among the pairs of `list`; `memory` follows: contacts that ended are forgotten.
-    pub fn run<L: ContactLaw>(
+    pub fn run(
         &mut self,
         list: &[Pair],
         grains: &Grains,
-        rules: &Rules<L>,
+        rules: &Rules,
         memory: &mut Contacts,
         step: Advance,
     ) {
@@ -68,13 +68,7 @@ impl Sweep {
     }
 
     /// Finds the contacts among the pairs of `list`, the first half of [`Sweep::run`].
-    pub fn meet<L: ContactLaw>(
-        &mut self,
-        list: &[Pair],
-        grains: &Grains,
-        rules: &Rules<L>,
-        memory: &mut Contacts,
-    ) {
+    pub fn meet(&mut self, list: &[Pair], grains: &Grains, rules: &Rules, memory: &mut Contacts) {
         self.find(list, grains, rules, memory);
         memory.carry(&self.keys, rules.memory(), &mut self.spare);
         // All of them are written.
@@ -90,13 +84,7 @@ impl Sweep {
     }
 
     /// Evaluates the contacts that were found, the second half.
-    pub fn act<L: ContactLaw>(
-        &mut self,
-        grains: &Grains,
-        rules: &Rules<L>,
-        memory: &mut Contacts,
-        step: Advance,
-    ) {
+    pub fn act(&mut self, grains: &Grains, rules: &Rules, memory: &mut Contacts, step: Advance) {
         let width = rules.memory();
         self.share(grains, rules);
         // All of them are written.
@@ -182,13 +170,7 @@ impl Sweep {
     }
 
     /// The same with geometry, law and memory, which must be that of the last evaluation.
-    pub fn each<L: ContactLaw>(
-        &self,
-        grains: &Grains,
-        rules: &Rules<L>,
-        memory: &Contacts,
-        mut act: impl FnMut(Seen<'_, L>),
-    ) {
+    pub fn each(&self, grains: &Grains, rules: &Rules, memory: &Contacts, mut act: impl FnMut(Seen<'_>)) {
         for (k, (pair, wrench)) in self.contacts().enumerate() {
             let Some(rule) = grains.rule(pair, rules) else { continue };
             let (g, _) = grains.geometry(pair, rule);
@@ -230,7 +212,7 @@ impl Sweep {
         sum
     }
 
-    fn find<L: ContactLaw>(&mut self, list: &[Pair], grains: &Grains, rules: &Rules<L>, memory: &Contacts) {
+    fn find(&mut self, list: &[Pair], grains: &Grains, rules: &Rules, memory: &Contacts) {
         let gaps = rules.any(|r| r.law.gap(1.0) > 0.0);
         // All of them are written.
         self.flags.resize(list.len(), Meeting::Apart);
@@ -264,7 +246,7 @@ impl Sweep {
     }
 
     /// 1/N for every contact.
-    fn share<L: Copy>(&mut self, grains: &Grains, rules: &Rules<L>) {
+    fn share(&mut self, grains: &Grains, rules: &Rules) {
         self.shares.clear();
         self.shares.resize(self.touching.len(), 1.0);
         let average = |p: &Pair| grains.rule(p, rules).map_or(Average::None, |r| r.average);

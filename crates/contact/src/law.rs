@@ -5,8 +5,8 @@ use super::slider::Look;
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
-    Advance, ContactLaw, Damping, Geometry, Heat, Loop, MOST_MEMORY, Motion, Normal, Stored, Tangential,
-    Wrench, normal, split_velocity,
+    Advance, Damping, Geometry, Heat, MOST_MEMORY, Motion, Normal, Stored, Tangential, Wrench, normal,
+    split_velocity,
 };
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{add, cross, scale, sub};
@@ -180,35 +180,49 @@ pub struct Granular {
     compat: Compat,
 }
 
-impl ContactLaw for Granular {
-    /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting, then what the
-    /// normal law remembers.
+/// A loop over contacts of one law.
+pub trait Loop {
+    /// Runs it.
+    fn run(self, law: &Granular);
+}
+
+/// The law, written once for one contact and for lanes of contacts.
+impl Granular {
+    /// How many numbers a contact remembers while it lasts: the tangential spring of i against j, then the rolling
+    /// displacement, then the angle of twisting, then what the normal law remembers. A contact that begins remembers
+    /// zeros. Seen from j the first three are negative, the others the same (`world::contacts::mirror`).
     #[inline(always)]
-    fn memory(&self) -> usize {
+    pub fn memory(&self) -> usize {
         self.before_normal() + self.normal.memory()
     }
 
-    fn is_told(&self) -> bool {
+    /// Whether somebody tells contacts their force before they are evaluated, for which the fast loop has no place.
+    pub fn is_told(&self) -> bool {
         self.normal.is_told()
     }
 
-    fn gap(&self, curvature: f64) -> f64 {
+    /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].
+    pub fn gap(&self, curvature: f64) -> f64 {
         self.normal.gap(curvature)
     }
 
+    /// Heat that flows from the warmer to the colder side, over the difference of temperatures
+    /// [energy/(time temperature)].
     #[inline(always)]
-    fn conductance<R: Real>(&self, g: &Geometry<R>) -> R {
+    pub fn conductance<R: Real>(&self, g: &Geometry<R>) -> R {
         if self.heat == Heat::None {
             return g.overlap.like(0.0);
         }
         self.heat.conductance(self.normal.radius(g))
     }
 
-    fn springs(&self, g: &Geometry) -> [f64; 2] {
+    /// Stiffness of the contact along and across the normal as it is now, dF/dδ and k_t [force/length].
+    pub fn springs(&self, g: &Geometry) -> [f64; 2] {
         [self.normal.tangent(g).max(0.0), self.spring.present(self.normal.radius(g))]
     }
 
-    fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
+    /// What the contact holds, given what it remembers.
+    pub fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
         let mut memory = [0.0; MOST_MEMORY];
         let own = history.get(self.before_normal()..).unwrap_or(&[]);
         memory.iter_mut().zip(own).for_each(|(to, from)| *to = *from);
@@ -218,8 +232,9 @@ impl ContactLaw for Granular {
         Stored { push, normal, across: self.spring.energy(a, history), flows: self.normal.flows() }
     }
 
+    /// Force and torques of one contact; `history`, [`Granular::memory`] numbers, moves on with it.
     #[inline(always)]
-    fn contact<R: Real>(
+    pub fn contact<R: Real>(
         &self,
         g: &Geometry<R>,
         i: &Motion<R>,
@@ -258,12 +273,17 @@ impl ContactLaw for Granular {
         w
     }
 
-    fn again(&self, setup: bool) -> Self {
+    /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
+    /// behind; `setup`: the evaluation was that of a run's setup.
+    #[must_use]
+    pub fn again(&self, setup: bool) -> Self {
         Self { spring: self.spring.again(setup), ..*self }
     }
 
+    /// Hands the law to a loop, each frequent form in a place of its own where the form is written out: the loop is
+    /// compiled there without the others.
     #[inline(always)]
-    fn within(&self, work: impl Loop<Self>) {
+    pub fn within(&self, work: impl Loop) {
         use {Damping::*, Friction::*};
         if let Some(law) = self.known(hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
             return work.run(&law);

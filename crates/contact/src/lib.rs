@@ -22,7 +22,7 @@ pub mod walls;
 
 pub use damping::Damping;
 pub use heat::Heat;
-pub use law::{Arm, Classic, Granular, Model, Unmixable};
+pub use law::{Arm, Classic, Granular, Loop, Model, Unmixable};
 pub use normal::Normal;
 pub use tangential::{Drag, Friction, Tangential};
 pub use turning::{Rolling, Sds, Twisting};
@@ -137,70 +137,6 @@ impl Wrench {
             torque_j: scale(s, self.torque_j),
         }
     }
-}
-
-/// A law of contact between spheres, written once for one contact and for lanes of contacts.
-pub trait ContactLaw: Copy + Sync {
-    /// How many numbers a contact remembers while it lasts; a contact that begins remembers zeros. Seen from j the
-    /// first three are negative, the others the same (`world::contacts::mirror`).
-    fn memory(&self) -> usize;
-
-    /// Whether somebody tells contacts their force before they are evaluated, for which the fast loop has no place.
-    fn is_told(&self) -> bool {
-        false
-    }
-
-    /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].
-    fn gap(&self, _curvature: f64) -> f64 {
-        0.0
-    }
-
-    /// Heat that flows from the warmer to the colder side, over the difference of temperatures
-    /// [energy/(time temperature)].
-    #[inline(always)]
-    fn conductance<R: Real>(&self, g: &Geometry<R>) -> R {
-        g.overlap.like(0.0)
-    }
-
-    /// Stiffness of the contact along and across the normal as it is now, dF/dδ and k_t [force/length].
-    fn springs(&self, _g: &Geometry) -> [f64; 2] {
-        [0.0; 2]
-    }
-
-    /// What the contact holds, given what it remembers.
-    fn stored(&self, _g: &Geometry, _history: &[f64]) -> Stored {
-        Stored::default()
-    }
-
-    /// Force and torques of one contact; `history`, [`ContactLaw::memory`] numbers, moves on with it.
-    fn contact<R: Real>(
-        &self,
-        g: &Geometry<R>,
-        i: &Motion<R>,
-        j: &Motion<R>,
-        history: &mut [R],
-        step: Advance,
-    ) -> Wrench<R>;
-
-    /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
-    /// behind; `setup`: the evaluation was that of a run's setup.
-    #[must_use]
-    fn again(&self, _setup: bool) -> Self {
-        *self
-    }
-
-    /// Hands the law to a loop. A law of many forms does so in one place for each frequent form, where the form is
-    /// written out: the loop is then compiled without the others.
-    #[inline(always)]
-    fn within(&self, work: impl Loop<Self>) {
-        work.run(self);
-    }
-}
-
-/// A loop over contacts of one law.
-pub trait Loop<L> {
-    /// Runs it.
-    fn run(self, law: &L);
 }
 
 /// Relative velocity of i against j, split along and across the normal.

@@ -1,7 +1,7 @@
 //! What touching spheres do, several contacts of one law at a time: one by one a drum's wall takes a quarter of its step, a bed of
 //! plastic grains a fifth.
 
-use super::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
+use super::{Advance, Geometry, Granular, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::vec3::Vec3;
@@ -23,8 +23,8 @@ pub(super) trait Met {
 }
 
 /// Contacts of one law.
-pub(super) struct Together<'a, L, M> {
-    pub law: &'a L,
+pub(super) struct Together<'a, M> {
+    pub law: &'a Granular,
     /// Where and how they touch.
     pub geometry: &'a [Geometry],
     pub met: M,
@@ -40,7 +40,7 @@ pub(super) struct Together<'a, L, M> {
     pub step: Advance,
 }
 
-impl<L: ContactLaw, M: Met> Together<'_, L, M> {
+impl<M: Met> Together<'_, M> {
     /// Evaluates them all.
     pub fn evaluate(self) {
         let n = self.geometry.len();
@@ -99,7 +99,7 @@ impl<L: ContactLaw, M: Met> Together<'_, L, M> {
     }
 }
 
-impl<L: ContactLaw, M: Met> InLanes for Together<'_, L, M> {
+impl<M: Met> InLanes for Together<'_, M> {
     type Out = ();
 
     /// There must be at least one contact, and a row of each column for each.

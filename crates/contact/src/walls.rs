@@ -4,7 +4,7 @@ mod shapes;
 mod told;
 
 use super::together::{Met, Together};
-use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use super::{Advance, Geometry, Granular, Motion, Wrench};
 use perigrain_base::math::vec3::{Vec3, add, cross, sub};
 use perigrain_base::par;
 use perigrain_world::contacts::Contacts;
@@ -104,13 +104,13 @@ pub struct WallSweep {
 
 impl WallSweep {
     /// Lists the particles with a bit of `group` that may come within `skin` of touching the wall.
-    pub fn list<L: ContactLaw>(
+    pub fn list(
         &mut self,
         wall: &dyn Wall,
         grains: &Spheres,
         mask: &[u32],
         group: u32,
-        law: &L,
+        law: &Granular,
         skin: f64,
     ) {
         match wall.planes() {
@@ -119,13 +119,13 @@ impl WallSweep {
         }
     }
 
-    fn list_near<W: Wall + ?Sized, L: ContactLaw>(
+    fn list_near<W: Wall + ?Sized>(
         &mut self,
         wall: &W,
         grains: &Spheres,
         mask: &[u32],
         group: u32,
-        law: &L,
+        law: &Granular,
         skin: f64,
     ) {
         let some = |range: std::ops::Range<usize>| {
@@ -144,11 +144,11 @@ impl WallSweep {
     }
 
     /// Evaluates the contacts among the listed particles; `memory` follows: contacts that ended are forgotten.
-    pub fn run<L: ContactLaw>(
+    pub fn run(
         &mut self,
         wall: &dyn Wall,
         grains: &Spheres,
-        law: &L,
+        law: &Granular,
         memory: &mut Contacts,
         step: Advance,
     ) {
@@ -157,7 +157,7 @@ impl WallSweep {
     }
 
     /// Finds the contacts among the listed particles, the first half of [`WallSweep::run`].
-    pub fn meet<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &mut Contacts) {
+    pub fn meet(&mut self, wall: &dyn Wall, grains: &Spheres, law: &Granular, memory: &mut Contacts) {
         match wall.planes() {
             Some(planes) => self.find(planes, grains, law, memory),
             None => self.find(wall, grains, law, memory),
@@ -170,14 +170,14 @@ impl WallSweep {
     }
 
     /// What [`WallSweep::meet`] does where nobody is listed, whatever the wall.
-    pub fn leave<L: ContactLaw>(&mut self, law: &L, memory: &mut Contacts) {
+    pub fn leave(&mut self, law: &Granular, memory: &mut Contacts) {
         self.touching.clear();
         self.keys.clear();
         memory.carry(&self.keys, law.memory(), &mut self.spare);
     }
 
     /// Evaluates the contacts that were found, the second half.
-    pub fn act<L: ContactLaw>(&mut self, grains: &Spheres, law: &L, memory: &mut Contacts, step: Advance) {
+    pub fn act(&mut self, grains: &Spheres, law: &Granular, memory: &mut Contacts, step: Advance) {
         let width = law.memory();
         if self.touching.is_empty() {
             return self.wrenches.clear();
@@ -196,13 +196,7 @@ impl WallSweep {
         });
     }
 
-    fn find<W: Wall + ?Sized, L: ContactLaw>(
-        &mut self,
-        wall: &W,
-        grains: &Spheres,
-        law: &L,
-        memory: &Contacts,
-    ) {
+    fn find<W: Wall + ?Sized>(&mut self, wall: &W, grains: &Spheres, law: &Granular, memory: &Contacts) {
         let list = &self.list[..];
         let find = |range: std::ops::Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
             for &grain in &list[range] {
@@ -280,10 +274,10 @@ impl WallSweep {
     }
 
     /// Adds the heat that a wall of this temperature gives to the particles to `flow`: what it loses in all.
-    pub fn conduct<L: ContactLaw>(
+    pub fn conduct(
         &mut self,
         grains: &Spheres,
-        law: &L,
+        law: &Granular,
         wall: f64,
         temperature: &[f64],
         flow: &mut [f64],
@@ -315,7 +309,7 @@ impl WallSweep {
     }
 
     /// How far the listed particles may go before one of them touches the wall [length], `most` at most.
-    pub fn room<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, most: f64) -> f64 {
+    pub fn room(&mut self, wall: &dyn Wall, grains: &Spheres, law: &Granular, most: f64) -> f64 {
         let (mut room, near) = (most, &mut self.near);
         for &grain in &self.list {
             let (x, radius) = (grains.x[grain as usize], grains.radius[grain as usize]);

@@ -7,7 +7,7 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use perigrain_contact::{Advance, ContactLaw, Geometry, Wrench};
+use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
 use perigrain_world::contacts::Contacts;
@@ -25,10 +25,10 @@ pub enum Own {
 }
 
 /// Evaluates the contacts of one pair style.
-pub struct ContactProbe<L> {
+pub struct ContactProbe {
     /// Where contact history is kept in the world.
     key: Key<Contacts>,
-    rules: Rules<L>,
+    rules: Rules,
     wanted: Wanted,
     own: Own,
     sweep: Sweep,
@@ -36,9 +36,9 @@ pub struct ContactProbe<L> {
     listed: Option<(u64, Vec<Pair>)>,
 }
 
-impl<L: ContactLaw> ContactProbe<L> {
+impl ContactProbe {
     /// Of the pairs of types that `wanted` names, with the contacts kept in the world under the style's name.
-    pub fn new(name: &'static str, rules: Rules<L>, wanted: Wanted, own: Own) -> Self {
+    pub fn new(name: &'static str, rules: Rules, wanted: Wanted, own: Own) -> Self {
         Self { key: Key::new(name), rules, wanted, own, sweep: Sweep::default(), listed: None }
     }
 
@@ -53,7 +53,7 @@ impl<L: ContactLaw> ContactProbe<L> {
         &mut self,
         w: &World,
         ask: Ask,
-        read: impl FnOnce(&Grains, &Rules<L>, &Sweep, &Contacts) -> T,
+        read: impl FnOnce(&Grains, &Rules, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
         let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
         let body = match &*w.families {
@@ -98,7 +98,7 @@ impl<L: ContactLaw> ContactProbe<L> {
     }
 }
 
-impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
+impl Probe for ContactProbe {
     fn name(&self) -> &'static str {
         self.key.text()
     }

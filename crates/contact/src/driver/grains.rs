@@ -2,7 +2,7 @@
 
 use super::rules::{Curvature, Rule, Rules};
 use crate::together::Met;
-use crate::{ContactLaw, Geometry, Motion};
+use crate::{Geometry, Motion};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, add, length};
 use perigrain_neigh::list::{Pair, difference};
@@ -73,7 +73,7 @@ impl Grains<'_> {
 
     /// Whether the two touch, or would still hold together if they had touched (`gaps`: some law lets them).
     #[inline]
-    pub(super) fn meeting<L: ContactLaw>(&self, p: &Pair, rules: &Rules<L>, gaps: bool) -> Meeting {
+    pub(super) fn meeting(&self, p: &Pair, rules: &Rules, gaps: bool) -> Meeting {
         let d = difference(self.x, &self.period, p);
         let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
         let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
@@ -92,7 +92,7 @@ impl Grains<'_> {
 
     /// Where and how the two touch, or have touched and still hold, and how far apart their centres are.
     #[inline]
-    pub(super) fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> (Geometry, f64) {
+    pub(super) fn geometry(&self, p: &Pair, rule: &Rule) -> (Geometry, f64) {
         let (i, j) = (p.i as usize, p.j as usize);
         let d = difference(self.x, &self.period, p);
         let distance = length(d);
@@ -112,7 +112,7 @@ impl Grains<'_> {
     }
 
     /// The rule for two particles.
-    pub(super) fn rule<'r, L: Copy>(&self, p: &Pair, rules: &'r Rules<L>) -> Option<&'r Rule<L>> {
+    pub(super) fn rule<'r>(&self, p: &Pair, rules: &'r Rules) -> Option<&'r Rule> {
         rules.get(self.kind[p.i as usize], self.kind[p.j as usize])
     }
 }

@@ -1,6 +1,6 @@
 //! What contacts of each pair of types obey.
 
-use crate::ContactLaw;
+use crate::Granular;
 
 /// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
 /// momentum-conserving: every contact's force and its reaction are divided by the same N).
@@ -27,9 +27,9 @@ pub enum Curvature {
 
 /// What contacts of one pair of types obey.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rule<L> {
+pub struct Rule {
     /// The law.
-    pub law: L,
+    pub law: Granular,
     /// Sharing.
     pub average: Average,
     /// Effective radius.
@@ -38,19 +38,19 @@ pub struct Rule<L> {
 
 /// Rules by pair of types (from 1), symmetric.
 #[derive(Clone, Debug)]
-pub struct Rules<L> {
+pub struct Rules {
     types: usize,
-    table: Vec<Option<Rule<L>>>,
+    table: Vec<Option<Rule>>,
 }
 
-impl<L: Copy> Rules<L> {
+impl Rules {
     /// No rules yet.
     pub fn new(types: usize) -> Self {
         Self { types, table: vec![None; types * types] }
     }
 
     /// Sets the rule of two types.
-    pub fn set(&mut self, a: u16, b: u16, rule: Rule<L>) {
+    pub fn set(&mut self, a: u16, b: u16, rule: Rule) {
         let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
         self.table[a * self.types + b] = Some(rule);
         self.table[b * self.types + a] = Some(rule);
@@ -58,30 +58,24 @@ impl<L: Copy> Rules<L> {
 
     /// The rule of two types.
     #[inline]
-    pub fn get(&self, a: u16, b: u16) -> Option<&Rule<L>> {
+    pub fn get(&self, a: u16, b: u16) -> Option<&Rule> {
         self.table[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
     }
 
     /// How many numbers a contact remembers at most.
-    pub fn memory(&self) -> usize
-    where
-        L: ContactLaw,
-    {
+    pub fn memory(&self) -> usize {
         self.table.iter().flatten().map(|r| r.law.memory()).max().unwrap_or(0)
     }
 
-    /// The rules by which contacts are looked at once more ([`ContactLaw::again`]).
+    /// The rules by which contacts are looked at once more ([`Granular::again`]).
     #[must_use]
-    pub fn again(&self, setup: bool) -> Self
-    where
-        L: ContactLaw,
-    {
-        let again = |rule: &Rule<L>| Rule { law: rule.law.again(setup), ..*rule };
+    pub fn again(&self, setup: bool) -> Self {
+        let again = |rule: &Rule| Rule { law: rule.law.again(setup), ..*rule };
         Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
     }
 
     /// Whether some rule is of this kind.
-    pub fn any(&self, is: impl Fn(&Rule<L>) -> bool) -> bool {
+    pub fn any(&self, is: impl Fn(&Rule) -> bool) -> bool {
         self.table.iter().flatten().any(is)
     }
 }

@@ -4,7 +4,7 @@ use super::Alike;
 use super::found::Found;
 use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
-use crate::{ContactLaw, Geometry, Motion};
+use crate::{Geometry, Granular, Motion};
 use perigrain_base::math::lanes::{Lanes, load_rows, place, store_rows};
 use perigrain_base::math::vec3::SIX;
 use rooms::{Outgoing, Room};
@@ -145,7 +145,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     /// # Safety
     /// Entries of their lists must be grains.
     #[inline(always)]
-    pub unsafe fn run<L: ContactLaw, const W: usize>(&mut self, cx: &Cx<L>, law: &L, slab: &mut Slab) {
+    pub unsafe fn run<const W: usize>(&mut self, cx: &Cx, law: &Granular, slab: &mut Slab) {
         let count = std::mem::take(&mut self.waiting);
         // SAFETY: passed on.
         unsafe {
@@ -155,7 +155,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             }
             let memory = law.memory();
             for group in 0..count.div_ceil(N) {
-                self.act::<L, W>(cx, law, memory, group);
+                self.act::<W>(cx, law, memory, group);
             }
             if cx.virial {
                 self.add_virial(count, &mut slab.virial);
@@ -193,7 +193,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 
     /// First stage: where and how grains touch. Whether some overlap too far.
     #[inline(always)]
-    unsafe fn meet<L: ContactLaw>(&mut self, cx: &Cx<L>, group: usize) -> bool {
+    unsafe fn meet(&mut self, cx: &Cx, group: usize) -> bool {
         // SAFETY: passed on.
         unsafe {
             let (i, j) = (self.i.as_ptr().add(N * group), self.j.as_ptr().add(N * group));
@@ -218,13 +218,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 
     /// Second stage: forces, torques and what is remembered.
     #[inline(always)]
-    unsafe fn act<L: ContactLaw, const W: usize>(
-        &mut self,
-        cx: &Cx<L>,
-        law: &L,
-        memory: usize,
-        group: usize,
-    ) {
+    unsafe fn act<const W: usize>(&mut self, cx: &Cx, law: &Granular, memory: usize, group: usize) {
         // SAFETY: passed on.
         unsafe {
             let at = N * group;
@@ -269,7 +263,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 
     /// Last stage: adds the forces and torques of one contact.
     #[inline(always)]
-    unsafe fn add<L>(&self, cx: &Cx<L>, group: usize, lane: usize) {
+    unsafe fn add(&self, cx: &Cx, group: usize, lane: usize) {
         let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
         // SAFETY: passed on.
         unsafe {
@@ -303,7 +297,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     /// Adds the heat through the first contacts, which must have been met: in plain numbers and out of line, so that scenes
     /// without heat do not carry it.
     #[inline(never)]
-    unsafe fn add_heat<L: ContactLaw>(&self, cx: &Cx<L>, law: &L, count: usize) {
+    unsafe fn add_heat(&self, cx: &Cx, law: &Granular, count: usize) {
         let Some((temperature, flow)) = &cx.heat else { return };
         for at in 0..count {
             // SAFETY: the caller's promise; entries are grains, and the caller keeps other threads away.

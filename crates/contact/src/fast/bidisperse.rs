@@ -3,14 +3,13 @@
 
 use super::lists::Slab;
 use super::{Fast, NONE};
-use crate::ContactLaw;
 use crate::driver::Grains;
 use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::math::periods::Periods;
 use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs_of_large};
 use perigrain_neigh::slabs::{HERE, Slabs};
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// Pairs with large grains, from these positions and radii in a box of these periods, with surfaces nearer than `skin`.
     pub(super) fn find_large(
         &self,

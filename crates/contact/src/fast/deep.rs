@@ -3,11 +3,10 @@
 use super::Fast;
 use super::lists::Slab;
 use super::near::Places;
-use crate::ContactLaw;
 use crate::driver::{DEEP, Grains};
 use perigrain_base::math::lanes::place;
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, in these lists, and by which part.
     pub(super) fn find_deep(&self, grains: &Grains, lists: &[Slab]) -> Option<([u32; 2], f64)> {
         let at = Places::new(grains, &self.shifts);

@@ -2,13 +2,12 @@
 
 use super::lists::Slab;
 use super::{FAR, Fast, NOWHERE};
-use crate::ContactLaw;
 use perigrain_base::math::lanes::{PLACE_BITS, place};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use perigrain_neigh::slabs::shift_of;
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// Images of a box that repeats after these periods, in which lists were made.
     pub(super) fn see_images(&mut self, period: Periods) {
         self.period = period;

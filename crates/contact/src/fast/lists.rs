@@ -2,7 +2,6 @@
 
 use super::near::{self, InOrder, Places};
 use super::{Fast, NONE, NOWHERE};
-use crate::ContactLaw;
 use crate::driver::Grains;
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS};
@@ -99,7 +98,7 @@ pub fn weights(lists: &[Slab]) -> Option<Vec<usize>> {
     (all > LITTLE).then(|| lists.iter().map(weight).collect())
 }
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// Long lists from these positions and radii.
     pub(super) fn make_long(
         &mut self,

@@ -2,7 +2,6 @@
 
 use super::Fast;
 use super::lists::Short;
-use crate::ContactLaw;
 use perigrain_base::math::lanes::place;
 use perigrain_world::contacts::{Contacts, mirror};
 use std::ops::Range;
@@ -65,7 +64,7 @@ impl Places {
     }
 }
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// The contacts of the last evaluation and the known ones, for grains that stand in this order now.
     pub(super) fn remember(&self, tag: &[u32], known: Option<&Contacts>) -> Book {
         let places = Places::new(tag);

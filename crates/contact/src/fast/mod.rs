@@ -20,7 +20,7 @@ mod sweep;
 mod upkeep;
 
 use super::driver::Grains;
-use super::{Advance, ContactLaw, MOST_MEMORY};
+use super::{Advance, Granular, MOST_MEMORY};
 use list_validity::ListValidity;
 use lists::{Short, Slab};
 use memory::Book;
@@ -49,15 +49,15 @@ const NONE: u8 = u8::MAX;
 
 /// Which law holds between which types.
 #[derive(Clone, Debug)]
-pub struct Laws<L> {
-    distinct: Vec<L>,
+pub struct Laws {
+    distinct: Vec<Granular>,
     types: usize,
     which: Vec<u8>,
 }
 
-impl<L: ContactLaw + PartialEq> Laws<L> {
+impl Laws {
     /// A table from `law(a, b)` for types from 1, symmetric; `None` where there are too many different laws.
-    pub fn new(types: usize, law: impl Fn(u16, u16) -> Option<L>) -> Option<Self> {
+    pub fn new(types: usize, law: impl Fn(u16, u16) -> Option<Granular>) -> Option<Self> {
         let mut t = Self { distinct: vec![], types, which: vec![] };
         for a in 1..=types as u16 {
             for b in 1..=types as u16 {
@@ -76,7 +76,7 @@ impl<L: ContactLaw + PartialEq> Laws<L> {
     }
 
     /// The laws, each once.
-    pub fn distinct(&self) -> &[L] {
+    pub fn distinct(&self) -> &[Granular] {
         &self.distinct
     }
 }
@@ -84,7 +84,7 @@ impl<L: ContactLaw + PartialEq> Laws<L> {
 /// Room that radii growing under a list leave for what contacts of them span.
 const AMPLE: f64 = 1.25;
 
-impl<L: ContactLaw> Laws<L> {
+impl Laws {
     /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
     pub fn span(&self, largest: f64) -> f64 {
         // Spans grow with the effective radius, which is at most half of the larger one.
@@ -99,7 +99,7 @@ impl<L: ContactLaw> Laws<L> {
 
     /// How many numbers a contact remembers at most.
     pub fn memory(&self) -> usize {
-        self.distinct.iter().map(ContactLaw::memory).max().unwrap_or(0)
+        self.distinct.iter().map(Granular::memory).max().unwrap_or(0)
     }
 }
 
@@ -149,8 +149,8 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 
 /// Lists and contacts of all grains.
 #[derive(Clone, Debug)]
-pub struct Fast<L> {
-    laws: Laws<L>,
+pub struct Fast {
+    laws: Laws,
     form: Form,
     /// Identities of the grains when the lists were made.
     tag: Vec<u32>,
@@ -200,9 +200,9 @@ pub struct Fast<L> {
     spare_per_list: (Vec<usize>, Vec<u8>),
 }
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// Without grains.
-    pub fn new(laws: Laws<L>) -> Self {
+    pub fn new(laws: Laws) -> Self {
         // With the number of the step, in rows of four.
         let width = (laws.memory() + 1).next_multiple_of(4).min(MOST_MEMORY + 1);
         Self {
@@ -232,6 +232,16 @@ impl<L: ContactLaw> Fast<L> {
             spare: vec![],
             spare_per_list: Default::default(),
         }
+    }
+
+    /// Computes in lanes of this form, one of this processor's, from now on: all give the same bits.
+    pub fn compute_as(&mut self, form: Form) {
+        self.form = form;
+    }
+
+    /// Looks up mass and radius of each grain until [`Fast::weigh`], even where all have the same: the bits are the same.
+    pub fn one_by_one(&mut self) {
+        self.alike = Alike::default();
     }
 
     /// Forgets grains and contacts.

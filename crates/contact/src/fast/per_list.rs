@@ -4,8 +4,8 @@
 //! twice in a step, and a pass over the columns takes twice as long from there.
 
 use super::{Fast, Sums};
+use crate::Advance;
 use crate::driver::Grains;
-use crate::{Advance, ContactLaw};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use std::ops::Range;
@@ -22,7 +22,7 @@ pub struct PerList {
     deep: Option<([u32; 2], f64)>,
 }
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// Whether an evaluation can go list by list: not where several threads share the lists, or grains of a slab do not stand beside
     /// each other. Those of a chunk are moved together anyway, and contacts of several lists go faster together.
     pub fn is_per_list(&self) -> bool {

@@ -6,7 +6,7 @@ use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
 use super::{Alike, Fast, Laws, NONE, Sums};
 use crate::driver::Grains;
-use crate::{Advance, ContactLaw, Loop};
+use crate::{Advance, Granular, Loop};
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
@@ -15,8 +15,8 @@ use perigrain_base::par;
 use perigrain_neigh::slabs::shift_of;
 
 /// What the loops read and where they write.
-pub(super) struct Cx<'a, L> {
-    pub laws: &'a Laws<L>,
+pub(super) struct Cx<'a> {
+    pub laws: &'a Laws,
     pub x: &'a [Vec3],
     pub v: &'a [Vec3],
     pub omega: &'a [Vec3],
@@ -83,7 +83,7 @@ impl<'a> Drift<'a> {
     }
 }
 
-impl<L> Cx<'_, L> {
+impl Cx<'_> {
     /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in the same order.
     fn joins(&self) -> bool {
         self.laws.distinct.len() == 1 && !self.virial
@@ -95,7 +95,7 @@ impl<L> Cx<'_, L> {
     }
 }
 
-impl<L: ContactLaw> Cx<'_, L> {
+impl Cx<'_> {
     /// Whether a pair touches, or has touched in the last step and still holds together.
     fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
         let (i, w) = (short.i[k] as usize, short.w[k]);
@@ -115,7 +115,7 @@ impl<L: ContactLaw> Cx<'_, L> {
     }
 }
 
-impl<L: ContactLaw> Fast<L> {
+impl Fast {
     /// Adds up the forces of all contacts, or of those of one list.
     pub(super) fn sweep(
         &mut self,
@@ -157,9 +157,9 @@ impl<L: ContactLaw> Fast<L> {
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 match width {
-                    4 => form.run(Contacts::<L, 4> { cx: &cx, lists: &slabs, which }),
-                    8 => form.run(Contacts::<L, 8> { cx: &cx, lists: &slabs, which }),
-                    _ => form.run(Contacts::<L, 12> { cx: &cx, lists: &slabs, which }),
+                    4 => form.run(Contacts::<4> { cx: &cx, lists: &slabs, which }),
+                    8 => form.run(Contacts::<8> { cx: &cx, lists: &slabs, which }),
+                    _ => form.run(Contacts::<12> { cx: &cx, lists: &slabs, which }),
                 }
             }
         };
@@ -173,13 +173,13 @@ impl<L: ContactLaw> Fast<L> {
 }
 
 /// All contacts of some lists, one list after the other, which remember `W` − 1 numbers at most.
-struct Contacts<'a, 'b, L, const W: usize> {
-    cx: &'a Cx<'b, L>,
+struct Contacts<'a, 'b, const W: usize> {
+    cx: &'a Cx<'b>,
     lists: &'a par::Shared<'a, Slab>,
     which: &'a [usize],
 }
 
-impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
+impl<const W: usize> InLanes for Contacts<'_, '_, W> {
     type Out = ();
 
     #[inline(always)]
@@ -191,15 +191,15 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
             let slab = unsafe { &mut lists.get(k..k + 1)[0] };
             let ends = at + 1 == which.len() || !cx.joins();
             // SAFETY: passed on.
-            unsafe { of_list::<N, V, L, W>(cx, slab, &mut found, &mut batch, ends) };
+            unsafe { of_list::<N, V, W>(cx, slab, &mut found, &mut batch, ends) };
         }
     }
 }
 
 /// The contacts of a list, which may wait for those of the next one; where it `ends`, nobody waits.
 #[inline(always)]
-unsafe fn of_list<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
-    cx: &Cx<L>,
+unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
+    cx: &Cx,
     slab: &mut Slab,
     found: &mut Found,
     batch: &mut Option<Batch<V, N>>,
@@ -237,7 +237,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
                 none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
             };
             // SAFETY: passed on.
-            unsafe { evaluate::<N, V, L, W>(cx, slab, batch, (found, holding), ends) };
+            unsafe { evaluate::<N, V, W>(cx, slab, batch, (found, holding), ends) };
         }
         if k == end {
             break;
@@ -248,8 +248,8 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
 
 /// The contacts of the first so many that were found; where it `ends`, nobody waits for others any more.
 #[inline(always)]
-unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
-    cx: &Cx<L>,
+unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
+    cx: &Cx,
     slab: &mut Slab,
     batch: &mut Batch<V, N>,
     (found, ready): (&Found, usize),
@@ -258,7 +258,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, L, W>(cx, law, slab, batch, (found, ready), ends);
+            return of_law::<N, V, W>(cx, law, slab, batch, (found, ready), ends);
         }
         let mut own = Found::new();
         for block in (0..ready).step_by(BLOCK) {
@@ -272,7 +272,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
                         own.push(found, at);
                     }
                 }
-                of_law::<N, V, L, W>(cx, law, slab, batch, (&own, own.len()), true);
+                of_law::<N, V, W>(cx, law, slab, batch, (&own, own.len()), true);
             }
         }
     }
@@ -283,21 +283,21 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
 /// # Safety
 /// They must be pairs of the list, and its entries grains.
 #[inline(always)]
-unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
-    cx: &Cx<L>,
-    law: &L,
+unsafe fn of_law<const N: usize, V: Lanes<N>, const W: usize>(
+    cx: &Cx,
+    law: &Granular,
     slab: &mut Slab,
     batch: &mut Batch<V, N>,
     (found, ready): (&Found, usize),
     ends: bool,
 ) {
-    let many = Many::<N, V, L, W> { cx, slab, batch, found, ready, ends };
+    let many = Many::<N, V, W> { cx, slab, batch, found, ready, ends };
     if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
 /// The loop over contacts of one law, several at a time.
-struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
-    cx: &'a Cx<'b, L>,
+struct Many<'a, 'b, const N: usize, V, const W: usize> {
+    cx: &'a Cx<'b>,
     slab: &'a mut Slab,
     batch: &'a mut Batch<V, N>,
     found: &'a Found,
@@ -306,9 +306,9 @@ struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
     ends: bool,
 }
 
-impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
+impl<const N: usize, V: Lanes<N>, const W: usize> Loop for Many<'_, '_, N, V, W> {
     #[inline(always)]
-    fn run(self, law: &L) {
+    fn run(self, law: &Granular) {
         let Self { cx, slab, batch, found, ready, ends } = self;
         let mut taken = 0;
         loop {
@@ -318,7 +318,7 @@ impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Man
                 if !(batch.is_full() || (ends && batch.waits())) {
                     return;
                 }
-                batch.run::<L, W>(cx, law, slab);
+                batch.run::<W>(cx, law, slab);
             }
         }
     }

@@ -1,12 +1,12 @@
 //! What walls tell of their contacts: springs, for the time step, and what each holds and does, for the ledger of energy.
 
 use super::{Spheres, Touch, WallSweep, geometry};
-use crate::ContactLaw;
+use crate::Granular;
 use perigrain_world::contacts::{Contacts, WallSpring, WallTouch};
 
 impl WallSweep {
     /// The springs of the contacts of the last evaluation.
-    pub fn springs<L: ContactLaw>(&self, grains: &Spheres, law: &L) -> Vec<WallSpring> {
+    pub fn springs(&self, grains: &Spheres, law: &Granular) -> Vec<WallSpring> {
         let spring = |t: &Touch| {
             let i = t.grain as usize;
             let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
@@ -17,7 +17,7 @@ impl WallSweep {
     }
 
     /// The contacts of the last evaluation with what they hold and do; `memory` is that of this evaluation.
-    pub fn touches<L: ContactLaw>(&self, grains: &Spheres, law: &L, memory: &Contacts) -> Vec<WallTouch> {
+    pub fn touches(&self, grains: &Spheres, law: &Granular, memory: &Contacts) -> Vec<WallTouch> {
         let rows = (0..).map(|k| memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]));
         let touch = |((t, wrench), history): ((&Touch, &crate::Wrench), &[f64])| {
             let i = t.grain as usize;

@@ -13,7 +13,7 @@ type Smallest = Option<[f64; 2]>;
 
 /// The shortest contact between equal grains of the lightest kind of each type, at the largest speed there is now;
 /// `said`: density and diameter, where there are no particles yet.
-pub fn between_grains(w: &World, rules: &Rules<Granular>, said: Option<(f64, f64)>) -> Option<f64> {
+pub fn between_grains(w: &World, rules: &Rules, said: Option<(f64, f64)>) -> Option<f64> {
     let types = 1..=w.types as u16;
     let kind = &w.particles.kind;
     let sizes: Vec<Smallest> = types.clone().map(|t| smallest(w, |i| kind[i] == t, said)).collect();

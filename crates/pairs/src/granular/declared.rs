@@ -10,7 +10,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
 use perigrain_contact::mdr::{Material, State};
 use perigrain_contact::normal::{plastic, plastic_grain};
-use perigrain_contact::{Damping, Granular, Model, Twisting};
+use perigrain_contact::{Damping, Model, Twisting};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Reach, Wanted};
 use perigrain_plan::Op;
@@ -71,7 +71,7 @@ impl Declared {
     }
 
     /// The law of a pair of types and its reach: given, or mixed from the like pairs.
-    fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule<Granular>, Reach)>> {
+    fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule, Reach)>> {
         let reach = |c: Option<f64>| c.or(self.cutoff).map_or(Reach::Touch, Reach::Fixed);
         if let Some(c) = self.given.get(&(i, j)) {
             let rule = Rule { law: c.model.law(compat), average: c.average, curvature: c.curvature };
@@ -128,7 +128,7 @@ impl Declared {
     }
 
     /// Rules and reaches of all pairs of types it acts on.
-    fn tables(&self, types: usize, compat: Compat) -> Result<(Rules<Granular>, Wanted)> {
+    fn tables(&self, types: usize, compat: Compat) -> Result<(Rules, Wanted)> {
         let (mut rules, mut wanted) = (Rules::new(types), Wanted::new(types));
         for i in 1..=types as u16 {
             for j in i..=types as u16 {

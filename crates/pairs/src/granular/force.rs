@@ -11,7 +11,7 @@ use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
 use perigrain_contact::mdr::Manner;
-use perigrain_contact::{Advance, ContactLaw, Granular, MOST_MEMORY};
+use perigrain_contact::{Advance, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_world::Fields;
@@ -27,7 +27,7 @@ use std::ops::Range;
 
 /// Forces and torques of all granular contacts of one pair style.
 pub struct Force {
-    rules: Rules<Granular>,
+    rules: Rules,
     wanted: Wanted,
     /// Where contact history is kept in the world.
     key: Key<Contacts>,
@@ -43,7 +43,7 @@ pub struct Force {
     generation: Option<u64>,
     plain: Plain,
     /// The fast loop, where it knows all the rules.
-    fast: Option<Fast<Granular>>,
+    fast: Option<Fast>,
     /// Whether the fast loop has the contacts now.
     is_fast: bool,
     /// What presses plastic grains, which go by the plain loop.
@@ -64,7 +64,7 @@ impl Force {
     /// With nothing computed yet.
     pub fn new(
         style: &'static str,
-        rules: Rules<Granular>,
+        rules: Rules,
         wanted: Wanted,
         types: usize,
         press: Option<Press>,
@@ -384,7 +384,7 @@ impl Op for Force {
 }
 
 /// The laws as the fast loop wants them; `None` where some rule is not for it.
-fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<Granular>> {
+fn laws(rules: &Rules, wanted: &Wanted, types: usize) -> Option<Laws> {
     let plain = rules.any(|r| {
         r.law.is_told()
             || r.average != Average::None

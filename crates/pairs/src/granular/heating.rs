@@ -1,7 +1,7 @@
 //! Heat that contacts conduct.
 
+use perigrain_contact::Heat;
 use perigrain_contact::driver::Rules;
-use perigrain_contact::{Granular, Heat};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::{Numbers, World};
 
@@ -17,7 +17,7 @@ pub struct Heating {
 
 impl Heating {
     /// Taken out of the world, if some contacts conduct heat and particles have both.
-    pub fn take(w: &mut World, rules: &Rules<Granular>) -> Option<Self> {
+    pub fn take(w: &mut World, rules: &Rules) -> Option<Self> {
         if !conducts(rules) {
             return None;
         }
@@ -36,6 +36,6 @@ impl Heating {
 }
 
 /// Whether some contacts conduct heat.
-pub fn conducts(rules: &Rules<Granular>) -> bool {
+pub fn conducts(rules: &Rules) -> bool {
     rules.any(|r| r.law.heat != Heat::None)
 }

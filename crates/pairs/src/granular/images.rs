@@ -4,13 +4,12 @@ use super::super::shared::made_at;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
-use perigrain_contact::Granular;
 use perigrain_contact::fast::{Fast, MOST_GRAINS};
 use perigrain_neigh::slabs::{edges, shift_of};
 use perigrain_world::World;
 
 /// Whether the fast loop can take these particles.
-pub fn suits(w: &World, period: Periods, fast: &Fast<Granular>) -> bool {
+pub fn suits(w: &World, period: Periods, fast: &Fast) -> bool {
     let p = &w.particles;
     let most = par::best(&p.radius, 0.0, f64::max);
     let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);

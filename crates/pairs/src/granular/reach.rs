@@ -2,7 +2,6 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
-use perigrain_contact::ContactLaw;
 use perigrain_contact::driver::Rules;
 use perigrain_neigh::list::{Reach, Wanted};
 use perigrain_world::World;
@@ -58,7 +57,7 @@ pub fn largest(w: &World) -> Vec<f64> {
 }
 
 /// How far types reach for each other, with what contacts that hold span beyond touch.
-pub fn reaching<L: ContactLaw>(rules: &Rules<L>, wanted: &Wanted, w: &World) -> Wanted {
+pub fn reaching(rules: &Rules, wanted: &Wanted, w: &World) -> Wanted {
     let (mut out, largest) = (wanted.clone(), largest(w));
     let types = 1..=w.types as u16;
     for (a, b) in types.clone().flat_map(|a| types.clone().map(move |b| (a, b))) {
