@@ -1,4 +1,5 @@
 //! The fast loop against the plain driver on dense packings that move, are rebuilt and have several laws.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use perigrain_base::math::form::Form;
 use perigrain_base::math::periods::Periods;
