@@ -2,9 +2,7 @@
 
 use super::scene::{Scene, empty, law, sphere};
 use perigrain_base::par;
-use perigrain_contact::{
-    Advance, ContactLaw, Damping, Geometry, Granular, Model, Motion, Normal, Tangential, normal,
-};
+use perigrain_contact::{Advance, Damping, Geometry, Granular, Model, Motion, Normal, Tangential, normal};
 use perigrain_world::Compat;
 
 const R: f64 = 0.005;
