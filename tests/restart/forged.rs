@@ -228,6 +228,24 @@ fn what_is_not_of_all_particles_does_not_stand() {
     assert_eq!(run(folder.path(), &format!("read_restart DIR/b\n{BLOCK_AGAIN}run 2"), false).0.n(), n);
 }
 
+/// Lists of a file stand until they are made anew; what looks at contacts before that makes some of its own.
+#[test]
+fn a_giant_that_stands_is_refused_by_who_first_looks_for_its_pairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.restart");
+    run(folder.path(), &format!("{PILE}{PILE_AGAIN}run 20\nwrite_restart DIR/a.restart"), false);
+    let mut saved = read(&path).unwrap();
+    saved.world.particles.radius[7] = 1e200;
+    let (pair, declared) = (&saved.pair, &saved.declared);
+    write(&path, &Saving { world: &saved.world, ran: true, standing: true, pair, declared }).unwrap();
+    let mut session = perigrain::session::Session::new(perigrain::session::Options::default()).unwrap();
+    let deck = format!("read_restart {}\n{PILE_AGAIN}run 2", path.display());
+    let said = session.run_text("in", &deck).unwrap_err();
+    assert!(said.0[0].message.contains("do not go with the periodic box"), "{said}");
+    // In the setup, not at the next list.
+    assert!(said.0[0].help.iter().any(|h| h == "in op `contact watch` at step 20"), "{said}");
+}
+
 /// Regions in regions in a file use up no stack.
 #[test]
 fn regions_are_no_deeper_than_a_file_may_say() {

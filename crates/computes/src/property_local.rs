@@ -189,9 +189,11 @@ impl Compute for Declared {
             let mut rows: Vec<Row> = vec![];
             match me.of {
                 Of::List => {
-                    let listed = probes.iter().flat_map(|p| p.listed(w));
-                    let chosen = listed.filter(|p| p.iter().all(|&i| has(i as usize)));
-                    rows.extend(chosen.map(|[i, j]| Row::of(w, i, j)));
+                    for probe in &probes {
+                        let listed = probe.listed(w)?.into_iter();
+                        let chosen = listed.filter(|p| p.iter().all(|&i| has(i as usize)));
+                        rows.extend(chosen.map(|[i, j]| Row::of(w, i, j)));
+                    }
                     rows.sort_by_key(|r| r.tags);
                 }
                 Of::Contact if !me.touching => {

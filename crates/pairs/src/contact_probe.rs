@@ -1,7 +1,7 @@
 //! What touching grains do to each other at a moment, by the rules of any granular pair style.
 
 use super::granular::force::grains;
-use super::granular::reach::{largest, reaching};
+use super::granular::reach::{largest, reaching, refuse_giants};
 use super::shared::{built_at, find_frozen, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
@@ -43,9 +43,11 @@ impl ContactProbe {
     }
 
     /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
-    fn list(&self, w: &World) -> Vec<Pair> {
-        let wanted = reaching(&self.rules, &self.wanted, w);
-        near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w))
+    fn list(&self, w: &World) -> Result<Vec<Pair>> {
+        let (wanted, skin) = (reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin);
+        // Who goes on with the lists of a restart file asks before lists are made anew.
+        refuse_giants(w, &wanted, skin)?;
+        Ok(near(w, built_at(w), &wanted, skin, &Allowed::new(w)))
     }
 
     /// Evaluates all contacts at the present places and velocities, with the memory they have, and reads the outcome.
@@ -69,7 +71,7 @@ impl ContactProbe {
         let stands = |(made, _): &(u64, Vec<Pair>)| *made == w.rebuild.generation && w.clock.running;
         let list = match self.listed.take().filter(stands) {
             Some((_, list)) => list,
-            None => self.list(w),
+            None => self.list(w)?,
         };
         let rules = match ask {
             Ask::Felt { setup } => &self.rules.again(setup),
@@ -127,8 +129,8 @@ impl Probe for ContactProbe {
         reach.reduce(f64::max)
     }
 
-    fn listed(&self, w: &World) -> Vec<[u32; 2]> {
-        self.list(w).iter().map(|p| [p.i, p.j]).collect()
+    fn listed(&self, w: &World) -> Result<Vec<[u32; 2]>> {
+        Ok(self.list(w)?.iter().map(|p| [p.i, p.j]).collect())
     }
 
     fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {

@@ -111,7 +111,10 @@ pub trait Probe: Send {
     }
 
     /// The pairs of its neighbour list, made when lists were last rebuilt, in the order of the two tags.
-    fn listed(&self, w: &World) -> Vec<[u32; 2]>;
+    ///
+    /// # Errors
+    /// What cannot be listed.
+    fn listed(&self, w: &World) -> Result<Vec<[u32; 2]>>;
 
     /// The pairs that are asked for, in the order of the two tags.
     ///

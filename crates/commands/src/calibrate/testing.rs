@@ -80,8 +80,8 @@ impl Probe for Law {
     fn own(&self) -> usize {
         0
     }
-    fn listed(&self, _w: &World) -> Vec<[u32; 2]> {
-        vec![]
+    fn listed(&self, _w: &World) -> Result<Vec<[u32; 2]>> {
+        Ok(vec![])
     }
     fn look(&mut self, _w: &World, _ask: Ask) -> Result<Vec<Interaction>> {
         Ok(vec![])

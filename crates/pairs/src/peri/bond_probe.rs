@@ -58,9 +58,10 @@ impl Probe for BondProbe {
         0
     }
 
-    fn listed(&self, w: &World) -> Vec<[u32; 2]> {
-        let Some((families, view)) = w.families.as_ref().zip(view(w).ok()) else { return vec![] };
-        near(w, built_at(w), families, &view, w.settings.neighbor.skin).iter().map(|p| [p.i, p.j]).collect()
+    fn listed(&self, w: &World) -> Result<Vec<[u32; 2]>> {
+        let Some((families, view)) = w.families.as_ref().zip(view(w).ok()) else { return Ok(vec![]) };
+        let near = near(w, built_at(w), families, &view, w.settings.neighbor.skin);
+        Ok(near.iter().map(|p| [p.i, p.j]).collect())
     }
 
     fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
