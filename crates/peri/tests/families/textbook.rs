@@ -85,11 +85,16 @@ impl Textbook {
     }
 
     fn short_range(&self, view: &PeriView, f: &mut [[f64; 3]]) {
-        let reach = 1.35 * self.options.lattice_spacing;
+        let (reach, bounds) = (1.35 * self.options.lattice_spacing, &view.bounds);
         for i in 0..view.x.len() {
             for j in i + 1..view.x.len() {
-                // Who is far along one axis, where there are no images, need not be looked at.
-                let far = |k: usize| !view.bounds.periodic[k] && (view.x[i][k] - view.x[j][k]).abs() >= reach;
+                // Who is far along one axis, in the box and in the next one, need not be looked at.
+                let far = |k: usize| {
+                    let apart = (view.x[i][k] - view.x[j][k]).abs();
+                    let length = bounds.hi[k] - bounds.lo[k];
+                    let images = apart < 1.5 * length && (length - apart).abs() >= reach && !bounds.tilted();
+                    apart >= reach && (!bounds.periodic[k] || images)
+                };
                 if far(0) || far(1) || far(2) {
                     continue;
                 }
