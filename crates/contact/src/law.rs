@@ -181,7 +181,7 @@ pub struct Granular {
 }
 
 /// A loop over contacts of one law.
-pub trait Loop {
+pub(crate) trait Loop {
     /// Runs it.
     fn run(self, law: &Granular);
 }
@@ -283,7 +283,7 @@ impl Granular {
     /// Hands the law to a loop, each frequent form in a place of its own where the form is written out: the loop is
     /// compiled there without the others.
     #[inline(always)]
-    pub fn within(&self, work: impl Loop) {
+    pub(crate) fn within(&self, work: impl Loop) {
         use {Damping::*, Friction::*};
         if let Some(law) = self.known(hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
             return work.run(&law);

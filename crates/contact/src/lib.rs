@@ -22,7 +22,7 @@ pub mod walls;
 
 pub use damping::Damping;
 pub use heat::Heat;
-pub use law::{Arm, Classic, Granular, Loop, Model, Unmixable};
+pub use law::{Arm, Classic, Granular, Model, Unmixable};
 pub use normal::Normal;
 pub use tangential::{Drag, Friction, Tangential};
 pub use turning::{Rolling, Sds, Twisting};

@@ -44,6 +44,8 @@ const THIN: f64 = 0.15;
 /// The image of what fills lists up, and how far it is away: so far that squares are infinite.
 const NOWHERE: u32 = 31;
 const FAR: f64 = 1e200;
+/// Room that radii growing under a list leave for what contacts of them span.
+const AMPLE: f64 = 1.25;
 /// No law.
 const NONE: u8 = u8::MAX;
 
@@ -79,12 +81,7 @@ impl Laws {
     pub fn distinct(&self) -> &[Granular] {
         &self.distinct
     }
-}
 
-/// Room that radii growing under a list leave for what contacts of them span.
-const AMPLE: f64 = 1.25;
-
-impl Laws {
     /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
     pub fn span(&self, largest: f64) -> f64 {
         // Spans grow with the effective radius, which is at most half of the larger one.

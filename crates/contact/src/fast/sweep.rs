@@ -6,7 +6,8 @@ use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
 use super::{Alike, Fast, Laws, NONE, Sums};
 use crate::driver::Grains;
-use crate::{Advance, Granular, Loop};
+use crate::law::Loop;
+use crate::{Advance, Granular};
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
@@ -93,9 +94,7 @@ impl Cx<'_> {
     pub fn places(&self) -> Places<'_> {
         Places { x: self.x, radius: self.radius, alike: self.alike.radius, shifts: self.shifts }
     }
-}
 
-impl Cx<'_> {
     /// Whether a pair touches, or has touched in the last step and still holds together.
     fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
         let (i, w) = (short.i[k] as usize, short.w[k]);
