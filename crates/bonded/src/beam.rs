@@ -9,6 +9,7 @@
 //! angular momentum are kept to rounding, and a body that stands as it was made has exactly no force. No angle is taken of anything.
 
 use crate::law::{Acts, BondLaw, Ends, Motion};
+use crate::network::Modes;
 use crate::stiffness::{Beam, Shear, Stiffness};
 use crate::sweep::{Out, Sweep, all};
 use perigrain_base::math::body::{after, back, turned};
@@ -184,6 +185,29 @@ fn elastic<R: Real>(c: &Section<R>, b: &Ends<R>) -> Elastic<R> {
         bend: c.bend * length(apart),
         twist: [twist, add(a, e)],
     }
+}
+
+/// What a bond of given stiffnesses does.
+pub struct Pulled {
+    /// Force on the first end [force].
+    pub force: Vec3,
+    /// Torques on both [force length].
+    pub torque: [Vec3; 2],
+    /// Energies of stretch, shear, bend and twist [energy].
+    pub energy: Modes,
+}
+
+/// By the same potential: ½ k_n (l − L)², ½ k_s L² |n − ½(a + b)|², ½ k_b |a − b|² and the rest, which is of twist.
+#[inline(always)]
+pub fn pulled(k: &Stiffness, b: &Ends<f64>) -> Pulled {
+    let Stiffness { normal, shear, twist, bend } = *k;
+    let e = elastic(&Section { area: 0.0, normal, shear, twist, bend }, b);
+    let off = sub(e.n, scale(0.5, e.twist[1]));
+    let stretch = 0.5 * e.tension * (length(b.r) - b.length);
+    let sheared = 0.5 * shear * b.length * b.length * dot(off, off);
+    let bent = if bend > 0.0 { 0.5 * e.bend * e.bend / bend } else { 0.0 };
+    let energy = [stretch, sheared, bent, e.energy - stretch - sheared - bent];
+    Pulled { force: e.force, torque: e.torque, energy }
 }
 
 /// What a bond bears [force], [force length].

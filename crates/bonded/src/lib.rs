@@ -7,6 +7,7 @@
 pub mod beam;
 pub mod certificate;
 pub mod columns;
+pub mod contact;
 pub mod contacts;
 pub mod dsm;
 pub mod ends;
@@ -15,6 +16,7 @@ pub mod limit;
 pub mod network;
 pub mod newton;
 pub mod pairs;
+pub mod parts;
 pub mod pcg;
 pub mod periodic;
 pub mod precond;
@@ -27,12 +29,15 @@ pub mod stiffness;
 pub mod strength;
 pub mod sweep;
 pub mod tensor;
+pub mod walls;
 pub mod weibull;
 
 #[cfg(test)]
 mod lattices;
 #[cfg(test)]
 mod tests_contacts;
+#[cfg(test)]
+mod tests_large;
 #[cfg(test)]
 mod tests_statics;
 #[cfg(test)]

@@ -2,9 +2,12 @@
 //!
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent at rest of beams between spheres.
 
+use super::beam::{Pulled, pulled};
+use super::law::Ends;
 use super::pairs::Pairs;
 use super::six::{Matrix6, Packed, Six, packed};
 use super::stiffness::Stiffness;
+use perigrain_base::math::body::{Quat, turn_by};
 use perigrain_base::math::forest;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 use perigrain_base::par;
@@ -138,6 +141,47 @@ impl Network {
         self.gather(out, |_, [i, j]| Moved::new(&u[i], &u[j]));
     }
 
+    /// The same bonds with the vectors that they have in a field.
+    pub fn moved_by(&self, u: &[Six]) -> Self {
+        let d = |k: usize| {
+            let [i, j] = self.pairs.ends[k].map(|i| halves(&u[i as usize]).0);
+            add(self.d[k], sub(j, i))
+        };
+        Self { d: (0..self.bonds()).map(d).collect(), ..self.clone() }
+    }
+
+    /// out = the resisting forces and torques in a field of any size, whose rotations are vectors; by the potential of [`crate::beam`].
+    pub fn forces(&self, u: &[Six], out: &mut [Six]) {
+        let turns = turns(u);
+        par::each(&mut *out, |_, rows: &mut [Six]| rows.fill([0.0; 6]));
+        self.pairs.gather(out, |k, [i, j]| {
+            let Pulled { force, torque: [high, low], .. } =
+                self.pulled(k, [&u[i], &u[j]], [turns[i], turns[j]]);
+            let minus = |a: Vec3| a.map(|a| -a);
+            [row(force, minus(low)), row(minus(force), minus(high))]
+        });
+    }
+
+    /// Energies of all bonds in a field of any size, `times(bond, mode)` each.
+    pub fn energy_of_large(&self, u: &[Six], times: impl Fn(usize, usize) -> f64 + Sync) -> Modes {
+        let turns = turns(u);
+        self.sum(|k| {
+            let [i, j] = self.pairs.ends[k].map(|i| i as usize);
+            let energy = self.pulled(k, [&u[i], &u[j]], [turns[i], turns[j]]).energy;
+            std::array::from_fn(|mode| times(k, mode) * energy[mode])
+        })
+    }
+
+    /// What a bond does to its ends, the upper one first.
+    #[inline(always)]
+    fn pulled(&self, bond: usize, [a, b]: [&Six; 2], [low, high]: [Quat; 2]) -> Pulled {
+        let d = self.d[bond];
+        let length = length(d);
+        let r = add(d, sub(halves(b).0, halves(a).0));
+        let ends = Ends { r, length, axis: scale(1.0 / length, d), quat: [high, low] };
+        pulled(&self.k[bond], &ends)
+    }
+
     /// What a strain of the whole does that nobody follows: the resisting forces where all bonds are changed by ε d.
     pub fn product_of_strain(&self, strain: &[Vec3; 3], out: &mut [Six]) {
         self.gather(out, |k, _| {
@@ -260,6 +304,15 @@ impl Network {
         self.pairs.ends.iter().copied().chain(more).for_each(|[a, b]| forest::join(&mut root, a, b));
         (0..self.particles as u32).map(|k| forest::find(&mut root, k)).collect()
     }
+}
+
+/// How all particles are turned in a field.
+fn turns(u: &[Six]) -> Vec<Quat> {
+    let mut out = vec![[0.0; 4]; u.len()];
+    par::each((&mut out[..], u), |_, (out, u)| {
+        out.iter_mut().zip(u).for_each(|(q, u)| *q = turn_by(halves(u).1));
+    });
+    out
 }
 
 /// The sum of energies, mode by mode.

@@ -1,10 +1,12 @@
 //! Contacts and walls: numbers of section 10.5 of the page on bonded particles.
 
-use super::contacts::{Contact, Contacts, Walls};
+use super::contact::Contact;
+use super::contacts::Contacts;
 use super::lattices::{Body as Lattice, SC, lattice, standard};
 use super::network::Network;
 use super::newton::{Body, End};
 use super::six::Six;
+use super::walls::Walls;
 use perigrain_base::math::rng::ParkMiller;
 
 fn near(a: f64, b: f64, tolerance: f64) {
@@ -29,19 +31,19 @@ fn two_spheres_touch() {
     let contacts = Contacts::new(2, &[[1, 0]], |_| Contact { n: [-1.0, 0.0, 0.0], ..c });
     let mut f = vec![[0.0; 6]; 2];
     let still = vec![[0.0; 6]; 2];
-    contacts.add_forces(&still, &mut f);
+    contacts.add_forces(&still, None, &mut f);
     // They push apart: what resists a motion of the second along x is negative.
     near(f[0][0], 0.01098013076, 5e-10);
     near(f[1][0], -0.01098013076, 5e-10);
-    let [k] = contacts.tangent(&still)[..] else { panic!() };
-    near(k[0], 16470.19615, 5e-10);
-    near(k[1], 14640.17435, 5e-10);
+    let [k] = contacts.tangent(&still, None)[..] else { panic!() };
+    near(k.k[0], 16470.19615, 5e-10);
+    near(k.k[1], 14640.17435, 5e-10);
     // What was there before is taken away.
     let relaxed = Contacts::new(2, &[[0, 1]], |_| Contact { relaxed: true, ..c });
     let mut f = vec![[0.0; 6]; 2];
-    relaxed.add_forces(&still, &mut f);
+    relaxed.add_forces(&still, None, &mut f);
     assert_eq!(f, still);
-    assert_eq!((relaxed.touching(&still), relaxed.energy(&still)), (1, 0.0));
+    assert_eq!((relaxed.touching(&still, None), relaxed.energy(&still, None)), ([1, 0], 0.0));
 }
 
 #[test]
@@ -52,14 +54,14 @@ fn forces_are_slopes_of_the_energy_where_overlaps_stay() {
         vec![[0.0, 1e-7, 0.0, 0.0, 1e-4, 2e-5], [0.8 * s, 3e-8, -0.6 * s, 1e-4, -2e-5 + s, 0.0]]
     };
     let mut f = vec![[0.0; 6]; 2];
-    contacts.add_forces(&at(2e-8), &mut f);
+    contacts.add_forces(&at(2e-8), None, &mut f);
     let h = 1e-9;
-    let slope = (contacts.energy(&at(2e-8 + h)) - contacts.energy(&at(2e-8 - h))) / (2.0 * h);
+    let slope = (contacts.energy(&at(2e-8 + h), None) - contacts.energy(&at(2e-8 - h), None)) / (2.0 * h);
     // Central differences of a parabola: rounding over the step.
     near(f[1][0] * 0.8 - f[1][2] * 0.6 + f[1][4], slope, 1e-5);
     // The tangent where nothing has slipped yet is all of the slope of the forces.
     let still = vec![[0.0; 6]; 2];
-    let k = contacts.tangent(&still);
+    let k = contacts.tangent(&still, None);
     let p: Vec<Six> = vec![[1.0, -2.0, 0.5, 300.0, 100.0, -70.0], [0.2, 1.0, -1.5, -20.0, 400.0, 10.0]];
     let mut product = vec![[0.0; 6]; 2];
     contacts.add_product(&k, &p, &mut product);
@@ -67,7 +69,7 @@ fn forces_are_slopes_of_the_energy_where_overlaps_stay() {
     for sign in [1.0, -1.0] {
         let u: Vec<Six> = p.iter().map(|p| p.map(|a| sign * 1e-11 * a)).collect();
         let mut f = vec![[0.0; 6]; 2];
-        contacts.add_forces(&u, &mut f);
+        contacts.add_forces(&u, None, &mut f);
         (0..12).for_each(|c| slope[c / 6][c % 6] += sign * f[c / 6][c % 6] / 2e-11);
     }
     for c in 0..12 {
@@ -92,7 +94,14 @@ fn a_pair_between_planes() {
         let normal = 2.0 * PAIR[0] * RADIUS.sqrt();
         near(normal, 31056499.69, 5e-10);
         let walls = Walls { axis: 2, delta: -delta, near: [vec![(0, 0.0, normal)], vec![(1, 0.0, normal)]] };
-        let body = Body { network: &network, contacts: &none, walls: &walls, held: &[0; 2], arm: RADIUS };
+        let body = Body {
+            network: &network,
+            contacts: &none,
+            walls: &walls,
+            past: None,
+            held: &[0; 2],
+            arm: RADIUS,
+        };
         let follows = |z: f64| [0.0, 0.0, -delta * z / 2e-3, 0.0, 0.0, 0.0];
         let found = body.relax(vec![follows(0.5e-3), follows(1.5e-3)], End::Part(1e-10));
         assert!(found.done && found.residuals.len() <= 7, "{found:?}");
@@ -127,7 +136,8 @@ fn newton_converges_with_the_square() {
     let held: Vec<u8> = body.x.iter().map(|x| if x[2] < 1e-9 || x[2] > 6.9e-3 { 63 } else { 0 }).collect();
     let walls = Walls::default();
     let start: Vec<Six> = body.x.iter().map(|x| [0.0, 0.0, -0.02 * x[2], 0.0, 0.0, 0.0]).collect();
-    let solved = Body { network: &network, contacts: &contacts, walls: &walls, held: &held, arm: RADIUS };
+    let solved =
+        Body { network: &network, contacts: &contacts, walls: &walls, past: None, held: &held, arm: RADIUS };
     let found = solved.relax(start.clone(), End::Part(1e-10));
     println!("{:?}", found.residuals);
     assert!(found.done && found.residuals.len() <= 9);
@@ -142,7 +152,8 @@ fn newton_converges_with_the_square() {
     let other: f64 =
         (0..200).filter(|k| held[*k] == 63 && body.x[*k][2] > 1e-3).map(|k| alone.forces[k][2]).sum();
     assert!(force(true) < other && other < 0.0);
-    let solved = Body { network: &network, contacts: &contacts, walls: &walls, held: &held, arm: RADIUS };
+    let solved =
+        Body { network: &network, contacts: &contacts, walls: &walls, past: None, held: &held, arm: RADIUS };
     let ends: Vec<Six> =
         start.iter().zip(&held).map(|(u, held)| if *held == 63 { *u } else { [0.0; 6] }).collect();
     let paper = solved.relax(ends, End::Residuals([1e-10, 1e-8]));

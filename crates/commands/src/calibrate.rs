@@ -1,9 +1,11 @@
 //! `calibrate`: stiffness and strength of bonded bodies without a run, and coefficients of bonds that give them.
 
 mod cell;
+mod conflicts;
 mod dsm;
 mod fit;
 mod found;
+mod kinds;
 mod model;
 mod scene;
 mod setup;
@@ -14,6 +16,8 @@ mod telling;
 mod testing;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_large;
 mod touch;
 mod words;
 
@@ -40,9 +44,9 @@ impl Style for Calibrate {
         Doc {
             syntax: "calibrate dsm ID GROUP axis x|y|z strain S [low|high grip|plate|wall] [thick T] [rotations yes|no] [contacts yes|no] \
                      [prestress remove|keep] [tol P] [bound yes|no] [method pcg|paper [FL [FN]]] [shape block|cylinder|area A] \
-                     [length free|body] [fields yes|no]\n\
+                     [length free|body] [fields yes|no] [large yes|no] [mu M] [steps N]\n\
                      calibrate ste ID GROUP axis x|y|z [order N] [slabs auto|H] [map deviation|stiffness D] [strain S] [low|high wall] [thick T] [contacts yes|no] \
-                     [shape …] [length free|body]\n\
+                     [mu M] [shape …] [length free|body]\n\
                      calibrate periodic ID GROUP [rotations yes|no] [tol P]\n\
                      calibrate strength ID GROUP axis x|y|z strain S [low|high grip|plate] [thick T] [rotations yes|no] [tol P] [until P] [most N] \
                      [avalanche all|one] [together P] [curve FILE] [shape …] [length free|body] [fields yes|no]\n\
@@ -62,7 +66,7 @@ impl Style for Calibrate {
 
 /// The page's text.
 const DOC: &str = "\
-    Linear statics of a body of bonded particles as it stands now: displacements are small, directions stay, no time passes, nothing moves. \
+    Statics of a body of bonded particles as it stands now: no time passes, nothing moves; displacements are small and directions stay, unless `large yes` or `mu` is said. \
     Stiffnesses of bonds come from the bond style: `bpm/beam` and `bpm/rotational` have all four (stretch, shear, twist, bend), `bpm/spring` \
     and `harmonic` resist stretch alone. After Jarolin and Dosta, Comput. Part. Mech. 8 (2021) 1065.\n\n\
     **dsm**, the direct stiffness method: both ends of the body along the axis are held and come closer by S times their distance (S below 0 \
@@ -77,9 +81,13 @@ const DOC: &str = "\
     Contacts between particles count where the pair style has Hertz contacts (`hertz/material … tangential mindlin NULL …`) unless `contacts no` is said: pairs \
     whose bonds do not bar them (`special_bonds`), found once, closed and opened by Newton's method, without slip. The force that overlaps have before the load is \
     taken away, `prestress keep` leaves it. K is F/Δ then.\n\n\
+    `large yes` lets displacements and turns be of any size: bonds are those of `bpm/beam` with the stiffnesses told (springs where these resist stretch alone), contacts push along the line of centres as it \
+    is, and what they bear across counts from where they came to touch. K is F/Δ under the strain S, as a slow run has it: bodies whose struts bend (inverse opals) are 3 to 6 % off at 2 % without it. \
+    `mu M` does the same and lets surfaces slip where they bear M times the normal force: agglomerates in which contacts carry much are twice too stiff without it, a tenth of a percent off with it. Walls stay without friction. \
+    The load is put on in N `steps` (default 1), each balanced by Newton's method; K of an agglomerate with 80 % of its contacts slipping changed by 0.05 % from 1 to 20. Contacts that cannot slip at all may have no balance, which is told.\n\n\
     **ste**, the estimate of the tensor: order 0 lets everybody follow the strain, 1 and 2 are those of the paper (default 2), N from 3 on takes N sweeps. No \
     boundary conditions: on bodies with free faces 5 to 15 % off. `slabs` puts layers of two diameters (or H) one behind the other; walls are put in series. Contacts \
-    that close under the strain count as springs. `map stiffness D` gives each particle the K along x, y, z that the body had if all of it were like the ball of radius D \
+    that close under the strain count as springs; with `mu M` as those of the whole way to it, and across as far as M lets them bear. `map stiffness D` gives each particle the K along x, y, z that the body had if all of it were like the ball of radius D \
     around the particle, `map deviation D` by which part these are below their mean (positive is softer): c_ID[1] to [3] per particle.\n\n\
     **periodic**: the tensor of a cell that repeats in all directions, from six load cases, with the mean field beside.\n\n\
     **strength** loads the body ever more, up (S above 0 pulls, below 0 presses; its size does not matter): all that bonds bear is proportional to the load, so the one nearest to its strength \

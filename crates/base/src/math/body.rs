@@ -1,7 +1,7 @@
 //! Rotation of rigid bodies: unit quaternions (w first), principal axes, Richardson's step.
 
 use super::real::Real;
-use super::vec3::{Vec3, add, cross, dot, scale};
+use super::vec3::{Vec3, add, cross, dot, length, scale};
 
 /// A unit quaternion, the real part first.
 pub type Quat<R = f64> = [R; 4];
@@ -50,6 +50,12 @@ pub fn turn(axis: Vec3, angle: f64) -> Quat {
     let half = 0.5 * angle;
     let s = half.sin();
     [half.cos(), axis[0] * s, axis[1] * s, axis[2] * s]
+}
+
+/// The turn by a vector's length [rad] about its direction.
+pub fn turn_by(vector: Vec3) -> Quat {
+    let angle = length(vector);
+    if angle > 0.0 { turn(scale(1.0 / angle, vector), angle) } else { UNTURNED }
 }
 
 /// The rotation matrix.

@@ -59,7 +59,7 @@ pub fn periodic(cx: &mut ActCx, line: &Line, scene: &Scene) -> Result<()> {
     let (began, words) = (Instant::now(), &line.words);
     let volume = cell(cx.world, scene, cx.span)?;
     let (cell, loose) = solve_cell(scene, words, words.tol, None);
-    warn_unfinished(cx, cell.done);
+    warn_unfinished(cx, words, cell.done);
     warn_loose(cx, loose);
     let c = cell.tensor(&scene.network, volume);
     let m = moduli(&c, cx.span)?;

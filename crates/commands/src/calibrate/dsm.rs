@@ -32,9 +32,9 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
             "there is no lower bound: some bond on the way to the ends resists no shear, bend or twist";
         cx.note(Diagnostic::warning(Code::NO_EFFECT, words.bound, text).help("leave `bound yes` out"));
     }
-    warn_unfinished(cx, r.done);
+    warn_unfinished(cx, words, r.done);
     warn_loose(cx, r.loose);
-    warn_untouched(cx, words, &setup, &r);
+    warn_untouched(cx, words, &r);
     line.found.keep(cx.world, numbers(&setup, &r), &[], None);
     if words.fields {
         line.found.keep_motion(cx.world, &scene.places, &r.field);
@@ -56,7 +56,7 @@ pub fn numbers(setup: &Setup, r: &Response) -> [f64; NUMBERS] {
     let lower = r.certain.map_or(f64::NAN, |part| k * (1.0 - part));
     let upper = if setup.linear() { k } else { f64::NAN };
     let bonds: f64 = r.modes.iter().sum();
-    let touching: f64 = r.touching.iter().sum();
+    let touching: f64 = r.energies.iter().sum();
     let share = if touching == 0.0 { 0.0 } else { touching / (bonds + touching) };
     let out = setup.held.left_out[0] as f64;
     [k, r.young, r.poisson, lower, upper, k * setup.delta, setup.delta, r.iterations as f64, share, out]
@@ -64,14 +64,16 @@ pub fn numbers(setup: &Setup, r: &Response) -> [f64; NUMBERS] {
 
 fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) {
     let words = &line.words;
-    let walls = setup.walls.touching(&r.field);
     let end = |end: usize| match words.holds[end] {
-        Hold::Wall => format!("{} at a wall", walls[end]),
+        Hold::Wall => format!("{} at a wall", r.at_walls[end]),
         _ => setup.ends.members[end].len().to_string(),
     };
     let contacts = match setup.contacts.is_empty() {
         true => String::new(),
-        false => format!(", {}", count(setup.contacts.touching(&r.field), "contact")),
+        false if words.friction.is_some() => {
+            format!(", {} ({} slip)", count(r.touching, "contact"), r.slipping)
+        }
+        false => format!(", {}", count(r.touching, "contact")),
     };
     let without = match setup.held.left_out {
         [0, _] => String::new(),
@@ -102,9 +104,8 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
 }
 
 /// Warns of walls that nothing touches.
-fn warn_untouched(cx: &ActCx, words: &Words, setup: &Setup, r: &Response) {
-    let touched = setup.walls.touching(&r.field);
-    if let Some(end) = (0..2).find(|end| words.holds[*end] == Hold::Wall && touched[*end] == 0) {
+fn warn_untouched(cx: &ActCx, words: &Words, r: &Response) {
+    if let Some(end) = (0..2).find(|end| words.holds[*end] == Hold::Wall && r.at_walls[*end] == 0) {
         let text = format!("nothing touches the {} wall: the stiffness is zero", ["low", "high"][end]);
         cx.note(
             Diagnostic::warning(Code::NO_FORCES, words.wall, text)
@@ -141,7 +142,7 @@ fn refuse_bound(words: &Words, setup: &Setup) -> Result<()> {
 
 /// The shares of stretch, shear, bend and twist, of contacts and of walls.
 fn shares(r: &Response) -> String {
-    let all: Vec<f64> = r.modes.iter().chain(&r.touching).copied().collect();
+    let all: Vec<f64> = r.modes.iter().chain(&r.energies).copied().collect();
     let total: f64 = all.iter().sum();
     ["stretch", "shear", "bend", "twist", "contacts", "walls"]
         .iter()

@@ -210,6 +210,10 @@ impl Model {
         match &mut self.kind {
             Kind::Dsm { setup, solved: Some(s), adjoint, .. } => {
                 let u = &s.field;
+                if quantity != Quantity::Poisson && setup.large {
+                    let twice = network.energy_of_large(u, |k, mode| 2.0 * changes[k][mode]);
+                    return Ok(twice.iter().sum::<f64>() / (s.stiffness * setup.delta.powi(2)));
+                }
                 if quantity != Quantity::Poisson {
                     let moved = |k: usize| [network.moved(k, u, None); 2];
                     // 2U where there are bonds alone; with contacts the work of the force at the ends.
@@ -253,10 +257,15 @@ impl Model {
     }
 }
 
-/// What contacts do is not proportional to the load.
+/// What contacts do is not proportional to the load, nor are displacements of any size.
 fn refuse_contacts(setup: &Setup, target: &str, span: Span) -> Result<()> {
     if setup.linear() {
         return Ok(());
+    }
+    if setup.large {
+        let text = format!("`target {target}` is for small displacements of bonds alone");
+        let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+        return Err(d.help("leave `large` and `mu` out, or give K or E as the target").into());
     }
     let text = format!("`target {target}` is for bonds alone, and contacts act here");
     let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);

@@ -5,15 +5,17 @@ use super::touch::{self, Hertz};
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::Vec3;
-use perigrain_bonded::contacts::{Contacts, Walls};
+use perigrain_bonded::contacts::Contacts;
 use perigrain_bonded::dsm::{Stop, relax};
 use perigrain_bonded::ends::{Ends, Held, Hold, affine, poisson};
 use perigrain_bonded::network::Modes;
-use perigrain_bonded::newton::{Body, End};
+use perigrain_bonded::newton::{Body, End, Found};
+use perigrain_bonded::parts::{Carried, Load};
 use perigrain_bonded::periodic::mean_field;
 use perigrain_bonded::precond::Blocks;
 use perigrain_bonded::six::Six;
 use perigrain_bonded::tensor::Moduli;
+use perigrain_bonded::walls::Walls;
 use perigrain_world::{GroupId, World};
 
 /// A body between held ends.
@@ -32,19 +34,27 @@ pub struct Setup {
     pub contacts: Contacts,
     /// Contacts with walls.
     pub walls: Walls,
+    /// Whether displacements are of any size.
+    pub large: bool,
     /// Poisson's ratios of the mean field, in the three directions.
     nu: Vec3,
 }
 
 /// What a load gives.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Response {
     /// Displacements and rotations.
     pub field: Vec<Six>,
     /// Energies of stretch, shear, bend and twist of bonds.
     pub modes: Modes,
     /// Energies of contacts and of walls.
-    pub touching: [f64; 2],
+    pub energies: [f64; 2],
+    /// How many pairs touch.
+    pub touching: usize,
+    /// How many of them slip.
+    pub slipping: usize,
+    /// How many touch the low wall and the high one.
+    pub at_walls: [usize; 2],
     /// K [force/length].
     pub stiffness: f64,
     /// E [pressure].
@@ -125,12 +135,12 @@ impl Setup {
             let repeats = scene.period[d] > 0.0;
             moduli.filter(|_| !repeats && d != words.axis).map_or(0.0, |m| m.poisson[words.axis][d])
         });
-        Ok(Self { ends, held, delta, lengths, area, contacts, walls, nu })
+        Ok(Self { ends, held, delta, lengths, area, contacts, walls, large: words.by_parts(), nu })
     }
 
-    /// Whether forces are proportional to the load: nothing but bonds.
+    /// Whether forces are proportional to the load: nothing but bonds, and small displacements.
     pub fn linear(&self) -> bool {
-        self.contacts.is_empty() && self.walls.is_empty()
+        !self.large && self.contacts.is_empty() && self.walls.is_empty()
     }
 
     /// Solves to a part of the stiffness, from a field or from the affine one.
@@ -143,7 +153,9 @@ impl Setup {
                 *row = std::array::from_fn(|c| if held >> c & 1 == 1 { row[c] } else { 0.0 });
             }
         }
-        let mut out = if self.linear() {
+        let mut out = if words.by_parts() {
+            self.by_parts(scene, words, tol, &start)
+        } else if self.linear() {
             self.by_bonds(scene, words, tol, start)
         } else {
             self.by_newton(scene, words, tol, start)
@@ -168,17 +180,14 @@ impl Setup {
         let energy = answer.energy();
         Response {
             stiffness: 2.0 * energy / self.delta.powi(2),
-            young: 0.0,
-            poisson: 0.0,
             modes: answer.modes,
-            touching: [0.0; 2],
             iterations: answer.solved.iterations,
-            steps: None,
             open: answer.solved.open / energy,
             certain: answer.gap.map(|gap| gap / energy),
             loose: blocks.loose,
             done: answer.solved.done,
             field: answer.field,
+            ..Response::default()
         }
     }
 
@@ -187,40 +196,76 @@ impl Setup {
         Blocks::of_network(&scene.network, &self.held.mask)
     }
 
-    fn by_newton(&self, scene: &Scene, words: &Words, tol: f64, start: Vec<Six>) -> Response {
-        let body = Body {
+    fn body<'a>(&'a self, scene: &'a Scene, words: &Words) -> Body<'a> {
+        Body {
             network: &scene.network,
             contacts: &self.contacts,
             walls: &self.walls,
+            past: None,
             held: &self.held.mask,
             arm: scene.sample(words.axis).mean_radius(),
+        }
+    }
+
+    /// The force between the ends, which agree but for the residual.
+    fn force(&self, words: &Words, walls: &Walls, found: &Found) -> f64 {
+        let pull = |end: usize| -> f64 {
+            match words.holds[end] {
+                Hold::Wall => walls.push(&found.field)[end] * if end == 0 { 1.0 } else { -1.0 },
+                _ => self.ends.members[end].iter().map(|k| found.forces[*k as usize][words.axis]).sum(),
+            }
         };
+        0.5 * (pull(1) - pull(0))
+    }
+
+    /// Displacements of any size, surfaces that slip.
+    fn by_parts(&self, scene: &Scene, words: &Words, tol: f64, whole: &[Six]) -> Response {
+        let load = Load {
+            body: self.body(scene, words),
+            whole,
+            parts: words.parts.map_or(1, |(parts, _)| parts),
+            friction: words.friction.map_or(f64::INFINITY, |(mu, _)| mu),
+            pressed: !words.relaxed,
+            end: End::Part(tol),
+        };
+        let Carried { found, past, walls, steps, .. } = load.carry();
+        let [touching, slipping] = self.contacts.touching(&found.field, Some(&past));
+        Response {
+            stiffness: self.force(words, &walls, &found) / self.delta,
+            modes: scene.network.energy_of_large(&found.field, |_, _| 1.0),
+            energies: [self.contacts.energy(&found.field, Some(&past)), walls.energy(&found.field)],
+            touching,
+            slipping,
+            at_walls: walls.touching(&found.field),
+            steps: Some(steps),
+            open: tol,
+            iterations: found.iterations,
+            loose: found.loose,
+            done: found.done,
+            field: found.field,
+            ..Response::default()
+        }
+    }
+
+    fn by_newton(&self, scene: &Scene, words: &Words, tol: f64, start: Vec<Six>) -> Response {
         let end = match words.method {
             Method::Paper(limits) => End::Residuals(limits),
             Method::Pcg => End::Part(tol),
         };
-        let found = body.relax(start, end);
-        let pull = |end: usize| -> f64 {
-            match words.holds[end] {
-                Hold::Wall => self.walls.push(&found.field)[end] * if end == 0 { 1.0 } else { -1.0 },
-                _ => self.ends.members[end].iter().map(|k| found.forces[*k as usize][words.axis]).sum(),
-            }
-        };
-        // Both ends agree but for the residual.
-        let force = 0.5 * (pull(1) - pull(0));
+        let found = self.body(scene, words).relax(start, end);
         Response {
-            stiffness: force / self.delta,
-            young: 0.0,
-            poisson: 0.0,
+            stiffness: self.force(words, &self.walls, &found) / self.delta,
             modes: scene.network.energy(&found.field),
-            touching: [self.contacts.energy(&found.field), self.walls.energy(&found.field)],
-            iterations: found.iterations,
+            energies: [self.contacts.energy(&found.field, None), self.walls.energy(&found.field)],
+            touching: self.contacts.touching(&found.field, None)[0],
+            at_walls: self.walls.touching(&found.field),
             steps: Some(found.residuals.len() - 1),
             open: tol,
-            certain: None,
+            iterations: found.iterations,
             loose: found.loose,
             done: found.done,
             field: found.field,
+            ..Response::default()
         }
     }
 }

@@ -11,13 +11,13 @@ use super::words::{Map, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::{Vec3, dot};
-use perigrain_bonded::contacts::Walls;
 use perigrain_bonded::ends::Hold;
 use perigrain_bonded::network::Network;
 use perigrain_bonded::six::{Matrix6, Packed, full};
 use perigrain_bonded::ste::{Estimate, Layers};
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_bonded::tensor::Moduli;
+use perigrain_bonded::walls::Walls;
 use perigrain_neigh::list::Reach;
 use perigrain_styles::ActCx;
 use perigrain_styles::near::{all_within, one_image};
@@ -98,7 +98,7 @@ impl Estimator {
             let contacts = touch::contacts(w, scene, group, hertz, gap, true, span)?;
             let mut strain = [[0.0; 3]; 3];
             strain[words.axis][words.axis] = words.strain;
-            out.springs = contacts.springs(&strain);
+            out.springs = contacts.springs(&strain, words.friction.map(|f| f.0));
         }
         Ok(out)
     }

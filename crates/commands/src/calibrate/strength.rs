@@ -30,7 +30,7 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, style: &dyn BondForce) ->
     let setup = Setup::new(cx.world, scene, line.group, words, None, cx.span)?;
     let whole = setup.solve(scene, words, FIRST * words.tol, None);
     let path = broken(&setup, scene, words, style, whole.field.clone(), cx.span)?;
-    warn_unfinished(cx, whole.done && path.done);
+    warn_unfinished(cx, words, whole.done && path.done);
     warn_loose(cx, whole.loose);
     let tested = Tested::new(&setup, &path);
     let numbers = tested.numbers([whole.stiffness, whole.young, whole.poisson]);

@@ -2,6 +2,7 @@
 
 use super::Line;
 use super::scene::Scene;
+use super::words::Words;
 use perigrain_base::diag::{Code, Diagnostic};
 use perigrain_base::math::cformat::general;
 use perigrain_styles::ActCx;
@@ -17,13 +18,21 @@ pub fn moduli(young: f64, poisson: f64) -> String {
 }
 
 /// Warns of a solution that has not come to an end.
-pub fn warn_unfinished(cx: &ActCx, done: bool) {
-    if !done {
-        let text = "the solution has not converged: the stiffness is an upper bound and may be far off";
-        let help =
-            "the stiffnesses of bonds differ by too many orders of magnitude, or `tol` is below rounding";
-        cx.note(Diagnostic::warning(Code::UNSTABLE, cx.span, text).help(help));
+pub fn warn_unfinished(cx: &ActCx, words: &Words, done: bool) {
+    if done {
+        return;
     }
+    let (text, help) = if words.by_parts() {
+        let text = "no balance has been found: the stiffness may be far off";
+        (
+            text,
+            "take more `steps` or less strain; contacts that cannot slip may have no balance, `mu M` lets them",
+        )
+    } else {
+        let text = "the solution has not converged: the stiffness is an upper bound and may be far off";
+        (text, "the stiffnesses of bonds differ by too many orders of magnitude, or `tol` is below rounding")
+    };
+    cx.note(Diagnostic::warning(Code::UNSTABLE, cx.span, text).help(help));
 }
 
 /// Tells of particles that can move without resistance.

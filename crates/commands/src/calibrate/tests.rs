@@ -5,7 +5,7 @@ use super::testing::{Beams, Law, act, act_with};
 use perigrain_world::{Key, World};
 use std::collections::BTreeMap;
 
-fn near(a: f64, b: f64, tolerance: f64) {
+pub fn near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");
 }
 
@@ -26,7 +26,7 @@ fn cells(lattice: &str, edge: f64, [x, y, z]: [i32; 3], boundary: &str) -> World
     w
 }
 
-fn fcc() -> World {
+pub fn fcc() -> World {
     cells("fcc", A, [4; 3], "f f f")
 }
 
@@ -310,7 +310,7 @@ fn contacts_carry_load_beside_bonds() {
 }
 
 /// The word that is to blame, the message, and the help.
-fn refused(w: &World, line: &str, beams: Beams) -> String {
+pub fn refused(w: &World, line: &str, beams: Beams) -> String {
     let d = act(&mut w.clone(), line, beams).expect_err(line).0.remove(0);
     let span = d.span.unwrap_or_default();
     format!("[{}] {} | {}", &line[span.start as usize..span.end as usize], d.message, d.help.join(" "))

@@ -5,8 +5,10 @@ use super::words::Words;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::length;
-use perigrain_bonded::contacts::{Contact, Contacts, Walls};
+use perigrain_bonded::contact::Contact;
+use perigrain_bonded::contacts::Contacts;
 use perigrain_bonded::ends::Hold;
+use perigrain_bonded::walls::Walls;
 use perigrain_neigh::list::{Reach, difference};
 use perigrain_styles::ActCx;
 use perigrain_styles::near::within;
@@ -35,7 +37,7 @@ impl Hertz {
         let asked = match (words.contacts, words.wall) {
             (Some((false, _)), None) => return Ok(None),
             (Some((true, at)), _) => Some(at),
-            (_, wall) => wall,
+            (_, wall) => wall.or(words.friction.map(|(_, at)| at)),
         };
         let probes = cx.values.probes(cx.world)?;
         let types = cx.world.types;

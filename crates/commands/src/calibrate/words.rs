@@ -1,5 +1,7 @@
 //! The words of a `calibrate` line.
 
+use super::conflicts;
+pub use super::kinds::{Map, Method, Quantity, Shape, Solver, Target, Vary};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_bonded::ends::Hold;
 use perigrain_bonded::strength::Avalanche;
@@ -12,79 +14,6 @@ const BREAKING: f64 = 1e-4;
 pub const BREAKING_IN_FITS: f64 = 1e-3;
 /// The part of the load that bonds may lack to break with another one in a fit, if nothing is said.
 const TOGETHER: f64 = 0.005;
-
-/// How the cross-section of a sample is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// The product of both widths.
-    Block,
-    /// π D²/4 with the mean D of both widths.
-    Cylinder,
-    /// Given [length²].
-    Area(f64),
-}
-
-/// How the linear system is solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
-    /// Conjugate gradients from the affine field until the energy is known to the tolerance.
-    Pcg,
-    /// From zero until |r|₂ of the linear system and of the nonlinear one is below these [force].
-    Paper([f64; 2]),
-}
-
-/// What solves for a fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Solver {
-    /// `calibrate dsm`.
-    Dsm,
-    /// `calibrate ste`.
-    Ste,
-    /// `calibrate periodic`.
-    Periodic,
-}
-
-/// What a map shows of the surroundings of each particle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Map {
-    /// K along the three axes if all of the body were so.
-    Stiffness,
-    /// By which part that is below the mean.
-    Deviation,
-}
-
-/// Which number a fit is to reach.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// K.
-    Stiffness,
-    /// E.
-    Young,
-    /// ν.
-    Poisson,
-    /// The largest force over the section.
-    Strength,
-}
-
-/// A number to reach.
-#[derive(Clone, Copy, Debug)]
-pub struct Target {
-    /// Which.
-    pub quantity: Quantity,
-    /// What it is to be.
-    pub value: f64,
-}
-
-/// A coefficient to vary.
-#[derive(Clone, Debug)]
-pub struct Vary {
-    /// The type of bonds.
-    pub kind: u16,
-    /// The coefficient's name.
-    pub name: String,
-    /// The words.
-    pub span: Span,
-}
 
 /// All words, with what they are if they are not said.
 #[derive(Clone, Debug)]
@@ -111,12 +40,20 @@ pub struct Words {
     pub bound: Option<Span>,
     /// How.
     pub method: Method,
+    /// The word `paper`, if it is said.
+    pub paper: Option<Span>,
     /// Cross-section.
     pub shape: Shape,
     /// Whether E is of the length of the body, not of the distance of the ends.
     pub body: bool,
     /// Whether fields are kept.
     pub fields: bool,
+    /// Whether displacements are of any size.
+    pub large: bool,
+    /// Friction between particles, and its word; `None`: they stick.
+    pub friction: Option<(f64, Span)>,
+    /// In how many parts the load is put on, and the word, if it is said.
+    pub parts: Option<(usize, Span)>,
     /// Order of the estimate.
     pub order: usize,
     /// Height of slabs: `None` none, `Some(None)` two diameters.
@@ -150,14 +87,37 @@ const BREAKS: &[&str] = &["until", "most", "avalanche", "together"];
 pub fn keywords(kind: &str) -> Vec<&'static str> {
     match kind {
         "dsm" => {
-            let own = ["rotations", "contacts", "prestress", "tol", "bound", "method", "fields"];
+            let own = [
+                "rotations",
+                "contacts",
+                "prestress",
+                "tol",
+                "bound",
+                "method",
+                "fields",
+                "large",
+                "mu",
+                "steps",
+            ];
             [LOAD, &own].concat()
         }
-        "ste" => [LOAD, &["contacts", "order", "slabs", "map"]].concat(),
+        "ste" => [LOAD, &["contacts", "order", "slabs", "map", "mu"]].concat(),
         "periodic" => vec!["rotations", "tol"],
         "strength" => [LOAD, BREAKS, &["rotations", "tol", "fields", "curve"]].concat(),
         _ => {
-            let own = ["target", "vary", "method", "tol", "rotations", "contacts", "prestress", "order"];
+            let own = [
+                "target",
+                "vary",
+                "method",
+                "tol",
+                "rotations",
+                "contacts",
+                "prestress",
+                "order",
+                "large",
+                "mu",
+                "steps",
+            ];
             [&own, LOAD, BREAKS].concat()
         }
     }
@@ -185,9 +145,13 @@ impl Words {
             },
             bound: None,
             method: Method::Pcg,
+            paper: None,
             shape: Shape::Block,
             body: false,
             fields: false,
+            large: false,
+            friction: None,
+            parts: None,
             order: 2,
             slabs: None,
             map: None,
@@ -207,12 +171,13 @@ impl Words {
             };
             out.keyword(a, name, kind == "fit", types, word.span)?;
         }
-        if let Some(wall) = out.wall.filter(|_| out.strain > 0.0) {
-            let text = "a wall pushes only: it does not follow a strain above 0";
-            let d = Diagnostic::error(Code::CONFLICT, wall, text);
-            return Err(d.help("write a negative strain, or hold the ends with `grip` or `plate`").into());
-        }
+        conflicts::refuse(&out, kind)?;
         Ok(out)
+    }
+
+    /// Whether the load is put on in parts, for displacements of any size.
+    pub fn by_parts(&self) -> bool {
+        self.large || self.friction.is_some()
     }
 
     /// Whether a fit is to reach such a number.
@@ -260,7 +225,13 @@ impl Words {
                     _ => Solver::Periodic,
                 }
             }
-            "method" => self.method = method(a)?,
+            "method" => {
+                self.method = method(a)?;
+                self.paper = (self.method != Method::Pcg).then_some(value);
+            }
+            "large" => self.large = a.flag("large")?,
+            "mu" => self.friction = Some((a.non_negative("the coefficient of friction")?, at)),
+            "steps" => self.parts = Some((a.integer_from(1, "the number of steps")? as usize, at)),
             "until" | "most" | "avalanche" | "together" | "curve" => self.breaking(a, name)?,
             "shape" | "length" | "fields" | "order" | "slabs" | "map" => self.measure(a, name)?,
             "target" => self.targets.push(target(a)?),

@@ -1,0 +1,82 @@
+//! A load put on in parts, for displacements of any size and surfaces that slip: what a contact bears across depends on its way.
+//!
+//! Each part is balanced by Newton's method from where the last one leads.
+
+use super::contacts::Past;
+use super::newton::{Body, End, Found};
+use super::six::Six;
+use super::walls::Walls;
+
+/// A load and how it is put on.
+pub struct Load<'a> {
+    /// The body, with walls where they stand in the end, and without a past.
+    pub body: Body<'a>,
+    /// A field under the whole load: what is held ends there, the rest begins along it.
+    pub whole: &'a [Six],
+    /// How many parts.
+    pub parts: usize,
+    /// Friction between particles, infinite where nothing slips.
+    pub friction: f64,
+    /// Whether forces act already before the load, so that they are balanced first.
+    pub pressed: bool,
+    /// When a part is balanced.
+    pub end: End,
+}
+
+/// A body under the whole load.
+pub struct Carried {
+    /// The balance of the last part; its steps of conjugate gradients are those of all parts.
+    pub found: Found,
+    /// What contacts had gone through before the last part.
+    pub past: Past,
+    /// The walls as they stand.
+    pub walls: Walls,
+    /// Steps of Newton's method.
+    pub steps: usize,
+}
+
+impl Load<'_> {
+    /// Puts the load on.
+    pub fn carry(&self) -> Carried {
+        let still = vec![[0.0; 6]; self.whole.len()];
+        let past = self.body.contacts.unsheared(self.friction, still.clone());
+        let mut out = self.part(&still, 0.0, past);
+        let mut before = still;
+        for part in 1..=self.parts {
+            let start = self.towards(part, &out.found.field, &before);
+            let mut past = out.past;
+            self.body.contacts.pass(&out.found.field, &mut past);
+            let mut next = self.part(&start, part as f64 / self.parts as f64, past);
+            next.found.iterations += out.found.iterations;
+            next.found.done &= out.found.done;
+            next.steps += out.steps;
+            before = out.found.field;
+            out = next;
+        }
+        out
+    }
+
+    /// Balances a part of the load from a field.
+    fn part(&self, start: &[Six], on: f64, past: Past) -> Carried {
+        let walls = Walls { delta: on * self.body.walls.delta, ..self.body.walls.clone() };
+        let body = Body { walls: &walls, past: Some(&past), ..self.body };
+        // Before any load nothing has a force, unless contacts are pressed.
+        let found =
+            if on == 0.0 && !self.pressed { body.still() } else { body.relax(start.to_vec(), self.end) };
+        Carried { steps: found.residuals.len() - 1, found, walls, past }
+    }
+
+    /// Where a field leads that has become of the one before; the first part goes along the whole load's.
+    fn towards(&self, part: usize, field: &[Six], before: &[Six]) -> Vec<Six> {
+        let one = 1.0 / self.parts as f64;
+        let rows = field.iter().zip(before).zip(self.whole).zip(self.body.held);
+        rows.map(|(((u, b), whole), held)| {
+            std::array::from_fn(|c| match held >> c & 1 {
+                1 => part as f64 * one * whole[c],
+                _ if part == 1 => u[c] + one * whole[c],
+                _ => 2.0 * u[c] - b[c],
+            })
+        })
+        .collect()
+    }
+}

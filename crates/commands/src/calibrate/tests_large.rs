@@ -1,0 +1,85 @@
+//! Displacements of any size and contacts that slip, by lines of a deck.
+
+use super::super::testing::scene as world_of;
+use super::testing::{Beams, Law, act_with};
+use super::tests::{fcc, near, refused};
+use std::collections::BTreeMap;
+
+#[test]
+fn a_pair_between_walls_does_not_turn() {
+    let mut w = world_of(
+        "units si\nboundary f f f\natom_style hybrid sphere bond\nregion b block 0 1 0 1 0 1\n\
+         create_box 1 b bond/types 1 extra/bond/per/atom 2\ncreate_atoms 1 single 0.5 0.5 0.5 units box\n\
+         create_atoms 1 single 0.5 0.5 0.501 units box\nset group all diameter 1e-3\n\
+         special_bonds lj 0 1 1 coul 1 1 1\ncreate_bonds single/bond 1 1 2",
+    );
+    w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
+    // Section 10.5 of the page on bonded particles: along one line directions stay, and K is that of small displacements.
+    for words in ["large yes", "mu 0.3 steps 3", "large yes prestress keep"] {
+        let line = format!("calibrate dsm a all strain -0.02 low wall high wall tol 1e-9 {words}");
+        let did = act_with(&mut w, &line, Beams::standard(1), Law::Hertz).unwrap();
+        near(did.numbers[0], 57814.74222, 1e-9);
+        near(did.numbers[5], -2.31258968887, 1e-9);
+        assert!(did.numbers[4].is_nan() && did.notes.is_empty(), "{did:?}");
+        assert!(did.said[0].contains("ends held: 1 at a wall + 1 at a wall"));
+    }
+    let line = "calibrate fit f all target K 57814.74222 vary bond 1 E strain -0.02 low wall high wall tol 1e-8 large yes";
+    let mut start = Beams::standard(1);
+    start.0.insert(1, [0.3e9, 0.2, 0.4e-3]);
+    let did = act_with(&mut w, line, start, Law::Hertz).unwrap();
+    near(did.then[0].split(' ').nth(2).unwrap().parse().unwrap(), 1e9, 1e-6);
+}
+
+#[test]
+fn friction_between_nothing_and_sticking() {
+    let mut w = fcc();
+    w.bonds.weights.lj = [1.0; 3];
+    let mut k = |words: &str| {
+        let line = format!("calibrate dsm a all strain -0.01 tol 1e-5 {words}");
+        let did = act_with(&mut w, &line, Beams::standard(2), Law::Hertz).unwrap();
+        assert!(did.notes.is_empty(), "{words}: {did:?}");
+        (did.numbers[0], did.said[0].clone())
+    };
+    let all = [k("mu 0"), k("mu 0.1"), k("mu 0.1 steps 4"), k("large yes")];
+    assert!(all[0].0 < all[1].0 && all[1].0 < all[3].0, "{all:?}");
+    // The way is the same to a thousandth: all contacts slip more and more in one direction.
+    near(all[2].0, all[1].0, 1e-3);
+    assert!(all[1].1.contains(" slip);") && !all[3].1.contains("slip"), "{all:?}");
+    let mut e = |words: &str| {
+        let line = format!("calibrate ste a all strain -0.01 {words}");
+        act_with(&mut w, &line, Beams::standard(2), Law::Hertz).unwrap().numbers[1]
+    };
+    let (slick, rough, sticks) = (e("mu 0"), e("mu 0.1"), e("mu 1e6"));
+    assert!(slick < rough && rough < sticks && sticks < e(""), "{slick} {rough} {sticks}");
+}
+
+#[test]
+fn words_that_do_not_go_together() {
+    let w = fcc();
+    for (line, wanted) in [
+        (
+            "calibrate dsm a all mu 0.3 contacts no",
+            "[mu] `mu` is about contacts, and `contacts no` leaves them out",
+        ),
+        ("calibrate dsm a all steps 3", "[steps] `steps` is for displacements of any size"),
+        (
+            "calibrate dsm a all large yes bound yes",
+            "[yes] `bound yes` is for small displacements of bonds alone",
+        ),
+        ("calibrate dsm a all large yes method paper", "[paper] `method paper` has small displacements"),
+        ("calibrate dsm a all mu -1", "[-1] "),
+        ("calibrate dsm a all large yes steps 0", "[0] "),
+        ("calibrate dsm a all mu 0.3", "[mu] contacts need the coefficients of Hertz contacts"),
+        (
+            "calibrate strength a all large yes",
+            "[large] `large` does not concern `calibrate strength` | `calibrate dsm` has it",
+        ),
+        (
+            "calibrate fit a all target nu 0.3 vary bond 1 nu large yes",
+            "`target nu` is for small displacements of bonds alone | leave `large` and `mu` out",
+        ),
+    ] {
+        let said = refused(&w, line, Beams::standard(2));
+        assert!(said.contains(wanted), "{line}: {said}");
+    }
+}
