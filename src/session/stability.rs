@@ -150,7 +150,7 @@ impl Session {
     /// A note where no line says how long the skin is, and that of the units has lists of grains hold many times the pairs that can touch.
     pub(super) fn check_skin(&self, span: Span, found: &mut Diagnostics) {
         let (near, p) = (&self.world.settings.neighbor, &self.world.particles);
-        if near.said || !p.style.sphere || p.style.peri || p.len() < MANY {
+        if near.said || !p.style.sphere || p.style.peri || p.len() < MANY || self.all_excluded() {
             return;
         }
         let widest = 2.0 * p.radius.iter().copied().fold(0.0, f64::max);
@@ -168,6 +168,13 @@ impl Session {
             0.25 * widest
         );
         found.push(Diagnostic::note(Code::SUSPICIOUS, span, text).help(remedy));
+    }
+
+    /// Whether `neigh_modify exclude type` leaves no pair that could touch.
+    fn all_excluded(&self) -> bool {
+        let (types, excluded) = (1..=self.world.types as u16, &self.world.settings.neighbor.exclude_types);
+        let out = |a: u16, b: u16| excluded.contains(&(a, b)) || excluded.contains(&(b, a));
+        types.clone().all(|a| types.clone().all(|b| out(a, b)))
     }
 
     /// The largest density and the smallest diameter that the deck has set, for a check that has no particles: no other
