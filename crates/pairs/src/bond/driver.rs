@@ -222,9 +222,15 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
             return false;
         }
         let (index, tags) = (Index::new(&w.particles.tag), &w.particles.tag);
-        let moved: Option<Vec<u32>> =
-            self.tags.iter().map(|id| index.find(*id, tags).map(|place| place as u32)).collect();
-        let Some(moved) = moved else { return false };
+        let mut moved = vec![u32::MAX; tags.len()];
+        par::each((&mut moved[..], &self.tags[..]), |_, (moved, ids)| {
+            for (to, place) in moved.iter_mut().zip(ids.iter().map(|id| index.find(*id, tags))) {
+                *to = place.map_or(u32::MAX, |place| place as u32);
+            }
+        });
+        if moved.contains(&u32::MAX) {
+            return false;
+        }
         self.columns.follow(&moved);
         self.tags.clone_from(tags);
         self.made = Some(now);
