@@ -1,5 +1,7 @@
 //! Bonds as columns, in the order of space, and who they belong to.
 
+mod follow;
+
 use perigrain_base::math::body::{Quat, UNTURNED};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
@@ -71,17 +73,6 @@ fn counted<T: Copy + Default>(
     (starts, out)
 }
 
-/// The numbers of a column in another order; `room` changes places with the column.
-fn rearrange<T: Copy + Send + Sync>(column: &mut Vec<T>, rows: &[u32], room: &mut Vec<T>) {
-    let Some(any) = column.first() else { return };
-    // All of it is written.
-    room.resize(rows.len(), *any);
-    par::each((&mut room[..], rows), |_, (room, rows)| {
-        room.iter_mut().zip(rows).for_each(|(to, row)| *to = column[*row as usize]);
-    });
-    std::mem::swap(column, room);
-}
-
 /// Bonds by type and place, padded to whole groups with dead ones.
 #[derive(Clone, Debug)]
 pub struct Columns<const C: usize> {
@@ -104,6 +95,10 @@ pub struct Columns<const C: usize> {
     /// One more than the highest place of an end.
     pub reach: usize,
     holders: Holders,
+    /// Whether the order of space is that of where particles stand.
+    in_order: bool,
+    /// Whether some have broken since they were put in order.
+    fewer: bool,
 }
 
 /// Who has which bonds.
@@ -111,11 +106,17 @@ pub struct Columns<const C: usize> {
 struct Holders {
     /// For each particle, where its entries begin; one more.
     starts: Vec<u32>,
-    /// Twice the place of a bond, and one more at its second end; ascending.
+    /// Twice the place of a bond, and one more at its second end; by type and place of the partner, which is ascending where bonds stand
+    /// in order.
     entries: Vec<u32>,
 }
 
 impl Holders {
+    #[inline]
+    fn of(&self, particle: usize) -> &[u32] {
+        &self.entries[self.starts[particle] as usize..self.starts[particle + 1] as usize]
+    }
+
     /// Enters the bonds that are alive.
     fn enter(&mut self, ends: &[Vec<u32>; 2], alive: &[f64], particles: usize) {
         let Self { starts, entries } = self;
@@ -157,6 +158,8 @@ impl<const C: usize> Default for Columns<C> {
             own: std::array::from_fn(|_| vec![]),
             reach: 0,
             holders: Holders { starts: vec![0], entries: vec![] },
+            in_order: true,
+            fewer: false,
         }
     }
 }
@@ -183,38 +186,9 @@ impl<const C: usize> Columns<C> {
         }
     }
 
-    /// The same bonds where particles have changed places: `moved[k]` is the new place of the one at `k`. As [`Columns::fill`] with the
-    /// bonds that hold, in the order in which they stand here.
-    pub fn follow(&mut self, moved: &[u32]) {
-        let living: Vec<u32> = self.living().map(|row| row as u32).collect();
-        let mut keys = vec![Key { kind: 0, ends: [0; 2] }; living.len()];
-        par::each((&mut keys[..], &living[..]), |_, (keys, living)| {
-            for (key, row) in keys.iter_mut().zip(living) {
-                let ends = self.pair(*row as usize).map(|place| moved[place]);
-                *key = Key { kind: self.kind(*row as usize), ends };
-            }
-        });
-        let mut rows = self.arrange(&keys);
-        rows.iter_mut().for_each(|row| *row = living[*row as usize]);
-        let mut room = Vec::with_capacity(rows.len());
-        let Self { ends, alive, length, axis, turned, own, holders, .. } = self;
-        par::both(
-            rows.len(),
-            || holders.enter(ends, alive, moved.len()),
-            || {
-                // Column by column: bond by bond, all of them would grow in new memory at once.
-                let numbers = own.iter_mut().chain(axis).chain([length]);
-                numbers.for_each(|column| rearrange(column, &rows, &mut room));
-                rearrange(turned, &rows, &mut vec![]);
-                if turned.iter().all(|turned| *turned == UNTURNED) {
-                    turned.clear();
-                }
-            },
-        );
-    }
-
     /// Makes rows for these bonds: which of them stands in each. Who has which bonds is another matter.
     fn arrange(&mut self, keys: &[Key]) -> Vec<u32> {
+        (self.in_order, self.fewer) = (true, false);
         let reach = keys.iter().map(|key| key.ends[0].max(key.ends[1])).max();
         self.reach = reach.map_or(0, |place| place as usize + 1);
         let (order, mut rows) = (in_order(keys, self.reach), Vec::with_capacity(keys.len() + GROUP));
@@ -257,7 +231,7 @@ impl<const C: usize> Columns<C> {
 
     /// A bond has broken.
     pub fn lose(&mut self, bond: usize) {
-        (self.alive[bond], self.whole[bond / GROUP]) = (0.0, false);
+        (self.alive[bond], self.whole[bond / GROUP], self.fewer) = (0.0, false, true);
     }
 
     /// What the next row tells of its bond.
@@ -288,8 +262,7 @@ impl<const C: usize> Columns<C> {
     /// The bonds of a particle: twice their place, and one more at the second end.
     #[inline]
     pub fn of(&self, particle: usize) -> &[u32] {
-        let Holders { starts, entries } = &self.holders;
-        &entries[starts[particle] as usize..starts[particle + 1] as usize]
+        self.holders.of(particle)
     }
 
     /// The ends of a bond.
@@ -380,9 +353,22 @@ mod tests {
         let keys: Vec<Key> = bonds.iter().map(|b| Key { kind: b.kind, ends: b.ends }).collect();
         again.fill(&keys, 40, |k| bonds[k]);
         assert_eq!(format!("{again:?}"), format!("{new:?}"));
-        // Particles that change places take their bonds along, but for those that have broken.
+        // Particles that change places take their bonds along: who has which, in which order, is as in new columns.
         let moved: Vec<u32> = (0..40).map(|k| (17 * k + 5) % 40).collect();
         let gone = again.pair(7).map(|e| e as u32);
+        let mut whole = sorted.clone();
+        whole.iter_mut().for_each(|b| b.ends = b.ends.map(|e| moved[e as usize]));
+        let (mut followed, fresh) = (again.clone(), Columns::new(&whole, 40));
+        followed.follow(&moved);
+        assert!(!followed.in_order() && followed.ends != fresh.ends);
+        let held = |c: &Columns<0>, place: usize| -> Vec<[u64; 2]> {
+            let bond = |e: &u32| [c.length[*e as usize / 2].to_bits(), u64::from(e & 1)];
+            c.of(place).iter().map(bond).collect()
+        };
+        assert!((0..40).all(|place| held(&followed, place) == held(&fresh, place)));
+        followed.put_in_order();
+        assert_eq!(format!("{followed:?}"), format!("{fresh:?}"));
+        // But for those that have broken.
         again.lose(7);
         again.follow(&moved);
         let mut left = sorted.clone();

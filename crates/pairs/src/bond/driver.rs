@@ -333,6 +333,11 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         if anew || (self.made != Some(stand(w)) && !self.follow(w)) {
             self.lay_out(w)?;
         }
+        // Who adds up over bonds does so in the order of space, whatever has been before.
+        let sums = t.energy || t.atom_energy || t.virial || w.bonds.counts_losses;
+        if sums && !self.columns.in_order() {
+            self.columns.put_in_order();
+        }
         let periods = periods(w)?;
         let p = &mut w.particles;
         let none: (&[Vec3], &[Quat]) = (&[], &[]);

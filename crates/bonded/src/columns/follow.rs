@@ -1,0 +1,98 @@
+//! Bonds go with their particles: a run puts these in the order of space again and again.
+
+use super::{Columns, GROUP, Key};
+use perigrain_base::math::body::UNTURNED;
+use perigrain_base::par::{self, Shared};
+
+impl<const C: usize> Columns<C> {
+    /// The same bonds where particles have changed places: `moved[k]` is the new place of the one at `k`. Each particle has its bonds in
+    /// the order of [`Columns::fill`] with the bonds that hold; the rows themselves stay as they are until they are put in order, which
+    /// takes several times as long and makes no difference to who adds up by particle. Those of which some have broken are put in order.
+    pub fn follow(&mut self, moved: &[u32]) {
+        for places in &mut self.ends {
+            par::each(&mut places[..], |_, places: &mut [u32]| {
+                places.iter_mut().for_each(|place| *place = moved[*place as usize]);
+            });
+        }
+        self.in_order = false;
+        if self.fewer {
+            return self.put_in_order_among(moved.len());
+        }
+        let largest = |places: &Vec<u32>| places.iter().fold(0, |most: u32, place| most.max(*place));
+        let reach = self.ends.iter().map(largest).max();
+        self.reach = if self.rows() == 0 { 0 } else { reach.map_or(0, |place| place as usize + 1) };
+        let mut from = vec![0; moved.len()];
+        moved.iter().enumerate().for_each(|(k, to)| from[*to as usize] = k);
+        let old = &self.holders;
+        let mut starts = vec![0; moved.len() + 1];
+        for (k, from) in from.iter().enumerate() {
+            starts[k + 1] = starts[k] + old.of(*from).len() as u32;
+        }
+        let mut entries = vec![0; old.entries.len()];
+        let all = Shared::new(&mut entries);
+        par::for_chunks(moved.len(), |chunk| {
+            for place in chunk {
+                let range = starts[place] as usize..starts[place + 1] as usize;
+                // SAFETY: the ranges of different particles have nothing in common.
+                let own = unsafe { all.get(range) };
+                own.copy_from_slice(old.of(from[place]));
+                let partner = |entry: &u32| {
+                    let (bond, end) = (*entry as usize / 2, *entry as usize & 1);
+                    (self.kind(bond), self.ends[1 - end][bond], *entry)
+                };
+                // Few, and nearly in order.
+                own.sort_unstable_by_key(partner);
+            }
+        });
+        (self.holders.starts, self.holders.entries) = (starts, entries);
+    }
+
+    /// Whether bonds stand in the order of space.
+    pub fn in_order(&self) -> bool {
+        self.in_order
+    }
+
+    /// Puts the bonds that hold in the order of space, as [`Columns::fill`] with them does.
+    pub fn put_in_order(&mut self) {
+        self.put_in_order_among(self.particles());
+    }
+
+    fn put_in_order_among(&mut self, particles: usize) {
+        let living: Vec<u32> = self.living().map(|row| row as u32).collect();
+        let mut keys = vec![Key { kind: 0, ends: [0; 2] }; living.len()];
+        par::each((&mut keys[..], &living[..]), |_, (keys, living)| {
+            for (key, row) in keys.iter_mut().zip(living) {
+                let ends = self.pair(*row as usize).map(|place| place as u32);
+                *key = Key { kind: self.kinds[*row as usize / GROUP], ends };
+            }
+        });
+        let mut rows = self.arrange(&keys);
+        rows.iter_mut().for_each(|row| *row = living[*row as usize]);
+        let mut room = Vec::with_capacity(rows.len());
+        let Self { ends, alive, length, axis, turned, own, holders, .. } = self;
+        par::both(
+            rows.len(),
+            || holders.enter(ends, alive, particles),
+            || {
+                // Column by column: bond by bond, all of them would grow in new memory at once.
+                let numbers = own.iter_mut().chain(axis).chain([length]);
+                numbers.for_each(|column| rearrange(column, &rows, &mut room));
+                rearrange(turned, &rows, &mut vec![]);
+                if turned.iter().all(|turned| *turned == UNTURNED) {
+                    turned.clear();
+                }
+            },
+        );
+    }
+}
+
+/// The numbers of a column in another order; `room` changes places with the column.
+fn rearrange<T: Copy + Send + Sync>(column: &mut Vec<T>, rows: &[u32], room: &mut Vec<T>) {
+    let Some(any) = column.first() else { return };
+    // All of it is written.
+    room.resize(rows.len(), *any);
+    par::each((&mut room[..], rows), |_, (room, rows)| {
+        room.iter_mut().zip(rows).for_each(|(to, row)| *to = column[*row as usize]);
+    });
+    std::mem::swap(column, room);
+}
