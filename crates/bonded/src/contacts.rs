@@ -46,6 +46,11 @@ impl Contacts {
         self.list.is_empty()
     }
 
+    /// Whether some bear forces across.
+    pub fn rough(&self) -> bool {
+        self.list.iter().any(|c| c.tangential > 0.0)
+    }
+
     /// A past of which nothing has happened yet.
     pub fn unsheared(&self, friction: f64, field: Vec<Six>) -> Past {
         Past { friction, field, sheared: vec![[0.0; 3]; self.list.len()] }

@@ -4,7 +4,7 @@ use super::Line;
 use super::found::NUMBERS;
 use super::scene::Scene;
 use super::setup::{Response, Setup};
-use super::telling::{self, count, percent, warn_loose, warn_unfinished};
+use super::telling::{self, count, percent, warn_loose, warn_sticking, warn_unfinished};
 use super::touch::Hertz;
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -35,6 +35,7 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     warn_unfinished(cx, words, r.done);
     warn_loose(cx, r.loose);
     warn_untouched(cx, words, &r);
+    warn_sticking(cx, words, &setup, &r);
     line.found.keep(cx.world, numbers(&setup, &r), &[], None);
     if words.fields {
         line.found.keep_motion(cx.world, &scene.places, &r.field);
@@ -55,9 +56,7 @@ pub fn numbers(setup: &Setup, r: &Response) -> [f64; NUMBERS] {
     let k = r.stiffness;
     let lower = r.certain.map_or(f64::NAN, |part| k * (1.0 - part));
     let upper = if setup.linear() { k } else { f64::NAN };
-    let bonds: f64 = r.modes.iter().sum();
-    let touching: f64 = r.energies.iter().sum();
-    let share = if touching == 0.0 { 0.0 } else { touching / (bonds + touching) };
+    let share = r.share();
     let out = setup.held.left_out[0] as f64;
     [k, r.young, r.poisson, lower, upper, k * setup.delta, setup.delta, r.iterations as f64, share, out]
 }

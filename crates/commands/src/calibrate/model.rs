@@ -8,6 +8,7 @@ use super::scene::Scene;
 use super::setup::{Response, Setup};
 use super::ste::{Estimated, Estimator};
 use super::strength::{self, Tested, broken};
+use super::telling::warn_sticking;
 use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -18,7 +19,7 @@ use perigrain_bonded::pcg::solve;
 use perigrain_bonded::periodic::Cell;
 use perigrain_bonded::shares::change;
 use perigrain_bonded::six::{Matrix6, Six};
-use perigrain_styles::BondForce;
+use perigrain_styles::{ActCx, BondForce};
 use perigrain_world::World;
 
 /// A body with its latest solution.
@@ -84,6 +85,13 @@ impl Model {
             Kind::Dsm { setup, .. } => setup.linear(),
             Kind::Periodic { .. } => true,
             Kind::Ste { body, .. } => body.linear(),
+        }
+    }
+
+    /// Tells of contacts that bear much and cannot slip.
+    pub fn tell(&self, cx: &ActCx, words: &Words) {
+        if let Kind::Dsm { setup, solved: Some(r), .. } = &self.kind {
+            warn_sticking(cx, words, setup, r);
         }
     }
 

@@ -75,6 +75,14 @@ pub struct Response {
     pub done: bool,
 }
 
+impl Response {
+    /// The share of contacts and walls in the energy.
+    pub fn share(&self) -> f64 {
+        let touching: f64 = self.energies.iter().sum();
+        if touching == 0.0 { 0.0 } else { touching / (self.modes.iter().sum::<f64>() + touching) }
+    }
+}
+
 /// The ends of a body, with walls where the outermost surfaces are, and the lengths of E and of the body.
 ///
 /// # Errors

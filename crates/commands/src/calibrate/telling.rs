@@ -2,6 +2,7 @@
 
 use super::Line;
 use super::scene::Scene;
+use super::setup::{Response, Setup};
 use super::words::Words;
 use perigrain_base::diag::{Code, Diagnostic};
 use perigrain_base::math::cformat::general;
@@ -33,6 +34,22 @@ pub fn warn_unfinished(cx: &ActCx, words: &Words, done: bool) {
         (text, "the stiffnesses of bonds differ by too many orders of magnitude, or `tol` is below rounding")
     };
     cx.note(Diagnostic::warning(Code::UNSTABLE, cx.span, text).help(help));
+}
+
+/// Contacts that bear more than this part of the energy decide on the stiffness.
+const MUCH: f64 = 0.1;
+
+/// Tells of contacts that bear much and cannot slip.
+pub fn warn_sticking(cx: &ActCx, words: &Words, setup: &Setup, r: &Response) {
+    let meant = words.friction.is_some() || words.paper.is_some() || !setup.contacts.rough();
+    let share = r.energies[0] / (r.modes.iter().sum::<f64>() + r.energies.iter().sum::<f64>());
+    if meant || share.is_nan() || share < MUCH {
+        return;
+    }
+    let text = format!("contacts bear {:.0} % of the energy, and none of them slips", 100.0 * share);
+    let help =
+        "say `mu M` with the friction of the particles: where surfaces slip the body may be far softer";
+    cx.note(Diagnostic::note(Code::SUSPICIOUS, cx.span, text).help(help));
 }
 
 /// Tells of particles that can move without resistance.

@@ -54,6 +54,35 @@ fn friction_between_nothing_and_sticking() {
 }
 
 #[test]
+fn contacts_that_bear_much_and_stick_are_told() {
+    let mut w = fcc();
+    w.bonds.weights.lj = [1.0; 3];
+    let mut soft = Beams::standard(2);
+    soft.0.values_mut().for_each(|b| b[0] = 1e7);
+    let mut notes = |words: &str, law: Law| {
+        let line = format!("calibrate {words}");
+        act_with(&mut w, &line, soft.clone(), law).unwrap().notes
+    };
+    let stuck = "contacts bear ";
+    let said = notes("dsm a all strain -0.02", Law::Hertz);
+    assert!(
+        said.len() == 1 && said[0].starts_with(stuck) && said[0].contains(" none of them slips"),
+        "{said:?}"
+    );
+    assert!(
+        notes("fit a all strain -0.02 target K 3e6 vary bond 1 E", Law::Hertz)[0]
+            .starts_with("contacts bear ")
+    );
+    for quiet in [
+        "dsm a all strain -0.02 mu 0.3",
+        "dsm a all strain -0.02 contacts no",
+        "dsm a all strain -0.02 method paper",
+    ] {
+        assert_eq!(notes(quiet, Law::Hertz), Vec::<String>::new(), "{quiet}");
+    }
+}
+
+#[test]
 fn words_that_do_not_go_together() {
     let w = fcc();
     for (line, wanted) in [
