@@ -198,6 +198,11 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
     let inside = extent.is_none_or(|extent| {
         p.image.wrap(domain, &mut p.x, &extent.out);
         domain.shrink(extent.corners);
+        if domain.tilted() && domain.shrinks() {
+            // A box that leans stands elsewhere when its lower face has moved.
+            carry(domain, p);
+            p.image.wrap(domain, &mut p.x, &(0..n).collect::<Vec<_>>());
+        }
         // Across fixed faces nobody has been wrapped: there the corners still are those of all.
         extent.corners.iter().all(|corner| domain.keeps_upright(corner))
     });

@@ -155,8 +155,8 @@ def differences(theirs, ours):
         return REFUSED if "signal" not in theirs else errors
     if errors[0] and "signal" in errors[0][0] and not errors[1]:
         return REFUSED
-    # LAMMPS asks for a wider rim of ghosts, which perigrain has none of.
-    if errors[0] and "exceeds ghost atom range" in errors[0][0] and not errors[1]:
+    # LAMMPS asks for longer lists or a wider rim of ghosts, which perigrain does not need.
+    if errors[0] and re.search("exceeds ghost atom range|longer than pairwise cutoff|cutoff > max neighbor cutoff", errors[0][0]) and not errors[1]:
         return REFUSED
     if errors[0] or errors[1]:
         return errors

@@ -315,6 +315,11 @@ impl Domain {
         }
     }
 
+    /// Whether some face goes with the particles.
+    pub fn shrinks(&self) -> bool {
+        self.boundary.0.iter().flatten().any(|face| matches!(face, Face::Shrink | Face::ShrinkMin))
+    }
+
     /// Whether a point is inside the box, lower faces inclusive.
     pub fn holds(&self, x: &[f64; 3]) -> bool {
         let x = self.upright(x);
