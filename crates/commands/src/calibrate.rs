@@ -83,7 +83,7 @@ const DOC: &str = "\
     taken away, `prestress keep` leaves it. K is F/Δ then.\n\n\
     `large yes` lets displacements and turns be of any size: bonds are those of `bpm/beam` with the stiffnesses told (springs where these resist stretch alone), contacts push along the line of centres as it \
     is, and what they bear across counts from where they came to touch. K is F/Δ under the strain S, as a slow run has it: bodies whose struts bend (inverse opals) are 3 to 6 % off at 2 % without it. \
-    `mu M` does the same and lets surfaces slip where they bear M times the normal force: agglomerates in which contacts carry much are twice too stiff without it, a tenth of a percent off with it. Walls stay without friction. \
+    `mu M` does the same and lets surfaces slip where they bear M times the normal force: agglomerates in which contacts carry much are up to twice too stiff without it, within a percent of a run with it. Walls stay without friction. \
     The load is put on in N `steps` (default 1), each balanced by Newton's method; K of an agglomerate with 80 % of its contacts slipping changed by 0.05 % from 1 to 20. Contacts that cannot slip at all may have no balance, which is told; so are contacts that bear more than a tenth of the energy where no `mu` is said.\n\n\
     **ste**, the estimate of the tensor: order 0 lets everybody follow the strain, 1 and 2 are those of the paper (default 2), N from 3 on takes N sweeps. No \
     boundary conditions: on bodies with free faces 5 to 15 % off. `slabs` puts layers of two diameters (or H) one behind the other; walls are put in series. Contacts \

@@ -8,6 +8,9 @@ impl<const C: usize> Columns<C> {
     /// The same bonds where particles have changed places: `moved[k]` is the new place of the one at `k`. Each particle has its bonds in
     /// the order of [`Columns::fill`] with the bonds that hold; the rows themselves stay as they are until they are put in order, which
     /// takes several times as long and makes no difference to who adds up by particle. Those of which some have broken are put in order.
+    ///
+    /// # Panics
+    /// If `moved` has no new place for each particle.
     pub fn follow(&mut self, moved: &[u32]) {
         for places in &mut self.ends {
             par::each(&mut places[..], |_, places: &mut [u32]| {
@@ -16,11 +19,10 @@ impl<const C: usize> Columns<C> {
         }
         self.in_order = false;
         if self.fewer {
-            return self.put_in_order_among(moved.len());
+            return self.put_in_order();
         }
-        let largest = |places: &Vec<u32>| places.iter().fold(0, |most: u32, place| most.max(*place));
-        let reach = self.ends.iter().map(largest).max();
-        self.reach = if self.rows() == 0 { 0 } else { reach.map_or(0, |place| place as usize + 1) };
+        let reach = |places: &Vec<u32>| places.iter().copied().max().map_or(0, |place| place as usize + 1);
+        self.reach = self.ends.iter().map(reach).max().unwrap_or(0);
         let mut from = vec![0; moved.len()];
         moved.iter().enumerate().for_each(|(k, to)| from[*to as usize] = k);
         let old = &self.holders;
@@ -54,10 +56,7 @@ impl<const C: usize> Columns<C> {
 
     /// Puts the bonds that hold in the order of space, as [`Columns::fill`] with them does.
     pub fn put_in_order(&mut self) {
-        self.put_in_order_among(self.particles());
-    }
-
-    fn put_in_order_among(&mut self, particles: usize) {
+        let particles = self.particles();
         let living: Vec<u32> = self.living().map(|row| row as u32).collect();
         let mut keys = vec![Key { kind: 0, ends: [0; 2] }; living.len()];
         par::each((&mut keys[..], &living[..]), |_, (keys, living)| {

@@ -1,12 +1,13 @@
 //! Words of a `calibrate` line that do not go together.
 
-use super::words::Words;
+use super::words::{Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 
 /// Refuses them.
 ///
 /// # Errors
-/// Walls that would have to pull, friction without contacts, what goes with small displacements only, and `steps` where there are none.
+/// Walls that would have to pull, friction without contacts, what the method of a fit does not have, what goes with small displacements
+/// only, and `steps` where displacements are small.
 pub fn refuse(words: &Words, kind: &str) -> Result<()> {
     if let Some(wall) = words.wall.filter(|_| words.strain > 0.0) {
         let text = "a wall pushes only: it does not follow a strain above 0";
@@ -18,6 +19,14 @@ pub fn refuse(words: &Words, kind: &str) -> Result<()> {
     }
     if kind == "ste" {
         return Ok(());
+    }
+    if words.solver != Solver::Dsm {
+        // An estimate knows slip, a cell none of these.
+        let slip = words.friction.filter(|_| words.solver == Solver::Periodic);
+        let stray = [slip.map(|f| f.1), words.large, words.parts.map(|p| p.1)].into_iter().flatten().next();
+        let Some(at) = stray else { return Ok(()) };
+        let text = "this method of a fit has small displacements, and a periodic cell no contacts";
+        return conflict(at, text, "leave the word out, or take `method dsm`");
     }
     if !words.by_parts() {
         let Some((_, at)) = words.parts else { return Ok(()) };

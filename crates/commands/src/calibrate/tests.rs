@@ -223,9 +223,8 @@ fn two_types_meet_two_targets() {
     assert!(did.unwrap().said.iter().any(|l| l.contains("leave open: E of type 1 ^")));
 }
 
-// Section 10.5 of the page: two spheres with the standard bond between rigid planes.
-#[test]
-fn a_pair_between_walls() {
+/// Two spheres of 1 mm with a bond along z.
+pub fn two_spheres() -> World {
     let mut w = world_of(
         "units si\nboundary f f f\natom_style hybrid sphere bond\nregion b block 0 1 0 1 0 1\n\
          create_box 1 b bond/types 1 extra/bond/per/atom 2\ncreate_atoms 1 single 0.5 0.5 0.5 units box\n\
@@ -233,6 +232,13 @@ fn a_pair_between_walls() {
          special_bonds lj 0 1 1 coul 1 1 1\ncreate_bonds single/bond 1 1 2",
     );
     w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
+    w
+}
+
+// Section 10.5 of the page: two spheres with the standard bond between rigid planes.
+#[test]
+fn a_pair_between_walls() {
+    let mut w = two_spheres();
     for (strain, f, k) in [
         (-0.005, 0.315090744409, 31509.07444),
         (-0.01, 0.858953424153, 42947.67121),

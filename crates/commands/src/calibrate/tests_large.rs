@@ -1,19 +1,11 @@
 //! Displacements of any size and contacts that slip, by lines of a deck.
 
-use super::super::testing::scene as world_of;
 use super::testing::{Beams, Law, act_with};
-use super::tests::{fcc, near, refused};
-use std::collections::BTreeMap;
+use super::tests::{fcc, near, refused, two_spheres};
 
 #[test]
 fn a_pair_between_walls_does_not_turn() {
-    let mut w = world_of(
-        "units si\nboundary f f f\natom_style hybrid sphere bond\nregion b block 0 1 0 1 0 1\n\
-         create_box 1 b bond/types 1 extra/bond/per/atom 2\ncreate_atoms 1 single 0.5 0.5 0.5 units box\n\
-         create_atoms 1 single 0.5 0.5 0.501 units box\nset group all diameter 1e-3\n\
-         special_bonds lj 0 1 1 coul 1 1 1\ncreate_bonds single/bond 1 1 2",
-    );
-    w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
+    let mut w = two_spheres();
     // Section 10.5 of the page on bonded particles: along one line directions stay, and K is that of small displacements.
     for words in ["large yes", "mu 0.3 steps 3", "large yes prestress keep"] {
         let line = format!("calibrate dsm a all strain -0.02 low wall high wall tol 1e-9 {words}");
@@ -102,6 +94,18 @@ fn words_that_do_not_go_together() {
         (
             "calibrate strength a all large yes",
             "[large] `large` does not concern `calibrate strength` | `calibrate dsm` has it",
+        ),
+        (
+            "calibrate fit a all target K 1e6 vary bond 1 E large yes method ste",
+            "[large] this method of a fit has small displacements",
+        ),
+        (
+            "calibrate fit a all target K 1e6 vary bond 1 E mu 0.3 steps 2 method ste",
+            "[steps] this method of a fit has small displacements",
+        ),
+        (
+            "calibrate fit a all target K 1e9 vary bond 1 E mu 0.3 method periodic",
+            "[mu] this method of a fit has small displacements, and a periodic cell no contacts",
         ),
         (
             "calibrate fit a all target nu 0.3 vary bond 1 nu large yes",

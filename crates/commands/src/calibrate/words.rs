@@ -48,8 +48,8 @@ pub struct Words {
     pub body: bool,
     /// Whether fields are kept.
     pub fields: bool,
-    /// Whether displacements are of any size.
-    pub large: bool,
+    /// The word `large`, if displacements are of any size.
+    pub large: Option<Span>,
     /// Friction between particles, and its word; `None`: they stick.
     pub friction: Option<(f64, Span)>,
     /// In how many parts the load is put on, and the word, if it is said.
@@ -149,7 +149,7 @@ impl Words {
             shape: Shape::Block,
             body: false,
             fields: false,
-            large: false,
+            large: None,
             friction: None,
             parts: None,
             order: 2,
@@ -177,7 +177,7 @@ impl Words {
 
     /// Whether the load is put on in parts, for displacements of any size.
     pub fn by_parts(&self) -> bool {
-        self.large || self.friction.is_some()
+        self.large.is_some() || self.friction.is_some()
     }
 
     /// Whether a fit is to reach such a number.
@@ -229,7 +229,7 @@ impl Words {
                 self.method = method(a)?;
                 self.paper = (self.method != Method::Pcg).then_some(value);
             }
-            "large" => self.large = a.flag("large")?,
+            "large" => self.large = a.flag("large")?.then_some(at),
             "mu" => self.friction = Some((a.non_negative("the coefficient of friction")?, at)),
             "steps" => self.parts = Some((a.integer_from(1, "the number of steps")? as usize, at)),
             "until" | "most" | "avalanche" | "together" | "curve" => self.breaking(a, name)?,
