@@ -6,7 +6,7 @@ import tempfile
 
 # Relative to the largest magnitude of a column, positions and velocities to what is usual in the scene: round-off grows in contacts.
 LIMIT = 1e-6
-REFUSED = "both refuse it"
+REFUSED = "LAMMPS refuses it, and so does perigrain or need not"
 ROW = re.compile(r"^ +\d+ +\d+( +[-+0-9.enaif]+)+ *$")
 
 
@@ -74,7 +74,7 @@ def run(folder, *words):
 
 
 def compare(deck, name, lammps, perigrain, ours=None):
-    """None, or what differs; then the deck stays. REFUSED where both programs refuse the deck. `ours`: what perigrain runs
+    """None, or what differs; then the deck stays. REFUSED where LAMMPS refuses the deck, and perigrain does too or has no need to. `ours`: what perigrain runs
     instead, of the same rows; files but dumps at the end are not compared then."""
     cut = ours or deck
     with open(name, "w") as file:

@@ -40,7 +40,7 @@ def main():
         elif found:
             differ += 1
             print(f"{what} {seed}: {found}", flush=True)
-    print(f"{differ} of {int(last) - int(first) + 1} decks differ, both programs refuse {refused}")
+    print(f"{differ} of {int(last) - int(first) + 1} decks differ, LAMMPS refuses {refused}")
     return differ != 0
 
 

@@ -1,7 +1,7 @@
 //! One contact of two spheres: Hertz' force, Mindlin's stiffness across it, and slip.
 //!
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2, has small displacements, fixed directions and no slip; what a contact is
-//! like [`after`](Contact::after) a past follows the directions and slips.
+//! like `after` a past follows the directions and slips.
 
 use super::network::halves;
 use super::six::Six;
