@@ -129,17 +129,17 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
     match cmd.name.text.as_str() {
         "pair_style" | "pair_coeff" | "peri_modify" => {
             if let Some(node) = &mut graph.pair {
-                say(&mut node.lines, Said { words, lattice: w.lattice.clone() });
+                say(&mut node.lines, Said { words, lattice: w.lattice.clone() }, |a, b| a.words == b.words);
             }
         }
         "bond_style" | "bond_coeff" => {
             if let Some(node) = &mut graph.bond {
-                say(&mut node.lines, Said { words, lattice: w.lattice.clone() });
+                say(&mut node.lines, Said { words, lattice: w.lattice.clone() }, |a, b| a.words == b.words);
             }
         }
         "fix" | "fix_modify" => {
             if let Some(node) = graph.fixes.iter_mut().find(|f| f.id == id) {
-                say(&mut node.lines, words.join(" "));
+                say(&mut node.lines, words.join(" "), |a, b| a == b);
             }
         }
         _ => {}
@@ -147,8 +147,8 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
 }
 
 /// A line said once more counts where it was said last.
-fn say<T: PartialEq>(lines: &mut Vec<T>, line: T) {
-    lines.retain(|old| *old != line);
+fn say<T>(lines: &mut Vec<T>, line: T, same: impl Fn(&T, &T) -> bool) {
+    lines.retain(|old| !same(old, &line));
     lines.push(line);
 }
 

@@ -46,14 +46,16 @@ impl Session {
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
         // What contacts remember belongs to the scene before, not to the snapshot before.
-        let contacts = self.world.contacts.clone();
+        let mut contacts = self.world.contacts.clone();
         let outcome = verlet::look(&mut plan, &mut self.world, |w| {
             // Snapshots meet particles in the order of their creation.
             w.fall_back();
             let left = std::mem::replace(&mut w.contacts, contacts.clone());
             let shown = reel.next(w)?;
-            if shown.is_none() {
-                w.contacts = left;
+            match shown {
+                // Whom the snapshot has deleted nobody remembers from now on.
+                Some(_) => contacts.clone_from(&w.contacts),
+                None => w.contacts = left,
             }
             // Reading has set the counter; the run as a whole goes from `first` to `last`.
             let c = &mut w.clock;

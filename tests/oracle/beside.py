@@ -145,7 +145,7 @@ def crosswise(top, lammps, perigrain, read=None):
                 file.write(deck)
             said.append(run(f"{top}/{program}", *words, f"{top}/read.in")[0])
     found = [differences(said[0], other) for other in said[1:]]
-    return next((f"reading data: {f}" for f in found if f), None)
+    return next((f if f == REFUSED else f"reading data: {f}" for f in found if f), None)
 
 
 def differences(theirs, ours):
@@ -155,8 +155,8 @@ def differences(theirs, ours):
         return REFUSED if "signal" not in theirs else errors
     if errors[0] and "signal" in errors[0][0] and not errors[1]:
         return REFUSED
-    # LAMMPS asks for longer lists or a wider rim of ghosts, which perigrain does not need.
-    if errors[0] and re.search("exceeds ghost atom range|longer than pairwise cutoff|cutoff > max neighbor cutoff", errors[0][0]) and not errors[1]:
+    # LAMMPS asks for longer lists, a wider rim of ghosts, or averages of this very step, which perigrain does not need.
+    if errors[0] and re.search("exceeds ghost atom range|longer than pairwise cutoff|cutoff > max neighbor cutoff|not computed at compatible time", errors[0][0]) and not errors[1]:
         return REFUSED
     if errors[0] or errors[1]:
         return errors

@@ -69,13 +69,17 @@ def outputs(r, flat):
     return [part for line in lines for part in line.split("\n")]
 
 
+# Columns of whole numbers.
+WHOLE = ("elapsed", "elaplong", "nbuild", "ndanger")
+
+
 def thermo(r, lines):
     known = ["elapsed", "elaplong", "dt", "time", "temp", "press", "pe", "ke", "etotal", "evdwl", "ecoul", "epair", "ebond", "emol", "elong", "enthalpy", "vol", "density", "lx", "ly", "lz", "xlo", "xhi", "yhi", "zlo", "xy", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz",
              "c_ke", "v_ken", "c_com[*]", "c_com[1]", "c_red[*]", "c_red[2]", "v_vec[3]", "nbuild", "ndanger", "imp", "cella", "cellgamma", "fmax", "fnorm", "bonds", "part", "timeout"]
     known = [w for w in known if w not in ("imp", "part", "timeout", "bonds")]
     known += [f"f_{line.split()[1]}[1]" for line in lines if line.startswith("fix time") and "[*]" in line]
     style = r.choice(["one", "multi", "yaml"] + ["custom step " + " ".join(r.sample(known, r.randint(2, 14)))] * 6)
-    modify = r.choice(["", " line multi", " line yaml", " line one", " norm yes", " format float %16.9f", " format int %9d", " format float %20.13g", " format 1 %012d", " format -1 %.4f" if "custom" in style else "", " colname -1 Last", " colname 1 Schritt"])
+    modify = r.choice(["", " line multi", " line yaml", " line one", " norm yes", " format float %16.9f", " format int %9d", " format float %20.13g", " format 1 %012d" if style != "multi" else "", " format -1 %.4f" if "custom" in style and style.split()[-1] not in WHOLE else "", " colname -1 Last", " colname 1 Schritt"])
     return [f"thermo_style {style}", f"thermo_modify lost ignore{modify}", f"thermo {r.choice(['5', '7', '10', 'v_when', '100'])}"]
 
 
@@ -83,10 +87,13 @@ def output(r):
     """A deck that writes all sorts of things."""
     flat = r.random() < 0.25
     sides = f"{r.choice('pm')} {r.choice('pm')} {'p' if flat else r.choice('pm')}"
-    deck = [f"units {r.choice(['lj', 'lj', 'si', 'cgs', 'micro', 'nano', 'real', 'metal', 'electron'])}", f"dimension {2 if flat else 3}", "atom_style sphere", "atom_modify map array sort 0 0", f"boundary {sides}", "newton off", "comm_modify vel yes",
+    units = r.choice(['lj', 'lj', 'si', 'cgs', 'micro', 'nano', 'real', 'metal', 'electron'])
+    # Electron volts are much beside grams per mole: grains would fly across the box within a step.
+    k = 0.005 if units == "metal" else 50
+    deck = [f"units {units}", f"dimension {2 if flat else 3}", "atom_style sphere", "atom_modify map array sort 0 0", f"boundary {sides}", "newton off", "comm_modify vel yes",
             f"region b block 0 6 0 6 {'-0.5 0.5' if flat else '0 6'} units box", "create_box 3 b"]
     deck += [f"create_atoms {r.choice([1, 2, 2, 3])} single {u(r, 0.5, 5.5)} {u(r, 0.5, 5.5)} {0 if flat else u(r, 0.5, 5.5)} units box" for _ in range(r.randint(3, 25))]
-    deck += ["set group all diameter 0.8 density 1.3", "set type 2 diameter 0.5", f"velocity all set 1 {u(r, -1, 1)} {0 if flat else 0.3} units box", "velocity all ramp vx -1 1 y 0 6 sum yes units box", "pair_style gran/hooke 50 NULL 1 NULL 0 0", "pair_coeff * *", "neighbor 2.0 nsq",
+    deck += ["set group all diameter 0.8 density 1.3", "set type 2 diameter 0.5", f"velocity all set 1 {u(r, -1, 1)} {0 if flat else 0.3} units box", "velocity all ramp vx -1 1 y 0 6 sum yes units box", f"pair_style gran/hooke {k} NULL 1 NULL 0 0", "pair_coeff * *", "neighbor 2.0 nsq",
              "timestep 0.004", "fix 1 all nve/sphere", "fix ad all addforce 0.2 v_push 0", *(["fix e2 all enforce2d"] if flat else []), "group odd id 1:30:2", "region half block INF 3 INF INF INF INF units box", "group late dynamic all region half every 5",
              "variable push equal 0.3*sin(step*0.05)", "variable each atom x*0.3-vy+0.1*id", "variable bin atom floor(x)+1", "variable wide atom radius*2", "variable ken equal c_ke+step*0.01", "variable when equal stride(0,100,3)+2*(step>100)", f"variable vec vector [1.5,{u(r, 0, 9)},-2]",
              "compute ke all ke", "compute com odd com", "compute ea all ke/atom", "compute near all coord/atom cutoff 0.5", "compute pid all property/atom id type", "compute pa all property/atom x vx", "compute pl all pair/local dist", "compute pr all property/local natom1 natom2",

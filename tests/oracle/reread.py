@@ -34,6 +34,9 @@ def reread(r):
     whole = r.choice([bodies, grains, grains, mixed])(r)
     at = next(k for k, line in enumerate(whole) if line.startswith("run ") and int(line.split()[1]) > 0)
     deck = [line for line in whole[:at] if not (line.startswith("fix ") and any(word in line for word in TIMED)) and not line.startswith("run_style")]
+    # LAMMPS takes the way of a wall from one snapshot to the next for that of a step.
+    if any(line.startswith("region ") and (" move " in line or " rotate " in line) for line in deck):
+        deck = [line for line in deck if "wall/gran/region" not in line]
     kept = {line.split()[1] for line in deck if line.startswith("fix ")}
     deck = [line for line in deck if not (line.startswith("fix_modify") and line.split()[1] not in kept)]
     steps = r.choice([20, 40])

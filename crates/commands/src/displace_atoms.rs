@@ -187,6 +187,10 @@ mod tests {
         assert_eq!(w.particles.x[1], [0.53045676016735688, 2.9973536265535996, 0.2]);
         assert_eq!(w.particles.image[1], [0, -1, 0]);
         assert_eq!(w.particles.x[8], [4.1414832941915289, 0.0019450954077509675, 0.2]);
+        // Farther than the box is long.
+        let mut w = bar();
+        more(&mut w, "displace_atoms all move 0 -7.3 0 units box");
+        assert_eq!((w.particles.x[0][1], w.particles.image[0]), (1.7000000000000002, [0, -3, 0]));
     }
 
     #[test]

@@ -274,10 +274,10 @@ impl Granular {
     }
 
     /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
-    /// behind; `setup`: the evaluation was that of a run's setup.
+    /// behind; `setup`: the evaluation was that of a run's setup, which has kept what it made of springs if `stored`.
     #[must_use]
-    pub fn again(&self, setup: bool) -> Self {
-        Self { spring: self.spring.again(setup), ..*self }
+    pub fn again(&self, setup: bool, stored: bool) -> Self {
+        Self { spring: self.spring.again(setup, stored), ..*self }
     }
 
     /// Hands the law to a loop, each frequent form in a place of its own where the form is written out: the loop is

@@ -1,7 +1,7 @@
 //! What touching grains do to each other at a moment, by the rules of any granular pair style.
 
 use super::granular::force::grains;
-use super::granular::reach::{largest, reaching, refuse_giants};
+use super::granular::reach::{reaching, refuse_giants, touching};
 use super::shared::{built_at, find_frozen, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
@@ -74,7 +74,8 @@ impl ContactProbe {
             None => self.list(w)?,
         };
         let rules = match ask {
-            Ask::Felt { setup } => &self.rules.again(setup),
+            // As `Force` does, of grains that are not plastic.
+            Ask::Felt { setup } => &self.rules.again(setup, w.settings.lammps() && self.own != Own::Mdr),
             Ask::Acting | Ask::Idle => &self.rules,
         };
         self.sweep.run(&list, &grains, rules, &mut memory, still);
@@ -84,13 +85,12 @@ impl ContactProbe {
 
     /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
     fn within_cutoffs(&self, w: &World) -> Vec<Pair> {
-        let largest = largest(w);
+        let touching = touching(w);
         let mut wanted = Wanted::new(w.types);
         for a in 1..=w.types as u16 {
             for b in a..=w.types as u16 {
-                let touch = largest[usize::from(a) - 1] + largest[usize::from(b) - 1];
                 match self.wanted.get(a, b) {
-                    Some(Reach::Touch) => wanted.set(a, b, Reach::Fixed(touch)),
+                    Some(Reach::Touch) => wanted.set(a, b, Reach::Fixed(touching(a, b))),
                     Some(fixed) => wanted.set(a, b, fixed),
                     None => {}
                 }
@@ -115,11 +115,11 @@ impl Probe for ContactProbe {
 
     fn cutoff(&self, w: &World) -> Option<f64> {
         // With what contacts that hold span beyond touch.
-        let (spans, largest) = (reaching(&self.rules, &self.wanted, w), largest(w));
+        let (spans, touching) = (reaching(&self.rules, &self.wanted, w), touching(w));
         let types = 1..=w.types as u16;
         let pairs = types.clone().flat_map(|a| types.clone().map(move |b| (a, b)));
         let reach = pairs.filter_map(|(a, b)| {
-            let touch = largest[usize::from(a) - 1] + largest[usize::from(b) - 1];
+            let touch = touching(a, b);
             spans.get(a, b).map(|reach| match reach {
                 Reach::Touch => touch,
                 Reach::Beyond(gap) => touch + gap,

@@ -235,12 +235,13 @@ impl Domain {
             if x[d] < self.lo[d] {
                 x[d] += l;
                 image[d] = image[d].saturating_sub(1);
-                x[d] = x[d].max(self.lo[d]);
-                if x[d] < self.lo[d] || x[d] - self.lo[d] > l {
+                if x[d] < self.lo[d] {
                     let k = ((x[d] - self.lo[d]) / l).floor();
                     x[d] -= k * l;
                     image[d] = image[d].saturating_add(k as i32);
                 }
+                // By rounding, at most.
+                x[d] = x[d].max(self.lo[d]);
             }
             if x[d] >= self.hi[d] {
                 x[d] -= l;
@@ -360,8 +361,9 @@ mod tests {
     #[test]
     fn what_is_wrapped_lies_inside_and_unwraps_to_where_it_was() {
         let mut random = ParkMiller::new(5);
-        for tilt in [[1.5, 0.0, 0.0], [-1.5, 1.2, 0.9], [0.0, 0.0, -1.0], [1e-300, 0.0, 0.0]] {
-            let domain = leaning(tilt, [Face::Periodic; 3]);
+        let tilts = [[1.5, 0.0, 0.0], [-1.5, 1.2, 0.9], [0.0, 0.0, -1.0], [1e-300, 0.0, 0.0]];
+        for tilt in tilts.map(Some).into_iter().chain([None]) {
+            let domain = Domain { tilt, ..leaning([0.0; 3], [Face::Periodic; 3]) };
             for _ in 0..300 {
                 let start = [0, 1, 2].map(|_| 20.0 * random.uniform() - 10.0);
                 let (mut x, mut image) = (start, [0; 3]);

@@ -2,6 +2,7 @@
 
 use super::World;
 use super::contacts::{PLASTIC, mirror, turn_plastic};
+use super::index::Index;
 use std::collections::BTreeMap;
 
 impl World {
@@ -46,6 +47,24 @@ impl World {
         order.sort_unstable_by_key(|&k| rank[k]);
         self.line_up(&order);
         *self.particles.rank = Vec::new();
+    }
+
+    /// Makes contacts of particles that have gone forgotten, between runs: who comes later with the id of one of them is somebody else.
+    pub fn forget_touches(&mut self) {
+        let (contacts, walls) = (&mut self.contacts, &mut self.wall_contacts);
+        if contacts.is_empty() && walls.is_empty() {
+            return;
+        }
+        let tags = &self.particles.tag;
+        let index = Index::new(tags);
+        let here = |tag: u32| index.find(tag, tags).is_some();
+        let same = |_: &mut [f64]| {};
+        for c in contacts.values_mut() {
+            c.rename(|[a, b]| (here(a) && here(b)).then_some(([a, b], false)), same);
+        }
+        for c in walls.values_mut() {
+            c.rename(|[a, part]| here(a).then_some(([a, part], false)), same);
+        }
     }
 
     /// Gives every particle its place in storage + 1 as id; contacts and bonds follow.
@@ -99,12 +118,32 @@ fn left_after(marked: &[bool]) -> Vec<usize> {
 mod tests {
     use super::*;
     use crate::Key;
+    use crate::contacts::Contacts;
 
     #[test]
     fn holes_are_filled_from_the_end() {
         let marked = [false, true, false, true, false, true];
         // By hand: 5 goes (swapped into 1, itself marked), then 4 fills hole 1, then 3 goes.
         assert_eq!(left_after(&marked), [0, 4, 2]);
+    }
+
+    #[test]
+    fn contacts_of_who_has_gone_are_forgotten() {
+        let mut w = World::default();
+        (1..=3).for_each(|tag| w.particles.push(tag, 1, [f64::from(tag); 3]));
+        let own = Key::new("own");
+        let two = |keys: [[u32; 2]; 2]| Contacts { keys: keys.to_vec(), width: 1, history: vec![0.5, 0.25] };
+        w.contacts.insert(own, two([[1, 2], [2, 3]]));
+        w.wall_contacts.insert(own, two([[1, 3], [3, 0]]));
+        w.delete(&[false, false, true], false);
+        w.particles.push(3, 1, [0.0; 3]);
+        w.particles.tag[2] = 4;
+        w.forget_touches();
+        assert_eq!(
+            w.contacts.get(own).map(|c| (&c.keys[..], &c.history[..])),
+            Some((&[[1, 2]][..], &[0.5][..]))
+        );
+        assert_eq!(w.wall_contacts.get(own).map(|c| &c.keys[..]), Some(&[[1, 3]][..]));
     }
 
     #[test]

@@ -87,6 +87,7 @@ pub(super) fn enter(w: &mut World, s: &Snapshot, list: &[Particle], wish: &Wish)
     let left = gone.iter().filter(|g| **g).count();
     if left > 0 {
         w.delete(&gone, false);
+        w.forget_touches();
     }
     let here = Index::new(&w.particles.tag);
     let known: Vec<Option<usize>> = list.iter().map(|p| here.find(p.tag, &w.particles.tag)).collect();

@@ -1,5 +1,6 @@
 //! How far types of grains reach for each other.
 
+use crate::shared::find_frozen;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
 use perigrain_contact::driver::Rules;
@@ -47,13 +48,32 @@ pub fn refuse_giants(w: &World, wanted: &Wanted, skin: f64) -> Result<()> {
 }
 
 /// The largest radius of each type (index type − 1).
-pub fn largest(w: &World) -> Vec<f64> {
+fn largest(w: &World) -> Vec<f64> {
+    largest_of(w, |_| true)
+}
+
+fn largest_of(w: &World, counts: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut largest = vec![0.0_f64; w.types];
-    for (kind, r) in w.particles.kind.iter().zip(&w.particles.radius) {
+    for (i, (kind, r)) in
+        w.particles.kind.iter().zip(&w.particles.radius).enumerate().filter(|(i, _)| counts(*i))
+    {
         let of_type = &mut largest[usize::from(*kind) - 1];
         *of_type = of_type.max(*r);
     }
     largest
+}
+
+/// How far apart grains of two types are at most as they touch. Frozen ones (`fix freeze`) do not meet each other, as in LAMMPS' cutoffs.
+pub fn touching(w: &World) -> impl Fn(u16, u16) -> f64 {
+    let mut frozen = vec![];
+    find_frozen(w, &mut frozen);
+    let rests = |i: usize| frozen.get(i) == Some(&true);
+    let (resting, moving) = (largest_of(w, rests), largest_of(w, |i| !rests(i)));
+    move |a, b| {
+        let [a, b] = [a, b].map(|kind| usize::from(kind) - 1);
+        let moved = moving[a] + moving[b];
+        moved.max(resting[a] + moving[b]).max(moving[a] + resting[b])
+    }
 }
 
 /// How far types reach for each other, with what contacts that hold span beyond touch.
