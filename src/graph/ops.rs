@@ -288,7 +288,8 @@ fn hold(w: &mut World) {
     rebuild.seen = Seen::now(*w.travel, 0.0);
     rebuild.corners = w.domain.as_ref().map(|d| [d.lo, d.hi]);
     rebuild.tilt = w.domain.as_ref().and_then(|d| d.tilt).unwrap_or_default();
-    rebuild.unmoved = p.x == p.x0;
+    // Nobody at all has not moved either.
+    rebuild.unmoved = !p.x0.is_empty() && p.x == p.x0;
     if rebuild.unmoved {
         rebuild.held = Vec::new();
     } else {

@@ -119,6 +119,19 @@ fn the_first_row_shows_what_the_last_one_showed() {
 }
 
 #[test]
+fn a_scene_from_which_all_have_gone_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let again = "pair_style gran/hooke/history 200 NULL 5 NULL 0.5 1\npair_coeff * *\nfix 1 all nve/sphere\n";
+    let deck = format!(
+        "atom_style sphere\nregion b block 0 9 0 9 0 9\ncreate_box 1 b\ncreate_atoms 1 single 5 5 5\n{again}\
+         fix e all evaporate 1 5 b 4711\nrun 3\nunfix e\nrun 2\nwrite_restart DIR/a"
+    );
+    run(folder.path(), &deck, false);
+    let (w, _) = run(folder.path(), &format!("read_restart DIR/a\n{again}run 3"), false);
+    assert_eq!((w.n(), w.clock.step), (0, 8));
+}
+
+#[test]
 fn other_declarations_compute_forces_anew_and_say_so() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{BLOCK}{BLOCK_AGAIN}run 10\nwrite_restart DIR/a"), false);

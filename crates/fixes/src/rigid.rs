@@ -55,7 +55,7 @@ impl Style for Rigid {
                    when a run begins after something has changed; with `reinit no` only once, so that what was done to the particles \
                    between runs is undone. `infile` gives mass, centre, inertia xx yy zz xy xz yz, velocity, angular momentum and image \
                    counts of some bodies, one line each behind the number of lines, and means `reinit no`.\n\n\
-                   Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) over 6 degrees of freedom each (LAMMPS counts less where components are turned off). Array, a row for each body: centre, \
+                   Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) of components that are on, over as many degrees of freedom and Boltzmann's constant (torques by the body's own axes). Array, a row for each body: centre, \
                    velocity, force, torque, image counts (3 columns each). The forces that hold bodies together count in \
                    pressures, unless `fix_modify ID virial no`. In the setup of a run LAMMPS leaves out the forces of fixes that stand below this \
                    one, so that its first half kick lacks them; perigrain does so under `compat lammps` only. Temperatures count the freedom of single particles; LAMMPS \
@@ -217,6 +217,8 @@ struct Keys {
     bodies: Numbers,
     /// The virial of the first half of a step.
     virial: Numbers,
+    /// Each particle's part of it: xx yy zz and xy xz yz.
+    virials: [Vectors; 2],
     /// The number of each particle's body.
     body: Numbers,
     /// The mass of each particle's body.
@@ -230,7 +232,8 @@ impl Keys {
         let bodies = bodies_key(style, id);
         let [virial, mass] = ["virial", "contact mass"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
         let (body, place) = (body_column(style, id), Key::new(&format!("{style}/{id}/place")));
-        Self { bodies, virial, body, mass, place }
+        let virials = ["virial xx", "virial xy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
+        Self { bodies, virial, virials, body, mass, place }
     }
 }
 
@@ -302,7 +305,7 @@ impl Fix for Declared {
         let keys = self.keys;
         [keys.bodies, keys.virial].into_iter().for_each(|key| drop(w.memo.remove(key)));
         [keys.body, keys.mass].into_iter().for_each(|key| w.columns.remove(key));
-        w.columns.remove(keys.place);
+        [keys.place, keys.virials[0], keys.virials[1]].into_iter().for_each(|key| w.columns.remove(key));
     }
 
     fn shape(&self) -> Shape {
@@ -359,7 +362,7 @@ impl Fix for Declared {
                         | KIND,
                 )
                 .write(X | V | OMEGA | SLOTS)
-                .keep(MEMO)
+                .keep(MEMO | field::COLUMNS)
         };
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
             me.advance(w, t, &mut crew);

@@ -164,7 +164,7 @@ impl Task<'_> {
     }
 
     fn binned(&self) -> bool {
-        !matches!(self.spec.what, What::Type | What::Value(_))
+        self.spec.what.binned()
     }
 
     /// The number of each particle before compression, limit and discarding; NaN for those that have none.
@@ -187,6 +187,7 @@ impl Task<'_> {
             }
             let bin = match &self.spec.what {
                 What::Type => return f64::from(p.kind[i]),
+                What::Molecule => return f64::from(p.molecule[i]),
                 What::Value(_) => return self.value.map_or(0.0, |v| whole(v.atom(w, i))),
                 _ => self.bin(d, layout, p.x[i], w.settings.lammps()),
             };
@@ -264,7 +265,7 @@ impl Task<'_> {
         let layers = bins.layers;
         let all: usize = match &spec.what {
             What::Type => w.types,
-            What::Value(_) => raw.iter().fold(1.0, |a: f64, b| a.max(*b)) as usize,
+            What::Molecule | What::Value(_) => raw.iter().fold(1.0, |a: f64, b| a.max(*b)) as usize,
             What::Bins(axes) => layers[..axes.len()].iter().map(|l| l.count).product(),
             What::Sphere(s) => s.count,
             What::Cylinder(_, s) => layers[0].count * s.count,

@@ -8,7 +8,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Chunking, Doc, SealCx, Shape, Style, Wants};
-use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, REGIONS, SLOTS, X};
+use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, MOLECULE, REGIONS, SLOTS, X};
 use perigrain_world::{SlotId, World};
 
 /// The style.
@@ -20,7 +20,7 @@ impl Style for ChunkAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group chunk/atom bin/1d|bin/2d|bin/3d|bin/sphere|bin/cylinder|type|c_ID|f_ID|v_name … [keyword value …]",
+            syntax: "compute ID group chunk/atom bin/1d|bin/2d|bin/3d|bin/sphere|bin/cylinder|type|molecule|c_ID|f_ID|v_name … [keyword value …]",
             summary: "Numbers particles into chunks, for computes and fixes that work chunk by chunk.",
             text: "Per-atom vector: the chunk of each particle from 1 to Nchunk, 0 for none.\n\n\
                    - `bin/1d dim origin delta`, `bin/2d` and `bin/3d` with two or three of these: layers of thickness \
@@ -28,17 +28,17 @@ impl Style for ChunkAtom {
                    coordinate). The last axis given varies fastest.\n\
                    - `bin/sphere x y z rmin rmax n`: n shells. `bin/cylinder dim origin delta c1 c2 rmin rmax n`: layers \
                    along an axis, varying fastest, times n rings.\n\
-                   - `type`; `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, `v_name`: a value per particle, rounded towards zero. \
-                   With `compress yes` particles whose value is below 1 form chunks like all others, as in \
+                   - `type`; `molecule`, the molecule ID; `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, `v_name`: a value per particle, rounded towards zero. \
+                   With `compress yes` particles whose value or molecule is below 1 form chunks like all others, as in \
                    LAMMPS; else they are outside all chunks.\n\n\
-                   Keywords: `region ID`; `nchunk once|every` counts chunks at the first or at every use (once for types, \
+                   Keywords: `region ID`; `nchunk once|every` counts chunks at the first or at every use (once for types and, without a region, molecules, \
                    and for bins where the box cannot change); `limit 0` or `limit N max|exact`; `ids once|nfreq|every`: \
                    when particles are numbered, `nfreq` at the first step of a window of `fix ave/chunk`; `compress yes` \
                    leaves out numbers without particles; `discard yes|no|mixed`: whether those outside all chunks belong \
                    to none or to the nearest (`mixed`: to the nearest where bins end at the box); `bound dim lo hi` for \
                    layers; `pbc yes`: minimum image distances for spheres and cylinders; `units box|lattice|reduced` \
-                   (lattice). A `fix ave/chunk`, or a `fix ave/time` of rows of chunks, holds their number during its windows. `molecule` is refused: \
-                   particles have none. Under `-compat lammps` `mixed` drops what is above the last layer \
+                   (lattice). A `fix ave/chunk`, or a `fix ave/time` of rows of chunks, holds their number during its windows. \
+                   Under `-compat lammps` `mixed` drops what is above the last layer \
                    also where layers end at the box, as LAMMPS 22Jul2025 does. LAMMPS 22Jul2025 ignores or crashes on `limit` together with `compress`; here it \
                    does what LAMMPS' manual says.",
             example: "compute cc all chunk/atom bin/1d z lower 0.1 units reduced",
@@ -84,8 +84,10 @@ impl Compute for Declared {
             What::Value(r) => Some(cx.reading(r, Wants::PerAtom, stage, when)?),
             _ => None,
         };
-        let access =
-            Needs::new().read(X | MASK | KIND | BOX | COLUMNS | REGIONS).write(SLOTS).keep(MEMO | COLUMNS);
+        let access = Needs::new()
+            .read(X | MASK | KIND | MOLECULE | BOX | COLUMNS | REGIONS)
+            .write(SLOTS)
+            .keep(MEMO | COLUMNS);
         let op = StepOp::new(format!("compute {}", spec.id), stage, access, move |w: &mut World, t| {
             let region = match &spec.region {
                 None => None,

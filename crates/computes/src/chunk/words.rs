@@ -18,8 +18,17 @@ pub enum What {
     Cylinder(Axis, Shells),
     /// The type.
     Type,
+    /// The molecule ID.
+    Molecule,
     /// A value per particle.
     Value(ValueRef),
+}
+
+impl What {
+    /// Whether chunks are places.
+    pub fn binned(&self) -> bool {
+        !matches!(self, What::Type | What::Molecule | What::Value(_))
+    }
 }
 
 /// What happens to particles outside all chunks.
@@ -119,7 +128,7 @@ impl Spec {
             Units::Lattice => cx.world.lattice.spacing,
             _ => [1.0; 3],
         };
-        let binned = !matches!(what, What::Type | What::Value(_));
+        let binned = what.binned();
         match &mut what {
             What::Bins(axes) => axes.iter_mut().for_each(|a| a.scale(scale, o.bound)),
             What::Sphere(shells) => shells.scale(scale),
@@ -146,6 +155,7 @@ impl Spec {
         let once = o.once.unwrap_or(match what {
             _ if o.compress => false,
             What::Type => true,
+            What::Molecule => o.region.is_none(),
             What::Value(_) => false,
             _ => fixed || o.units == Units::Reduced,
         });
@@ -223,9 +233,11 @@ fn read_what(args: &mut Args, cx: &BuildCx) -> Result<What> {
             Ok(What::Cylinder(axis, Shells { flat: true, ..shells }))
         }
         "type" => Ok(What::Type),
+        "molecule" if cx.world.particles.style.molecules => Ok(What::Molecule),
         "molecule" => {
-            Err(Diagnostic::error(Code::NOT_SUPPORTED, word.span, "particles have no molecule in perigrain")
-                .help("number bodies with `compute fragment/atom` and name that compute, with `compress yes`")
+            let text = "particles of this atom_style belong to no molecules";
+            Err(Diagnostic::error(Code::CONFLICT, word.span, text)
+                .help("`fix ID all property/atom mol` gives them molecule IDs; bodies of bonds are numbered by `compute fragment/atom`, whose c_ID may stand here with `compress yes`")
                 .into())
         }
         _ => Err(args.unknown(word, STYLES)),

@@ -10,9 +10,16 @@ use perigrain_base::math::vec3::{SIX, Vec3, add, cross, dot, sub};
 use perigrain_styles::matter::Masses;
 use perigrain_world::Images;
 
-/// Positions, velocities, spins and radii, number of the body, place in it.
-pub type Columns<'a> =
-    (&'a mut [Vec3], &'a mut [Vec3], Option<(&'a mut [Vec3], &'a [f64])>, &'a [f64], &'a [Vec3]);
+/// Positions, velocities, spins and radii, number of the body, place in it, and where each particle's part of the virial goes, if
+/// somebody asks for that.
+pub type Columns<'a> = (
+    &'a mut [Vec3],
+    &'a mut [Vec3],
+    Option<(&'a mut [Vec3], &'a [f64])>,
+    &'a [f64],
+    &'a [Vec3],
+    Option<&'a mut [[f64; 6]]>,
+);
 
 /// Half the virial of the forces that hold bodies together, and the square of the longest way.
 pub type Came = ([f64; 6], f64);
@@ -44,13 +51,11 @@ impl Follow<'_> {
         unsafe { Form::here().run(Chunk { follow: self, start, columns }) }
     }
 
-    /// −x F of one particle along [`SIX`], F being what holds it beside other forces; `old`: place and velocity before.
-    fn held(&self, holds: &Holds, i: usize, old: &[Vec3; 2], v: Vec3, total: &mut [f64; 6]) {
+    /// Half of x F of one particle along [`SIX`], F being what holds it beside other forces; `old`: place and velocity before.
+    fn held(&self, holds: &Holds, i: usize, old: &[Vec3; 2], v: Vec3) -> [f64; 6] {
         let (m, x) = (holds.masses.get(i), add(old[0], self.edges.shift_of(self.image[i])));
         let hold: Vec3 = std::array::from_fn(|d| m * (v[d] - old[1][d]) / holds.half - holds.f[i][d]);
-        for (s, (a, c)) in total.iter_mut().zip(SIX) {
-            *s += 0.5 * x[a] * hold[c];
-        }
+        SIX.map(|(a, c)| 0.5 * x[a] * hold[c])
     }
 }
 
@@ -91,7 +96,7 @@ impl Chunk<'_> {
     /// Where the bodies of so many particles are, if all have one, spin, have crossed no face, and nobody asks what holds them.
     #[inline(always)]
     fn plain<const N: usize>(&self, from: usize) -> Option<[*mut f64; N]> {
-        let Self { follow, start, columns: (.., turning, number, _) } = self;
+        let Self { follow, start, columns: (_, _, turning, number, ..) } = self;
         let number = number[from..].first_chunk::<N>().filter(|_| follow.holds.is_none())?;
         let mut at = [std::ptr::null_mut(); N];
         for l in 0..N {
@@ -111,7 +116,7 @@ impl Chunk<'_> {
     /// The processor must have what the form needs.
     #[inline(always)]
     unsafe fn group<const N: usize, V: Lanes<N>>(&mut self, from: usize, poses: &[*mut f64; N]) -> V {
-        let (x, v, turning, _, place) = &mut self.columns;
+        let (x, v, turning, _, place, _) = &mut self.columns;
         let rows = from..from + N;
         let (x, v, place) = (&mut x[rows.clone()], &mut v[rows.clone()], &place[rows.clone()]);
         let mut at = [0; N];
@@ -149,7 +154,7 @@ impl Chunk<'_> {
     /// As [`Chunk::group`].
     #[inline(always)]
     unsafe fn one<F: Four>(&mut self, k: usize, (total, farthest): &mut Came) {
-        let Self { follow, start, columns: (x, v, turning, number, place) } = self;
+        let Self { follow, start, columns: (x, v, turning, number, place, virials) } = self;
         let Some(pose) = follow.poses.get((number[k] as usize).wrapping_sub(1)) else { return };
         let old = [x[k], v[k]];
         // SAFETY: passed on.
@@ -166,7 +171,11 @@ impl Chunk<'_> {
             *farthest = largest(*farthest, dot(way, way));
         }
         if let Some(holds) = &follow.holds {
-            follow.held(holds, *start + k, &old, v[k], total);
+            let own = follow.held(holds, *start + k, &old, v[k]);
+            (0..6).for_each(|c| total[c] += own[c]);
+            if let Some(virials) = virials {
+                virials[k] = own;
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use super::pass::{POSE, Part, Pass};
 use super::{COLUMNS, Declared, Keys};
 use perigrain_base::math::body::{apply_transposed, matrix};
 use perigrain_base::math::real::largest;
-use perigrain_base::math::vec3::{dot, sub};
+use perigrain_base::math::vec3::sub;
 use perigrain_base::par;
 use perigrain_plan::Tick;
 use perigrain_styles::matter::{self, Masses};
@@ -23,6 +23,13 @@ pub struct Crew {
     /// Places of the bodies.
     poses: Vec<[f64; POSE]>,
     keys: Keys,
+}
+
+/// Half the virial of the forces that hold bodies together.
+struct Held {
+    total: [f64; 6],
+    /// Each particle's part, where somebody asks for that.
+    atoms: Vec<[f64; 6]>,
 }
 
 impl Crew {
@@ -63,9 +70,15 @@ impl Declared {
     pub fn advance(&self, w: &mut World, t: &Tick, crew: &mut Crew) {
         self.move_bodies(w, t, crew, Part::First);
         let tally = t.virial && self.virial;
-        let virial = self.follow(w, t, crew, true, tally);
+        let held = self.follow(w, t, crew, true, tally);
         if tally {
-            w.memo.insert(crew.keys.virial, virial.to_vec());
+            w.memo.insert(crew.keys.virial, held.total.to_vec());
+        }
+        if !held.atoms.is_empty() {
+            for (d, key) in crew.keys.virials.into_iter().enumerate() {
+                let own = held.atoms.iter().map(|v| [v[3 * d], v[3 * d + 1], v[3 * d + 2]]);
+                *w.columns.vector(key, held.atoms.len()) = own.collect();
+            }
         }
     }
 
@@ -74,13 +87,26 @@ impl Declared {
     pub fn finish_step(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
         self.move_bodies(w, t, crew, if t.setup { Part::Forces } else { Part::Second });
         let tally = t.virial && self.virial;
-        let virial = self.follow(w, t, crew, false, tally);
+        let held = self.follow(w, t, crew, false, tally);
         if tally {
             let before = w.memo.remove(crew.keys.virial).filter(|_| !t.setup);
             for (k, total) in w.tally.fixes.iter_mut().enumerate() {
                 // In setup the other half of the step is taken to be alike.
-                *total += virial[k] + before.as_ref().map_or(virial[k], |v| v[k]);
+                *total += held.total[k] + before.as_ref().map_or(held.total[k], |v| v[k]);
             }
+        }
+        if !held.atoms.is_empty() {
+            let [diagonal, others] =
+                crew.keys.virials.map(|key| w.columns.get_vector(key).filter(|_| !t.setup));
+            let before = |i: usize| {
+                let rows = diagonal.and_then(|c| c.get(i)).zip(others.and_then(|c| c.get(i)));
+                rows.map_or(held.atoms[i], |([a, b, c], [d, e, f])| [*a, *b, *c, *d, *e, *f])
+            };
+            for (i, (own, now)) in w.tally.atom_fixes.iter_mut().zip(&held.atoms).enumerate() {
+                let before = before(i);
+                (0..6).for_each(|k| own[k] += now[k] + before[k]);
+            }
+            crew.keys.virials.into_iter().for_each(|key| w.columns.remove(key));
         }
         self.publish(w, t, slot, &self.load(w));
     }
@@ -123,7 +149,7 @@ impl Declared {
 
     /// Velocities and spins of the particles from those of their bodies, places too where they `move`; where it is
     /// asked for, half the virial of the forces that hold the bodies together.
-    fn follow(&self, w: &mut World, t: &Tick, crew: &Crew, moving: bool, tally: bool) -> [f64; 6] {
+    fn follow(&self, w: &mut World, t: &Tick, crew: &Crew, moving: bool, tally: bool) -> Held {
         let half = half(w, t);
         let edges = w.edges();
         let p = &mut w.particles;
@@ -135,14 +161,16 @@ impl Declared {
         let follow = Follow { poses: &crew.poses, image: &p.image, edges, moving, holds };
         // Points do not turn.
         let turning = p.style.sphere.then(|| (&mut p.omega[..n], &p.radius[..n]));
-        let columns = (&mut p.x[..n], &mut p.v[..n], turning, &number[..n], &place[..n]);
+        let mut atoms = vec![[0.0; 6]; if tally && t.atom_virial { n } else { 0 }];
+        let virials = (!atoms.is_empty()).then_some(&mut atoms[..]);
+        let columns = (&mut p.x[..n], &mut p.v[..n], turning, &number[..n], &place[..n], virials);
         let both = |a: Came, b: Came| (matter::add(a.0, b.0), largest(a.1, b.1));
         let came = par::reduce_each(columns, |start, columns| follow.chunk(start, columns), both);
-        let (virial, farthest) = came.unwrap_or_default();
+        let (total, farthest) = came.unwrap_or_default();
         if moving {
             w.travel.went(farthest.sqrt());
         }
-        virial
+        Held { total, atoms }
     }
 
     /// Velocities and spins of the particles as their bodies have them now, outside of a run.
@@ -155,20 +183,31 @@ impl Declared {
 
     /// The values that decks can read.
     fn publish(&self, w: &mut World, t: &Tick, slot: SlotId, bodies: &[Body]) {
-        let flat = w.settings.two_dimensional;
+        let (flat, lammps) = (w.settings.two_dimensional, w.settings.lammps());
         let units = w.settings.units.constants();
         let edges = w.edges();
-        let (mut sum, mut freedom) = (0.0, 0.0);
-        for b in bodies {
+        let (mut moving, mut turning, mut freedom) = (0.0, 0.0, 0.0);
+        for (k, b) in bodies.iter().enumerate() {
+            // Of components that are turned off neither motion nor freedom counts; in the plane there is one axis.
+            let [moves, turns] = self.allowed(k, flat);
             let inner = apply_transposed(&matrix(b.q), b.omega);
-            sum += b.mass * dot(b.v, b.v);
-            sum += (0..3).map(|d| b.moments[d] * inner[d] * inner[d]).sum::<f64>();
-            let linear = b.moments.contains(&0.0);
-            freedom += if flat { 3.0 } else { 6.0 - f64::from(u8::from(linear)) };
+            moving += (0..3).map(|d| moves[d] * b.mass * b.v[d] * b.v[d]).sum::<f64>();
+            turning += (0..3)
+                .map(|d| turns[if flat { 2 } else { d }] * b.moments[d] * inner[d] * inner[d])
+                .sum::<f64>();
+            let linear = !flat && b.moments.contains(&0.0);
+            let all = if lammps && !self.whole { 6.0 } else { moves.iter().chain(&turns).sum() };
+            freedom += f64::max(all - f64::from(u8::from(linear)), 0.0);
         }
+        let temperature = match (moving + turning) * units.mvv2e / (freedom * units.boltz) {
+            // LAMMPS' is no temperature.
+            _ if lammps && self.style == "rigid/nve/small" => (moving + 0.5 * turning) * units.mvv2e,
+            _ if freedom == 0.0 => 0.0,
+            t => t,
+        };
         let out = w.slots.get_mut(slot);
         out.step = Some(t.step);
-        out.scalar = if freedom > 0.0 { sum * units.mvv2e / (freedom * units.boltz) } else { 0.0 };
+        out.scalar = temperature;
         if !self.whole {
             return;
         }

@@ -54,9 +54,8 @@ fn largest(w: &World) -> Vec<f64> {
 
 fn largest_of(w: &World, counts: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut largest = vec![0.0_f64; w.types];
-    for (i, (kind, r)) in
-        w.particles.kind.iter().zip(&w.particles.radius).enumerate().filter(|(i, _)| counts(*i))
-    {
+    let all = w.particles.kind.iter().zip(&w.particles.radius).enumerate();
+    for (kind, r) in all.filter(|(i, _)| counts(*i)).map(|(_, own)| own) {
         let of_type = &mut largest[usize::from(*kind) - 1];
         *of_type = of_type.max(*r);
     }
