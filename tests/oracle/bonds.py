@@ -52,8 +52,11 @@ def bonds(r):
         rest = " smooth no break no" if leveled else r.choice(["", " smooth no", " smooth no break no"])
         rest += r.choice(["", " normalize yes"]) + (" overlay/pair yes" if overlay else "")
         strain = r.choice([0.05, 0.2, 0.5])
-        deck += ["special_bonds lj/coul 1 1 1" if overlay else "special_bonds lj 0 1 1 coul 1 1 1", f"bond_style bpm/spring{rest}",
-                 f"bond_coeff 1 {r.choice([50, 300])} {strain} {r.choice([0, 0.5, 2])}", f"bond_coeff 2 {r.choice([50, 300])} {strain} 0.3"]
+        style = r.choice(["bpm/spring", "bpm/spring", "bpm/spring/plastic"])
+        # Where a bond yields.
+        flow = f" {strain * r.choice([0.1, 0.4, 0.9]):g}" if "plastic" in style else ""
+        deck += ["special_bonds lj/coul 1 1 1" if overlay else "special_bonds lj 0 1 1 coul 1 1 1", f"bond_style {style}{rest}",
+                 f"bond_coeff 1 {r.choice([50, 300])} {strain} {r.choice([0, 0.5, 2])}{flow}", f"bond_coeff 2 {r.choice([50, 300])} {strain} 0.3{flow}"]
     else:
         deck += ["special_bonds lj/coul 1 1 1" if overlay else f"special_bonds lj/coul 0 {r.choice(['1 1', '0 1', '0 0'])}", "bond_style harmonic",
                  f"bond_coeff 1 {r.choice([50, 300])} {near:g}", f"bond_coeff 2 {r.choice([50, 300])} {near * 0.98:.3f}"]
