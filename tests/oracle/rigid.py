@@ -94,6 +94,9 @@ def rigid(r):
         which = f"{r.choice(['rigid', 'rigid/nve'])} group {many} {' '.join(names)}"
     elif style == "single":
         which = f"{r.choice(['rigid', 'rigid/nve'])} single"
+    # Steps of NO_SQUISH hang on the axes, which of bodies with two equal moments are anybody's choice.
+    if any(len(ids) == 2 for ids in clumps):
+        which = which.replace("rigid/nve", "rigid")
     small = "small" in which
     extra = ""
     if not small and r.random() < 0.4 and "nve" not in which:

@@ -221,11 +221,8 @@ impl Task<'_> {
     /// The bin of a place, counted from 0.
     fn bin(&self, d: &Domain, layout: &Layout, x: [f64; 3], lammps: bool) -> Option<usize> {
         let inside = if d.tilted() { d.fractions(&x) } else { x };
-        let along = |k: usize| {
-            if d.tilted() {
-                let turns = if d.boundary.periodic(k) { inside[k].floor() } else { 0.0 };
-                return inside[k] - turns;
-            }
+        // Who has crossed a face since the last rebuild is not wrapped yet.
+        let wrapped = |k: usize| {
             let (lo, hi) = (d.lo[k], d.hi[k]);
             let mut a = x[k];
             if d.boundary.periodic(k) {
@@ -236,8 +233,17 @@ impl Task<'_> {
                     a -= hi - lo;
                 }
             }
-            if self.spec.reduced { (a - lo) * (1.0 / (hi - lo)) } else { a }
+            a
         };
+        let along = |k: usize| {
+            if d.tilted() {
+                let turns = if d.boundary.periodic(k) { inside[k].floor() } else { 0.0 };
+                return inside[k] - turns;
+            }
+            let a = wrapped(k);
+            if self.spec.reduced { (a - d.lo[k]) * (1.0 / (d.hi[k] - d.lo[k])) } else { a }
+        };
+        let round = || std::array::from_fn(wrapped);
         let (spec, layers) = (self.spec, &layout.layers);
         match &spec.what {
             What::Bins(axes) => {
@@ -247,10 +253,10 @@ impl Task<'_> {
                 }
                 Some(bin)
             }
-            What::Sphere(s) => layout.of(s).shell(d, x, spec.pbc, spec.discard),
+            What::Sphere(s) => layout.of(s).shell(d, round(), spec.pbc, spec.discard),
             What::Cylinder(a, s) => {
                 let axial = a.layer(&layers[0], along(a.dim), spec.discard, lammps)?;
-                let ring = layout.of(s).shell(d, x, spec.pbc, spec.discard)?;
+                let ring = layout.of(s).shell(d, round(), spec.pbc, spec.discard)?;
                 Some(ring * layers[0].count + axial)
             }
             _ => None,

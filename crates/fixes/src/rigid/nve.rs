@@ -23,7 +23,8 @@ impl Style for RigidNve {
             summary: "Rigid bodies as fix rigid, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid` in everything, but for how orientations move: a step is split into exact rotations about the principal axes \
                    (Miller et al., J. Chem. Phys. 116, 2002, 8649). It is symplectic, so that energy does not drift in long runs; \
-                   Richardson's steps of `fix rigid` let it drift with the step size. The ensembles nvt, npt and nph are refused.",
+                   Richardson's steps of `fix rigid` let it drift with the step size. Where two moments of a body are equal, any axes across the third are principal: \
+                   LAMMPS takes others, and its numbers differ by the error of a step. The ensembles nvt, npt and nph are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid/nve single torque * off off on",
         }
     }
@@ -38,7 +39,7 @@ impl Style for RigidNveSmall {
             syntax: "fix ID group rigid/nve/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE]",
             summary: "Molecules as rigid bodies as fix rigid/small, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid/small`, with the rotations of `fix rigid/nve`. The scalar is the temperature here too, where LAMMPS \
-                   gives an energy.",
+                   (and `compat lammps`) gives an energy.",
             example: "units si\natom_style sphere\nregion b block 0 0.1 0 0.1 0 0.1\ncreate_box 1 b\nfix m all property/atom mol\n\
                       create_atoms 1 single 0.05 0.05 0.05\ncreate_atoms 1 single 0.055 0.05 0.05\nset group all diameter 0.01 density 2500.0 \
                       mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
