@@ -159,6 +159,7 @@ fn delete(cx: &mut ActCx, choice: &Choice, how: How) -> Result<()> {
     // Ids of bonded scenes stay as they are, as in LAMMPS.
     cx.world.delete(&marked, how.compress && !cx.world.particles.style.bonded);
     cx.world.forget_touches();
+    cx.world.bonds.left = 0;
     let now = cx.world.n();
     cx.say(format!("Deleted {} atoms, new total = {now}", before - now));
     if (how.bond || how.mol) && bonds > 0 {

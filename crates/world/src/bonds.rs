@@ -94,6 +94,9 @@ pub struct Bonds {
     pub power: Vec<f64>,
     /// Grows with every change of the list or of what is special, so that others notice.
     pub changes: u64,
+    /// How many have gone with both ends through a face, which LAMMPS goes on counting until atoms are deleted by a command.
+    #[serde(skip)]
+    pub left: usize,
 }
 
 impl Bonds {
@@ -174,8 +177,9 @@ impl Bonds {
 
     /// Forgets bonds of which both ends are gone; those with one end left are an error of the next run.
     pub fn forget_lone(&mut self, tags: &[u32]) {
-        let there: BTreeSet<u32> = tags.iter().copied().collect();
+        let (there, before): (BTreeSet<u32>, _) = (tags.iter().copied().collect(), self.len());
         self.list.retain(|b| b.ends.iter().any(|t| there.contains(t)));
+        self.left += before - self.len();
         self.special.retain(|p| p.iter().any(|t| there.contains(t)));
         self.forget_memory();
         self.changes += 1;
