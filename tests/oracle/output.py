@@ -99,6 +99,9 @@ def output(r):
              "compute ke all ke", "compute com odd com", "compute ea all ke/atom", "compute near all coord/atom cutoff 0.5", "compute pid all property/atom id type", "compute pa all property/atom x vx", "compute pl all pair/local dist", "compute pr all property/local natom1 natom2",
              f"compute red {r.choice(['all', 'odd', 'late'])} reduce {r.choice(['sum', 'min', 'max', 'ave', 'sumsq', 'avesq', 'maxabs'])} x vy c_ea v_each"]
     lines = outputs(r, flat)
+    if "m" in sides:
+        # LAMMPS' densities are those of bins of before, where a box grows.
+        lines = [line.replace("density/mass", "vx").replace("density/number", "vx") for line in lines]
     deck += lines + thermo(r, lines)
     for steps in r.choice([[40], [20, 20], [33], [10, 25]]):
         deck += [f"run {steps}{r.choice(['', '', ' post no', ' start 0 stop 100'])}", 'print "= $(step) $(c_ke) ${ken} $(c_red[1])"']

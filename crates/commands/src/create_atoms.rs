@@ -77,7 +77,7 @@ impl Style for CreateAtoms {
                    need no change. Not with `ratio`, `subset`, `var` and `mol`, which leave sites out.\n\n\
                    `mol ID SEED` puts a copy of a `molecule` template in each place, its centre there, turned at random or as \
                    `rotate ANGLE X Y Z` [degrees, axis] says; TYPE, which may be 0, is added to the types of the template. Copies \
-                   get molecule IDs behind the largest one. LAMMPS' random turns. Not with `overlap` and `basis`.\n\n\
+                   get molecule IDs behind the largest one. LAMMPS' random turns; with `overlap` D all its particles keep D away from all others. Not with `basis`.\n\n\
                    `pack`, `opal` and `aggregate` are perigrain's own, and so are their random numbers. They need spheres, and take \
                    lengths in box units. `pack` fills a part SHARE of the volume of a region (what the box holds of it) with \
                    spheres at random places, which then push each other away until they overlap by less than a thousandth of \
@@ -237,15 +237,6 @@ fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Resul
         _ => {}
     }
     if c.mol.is_some() {
-        if let Place::Random { overlap, .. } = &c.place
-            && *overlap > 0.0
-        {
-            return fail(
-                Code::NOT_SUPPORTED,
-                style.span,
-                "create_atoms random: `overlap` does not go with `mol` in perigrain",
-            );
-        }
         if c.basis.iter().any(|k| *k != c.kind) {
             return fail(Code::CONFLICT, style.span, "`basis` gives types to particles, not to molecules");
         }
@@ -371,7 +362,8 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     if let Some(line) = memory::forecast(cx.world, c.place.expected(cx.world, &domain))? {
         cx.say(line);
     }
-    let maker = Maker { domain: &domain, kind: c.kind, basis: &c.basis, test: c.test.as_ref() };
+    let maker =
+        Maker { domain: &domain, kind: c.kind, basis: &c.basis, test: c.test.as_ref(), mol: c.mol.as_ref() };
     let places = c.place.find(cx, &maker)?;
     if let Place::Random { count, .. } = c.place
         && (places.len() as i64) < count

@@ -30,7 +30,7 @@ impl Style for Deposit {
                      [units lattice|box]",
             summary: "Puts a new particle or molecule into the scene every M steps, N in all.",
             text: "At the next step and every M steps a place is drawn in the region, uniform or with `gaussian` around a point; `global` puts it lo to hi above the highest \
-                   particle, `local` above the highest one within delta of it sideways (in flat scenes above means along y). It \
+                   particle, `local` above the highest one within delta of it sideways (in flat scenes above means along y, and z is 0; LAMMPS, and `compat lammps`, leaves it where it was drawn). It \
                    is taken if no particle is nearer than R (`near`, default 0) and, with `var` and `set` as in `create_atoms`, if \
                    the variable is not zero there; up to Q attempts (10). Velocities are uniform between bounds (0); `target` \
                    points them to a place. `rate` moves the region up. The new particle is of LAMMPS' default size, for spheres diameter 1 and density 1, and \
@@ -146,9 +146,14 @@ impl Depositing {
         account: &mut Account,
         test: &mut Option<PlaceTest>,
     ) -> Result<Option<([f64; 3], Option<Copy>)>> {
-        let up = if w.settings.two_dimensional { 1 } else { 2 };
+        let flat = w.settings.two_dimensional;
+        let up = if flat { 1 } else { 2 };
         for _ in 0..self.tries {
             let mut x = self.draw(&mut account.stream);
+            if flat && !w.settings.lammps() {
+                // LAMMPS leaves them beside the plane.
+                x[2] = 0.0;
+            }
             if let Some(test) = test
                 && !test(w, x)?
             {
@@ -158,7 +163,6 @@ impl Depositing {
             if let Some(height) = self.above(w, x, &mut account.stream)? {
                 x[up] = height;
             }
-            let flat = w.settings.two_dimensional;
             let copy = self.molecules.as_ref().map(|m| m.draw(x, flat, &mut account.stream));
             let places = copy.as_ref().map_or(std::slice::from_ref(&x), |c| &c.places);
             let mut free = true;

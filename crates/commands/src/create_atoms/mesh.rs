@@ -46,8 +46,7 @@ impl Mesh {
                 Mode::Quasi(density) => scatter(*triangle, density, &mut found),
             }
         }
-        let new =
-            |(x, radius): ([f64; 3], f64)| New { kind: m.kind, x, radius: Some(radius * self.radius_scale) };
+        let new = |(x, radius): ([f64; 3], f64)| New::at(x, m.kind, Some(radius * self.radius_scale));
         found.into_iter().filter(|(x, _)| m.domain.holds(x)).map(new).collect()
     }
 }

@@ -52,6 +52,21 @@ impl Copies {
         &self.set[0]
     }
 
+    /// The random numbers that turn copies.
+    pub fn stream(&self) -> Marsaglia {
+        Marsaglia::new(self.seed)
+    }
+
+    /// How the next copy is turned.
+    pub fn turn(&self, stream: &mut Marsaglia, flat: bool) -> Quat {
+        self.turned.unwrap_or_else(|| any_turn(|| stream.uniform(), flat, None))
+    }
+
+    /// Where the particles of a copy are.
+    pub fn at(&self, x: [f64; 3], turn: Quat) -> Vec<[f64; 3]> {
+        self.template().turned(x, turn)
+    }
+
     /// Whether the types exist when `kind` is added to them.
     pub fn check_types(&self, kind: u16, types: usize) -> Result<()> {
         molecules::check_types(self.template(), kind, types, self.span)
@@ -61,15 +76,15 @@ impl Copies {
     pub fn put(&self, w: &mut World, places: &[New], kind: u16) -> Result<usize> {
         let t = self.template();
         let flat = w.settings.two_dimensional;
-        let mut stream = Marsaglia::new(self.seed);
+        let mut stream = self.stream();
         let mut numbers = Numbering::behind(w, kind);
         let more = u32::try_from(places.len().saturating_mul(t.count)).ok();
         if more.and_then(|n| numbers.tag.checked_add(n)).is_none() {
             return fail(Code::TOO_LARGE, None, "more particles than there are ids");
         }
         for new in places {
-            let q = self.turned.unwrap_or_else(|| any_turn(|| stream.uniform(), flat, None));
-            w.insert_molecule(t, &t.turned(new.x, q), &mut numbers);
+            let q = new.turn.unwrap_or_else(|| self.turn(&mut stream, flat));
+            w.insert_molecule(t, &self.at(new.x, q), &mut numbers);
         }
         if !t.bonds.is_empty() {
             w.bonds.find_special();

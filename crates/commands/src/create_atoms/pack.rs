@@ -223,7 +223,7 @@ impl Pack {
         };
         self.tell(cx, &packing, volume)?;
         let kept = self.kept(cx, &room, &packing, volume, &mut stream)?;
-        let new = |k: usize| New { kind, x: packing.x[k], radius: Some(packing.radius[k]) };
+        let new = |k: usize| New::at(packing.x[k], kind, Some(packing.radius[k]));
         Ok(kept.into_iter().map(new).collect())
     }
 

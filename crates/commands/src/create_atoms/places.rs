@@ -1,9 +1,11 @@
 //! Where `create_atoms` puts particles: lattice sites, one place, random places, triangles of a surface.
 
 use super::mesh::Mesh;
+use super::molecules::Copies;
 use super::pack::Pack;
 use super::subset::Subset;
 use perigrain_base::diag::Result;
+use perigrain_base::math::body::Quat;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::ValueRef;
 use perigrain_styles::ActCx;
@@ -54,6 +56,15 @@ pub struct New {
     pub x: [f64; 3],
     /// Its radius, where the way it is made gives one.
     pub radius: Option<f64>,
+    /// How it is turned, if it is a molecule that has been turned already.
+    pub turn: Option<Quat>,
+}
+
+impl New {
+    /// Of this type, with this radius if it has one by the way it is made.
+    pub fn at(x: [f64; 3], kind: u16, radius: Option<f64>) -> Self {
+        Self { kind, x, radius, turn: None }
+    }
 }
 
 /// The keywords `var` and `set`: a formula that decides about each place.
@@ -82,6 +93,8 @@ pub struct Maker<'a> {
     pub basis: &'a [u16],
     /// `var` and `set`.
     pub test: Option<&'a Test>,
+    /// The molecule of which copies are made.
+    pub mol: Option<&'a Copies>,
 }
 
 impl Place {
@@ -163,7 +176,7 @@ fn on_sites(world: &World, m: &Maker, region: Option<&Region>) -> Vec<New> {
             false => (0..3).all(|d| x[d] >= lo[d] && x[d] < hi[d]),
         };
         if inside && region.is_none_or(|r| r.contains(x)) {
-            places.push(New { kind: m.basis[k], x, radius: None });
+            places.push(New::at(x, m.basis[k], None));
         }
         ControlFlow::<()>::Continue(())
     });
@@ -184,7 +197,7 @@ fn single(m: &Maker, mut x: [f64; 3], remap: bool) -> Vec<New> {
     if remap {
         m.domain.wrap(&mut x, &mut [0; 3]);
     }
-    if m.domain.holds(&x) { vec![New { kind: m.kind, x, radius: None }] } else { vec![] }
+    if m.domain.holds(&x) { vec![New::at(x, m.kind, None)] } else { vec![] }
 }
 
 /// The part of the box that a region leaves.
@@ -213,11 +226,24 @@ impl Random<'_> {
         if (0..3).any(|d| self.bounds.0[d] > self.bounds.1[d]) {
             return Ok(places);
         }
+        // Molecules that must keep their distance are turned before they are looked at.
+        let mut turns = m.mol.filter(|_| self.overlap > 0.0).map(|mol| (mol, mol.stream()));
+        let (mut taken, mut parts) = (vec![], vec![]);
         for _ in 0..count {
             for _ in 0..self.tries {
                 let x = self.draw(&mut stream, m.domain.flat);
-                if self.accepts(cx, m, &places, x)? {
-                    places.push(New { kind: m.kind, x, radius: None });
+                if !self.allows(cx, m, x)? {
+                    continue;
+                }
+                let turn = turns.as_mut().map(|(mol, stream)| mol.turn(stream, m.domain.flat));
+                parts.clear();
+                match turn.zip(m.mol) {
+                    Some((q, mol)) => parts.extend(mol.at(x, q)),
+                    None => parts.push(x),
+                }
+                if self.overlap == 0.0 || self.keeps_away(cx, m, &taken, &parts) {
+                    taken.append(&mut parts);
+                    places.push(New { kind: m.kind, x, radius: None, turn });
                     break;
                 }
             }
@@ -231,20 +257,21 @@ impl Random<'_> {
         if flat { [x[0], x[1], 0.0] } else { x }
     }
 
-    fn accepts(&self, cx: &mut ActCx, m: &Maker, new: &[New], x: [f64; 3]) -> Result<bool> {
+    /// Whether region and variable let something be here.
+    fn allows(&self, cx: &mut ActCx, m: &Maker, x: [f64; 3]) -> Result<bool> {
         if !self.region.is_none_or(|r| r.contains(x)) || (m.domain.tilted() && !m.domain.holds(&x)) {
             return Ok(false);
         }
-        if let Some(test) = m.test
-            && !test.holds(cx, x)?
-        {
-            return Ok(false);
-        }
-        let far = |y: &[f64; 3]| {
-            let d = m.domain.minimum_image([x[0] - y[0], x[1] - y[1], x[2] - y[2]]);
-            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= self.overlap * self.overlap
-        };
-        let mut old = cx.world.particles.x.iter().chain(new.iter().map(|n| &n.x));
-        Ok(self.overlap == 0.0 || old.all(far))
+        m.test.map_or(Ok(true), |test| test.holds(cx, x))
+    }
+
+    /// Whether all these parts are far enough from all others.
+    fn keeps_away(&self, cx: &ActCx, m: &Maker, taken: &[[f64; 3]], parts: &[[f64; 3]]) -> bool {
+        cx.world.particles.x.iter().chain(taken).all(|y| {
+            parts.iter().all(|x| {
+                let d = m.domain.minimum_image([x[0] - y[0], x[1] - y[1], x[2] - y[2]]);
+                d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= self.overlap * self.overlap
+            })
+        })
     }
 }
