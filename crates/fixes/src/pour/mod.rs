@@ -42,7 +42,8 @@ impl Style for Pour {
                    from the last one given (under `compat lammps` some twice where `create_atoms` makes particles in between, as in LAMMPS). Distances are in box units.\n\n\
                    `mol` pours copies of a molecule template with their bonds in the place of spheres, turned at random; `type` is added to \
                    their types (so 0 is one), each counts with the sphere that holds it towards the volume fraction, and `diam` and \
-                   `dens` concern it not. `molfrac`: the shares of the several molecules of a template, equal without. `rigid` names \
+                   `dens` concern it not. `molfrac`: the shares of the several molecules of a template, equal without (LAMMPS counts all as the largest one, so that a later run \
+                   pours more than N). `rigid` names \
                    the fix rigid/small with the same `mol` that moves them as bodies. `shake` is refused.\n\n\
                    Random numbers and their order are LAMMPS', so that places agree. There must be exactly one `fix gravity`, \
                    constant and along −z (flat: −y). A second run goes on where the first one ended, also after a \
