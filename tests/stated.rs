@@ -54,7 +54,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("addforce.rs", "regions", "only with `region`"),
     ("deform.rs", "x0", "only where solids follow the box"),
     ("deform.rs", "lists", "only where a box leans so far that it is flipped"),
-    ("rigid.rs", "tally", "only with virials"),
+    ("rigid.rs", "tally columns", "only with virials, and those of particles"),
     ("viscous_sphere.rs", "slots", "only with a variable for each"),
     ("bond/driver.rs", "lists", "only where broken bonds free pairs"),
     ("granular/force.rs", "columns", "only with heat"),

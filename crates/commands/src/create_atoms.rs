@@ -236,10 +236,8 @@ fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Resul
         }
         _ => {}
     }
-    if c.mol.is_some() {
-        if c.basis.iter().any(|k| *k != c.kind) {
-            return fail(Code::CONFLICT, style.span, "`basis` gives types to particles, not to molecules");
-        }
+    if c.mol.is_some() && c.basis.iter().any(|k| *k != c.kind) {
+        return fail(Code::CONFLICT, style.span, "`basis` gives types to particles, not to molecules");
     }
     if let Some(span) = c.cut {
         let some = matches!(c.place, Place::Lattice { subset: Some(_), .. }) || variable.is_some();

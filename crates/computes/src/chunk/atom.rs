@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Chunking, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, MOLECULE, REGIONS, SLOTS, X};
-use perigrain_world::{SlotId, World};
+use perigrain_world::{Fields, SlotId, World};
 
 /// The style.
 pub struct ChunkAtom;
@@ -84,8 +84,9 @@ impl Compute for Declared {
             What::Value(r) => Some(cx.reading(r, Wants::PerAtom, stage, when)?),
             _ => None,
         };
+        let molecules = if matches!(spec.what, What::Molecule) { MOLECULE } else { Fields::NONE };
         let access = Needs::new()
-            .read(X | MASK | KIND | MOLECULE | BOX | COLUMNS | REGIONS)
+            .read(X | MASK | KIND | molecules | BOX | COLUMNS | REGIONS)
             .write(SLOTS)
             .keep(MEMO | COLUMNS);
         let op = StepOp::new(format!("compute {}", spec.id), stage, access, move |w: &mut World, t| {
