@@ -273,11 +273,18 @@ impl Granular {
         w
     }
 
+    /// Makes a contact forget the radius from which its spring shrinks as it unloads: the spring has shrunk already.
+    pub fn keep_shrunk(&self, history: &mut [f64]) {
+        if let ([_, _, _, radius, ..], 4) = (history, self.spring.memory()) {
+            *radius = 0.0;
+        }
+    }
+
     /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
-    /// behind; `setup`: the evaluation was that of a run's setup, which has kept what it made of springs if `stored`.
+    /// behind; `setup`: the evaluation was that of a run's setup.
     #[must_use]
-    pub fn again(&self, setup: bool, stored: bool) -> Self {
-        Self { spring: self.spring.again(setup, stored), ..*self }
+    pub fn again(&self, setup: bool) -> Self {
+        Self { spring: self.spring.again(setup), ..*self }
     }
 
     /// Hands the law to a loop, each frequent form in a place of its own where the form is written out: the loop is

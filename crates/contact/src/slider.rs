@@ -32,8 +32,6 @@ pub enum Look {
         /// Whether in a setup, where the spring does not move on before it acts.
         setup: bool,
     },
-    /// It has acted in a setup that kept the spring it had shrunk, and not the radius it had shrunk to.
-    Shrunk,
 }
 
 /// One contact's spring, dashpot and limit in the tangent plane.

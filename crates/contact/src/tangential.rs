@@ -221,16 +221,11 @@ impl Spring {
         }
     }
 
-    /// The spring that gives the force of its last evaluation once more, from what this one left behind; `stored`: if that was a
-    /// run's setup, what it made of the spring has been kept.
+    /// The spring that gives the force of its last evaluation once more, from what this one left behind.
     #[must_use]
-    pub fn again(&self, setup: bool, stored: bool) -> Self {
+    pub fn again(&self, setup: bool) -> Self {
         // All others give the same force twice.
-        let look = match self.loose {
-            true => Look::Again { setup },
-            false if setup && stored && self.kind.rescales() => Look::Shrunk,
-            false => Look::First,
-        };
+        let look = if self.loose { Look::Again { setup } } else { Look::First };
         Self { look, ..*self }
     }
 
@@ -281,7 +276,7 @@ impl Spring {
             }
             kind => {
                 let mut xi = [history[0], history[1], history[2]];
-                if kind.rescales() && self.look != Look::Shrunk {
+                if kind.rescales() {
                     let shrinks = history[3].above(a);
                     xi = scale(R::choose(shrinks, a / history[3], a.like(1.0)), xi);
                     // Where LAMMPS stores what it computes in a setup, it forgets that the spring has shrunk, which shrinks again.

@@ -11,6 +11,7 @@ use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
 use perigrain_world::contacts::Contacts;
+use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, World};
 
 /// The numbers a granular style gives to each pair, in LAMMPS' order.
@@ -67,6 +68,10 @@ impl ContactProbe {
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, w.periods(), &body, &frozen)? };
         let mut memory = w.contacts.get(self.key).cloned().unwrap_or_default();
+        if ask == (Ask::Felt { setup: true }) && w.settings.lammps() && self.own != Own::Mdr {
+            // There the setup has kept the springs it has shrunk, and not the radii it shrank them to.
+            self.keep_shrunk(w, &mut memory);
+        }
         let still = Advance { dt: w.clock.dt, history: false };
         let stands = |(made, _): &(u64, Vec<Pair>)| *made == w.rebuild.generation && w.clock.running;
         let list = match self.listed.take().filter(stands) {
@@ -74,13 +79,23 @@ impl ContactProbe {
             None => self.list(w)?,
         };
         let rules = match ask {
-            // As `Force` does, of grains that are not plastic.
-            Ask::Felt { setup } => &self.rules.again(setup, w.settings.lammps() && self.own != Own::Mdr),
+            Ask::Felt { setup } => &self.rules.again(setup),
             Ask::Acting | Ask::Idle => &self.rules,
         };
         self.sweep.run(&list, &grains, rules, &mut memory, still);
         self.listed = Some((w.rebuild.generation, list));
         Ok(read(&grains, rules, &self.sweep, &memory))
+    }
+
+    /// What contacts remember, as it shrinks no more.
+    fn keep_shrunk(&self, w: &World, memory: &mut Contacts) {
+        let p = &w.particles;
+        let (index, width) = (Index::new(&p.tag), memory.width.max(1));
+        let kind = |tag: u32| index.find(tag, &p.tag).map(|i| p.kind[i]);
+        for ([a, b], history) in memory.keys.iter().zip(memory.history.chunks_exact_mut(width)) {
+            let rule = kind(*a).zip(kind(*b)).and_then(|(a, b)| self.rules.get(a, b));
+            rule.into_iter().for_each(|rule| rule.law.keep_shrunk(history));
+        }
     }
 
     /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.

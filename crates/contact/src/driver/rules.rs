@@ -69,8 +69,8 @@ impl Rules {
 
     /// The rules by which contacts are looked at once more ([`Granular::again`]).
     #[must_use]
-    pub fn again(&self, setup: bool, stored: bool) -> Self {
-        let again = |rule: &Rule| Rule { law: rule.law.again(setup, stored), ..*rule };
+    pub fn again(&self, setup: bool) -> Self {
+        let again = |rule: &Rule| Rule { law: rule.law.again(setup), ..*rule };
         Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
     }
 
