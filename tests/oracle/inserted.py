@@ -1,8 +1,6 @@
 """Random decks of molecules that come: poured, deposited and created, as rigid bodies or of free spheres, onto walls and each other."""
 
-
-def u(r, low, high, digits=3):
-    return round(r.uniform(low, high), digits)
+from sources import u
 
 
 def template(r, name, flat):

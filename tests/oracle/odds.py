@@ -1,11 +1,8 @@
 """Random decks of what the other kinds leave out: baths, walls without contacts, bonds that are taken away, controllers, pressures that move faces, fragments."""
 from bonds import clumps
+from motion import some
 
 EDGE = 9.0
-
-
-def some(r, lines, share):
-    return [line for line in lines if r.random() < share]
 
 
 def gas(r, sides):

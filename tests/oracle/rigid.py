@@ -1,5 +1,6 @@
 """Random decks of rigid bodies among grains: bodies of two to five spheres, under all rigid fixes, in boxes of all kinds."""
 from grains import contact_law
+from motion import some
 
 EDGE = 7.0
 
@@ -26,10 +27,6 @@ def bodies(r, flat):
         if len(found) == 14:
             break
     return found[: r.randint(3, 14)]
-
-
-def some(r, lines, share):
-    return [line for line in lines if r.random() < share]
 
 
 def rigid(r):

@@ -30,7 +30,7 @@ impl Style for Rdf {
                    there are up to this shell's end. Both ends belong to the group; pairs that exclusions and bonds take away do not count. In two \
                    dimensions shells are rings.\n\n\
                    Shells of equal width reach up to R, or up to the cutoff of forces: of granular styles twice the largest radius as \
-                   the run begins, of peridynamic ones the largest horizon. R may be longer than in LAMMPS, up to half a periodic length; a \
+                   the run begins (grains of `fix freeze` do not count beside each other), of peridynamic ones the largest horizon. R may be longer than in LAMMPS, up to half a periodic length; a \
                    deck without pair style needs it.",
             example: "compute g all rdf 20 cutoff 1.5",
         }

@@ -27,7 +27,7 @@ impl Style for Evaporate {
             text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of them \
                    where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both programs keep \
                    particles in the same order (`atom_modify sort 0 0` there). Ids of the others stay. A second run goes on where the first \
-                   one ended, also after a restart. `molecule yes` is refused: particles belong to no molecules. Scalar (intensive): how many are gone so far.",
+                   one ended, also after a restart. `molecule yes`, by which whole molecules go, is refused. Scalar (intensive): how many are gone so far.",
             example: "fix dry grains evaporate 5 1 ball 4711",
         }
     }
@@ -46,7 +46,10 @@ impl FixStyle for Evaporate {
                 return Err(args.unknown(word, &["molecule"]));
             }
             if args.flag("molecule")? {
-                let text = "the particles of this scene belong to no molecules";
+                let text = match cx.world.particles.style.molecules {
+                    true => "whole molecules do not go in perigrain, only their particles",
+                    false => "the particles of this scene belong to no molecules",
+                };
                 return fail(Code::CONFLICT, word.span, text);
             }
         }

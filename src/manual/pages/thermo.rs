@@ -43,7 +43,7 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
     cellgamma` (angles 90), its edges `avecx avecy avecz bvecx bvecy bvecz cvecx cvecy cvecz`, `xy xz yz` (0), the spacings \
     of the lattice `xlat ylat zlat`, `fmax` (largest force component), `fnorm` (root of the sum of squared force \
     components), `nbuild` and `ndanger` (neighbour lists built, and built perhaps too late);\n\
-    - bonds between particles: `bonds`, their number, and `ebond` = `emol`, their energy;\n\
+    - bonds between particles: `bonds`, their number (under `compat lammps` with those that have been lost with both ends), and `ebond` = `emol`, their energy;\n\
     - always 0 here, for LAMMPS' decks: `ecoul eangle edihed eimp elong etail angles dihedrals impropers`;\n\
     - `c_ID`, `c_ID[i]`, `c_ID[i][j]` of a compute, `f_ID …` of a fix, `v_NAME` of an equal-style variable; `c_ID[*]` and \
     `c_ID[2*3]` stand for one column per element.\n\n\
