@@ -50,6 +50,8 @@ pub struct Spring {
     pub k: [f64; 2],
     /// The direction in which surfaces slip, which resists nothing; zero where they stick.
     pub(crate) slips: Vec3,
+    /// How far inside of the surfaces they meet, so that a body that turns as a whole shears none [length].
+    pub(crate) less: f64,
 }
 
 impl Contact {
@@ -85,7 +87,7 @@ impl Contact {
     pub(crate) fn near(&self, [a, b]: [&Six; 2]) -> State {
         let along = dot(self.n, sub(halves(b).0, halves(a).0));
         let state = self.pressed(self.n, self.overlap - along);
-        State { sheared: self.slid(self.n, a, b), ..state }
+        State { sheared: self.slid(self.n, a, b, 0.0), ..state }
     }
 
     /// k_n and k_t once the ends are apart by so much more; with friction what has been borne on the whole way over that way: along n
@@ -117,7 +119,7 @@ impl Contact {
             return state;
         }
         let by: [Six; 2] = [0, 1].map(|e| std::array::from_fn(|c| now[e][c] - then[e][c]));
-        let slid = self.slid(state.n, &by[0], &by[1]);
+        let slid = self.slid(state.n, &by[0], &by[1], 0.0);
         // Who came to touch on the way has been sheared by what was left of it.
         let part = if overlap_before > 0.0 { 1.0 } else { overlap / (overlap - overlap_before) };
         let laid = sub(sheared, scale(dot(state.n, sheared), state.n));
@@ -130,13 +132,13 @@ impl Contact {
         State { sheared: scale(stuck, sheared), stuck, ..state }
     }
 
-    /// ξ = P (u_j − u_i) + n × (R_i θ_i + R_j θ_j).
+    /// ξ = P (u_j − u_i) + n × (R_i θ_i + R_j θ_j), for radii that are `less`.
     #[inline(always)]
-    pub(crate) fn slid(&self, n: Vec3, a: &Six, b: &Six) -> Vec3 {
+    pub(crate) fn slid(&self, n: Vec3, a: &Six, b: &Six, less: f64) -> Vec3 {
         let ((ua, ta), (ub, tb)) = (halves(a), halves(b));
         let apart = sub(ub, ua);
         let across = sub(apart, scale(dot(n, apart), n));
-        add(across, cross(n, add(scale(self.arms[0], ta), scale(self.arms[1], tb))))
+        add(across, cross(n, add(scale(self.arms[0] - less, ta), scale(self.arms[1] - less, tb))))
     }
 
     /// Resisting forces and torques of both ends for a force along n and one across it on the upper end, which act `less` inside of the

@@ -3,6 +3,7 @@
 //!
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2; forces of Hertz, tangential stiffness of Mindlin.
 
+use super::coarse::Ties;
 use super::contact::{Contact, Spring, State};
 use super::network::halves;
 use super::pairs::Pairs;
@@ -123,9 +124,7 @@ impl Contacts {
         self.pairs.gather(out, |k, ends| {
             let c = &self.list[k];
             let s = self.state(k, ends, u, past);
-            // Surfaces meet half way into the overlap, which is nothing where displacements are small.
-            let less = if past.is_some() { 0.5 * s.overlap.max(0.0) } else { 0.0 };
-            c.rows(s.n, -s.push, scale(s.k[1], s.sheared), less)
+            c.rows(s.n, -s.push, scale(s.k[1], s.sheared), inside(&s, past))
         });
     }
 
@@ -137,7 +136,7 @@ impl Contacts {
             let l = length(s.sheared);
             let across = if slips { s.stuck * s.k[1] } else { s.k[1] };
             let slips = if slips && l > 0.0 { scale(1.0 / l, s.sheared) } else { [0.0; 3] };
-            Spring { n: s.n, k: [s.k[0], across], slips }
+            Spring { n: s.n, k: [s.k[0], across], slips, less: inside(s, past) }
         })
     }
 
@@ -150,9 +149,9 @@ impl Contacts {
     fn resist(&self, at: usize, s: &Spring, a: &Six, b: &Six) -> [Six; 2] {
         let c = &self.list[at];
         let apart = dot(s.n, sub(halves(b).0, halves(a).0));
-        let slid = c.slid(s.n, a, b);
+        let slid = c.slid(s.n, a, b, s.less);
         let slid = sub(slid, scale(dot(s.slips, slid), s.slips));
-        c.rows(s.n, s.k[0] * apart, scale(s.k[1], slid), 0.0)
+        c.rows(s.n, s.k[0] * apart, scale(s.k[1], slid), s.less)
     }
 
     /// Adds their parts of the blocks on the diagonal.
@@ -182,5 +181,37 @@ impl Contacts {
             let relief = if c.relaxed { c.hertz(c.overlap.max(0.0)) * (c.overlap - s.overlap) } else { 0.0 };
             held(s.overlap) - held(c.overlap) + relief + 0.5 * s.k[1] * dot(s.sheared, s.sheared)
         })
+    }
+}
+
+/// How far inside of their surfaces two meet: half way into the overlap, which is nothing where displacements are small.
+fn inside(s: &State, past: Option<&Past>) -> f64 {
+    if past.is_some() { 0.5 * s.overlap.max(0.0) } else { 0.0 }
+}
+
+/// Contacts by how they resist from some field on.
+pub struct Touching<'a> {
+    /// All of them.
+    pub contacts: &'a Contacts,
+    /// What [`Contacts::tangent`] says.
+    pub springs: &'a [Spring],
+}
+
+impl Ties for Touching<'_> {
+    fn ends(&self) -> &[[u32; 2]] {
+        &self.contacts.pairs.ends
+    }
+
+    fn vector(&self, k: usize) -> Vec3 {
+        let c = &self.contacts.list[k];
+        scale(c.arms[0] + c.arms[1] - c.overlap, c.n)
+    }
+
+    fn bears(&self, k: usize) -> bool {
+        self.springs[k].k != [0.0; 2]
+    }
+
+    fn resist(&self, k: usize, [a, b]: [&Six; 2]) -> [Six; 2] {
+        self.contacts.resist(k, &self.springs[k], a, b)
     }
 }

@@ -3,9 +3,10 @@
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2, with rotations; begun from the affine field and stopped by the energy.
 
 use super::certificate::Certificate;
+use super::coarse::{Coarse, Parts};
 use super::ends::{Held, WHOLE};
 use super::network::{Modes, Network};
-use super::pcg::{MARGIN, Solved, solve};
+use super::pcg::{MARGIN, Preconditioner, Solved, solve};
 use super::precond::Blocks;
 use super::six::Six;
 
@@ -64,9 +65,15 @@ pub fn relax(
         _ => None,
     };
     let mut gap = None;
+    let make = || Coarse::new(&Parts { ties: &[network], grounds: &[] }, blocks);
+    let mut by = match stop {
+        // What the paper does.
+        Stop::Residual(_) => Preconditioner::plain(blocks),
+        _ => Preconditioner::deep(blocks, &make),
+    };
     let solved = solve(
         |u, out| network.product(u, out),
-        blocks,
+        &mut by,
         None,
         &mut field,
         energy,

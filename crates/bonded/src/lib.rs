@@ -6,6 +6,7 @@
 
 pub mod beam;
 pub mod certificate;
+pub mod coarse;
 pub mod columns;
 pub mod contact;
 pub mod contacts;
@@ -34,6 +35,8 @@ pub mod weibull;
 
 #[cfg(test)]
 mod lattices;
+#[cfg(test)]
+mod tests_coarse;
 #[cfg(test)]
 mod tests_contacts;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent at rest of beams between spheres.
 
 use super::beam::{Pulled, pulled};
+use super::coarse::Ties;
 use super::law::Ends;
 use super::pairs::Pairs;
 use super::six::{Matrix6, Packed, Six, packed};
@@ -35,6 +36,18 @@ pub struct Resisting {
     pub moment: Vec3,
     /// C = ½ d × F [force length].
     pub couple: Vec3,
+}
+
+impl Resisting {
+    /// Resisting forces and torques of both ends.
+    #[inline(always)]
+    pub fn rows(&self) -> [Six; 2] {
+        let minus = |a: Vec3| a.map(|a| -a);
+        [
+            row(minus(self.force), minus(add(self.moment, self.couple))),
+            row(self.force, sub(self.moment, self.couple)),
+        ]
+    }
 }
 
 /// How the ends of a bond have moved.
@@ -193,11 +206,7 @@ impl Network {
     fn gather(&self, out: &mut [Six], moved: impl Fn(usize, [usize; 2]) -> Moved + Sync) {
         assert_eq!(out.len(), self.particles);
         par::each(&mut *out, |_, rows: &mut [Six]| rows.fill([0.0; 6]));
-        self.pairs.gather(out, |k, ends| {
-            let r = self.resist(k, &moved(k, ends));
-            let minus = |a: Vec3| a.map(|a| -a);
-            [row(minus(r.force), minus(add(r.moment, r.couple))), row(r.force, sub(r.moment, r.couple))]
-        });
+        self.pairs.gather(out, |k, ends| self.resist(k, &moved(k, ends)).rows());
     }
 
     /// What the resistance to one motion of a bond's ends does in another one, twice the energies where both are the same:
@@ -284,11 +293,9 @@ impl Network {
             let (mut unit, still) = ([0.0; 6], [0.0; 6]);
             unit[c] = 1.0;
             if lower {
-                let r = self.resist(bond, &Moved::new(&unit, &still));
-                return row(r.force.map(|a| -a), add(r.moment, r.couple).map(|a| -a));
+                return self.resist(bond, &Moved::new(&unit, &still)).rows()[0];
             }
-            let r = self.resist(bond, &Moved::new(&still, &unit));
-            row(r.force, sub(r.moment, r.couple))
+            self.resist(bond, &Moved::new(&still, &unit)).rows()[1]
         });
         packed(&columns)
     }
@@ -303,6 +310,24 @@ impl Network {
         let mut root: Vec<u32> = (0..self.particles as u32).collect();
         self.pairs.ends.iter().copied().chain(more).for_each(|[a, b]| forest::join(&mut root, a, b));
         (0..self.particles as u32).map(|k| forest::find(&mut root, k)).collect()
+    }
+}
+
+impl Ties for Network {
+    fn ends(&self) -> &[[u32; 2]] {
+        &self.pairs.ends
+    }
+
+    fn vector(&self, k: usize) -> Vec3 {
+        self.d(k)
+    }
+
+    fn bears(&self, k: usize) -> bool {
+        self.k[k] != Stiffness::default()
+    }
+
+    fn resist(&self, k: usize, [a, b]: [&Six; 2]) -> [Six; 2] {
+        Self::resist(self, k, &Moved::new(a, b)).rows()
     }
 }
 

@@ -4,10 +4,12 @@
 //! a past, that of forces already borne is left out as well. (With all of it, which is not symmetric, and generalised minimal residuals in
 //! the place of conjugate gradients, a slipping agglomerate took as many steps and more time.)
 
+use super::coarse::{Coarse, Parts};
+use super::contacts::Touching;
 use super::contacts::{Contacts, Past};
 use super::dsm::MOST;
 use super::network::Network;
-use super::pcg::solve;
+use super::pcg::{Preconditioner, solve};
 use super::precond::Blocks;
 use super::six::Six;
 use super::walls::Walls;
@@ -114,7 +116,7 @@ impl Body<'_> {
     /// Balances what is free, from a field.
     pub fn relax(&self, start: Vec<Six>, end: End) -> Found {
         let mut out = self.begin(start);
-        let mut forcing = FORCING;
+        let (mut forcing, mut coarse) = (FORCING, None);
         while out.residuals.len() <= STEPS {
             let before = out.residuals.last().copied().unwrap_or(0.0);
             if let End::Residuals([_, least]) = end
@@ -125,6 +127,7 @@ impl Body<'_> {
             }
             let (step, decrement) = self.step(
                 &mut out,
+                &mut coarse,
                 if let End::Residuals([linear, _]) = end { Err(linear) } else { Ok(forcing) },
             );
             let work = self.work(&out.field);
@@ -150,7 +153,7 @@ impl Body<'_> {
     }
 
     /// The step of a linear system, and −r·step.
-    fn step(&self, out: &mut Found, limit: Result<f64, f64>) -> (Vec<Six>, f64) {
+    fn step(&self, out: &mut Found, coarse: &mut Option<Coarse>, limit: Result<f64, f64>) -> (Vec<Six>, f64) {
         let springs = self.contacts.tangent(&out.field, self.past);
         let walls = self.walls.tangent(&out.field);
         let moved = self.past.map(|_| self.network.moved_by(&out.field));
@@ -171,13 +174,24 @@ impl Body<'_> {
                 q[particle][self.walls.axis] += k * p[particle][self.walls.axis];
             }
         };
+        let axis = self.walls.axis;
+        let grounds: Vec<(u32, usize, f64)> =
+            walls.iter().map(|(k, stiffness)| (*k, axis, *stiffness)).collect();
+        let touching = Touching { contacts: self.contacts, springs: &springs };
+        let make = || Coarse::new(&Parts { ties: &[network, &touching], grounds: &grounds }, &blocks);
+        let mut by = match limit {
+            // What the paper does.
+            Err(_) => Preconditioner::plain(&blocks),
+            Ok(_) => Preconditioner::again(&blocks, &make, coarse.take()),
+        };
         let mut step = vec![[0.0; 6]; load.len()];
         let mut first = None;
-        let solved = solve(product, &blocks, Some(&load), &mut step, 0.0, MOST, |now| {
+        let solved = solve(product, &mut by, Some(&load), &mut step, 0.0, MOST, |now| {
             let first = *first.get_or_insert(now.residual);
             now.residual <= limit.map_or_else(|least| least, |part| part * first)
         });
         out.iterations += solved.iterations;
+        *coarse = by.carried(&solved);
         let decrement = par::sum(step.len(), |k| (0..6).map(|c| load[k][c] * step[k][c]).sum());
         (step, decrement)
     }

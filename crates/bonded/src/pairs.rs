@@ -105,6 +105,44 @@ impl Pairs {
     }
 }
 
+/// Lists of numbers, one for each place.
+#[derive(Clone, Debug, Default)]
+pub struct Lists {
+    first: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    /// Of pairs of a place below `places` and a number, which stay in their order.
+    pub fn new(places: usize, items: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let mut first = vec![0; places + 1];
+        items.clone().for_each(|(place, _)| first[place as usize + 1] += 1);
+        (0..places).for_each(|place| first[place + 1] += first[place]);
+        let (mut next, mut list) = (first.clone(), vec![0; first[places] as usize]);
+        for (place, item) in items {
+            let at = &mut next[place as usize];
+            list[*at as usize] = item;
+            *at += 1;
+        }
+        Self { first, items: list }
+    }
+
+    /// How many places.
+    pub fn len(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// That of a place.
+    pub fn of(&self, place: usize) -> &[u32] {
+        &self.items[self.first[place] as usize..self.first[place + 1] as usize]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,6 @@
 //! Preconditioned conjugate gradients, which know by how much each step lowers the energy.
 
+use super::coarse::Coarse;
 use super::precond::Blocks;
 use super::six::Six;
 use perigrain_base::par;
@@ -40,6 +41,49 @@ pub struct Solved {
     pub done: bool,
 }
 
+/// What steps are preconditioned by: blocks, and coarse levels where steps turn out to be many.
+pub struct Preconditioner<'a> {
+    blocks: &'a Blocks,
+    make: Option<&'a dyn Fn() -> Coarse>,
+    /// Coarse levels, once they are made; those of another matrix that is much the same do as well.
+    pub coarse: Option<Coarse>,
+}
+
+impl<'a> Preconditioner<'a> {
+    /// Blocks alone.
+    pub fn plain(blocks: &'a Blocks) -> Self {
+        Self { blocks, make: None, coarse: None }
+    }
+
+    /// Blocks, and after [`PATIENCE`] steps what `make` makes.
+    pub fn deep(blocks: &'a Blocks, make: &'a dyn Fn() -> Coarse) -> Self {
+        Self { blocks, make: Some(make), coarse: None }
+    }
+
+    /// Blocks, and coarse levels that were made for a matrix before this one, if they were.
+    pub fn again(blocks: &'a Blocks, make: &'a dyn Fn() -> Coarse, coarse: Option<Coarse>) -> Self {
+        Self { blocks, make: Some(make), coarse }
+    }
+
+    /// Coarse levels for the next matrix, unless a solution by them shows that they are too old.
+    pub fn carried(self, solved: &Solved) -> Option<Coarse> {
+        self.coarse.filter(|_| solved.iterations <= OLD)
+    }
+
+    /// Adds what coarse levels do to z = M⁻¹ r; r·z.
+    fn deepen(&self, coarse: &Coarse, r: &[Six], z: &mut [Six]) -> f64 {
+        coarse.add_to(z, r, self.blocks);
+        par::sum(r.len(), |k| inner(&r[k], &z[k]))
+    }
+}
+
+/// After so many steps coarse levels are made, which takes as long as some fifteen steps: no solution takes much more than twice the
+/// time of the better way.
+pub const PATIENCE: usize = 15;
+
+/// Coarse levels with which a solution takes more steps are made anew for the next one.
+const OLD: usize = 4 * PATIENCE;
+
 /// Below this part of the energy the next step would change nothing of it.
 const NOTHING: f64 = 1e-26;
 
@@ -50,14 +94,14 @@ const NOTHING: f64 = 1e-26;
 /// load `f` balances, as that of a strained body does, or K is definite over what is free.
 pub fn solve(
     product: impl Fn(&[Six], &mut [Six]),
-    blocks: &Blocks,
+    by: &mut Preconditioner,
     load: Option<&[Six]>,
     field: &mut [Six],
     energy: f64,
     most: usize,
     mut stop: impl FnMut(&Progress) -> bool,
 ) -> Solved {
-    let n = field.len();
+    let (n, blocks) = (field.len(), by.blocks);
     let mut r = vec![[0.0; 6]; n];
     let mut p = vec![[0.0; 6]; n];
     let mut q = vec![[0.0; 6]; n];
@@ -79,6 +123,10 @@ pub fn solve(
         both,
     );
     let [mut rz, mut rr] = first.unwrap_or_default();
+    if let Some(coarse) = &by.coarse {
+        rz = by.deepen(coarse, &r, &mut q);
+        p.copy_from_slice(&q);
+    }
     let mut out = Solved { iterations: 0, energy, open: f64::NAN, done: true };
     let mut taken: Vec<f64> = vec![];
     let mut most_energy = energy.abs();
@@ -104,6 +152,14 @@ pub fn solve(
         if out.iterations >= most {
             out.done = false;
             return out;
+        }
+        if let (PATIENCE, None, Some(make)) = (out.iterations, &by.coarse, by.make) {
+            // z of the last step still stands in q. Directions begin anew, and so does what they tell of the energy.
+            let coarse = make();
+            rz = by.deepen(&coarse, &r, &mut q);
+            by.coarse = Some(coarse);
+            p.copy_from_slice(&q);
+            taken.clear();
         }
         product(&p, &mut q);
         let pq = par::sum(n, |k| inner(&p[k], &blocks.free(k, &q[k])));
@@ -132,6 +188,9 @@ pub fn solve(
         );
         let before = rz;
         [rz, rr] = next.unwrap_or_default();
+        if let Some(coarse) = &by.coarse {
+            rz = by.deepen(coarse, &r, &mut q);
+        }
         let beta = rz / before;
         par::each((&mut p[..], &q[..]), |_, (p, z)| {
             for (p, z) in p.iter_mut().zip(z) {

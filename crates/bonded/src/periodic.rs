@@ -1,8 +1,9 @@
 //! The stiffness of a body without ends: six strains of a periodic cell, each with the fluctuation that makes its energy least.
 
+use super::coarse::{Coarse, Parts};
 use super::dsm::MOST;
 use super::network::{Moved, Network};
-use super::pcg::{MARGIN, solve};
+use super::pcg::{MARGIN, Preconditioner, solve};
 use super::precond::Blocks;
 use super::six::{Matrix6, Six};
 use super::ste::Estimate;
@@ -28,6 +29,8 @@ impl Cell {
         let mut out = Self { fields: vec![], iterations: [0; 6], open: 0.0, done: true };
         let mut before = from.map_or(vec![], |cell| cell.fields);
         before.resize(6, vec![]);
+        let make = || Coarse::new(&Parts { ties: &[network], grounds: &[] }, blocks);
+        let mut by = Preconditioner::deep(blocks, &make);
         for (case, field) in before.into_iter().enumerate() {
             let mut field =
                 if field.len() == network.particles { field } else { vec![[0.0; 6]; network.particles] };
@@ -41,7 +44,7 @@ impl Cell {
             });
             let solved = solve(
                 |u, o| network.product(u, o),
-                blocks,
+                &mut by,
                 Some(&load),
                 &mut field,
                 energy.iter().sum(),

@@ -9,7 +9,7 @@ use perigrain_base::par;
 /// L is kept in single precision, which is half the memory: its rounding makes it the preconditioner of a neighbour of the block,
 /// symmetric and definite as well. That costs no accuracy of what is solved, and steps only where a block is as lopsided as 10⁷.
 #[derive(Clone, Copy, Debug, Default)]
-struct Factor {
+pub(crate) struct Factor {
     /// 1/D, zero for what does not move.
     over: Six,
     /// L below its diagonal, row by row.
@@ -21,7 +21,7 @@ struct Factor {
 impl Factor {
     /// Of a block without the components `held`. A component of which nothing is left once those before it are eliminated would make
     /// the matrix singular and changes no energy: it is held as well.
-    fn new(block: &Packed, held: u8) -> Self {
+    pub(crate) fn new(block: &Packed, held: u8) -> Self {
         let Factors { l, d, without, .. } = factor(&full(block), held);
         let over = d.map(|d| if d == 0.0 { 0.0 } else { 1.0 / d });
         let mut out = Self { over, below: [0.0; 15], held: held | without };
@@ -37,7 +37,7 @@ impl Factor {
     }
 
     #[inline(always)]
-    fn solve(&self, r: &Six) -> Six {
+    pub(crate) fn solve(&self, r: &Six) -> Six {
         let l = |row: usize, column: usize| f64::from(self.below[Self::at(row, column)]);
         let mut v = *r;
         for row in 1..6 {
@@ -87,6 +87,22 @@ impl Blocks {
     /// Takes another block for a particle of which the mask holds these components.
     pub fn renew(&mut self, particle: usize, block: &Packed, mask: u8) {
         self.factors[particle] = Factor::new(block, mask);
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.factors.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.factors.is_empty()
+    }
+
+    /// What of a particle does not move, a bit for each component.
+    #[inline(always)]
+    pub fn held(&self, particle: usize) -> u8 {
+        self.factors[particle].held
     }
 
     /// M⁻¹ r of a particle.

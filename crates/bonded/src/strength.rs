@@ -3,10 +3,12 @@
 //! E. Schlangen, J. G. M. van Mier, Cem. Concr. Compos. 14, 105 (1992): under small displacements all that bonds bear is proportional to the
 //! load, so that the one which comes nearest to its strength tells the load at which it breaks; without it the body is solved anew.
 
+use super::coarse::{Coarse, Parts};
 use super::dsm::MOST;
 use super::ends::Held;
 use super::network::{Modes, Network};
-use super::pcg::{MARGIN, solve};
+use super::pairs::Lists;
+use super::pcg::{MARGIN, Preconditioner, solve};
 use super::precond::Blocks;
 use super::six::Six;
 use perigrain_base::par;
@@ -93,12 +95,14 @@ pub fn crumble(
     limits: &Limits,
     share: impl Fn(usize, &Modes) -> f64 + Sync,
 ) -> Path {
-    let rows = Rows::new(&network);
+    let ends = network.pairs.ends.iter().enumerate();
+    let rows = Lists::new(network.particles, ends.flat_map(|(k, ends)| ends.map(|place| (place, k as u32))));
     let mut blocks = Blocks::of_network(&network, &held.mask);
     let mut energy: f64 = network.energy(&field).iter().sum();
     let first = energy;
     let mut out =
         Path { breaks: vec![], peak: 0, field: field.clone(), iterations: 0, done: true, whole: true };
+    let mut coarse = None;
     let (mut alive, mut highest, mut reached) = (vec![true; network.bonds()], 0.0, 0.0f64);
     let mut shares = vec![0.0; network.bonds()];
     while out.breaks.len() < limits.most {
@@ -131,14 +135,16 @@ pub fn crumble(
             (alive[k], network.k[k]) = (false, Default::default());
         }
         for place in bonds.iter().flat_map(|k| network.pairs.ends[*k as usize]) {
-            let block = network.block(place, rows.of(place));
+            let block = network.block(place, rows.of(place as usize));
             blocks.renew(place as usize, &block, held.mask[place as usize]);
         }
         let before = std::mem::replace(&mut energy, network.energy(&field).iter().sum());
         let start = energy;
+        let make = || Coarse::new(&Parts { ties: &[&network], grounds: &[] }, &blocks);
+        let mut by = Preconditioner::again(&blocks, &make, coarse.take());
         let solved = solve(
             |u, out| network.product(u, out),
-            &blocks,
+            &mut by,
             None,
             &mut field,
             start,
@@ -149,6 +155,7 @@ pub fn crumble(
             },
         );
         energy = solved.energy.max(0.0);
+        coarse = by.carried(&solved);
         out.iterations += solved.iterations;
         out.done &= solved.done;
         out.breaks.push(Break { bonds, load, energy: [before, energy] });
@@ -166,32 +173,4 @@ fn scale(out: &mut [Six], field: &[Six], load: f64) {
             *out = row.map(|a| load * a);
         }
     });
-}
-
-/// The bonds of each particle.
-struct Rows {
-    first: Vec<u32>,
-    bonds: Vec<u32>,
-}
-
-impl Rows {
-    fn new(network: &Network) -> Self {
-        let mut first = vec![0; network.particles + 1];
-        let ends = &network.pairs.ends;
-        ends.iter().flatten().for_each(|place| first[*place as usize + 1] += 1);
-        for place in 0..network.particles {
-            first[place + 1] += first[place];
-        }
-        let (mut next, mut bonds) = (first.clone(), vec![0; 2 * ends.len()]);
-        for (k, place) in ends.iter().enumerate().flat_map(|(k, ends)| ends.map(|place| (k, place))) {
-            bonds[next[place as usize] as usize] = k as u32;
-            next[place as usize] += 1;
-        }
-        Self { first, bonds }
-    }
-
-    fn of(&self, place: u32) -> &[u32] {
-        let place = place as usize;
-        &self.bonds[self.first[place] as usize..self.first[place + 1] as usize]
-    }
 }

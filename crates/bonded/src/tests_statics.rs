@@ -4,7 +4,7 @@ use super::dsm::{Answer, Stop, relax};
 use super::ends::{Ends, Held, Hold, Sample, affine, poisson, reaction};
 use super::lattices::{Body, SC, block, lattice, random, standard};
 use super::network::Network;
-use super::pcg::solve;
+use super::pcg::{Preconditioner, solve};
 use super::precond::Blocks;
 use super::shares;
 use super::stiffness::{Beam, Shear, Stiffness};
@@ -125,8 +125,15 @@ fn cantilevers_are_beams() {
             (tip[n][1], tip[n][0], tip[n][3]) = (load, 2.0 * load, 1e-6);
             let mut u = vec![[0.0; 6]; n + 1];
             let blocks = Blocks::of_network(&network, &mask);
-            let out =
-                solve(|u, o| network.product(u, o), &blocks, Some(&tip), &mut u, 0.0, 10_000, |_| false);
+            let out = solve(
+                |u, o| network.product(u, o),
+                &mut Preconditioner::plain(&blocks),
+                Some(&tip),
+                &mut u,
+                0.0,
+                10_000,
+                |_| false,
+            );
             // Printed with 12 digits; conjugate gradients on a chain of 40 bends leave 1e-9 of it.
             near(u[n][1], w, 1e-9);
             near(u[n][5], 2.48679598581e-3, 1e-9);
@@ -183,7 +190,7 @@ fn bounds_hold_and_fall() {
         let least = exact.answer.energy();
         solve(
             |u, o| network.product(u, o),
-            &blocks,
+            &mut Preconditioner::plain(&blocks),
             None,
             &mut u,
             energy,

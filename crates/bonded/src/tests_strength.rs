@@ -3,7 +3,7 @@
 use super::ends::{Ends, Held, Hold, Sample, affine};
 use super::lattices::{Body, block, standard};
 use super::network::Network;
-use super::pcg::solve;
+use super::pcg::{Preconditioner, solve};
 use super::precond::Blocks;
 use super::strength::{Avalanche, Limits, Path, crumble};
 use super::weibull;
@@ -23,7 +23,15 @@ fn pull(
     let delta = 0.01 * ends.free_length();
     let mut field = affine(&sample, &ends, [Hold::Grip; 2], &held, delta, [0.0; 3]);
     let blocks = Blocks::of_network(&network, &held.mask);
-    solve(|u, out| network.product(u, out), &blocks, None, &mut field, 0.0, 10_000, |_| false);
+    solve(
+        |u, out| network.product(u, out),
+        &mut Preconditioner::plain(&blocks),
+        None,
+        &mut field,
+        0.0,
+        10_000,
+        |_| false,
+    );
     let origin = network.pairs.origin.clone();
     let share = |k: usize, bears: &[f64; 4]| bears[0] / strength(origin[k] as usize);
     (delta, crumble(network, &held, field, limits, share))

@@ -12,10 +12,11 @@ use super::telling::warn_sticking;
 use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_bonded::coarse::{Coarse, Parts};
 use perigrain_bonded::dsm::MOST;
 use perigrain_bonded::ends::slope;
 use perigrain_bonded::network::Modes;
-use perigrain_bonded::pcg::solve;
+use perigrain_bonded::pcg::{Preconditioner, solve};
 use perigrain_bonded::periodic::Cell;
 use perigrain_bonded::shares::change;
 use perigrain_bonded::six::{Matrix6, Six};
@@ -319,7 +320,9 @@ fn poisson_adjoint(scene: &Scene, setup: &Setup, words: &Words) -> Vec<Six> {
     let mut lambda = vec![[0.0; 6]; load.len()];
     let product = |u: &[Six], out: &mut [Six]| scene.network.product(u, out);
     let tol = tolerance(words);
-    solve(product, &setup.blocks(scene), Some(&load), &mut lambda, 0.0, MOST, |now| {
+    let blocks = setup.blocks(scene);
+    let make = || Coarse::new(&Parts { ties: &[&scene.network], grounds: &[] }, &blocks);
+    solve(product, &mut Preconditioner::deep(&blocks, &make), Some(&load), &mut lambda, 0.0, MOST, |now| {
         now.fallen.is_some_and(|fallen| fallen <= tol * now.energy.abs())
     });
     lambda

@@ -1,0 +1,120 @@
+//! The last level, solved.
+
+use super::matrix::Matrix;
+use crate::six::Six;
+
+/// L D Lᵀ of a positive semidefinite matrix without zeros.
+pub struct Bottom {
+    /// Number of rows.
+    n: usize,
+    /// L below its diagonal, row by row.
+    l: Vec<f64>,
+    /// 1/D, zero for what nothing resists.
+    over: Vec<f64>,
+    /// Motions that nothing resists, of length 1 by `weights` and across each other.
+    idle: Vec<Vec<f64>>,
+    /// By row: the number of particles for displacements, nothing for rotations.
+    weights: Vec<f64>,
+}
+
+/// Once the rows before are eliminated a row of which less than this part is left resists nothing.
+const NOTHING: f64 = 1e-10;
+
+impl Bottom {
+    /// Of a matrix between clusters of so many particles.
+    pub fn new(matrix: &Matrix, particles: &[f64]) -> Self {
+        let n = 6 * matrix.rows();
+        let mut a = vec![0.0; n * n];
+        for ([i, j], block) in matrix.blocks() {
+            // By columns, which are the rows of its mirror image.
+            for (c, column) in block.iter().enumerate() {
+                a[(6 * j + c) * n + 6 * i..][..6].copy_from_slice(column);
+            }
+        }
+        let weight = |k: usize| if k % 6 < 3 { particles[k / 6] } else { 0.0 };
+        Self::of((0..n).map(weight).collect(), a)
+    }
+
+    /// Of n × n numbers, of which those above the diagonal are not asked for.
+    fn of(weights: Vec<f64>, mut l: Vec<f64>) -> Self {
+        let n = weights.len();
+        let mut over = vec![0.0; n];
+        for k in 0..n {
+            let (before, row) = l.split_at_mut(k * n);
+            let whole = row[k];
+            // L D of this row, column by column; what is divided by D is L.
+            for c in 0..k {
+                row[c] -= inner(&row[..c], &before[c * n..][..c]);
+            }
+            let mut left = whole;
+            for c in 0..k {
+                let times_d = row[c];
+                row[c] *= over[c];
+                left -= row[c] * times_d;
+            }
+            over[k] = if left > NOTHING * whole { 1.0 / left } else { 0.0 };
+        }
+        let mut out = Self { n, l, over, idle: vec![], weights };
+        for k in (0..n).filter(|k| out.over[*k] == 0.0) {
+            // L D Lᵀ x = 0 where Lᵀ x is 1 in a row without D.
+            let mut x = vec![0.0; n];
+            x[k] = 1.0;
+            out.back(&mut x);
+            for idle in &out.idle {
+                let part = out.along(idle, &x);
+                take(&mut x, part, idle);
+            }
+            let length = out.along(&x, &x).sqrt();
+            // Rotations alone stay zero as it is.
+            if length > 0.0 {
+                out.idle.push(x.iter().map(|x| x / length).collect());
+            }
+        }
+        out
+    }
+
+    /// a·W b.
+    fn along(&self, a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).zip(&self.weights).map(|((a, b), w)| a * w * b).sum()
+    }
+
+    /// x = L⁻ᵀ x.
+    fn back(&self, x: &mut [f64]) {
+        for k in (0..self.n).rev() {
+            let (before, from) = x.split_at_mut(k);
+            take(before, from[0], &self.l[k * self.n..][..k]);
+        }
+    }
+
+    /// Q A⁻¹ Qᵀ r, with nothing of motions that nothing resists (Q = 1 − N Nᵀ W): these would change no energy, but a body would spin.
+    pub fn solve(&self, r: &[Six]) -> Vec<Six> {
+        let mut x: Vec<f64> = r.iter().flatten().copied().collect();
+        for idle in &self.idle {
+            let part = inner(idle, &x);
+            x.iter_mut().zip(idle).zip(&self.weights).for_each(|((x, idle), w)| *x -= part * w * idle);
+        }
+        let row = |k: usize| &self.l[k * self.n..][..k];
+        for k in 0..self.n {
+            x[k] -= inner(row(k), &x[..k]);
+            if self.over[k] == 0.0 {
+                x[k] = 0.0;
+            }
+        }
+        x.iter_mut().zip(&self.over).for_each(|(x, over)| *x *= over);
+        self.back(&mut x);
+        for idle in &self.idle {
+            let part = self.along(idle, &x);
+            take(&mut x, part, idle);
+        }
+        x.chunks_exact(6).map(|row| std::array::from_fn(|c| row[c])).collect()
+    }
+}
+
+/// x −= part · a.
+fn take(x: &mut [f64], part: f64, a: &[f64]) {
+    x.iter_mut().zip(a).for_each(|(x, a)| *x -= part * a);
+}
+
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

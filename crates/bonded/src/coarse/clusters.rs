@@ -1,0 +1,117 @@
+//! Who forms which cluster, and how rigid clusters move what is in them.
+
+use crate::pairs::Lists;
+use crate::six::Six;
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
+use perigrain_base::par;
+
+/// The cluster of what stands still.
+pub const NONE: u32 = u32::MAX;
+
+/// Clusters of nodes, which are particles or clusters themselves.
+pub struct Clusters {
+    /// By node; [`NONE`] for what stands still.
+    pub of: Vec<u32>,
+    /// From the middle of the cluster to the node [length].
+    pub offset: Vec<Vec3>,
+    /// The nodes of each.
+    members: Lists,
+}
+
+impl Clusters {
+    /// A node that has none of its neighbours in a cluster yet forms one with all of them; who is left joins the cluster that most of
+    /// its neighbours are in. `neighbours(node, take)` hands over the neighbours of a node with the vectors to them.
+    pub fn new(
+        nodes: usize,
+        stands: impl Fn(usize) -> bool,
+        neighbours: impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
+    ) -> Self {
+        let (mut of, mut offset, mut count) = (vec![NONE; nodes], vec![[0.0; 3]; nodes], 0);
+        let left = |of: &[u32], k: usize| of[k] == NONE && !stands(k);
+        let mut begin = |k: usize, of: &mut [u32], offset: &mut [Vec3]| {
+            of[k] = count;
+            neighbours(k, &mut |j, d| {
+                if left(of, j) {
+                    (of[j], offset[j]) = (count, d);
+                }
+            });
+            count += 1;
+        };
+        for k in 0..nodes {
+            let mut alone = true;
+            neighbours(k, &mut |j, _| alone &= of[j] == NONE);
+            if alone && left(&of, k) {
+                begin(k, &mut of, &mut offset);
+            }
+        }
+        let first = of.clone();
+        for k in (0..nodes).filter(|k| !stands(*k)) {
+            if first[k] != NONE {
+                continue;
+            }
+            // Cluster, how many neighbours are in it, and where it is seen from the first of them.
+            let mut near: Vec<(u32, u32, Vec3)> = vec![];
+            neighbours(k, &mut |j, d| match near.iter_mut().find(|n| n.0 == first[j]) {
+                _ if first[j] == NONE => {}
+                Some(n) => n.1 += 1,
+                None => near.push((first[j], 1, sub(offset[j], d))),
+            });
+            match near.iter().reduce(|best, n| if n.1 > best.1 { n } else { best }) {
+                Some((cluster, _, x)) => (of[k], offset[k]) = (*cluster, *x),
+                None if of[k] == NONE => begin(k, &mut of, &mut offset),
+                None => {}
+            }
+        }
+        let held = of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE);
+        let members = Lists::new(count as usize, held.map(|(k, cluster)| (*cluster, k as u32)));
+        for row in (0..count as usize).map(|cluster| members.of(cluster)) {
+            let sum = row.iter().fold([0.0; 3], |sum, k| add(sum, offset[*k as usize]));
+            let middle = scale(1.0 / row.len() as f64, sum);
+            row.iter().for_each(|k| offset[*k as usize] = sub(offset[*k as usize], middle));
+        }
+        Self { of, offset, members }
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.members.len()
+    }
+
+    /// The nodes of one.
+    pub fn members(&self, cluster: usize) -> impl Iterator<Item = usize> {
+        self.members.of(cluster).iter().map(|k| *k as usize)
+    }
+
+    /// The sum of something over the nodes of each.
+    pub fn sums(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
+        (0..self.count()).map(|cluster| self.members(cluster).map(&of).sum()).collect()
+    }
+
+    /// Pᵀ r: what forces and torques on nodes are on clusters.
+    pub fn gather(&self, r: impl Fn(usize) -> Six + Sync) -> Vec<Six> {
+        let mut out = vec![[0.0; 6]; self.count()];
+        par::each(&mut out[..], |start, rows: &mut [Six]| {
+            for (cluster, row) in (start..).zip(rows) {
+                for k in self.members(cluster) {
+                    let f = handed(self.offset[k], &r(k));
+                    row.iter_mut().zip(f).for_each(|(sum, a)| *sum += a);
+                }
+            }
+        });
+        out
+    }
+}
+
+/// The motion of what is at x in a rigid body: u + θ × x, θ.
+#[inline(always)]
+pub fn carried(x: Vec3, m: &Six) -> Six {
+    let more = cross([m[3], m[4], m[5]], x);
+    [m[0] + more[0], m[1] + more[1], m[2] + more[2], m[3], m[4], m[5]]
+}
+
+/// Force and torque at x as those of the rigid body: F, M + x × F.
+#[inline(always)]
+pub fn handed(x: Vec3, f: &Six) -> Six {
+    let more = cross(x, [f[0], f[1], f[2]]);
+    [f[0], f[1], f[2], f[3] + more[0], f[4] + more[1], f[5] + more[2]]
+}
