@@ -17,7 +17,7 @@ use super::six::Six;
 use bottom::Bottom;
 use clusters::{Clusters, NONE, carried};
 use matrix::Matrix;
-use perigrain_base::math::vec3::Vec3;
+use perigrain_base::math::vec3::{Vec3, length};
 use perigrain_base::par;
 
 /// Something that ties particles together pair by pair and resists their motion as springs do.
@@ -38,6 +38,14 @@ pub struct Parts<'a> {
     pub ties: &'a [&'a dyn Ties],
     /// What ties particles to what stands still, by their components: particle, component, stiffness.
     pub grounds: &'a [(u32, usize, f64)],
+}
+
+impl Parts<'_> {
+    /// How long a tie is, the first of all [length].
+    fn arm(&self) -> f64 {
+        let first = self.ties.iter().find(|ties| !ties.ends().is_empty());
+        first.map_or(1.0, |ties| length(ties.vector(0)))
+    }
 }
 
 /// A level: who forms which cluster, and the matrix of their rigid motions.
@@ -87,7 +95,7 @@ impl Coarse {
             levels.push(Level { clusters, matrix });
         }
         let last = &levels[levels.len() - 1].matrix;
-        let bottom = (last.rows() <= 2 * FEW).then(|| Bottom::new(last, &particles));
+        let bottom = (last.rows() <= 2 * FEW).then(|| Bottom::new(last, &particles, parts.arm()));
         Self { levels, bottom }
     }
 
@@ -100,7 +108,7 @@ impl Coarse {
             for (k, row) in (start..).zip(rows) {
                 let cluster = clusters.of[k];
                 if cluster != NONE {
-                    let u = blocks.free(k, &carried(clusters.offset[k], &moved[cluster as usize]));
+                    let u = blocks.free(k, &carried(clusters.offset(k), &moved[cluster as usize]));
                     add_to(row, LARGER_AT_LAST, &u);
                 }
             }
@@ -125,7 +133,7 @@ impl Coarse {
             moved.iter_mut().zip(&more).for_each(|(a, b)| add_to(a, 1.0, b));
         }
         for (k, row) in x.iter_mut().enumerate() {
-            add_to(row, LARGER, &carried(clusters.offset[k], &moved[clusters.of[k] as usize]));
+            add_to(row, LARGER, &carried(clusters.offset(k), &moved[clusters.of[k] as usize]));
         }
         (0..STEPS).for_each(|_| x = step(a, r, &x));
         x

@@ -77,8 +77,8 @@ impl<'a> Preconditioner<'a> {
     }
 }
 
-/// After so many steps coarse levels are made, which takes as long as some fifteen steps: no solution takes much more than twice the
-/// time of the better way.
+/// After so many steps coarse levels are made, which takes as long as some ten steps. Packings that follow the load evenly are solved to
+/// 1 % before or soon after; in others what the first thirty steps say of the error is wrong (30 % for 9 % in an inverse opal).
 pub const PATIENCE: usize = 15;
 
 /// Coarse levels with which a solution takes more steps are made anew for the next one.

@@ -13,7 +13,7 @@ pub struct Bottom {
     over: Vec<f64>,
     /// Motions that nothing resists, of length 1 by `weights` and across each other.
     idle: Vec<Vec<f64>>,
-    /// By row: the number of particles for displacements, nothing for rotations.
+    /// By row: the number of particles, times the square of a length for rotations.
     weights: Vec<f64>,
 }
 
@@ -21,8 +21,9 @@ pub struct Bottom {
 const NOTHING: f64 = 1e-10;
 
 impl Bottom {
-    /// Of a matrix between clusters of so many particles.
-    pub fn new(matrix: &Matrix, particles: &[f64]) -> Self {
+    /// Of a matrix between clusters of so many particles; `arm` is what rotations are multiplied by where they are compared with
+    /// displacements [length].
+    pub fn new(matrix: &Matrix, particles: &[f64], arm: f64) -> Self {
         let n = 6 * matrix.rows();
         let mut a = vec![0.0; n * n];
         for ([i, j], block) in matrix.blocks() {
@@ -31,7 +32,7 @@ impl Bottom {
                 a[(6 * j + c) * n + 6 * i..][..6].copy_from_slice(column);
             }
         }
-        let weight = |k: usize| if k % 6 < 3 { particles[k / 6] } else { 0.0 };
+        let weight = |k: usize| particles[k / 6] * if k % 6 < 3 { 1.0 } else { arm * arm };
         Self::of((0..n).map(weight).collect(), a)
     }
 
@@ -65,10 +66,7 @@ impl Bottom {
                 take(&mut x, part, idle);
             }
             let length = out.along(&x, &x).sqrt();
-            // Rotations alone stay zero as it is.
-            if length > 0.0 {
-                out.idle.push(x.iter().map(|x| x / length).collect());
-            }
+            out.idle.push(x.iter().map(|x| x / length).collect());
         }
         out
     }

@@ -4,104 +4,87 @@ use super::clusters::{Clusters, NONE, carried, handed};
 use super::{Parts, Ties};
 use crate::pairs::Lists;
 use crate::precond::{Blocks, Factor};
-use crate::six::{Matrix6, Packed, Six, full, packed};
+use crate::six::{Matrix6, Six, full, packed};
 use perigrain_base::math::vec3::{Vec3, add, scale, sub};
 use perigrain_base::par;
 
 /// A matrix.
-pub struct Matrix {
-    /// Where the blocks of each row begin.
-    first: Vec<u32>,
-    /// Columns of the blocks beside the diagonal.
-    column: Vec<u32>,
-    /// From the node of the row to that of the column [length].
-    vector: Vec<Vec3>,
-    /// Blocks beside the diagonal, by columns.
-    beside: Vec<Matrix6>,
-    diagonal: Vec<Packed>,
-    factors: Vec<Factor>,
-}
+pub struct Matrix(Vec<Row>);
 
-/// A row in the making; blocks by columns.
+/// A row of blocks, each by columns.
 #[derive(Clone, Default)]
 struct Row {
     diagonal: Matrix6,
-    column: Vec<u32>,
-    beside: Vec<(Vec3, Matrix6)>,
+    factor: Factor,
+    beside: Vec<Block>,
+}
+
+/// A block beside the diagonal.
+#[derive(Clone)]
+struct Block {
+    column: u32,
+    /// From the node of the row to that of the column [length].
+    vector: Vec3,
+    numbers: Matrix6,
 }
 
 impl Row {
     /// The block of a column, which is seen at `vector` from here.
     fn block(&mut self, column: u32, vector: Vec3) -> &mut Matrix6 {
-        let at = self.column.iter().position(|c| *c == column).unwrap_or(self.column.len());
-        if at == self.column.len() {
-            self.column.push(column);
-            self.beside.push((vector, Default::default()));
+        let at = self.beside.iter().position(|b| b.column == column).unwrap_or(self.beside.len());
+        if at == self.beside.len() {
+            self.beside.push(Block { column, vector, numbers: Default::default() });
         }
-        &mut self.beside[at].1
+        &mut self.beside[at].numbers
     }
 }
 
 impl Matrix {
     fn new(rows: usize, make: impl Fn(usize, &mut Row) + Sync) -> Self {
-        let mut made = vec![Row::default(); rows];
-        par::each(&mut made[..], |start, rows: &mut [Row]| {
-            rows.iter_mut().enumerate().for_each(|(k, row)| make(start + k, row));
-        });
-        let blocks = made.iter().map(|row| row.beside.len()).sum();
-        let (column, vector, beside) =
-            (Vec::with_capacity(blocks), Vec::with_capacity(blocks), Vec::with_capacity(blocks));
-        let mut out = Self { first: vec![0], column, vector, beside, diagonal: vec![], factors: vec![] };
-        for row in made {
-            out.column.extend(row.column);
-            for (vector, block) in row.beside {
-                out.vector.push(vector);
-                out.beside.push(block);
+        let mut out = vec![Row::default(); rows];
+        par::each(&mut out[..], |start, rows: &mut [Row]| {
+            for (k, row) in (start..).zip(rows) {
+                make(k, row);
+                // Symmetric to the bit, as its factors are.
+                let diagonal = packed(&row.diagonal);
+                (row.diagonal, row.factor) = (full(&diagonal), Factor::new(&diagonal, 0));
             }
-            out.first.push(out.column.len() as u32);
-            let diagonal = packed(&row.diagonal);
-            out.factors.push(Factor::new(&diagonal, 0));
-            out.diagonal.push(diagonal);
-        }
-        out
+        });
+        Self(out)
     }
 
     /// How many rows of blocks.
     pub fn rows(&self) -> usize {
-        self.diagonal.len()
-    }
-
-    fn row(&self, k: usize) -> std::ops::Range<usize> {
-        self.first[k] as usize..self.first[k + 1] as usize
+        self.0.len()
     }
 
     /// All blocks by columns, with their places, those on the diagonal as well.
-    pub fn blocks(&self) -> impl Iterator<Item = ([usize; 2], Matrix6)> {
-        (0..self.rows()).flat_map(move |k| {
-            let beside = self.row(k).map(move |e| ([k, self.column[e] as usize], self.beside[e]));
-            std::iter::once(([k, k], full(&self.diagonal[k]))).chain(beside)
+    pub fn blocks(&self) -> impl Iterator<Item = ([usize; 2], &Matrix6)> {
+        self.0.iter().enumerate().flat_map(|(k, row)| {
+            let beside = row.beside.iter().map(move |b| ([k, b.column as usize], &b.numbers));
+            std::iter::once(([k, k], &row.diagonal)).chain(beside)
         })
     }
 
     /// A row of A x.
     #[inline(always)]
     pub fn times(&self, k: usize, x: &[Six]) -> Six {
-        let mut out = [0.0; 6];
-        add_times(&mut out, &full(&self.diagonal[k]), &x[k]);
-        self.row(k).for_each(|e| add_times(&mut out, &self.beside[e], &x[self.column[e] as usize]));
+        let (mut out, row) = ([0.0; 6], &self.0[k]);
+        add_times(&mut out, &row.diagonal, &x[k]);
+        row.beside.iter().for_each(|b| add_times(&mut out, &b.numbers, &x[b.column as usize]));
         out
     }
 
     /// D⁻¹ r of a row, D the blocks on the diagonal.
     #[inline(always)]
     pub fn over(&self, k: usize, r: &Six) -> Six {
-        self.factors[k].solve(r)
+        self.0[k].factor.solve(r)
     }
 
     /// Clusters of what it resists.
     pub fn clusters(&self) -> Clusters {
         let neighbours = |k: usize, take: &mut dyn FnMut(usize, Vec3)| {
-            self.row(k).for_each(|e| take(self.column[e] as usize, self.vector[e]));
+            self.0[k].beside.iter().for_each(|b| take(b.column as usize, b.vector));
         };
         Clusters::new(self.rows(), |_| false, neighbours)
     }
@@ -110,16 +93,15 @@ impl Matrix {
     pub fn of_clusters(&self, clusters: &Clusters) -> Self {
         Self::new(clusters.count(), |own, row| {
             for i in clusters.members(own) {
-                let x = clusters.offset[i];
-                put(&mut row.diagonal, &full(&self.diagonal[i]), [x, x]);
-                for e in self.row(i) {
-                    let j = self.column[e] as usize;
-                    let (cluster, y) = (clusters.of[j], clusters.offset[j]);
+                let (above, x) = (&self.0[i], clusters.offset(i));
+                put(&mut row.diagonal, &above.diagonal, [x, x]);
+                for Block { column, vector, numbers } in &above.beside {
+                    let j = *column as usize;
+                    let (cluster, y) = (clusters.of[j], clusters.offset(j));
                     if cluster as usize == own {
-                        put(&mut row.diagonal, &self.beside[e], [x, y]);
+                        put(&mut row.diagonal, numbers, [x, y]);
                     } else {
-                        let vector = sub(add(x, self.vector[e]), y);
-                        put(row.block(cluster, vector), &self.beside[e], [x, y]);
+                        put(row.block(cluster, sub(add(x, *vector), y)), numbers, [x, y]);
                     }
                 }
             }
@@ -151,16 +133,8 @@ fn put(sum: &mut Matrix6, m: &Matrix6, [x, y]: [Vec3; 2]) {
 /// Clusters of particles and PᵀK P.
 pub fn of_particles(parts: &Parts, blocks: &Blocks) -> (Clusters, Matrix) {
     let particles = blocks.len();
-    let lists: Vec<Lists> = (parts.ties.iter())
-        .map(|ties| {
-            let bears = (0..ties.ends().len()).filter(|k| ties.bears(*k));
-            Lists::new(particles, bears.flat_map(|k| ties.ends()[k].map(|end| (end, k as u32))))
-        })
-        .collect();
-    let of = |i: usize| {
-        let ties = parts.ties.iter().zip(&lists);
-        ties.flat_map(move |(ties, list)| list.of(i).iter().map(move |k| Tie::new(*ties, *k as usize, i)))
-    };
+    let of_ends: Vec<Ends> = parts.ties.iter().map(|ties| Ends::new(*ties, particles)).collect();
+    let of = |i: usize| of_ends.iter().flat_map(move |ends| ends.of(i));
     let neighbours = |i: usize, take: &mut dyn FnMut(usize, Vec3)| {
         of(i).for_each(|tie| take(tie.other, tie.vector));
     };
@@ -171,7 +145,7 @@ pub fn of_particles(parts: &Parts, blocks: &Blocks) -> (Clusters, Matrix) {
     );
     let matrix = Matrix::new(clusters.count(), |own, row| {
         for i in clusters.members(own) {
-            let x = clusters.offset[i];
+            let x = clusters.offset(i);
             of(i).for_each(|tie| tie.add_to(row, own as u32, &clusters, blocks));
             for (_, component, k) in grounds.of(i).iter().map(|k| parts.grounds[*k as usize]) {
                 let mut m = Matrix6::default();
@@ -181,6 +155,34 @@ pub fn of_particles(parts: &Parts, blocks: &Blocks) -> (Clusters, Matrix) {
         }
     });
     (clusters, matrix)
+}
+
+/// The ties of each particle.
+struct Ends<'a> {
+    ties: &'a dyn Ties,
+    /// The first one of which it is the lower end; they stand in this order.
+    first: Vec<u32>,
+    /// Those of which it is the upper end.
+    upper: Lists,
+}
+
+impl<'a> Ends<'a> {
+    fn new(ties: &'a dyn Ties, particles: usize) -> Self {
+        let ends = ties.ends();
+        let mut first = vec![0; particles + 1];
+        ends.iter().for_each(|ends| first[ends[0] as usize + 1] += 1);
+        (0..particles).for_each(|k| first[k + 1] += first[k]);
+        let upper = Lists::new(particles, ends.iter().enumerate().map(|(k, ends)| (ends[1], k as u32)));
+        Self { ties, first, upper }
+    }
+
+    /// Those of a particle that resist something.
+    fn of(&self, i: usize) -> impl Iterator<Item = Tie<'a>> {
+        let ties = self.ties;
+        let lower = self.first[i]..self.first[i + 1];
+        let all = lower.chain(self.upper.of(i).iter().copied()).map(|k| k as usize);
+        all.filter(move |k| ties.bears(*k)).map(move |k| Tie::new(ties, k, i))
+    }
 }
 
 /// A tie, seen from one of its ends.
@@ -217,7 +219,7 @@ impl<'a> Tie<'a> {
     /// at the other end is the block beside the diagonal as well.
     fn add_to(&self, row: &mut Row, cluster: u32, clusters: &Clusters, blocks: &Blocks) {
         let ends = [self.own, self.other];
-        let [x, y] = ends.map(|end| clusters.offset[end]);
+        let [x, y] = ends.map(|end| clusters.offset(end));
         let (elsewhere, within) = (clusters.of[self.other], clusters.of[self.other] == cluster);
         let vector = sub(add(x, self.vector), y);
         if within && (!self.low || self.idle(vector, blocks)) {
@@ -248,6 +250,7 @@ impl<'a> Tie<'a> {
     fn idle(&self, gap: Vec3, blocks: &Blocks) -> bool {
         let largest = |a: Vec3| a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
         let free = [self.own, self.other].iter().all(|end| blocks.held(*end) == 0);
-        free && largest(gap) <= 1e-9 * largest(self.vector)
+        // Places have single precision.
+        free && largest(gap) <= 1e-5 * largest(self.vector)
     }
 }
