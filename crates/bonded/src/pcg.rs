@@ -134,6 +134,11 @@ pub fn solve(
         let fallen = (taken.len() >= WINDOW).then(|| taken[taken.len() - WINDOW..].iter().sum::<f64>());
         out.open = fallen.map_or(f64::NAN, |fallen| MARGIN * fallen);
         most_energy = most_energy.max(out.energy.abs());
+        if rz < 0.0 {
+            // No preconditioner of springs: some stiffness is negative.
+            out.done = false;
+            return out;
+        }
         if rz <= NOTHING * most_energy {
             out.open = out.open.min(MARGIN * NOTHING * most_energy);
             return out;

@@ -23,16 +23,20 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// A node that has none of its neighbours in a cluster yet forms one with all of them, and with theirs; who is left joins the cluster that most of
-    /// its neighbours are in. `neighbours(node, take)` hands over the neighbours of a node with the vectors to them.
+    /// A node that has none of its neighbours in a cluster yet forms one with all of them, and with theirs; who is left joins the cluster
+    /// that most of its neighbours are in. `neighbours(node, take)` hands over the neighbours of a node with the vectors to them.
     pub fn new(
         nodes: usize,
         stands: impl Fn(usize) -> bool,
         neighbours: impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
     ) -> Self {
         let (mut of, mut offset, mut count) = (vec![NONE; nodes], vec![[0.0f32; 3]; nodes], 0);
-        let left = |of: &[u32], k: usize| of[k] == NONE && !stands(k);
-        let mut begin = |k: usize, of: &mut [u32], offset: &mut [[f32; 3]]| {
+        for k in (0..nodes).filter(|k| !stands(*k)) {
+            let mut begins = of[k] == NONE;
+            neighbours(k, &mut |j, _| begins &= of[j] == NONE);
+            if !begins {
+                continue;
+            }
             of[k] = count;
             let mut ring = vec![k];
             for _ in 0..RINGS {
@@ -40,7 +44,7 @@ impl Clusters {
                 for i in ring {
                     let x = offset[i].map(f64::from);
                     neighbours(i, &mut |j, d| {
-                        if left(of, j) {
+                        if of[j] == NONE && !stands(j) {
                             (of[j], offset[j]) = (count, single(add(x, d)));
                             next.push(j);
                         }
@@ -49,13 +53,6 @@ impl Clusters {
                 ring = next;
             }
             count += 1;
-        };
-        for k in 0..nodes {
-            let mut alone = true;
-            neighbours(k, &mut |j, _| alone &= of[j] == NONE);
-            if alone && left(&of, k) {
-                begin(k, &mut of, &mut offset);
-            }
         }
         let first = of.clone();
         for k in (0..nodes).filter(|k| !stands(*k)) {
@@ -69,10 +66,9 @@ impl Clusters {
                 Some(n) => n.1 += 1,
                 None => near.push((first[j], 1, sub(offset[j].map(f64::from), d))),
             });
-            match near.iter().reduce(|best, n| if n.1 > best.1 { n } else { best }) {
-                Some((cluster, _, x)) => (of[k], offset[k]) = (*cluster, single(*x)),
-                None if of[k] == NONE => begin(k, &mut of, &mut offset),
-                None => {}
+            // Some neighbour is in a cluster, else it had begun one itself.
+            if let Some((cluster, _, x)) = near.iter().reduce(|best, n| if n.1 > best.1 { n } else { best }) {
+                (of[k], offset[k]) = (*cluster, single(*x));
             }
         }
         let held = of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE);
