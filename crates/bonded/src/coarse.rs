@@ -12,25 +12,15 @@ mod bottom;
 mod clusters;
 mod matrix;
 
+use super::network::Network;
+use super::pairs::Ties;
 use super::precond::Blocks;
 use super::six::Six;
 use bottom::Bottom;
 use clusters::{Clusters, NONE, carried};
 use matrix::Matrix;
-use perigrain_base::math::vec3::{Vec3, length};
+use perigrain_base::math::vec3::length;
 use perigrain_base::par;
-
-/// Something that ties particles together pair by pair and resists their motion as springs do.
-pub trait Ties: Sync {
-    /// Both ends of each, the lower one first.
-    fn ends(&self) -> &[[u32; 2]];
-    /// From the lower end of one to its upper one [length].
-    fn vector(&self, k: usize) -> Vec3;
-    /// Whether it resists anything.
-    fn bears(&self, k: usize) -> bool;
-    /// The resisting forces and torques of both ends where these are moved.
-    fn resist(&self, k: usize, ends: [&Six; 2]) -> [Six; 2];
-}
 
 /// All that makes up a stiffness matrix.
 pub struct Parts<'a> {
@@ -99,7 +89,12 @@ impl Coarse {
         Self { levels, bottom }
     }
 
-    /// z += P B Pᵀ r.
+    /// Of the bonds of a network alone.
+    pub fn of_network(network: &Network, blocks: &Blocks) -> Self {
+        Self::new(&Parts { ties: &[network], grounds: &[] }, blocks)
+    }
+
+    /// z += P B Pᵀ r: of forces [force] and torques [force length] displacements [length] and rotations [rad].
     pub fn add_to(&self, z: &mut [Six], r: &[Six], blocks: &Blocks) {
         let clusters = &self.levels[0].clusters;
         let pushed = clusters.gather(|k| blocks.free(k, &r[k]));

@@ -3,11 +3,10 @@
 //!
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2; forces of Hertz, tangential stiffness of Mindlin.
 
-use super::coarse::Ties;
 use super::contact::{Contact, Spring, State};
 use super::network::halves;
-use super::pairs::Pairs;
-use super::six::{Packed, Six, at};
+use super::pairs::{Pairs, Ties};
+use super::six::{Packed, Six, at, unit};
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
 
@@ -159,10 +158,9 @@ impl Contacts {
         self.pairs.gather(out, |bond, _| {
             let mut blocks = [[0.0; 21]; 2];
             for column in 0..6 {
-                let (mut unit, still) = ([0.0; 6], [0.0; 6]);
-                unit[column] = 1.0;
-                let low = self.resist(bond, &springs[bond], &unit, &still)[0];
-                let high = self.resist(bond, &springs[bond], &still, &unit)[1];
+                let (moves, still) = (unit(column), [0.0; 6]);
+                let low = self.resist(bond, &springs[bond], &moves, &still)[0];
+                let high = self.resist(bond, &springs[bond], &still, &moves)[1];
                 for row in column..6 {
                     blocks[0][at(row, column)] = low[row];
                     blocks[1][at(row, column)] = high[row];

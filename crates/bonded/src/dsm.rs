@@ -3,7 +3,7 @@
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2, with rotations; begun from the affine field and stopped by the energy.
 
 use super::certificate::Certificate;
-use super::coarse::{Coarse, Parts};
+use super::coarse::Coarse;
 use super::ends::{Held, WHOLE};
 use super::network::{Modes, Network};
 use super::pcg::{MARGIN, Preconditioner, Solved, solve};
@@ -65,7 +65,7 @@ pub fn relax(
         _ => None,
     };
     let mut gap = None;
-    let make = || Coarse::new(&Parts { ties: &[network], grounds: &[] }, blocks);
+    let make = || Coarse::of_network(network, blocks);
     let mut by = match stop {
         // What the paper does.
         Stop::Residual(_) => Preconditioner::plain(blocks),

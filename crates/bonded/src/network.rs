@@ -3,10 +3,9 @@
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent at rest of beams between spheres.
 
 use super::beam::{Pulled, pulled};
-use super::coarse::Ties;
 use super::law::Ends;
-use super::pairs::Pairs;
-use super::six::{Matrix6, Packed, Six, packed};
+use super::pairs::{Pairs, Ties};
+use super::six::{Matrix6, Packed, Six, packed, unit};
 use super::stiffness::Stiffness;
 use perigrain_base::math::body::{Quat, turn_by};
 use perigrain_base::math::forest;
@@ -290,12 +289,11 @@ impl Network {
     /// What the lower end of a bond, or the upper one, adds to the block of its particle.
     fn end(&self, bond: usize, lower: bool) -> Packed {
         let columns: Matrix6 = std::array::from_fn(|c| {
-            let (mut unit, still) = ([0.0; 6], [0.0; 6]);
-            unit[c] = 1.0;
+            let (moves, still) = (unit(c), [0.0; 6]);
             if lower {
-                return self.resist(bond, &Moved::new(&unit, &still)).rows()[0];
+                return self.resist(bond, &Moved::new(&moves, &still)).rows()[0];
             }
-            self.resist(bond, &Moved::new(&still, &unit)).rows()[1]
+            self.resist(bond, &Moved::new(&still, &moves)).rows()[1]
         });
         packed(&columns)
     }

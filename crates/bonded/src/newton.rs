@@ -5,8 +5,7 @@
 //! the place of conjugate gradients, a slipping agglomerate took as many steps and more time.)
 
 use super::coarse::{Coarse, Parts};
-use super::contacts::Touching;
-use super::contacts::{Contacts, Past};
+use super::contacts::{Contacts, Past, Touching};
 use super::dsm::MOST;
 use super::network::Network;
 use super::pcg::{Preconditioner, solve};
@@ -152,7 +151,7 @@ impl Body<'_> {
         out
     }
 
-    /// The step of a linear system, and −r·step.
+    /// The step of a linear system, and −r·step; `coarse` are levels made at an earlier field, and are left for the next one.
     fn step(&self, out: &mut Found, coarse: &mut Option<Coarse>, limit: Result<f64, f64>) -> (Vec<Six>, f64) {
         let springs = self.contacts.tangent(&out.field, self.past);
         let walls = self.walls.tangent(&out.field);
@@ -174,9 +173,7 @@ impl Body<'_> {
                 q[particle][self.walls.axis] += k * p[particle][self.walls.axis];
             }
         };
-        let axis = self.walls.axis;
-        let grounds: Vec<(u32, usize, f64)> =
-            walls.iter().map(|(k, stiffness)| (*k, axis, *stiffness)).collect();
+        let grounds: Vec<_> = walls.iter().map(|(particle, k)| (*particle, self.walls.axis, *k)).collect();
         let touching = Touching { contacts: self.contacts, springs: &springs };
         let make = || Coarse::new(&Parts { ties: &[network, &touching], grounds: &grounds }, &blocks);
         let mut by = match limit {
@@ -191,7 +188,7 @@ impl Body<'_> {
             now.residual <= limit.map_or_else(|least| least, |part| part * first)
         });
         out.iterations += solved.iterations;
-        *coarse = by.carried(&solved);
+        *coarse = by.kept(&solved);
         let decrement = par::sum(step.len(), |k| (0..6).map(|c| load[k][c] * step[k][c]).sum());
         (step, decrement)
     }

@@ -1,5 +1,7 @@
 //! Pairs of particles in an order in which what they do can be added up by particle, with the same bits for any number of threads.
 
+use super::six::Six;
+use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 
 /// Pairs by the place of their lower end, cut where particles are cut into chunks of [`par::CHUNK`].
@@ -103,6 +105,18 @@ impl Pairs {
             }
         }
     }
+}
+
+/// Something that ties particles together pair by pair and resists their motion as springs do.
+pub trait Ties: Sync {
+    /// Both ends of each, the lower one first; ascending, as [`Pairs`] have them.
+    fn ends(&self) -> &[[u32; 2]];
+    /// From the lower end of one to its upper one [length].
+    fn vector(&self, k: usize) -> Vec3;
+    /// Whether it resists anything.
+    fn bears(&self, k: usize) -> bool;
+    /// The resisting forces and torques of both ends where these are moved.
+    fn resist(&self, k: usize, ends: [&Six; 2]) -> [Six; 2];
 }
 
 /// Lists of numbers, one for each place.

@@ -41,12 +41,12 @@ pub struct Solved {
     pub done: bool,
 }
 
-/// What steps are preconditioned by: blocks, and coarse levels where steps turn out to be many.
+/// What steps are preconditioned by ([`solve`]): blocks, and coarse levels where steps turn out to be many.
 pub struct Preconditioner<'a> {
     blocks: &'a Blocks,
     make: Option<&'a dyn Fn() -> Coarse>,
     /// Coarse levels, once they are made; those of another matrix that is much the same do as well.
-    pub coarse: Option<Coarse>,
+    coarse: Option<Coarse>,
 }
 
 impl<'a> Preconditioner<'a> {
@@ -57,7 +57,7 @@ impl<'a> Preconditioner<'a> {
 
     /// Blocks, and after [`PATIENCE`] steps what `make` makes.
     pub fn deep(blocks: &'a Blocks, make: &'a dyn Fn() -> Coarse) -> Self {
-        Self { blocks, make: Some(make), coarse: None }
+        Self::again(blocks, make, None)
     }
 
     /// Blocks, and coarse levels that were made for a matrix before this one, if they were.
@@ -66,12 +66,13 @@ impl<'a> Preconditioner<'a> {
     }
 
     /// Coarse levels for the next matrix, unless a solution by them shows that they are too old.
-    pub fn carried(self, solved: &Solved) -> Option<Coarse> {
+    pub fn kept(self, solved: &Solved) -> Option<Coarse> {
         self.coarse.filter(|_| solved.iterations <= OLD)
     }
 
-    /// Adds what coarse levels do to z = M⁻¹ r; r·z.
-    fn deepen(&self, coarse: &Coarse, r: &[Six], z: &mut [Six]) -> f64 {
+    /// Adds what coarse levels do, if there are some, to z = M⁻¹ r, where r·z is `rz`; r·z of what comes out.
+    fn deepen(&self, rz: f64, r: &[Six], z: &mut [Six]) -> f64 {
+        let Some(coarse) = &self.coarse else { return rz };
         coarse.add_to(z, r, self.blocks);
         par::sum(r.len(), |k| inner(&r[k], &z[k]))
     }
@@ -108,14 +109,13 @@ pub fn solve(
     product(field, &mut q);
     // r = f − K u, z = M⁻¹ r in the place of q, p = z.
     let first = par::reduce_each(
-        (&mut r[..], &mut q[..], &mut p[..]),
-        |start, (r, q, p)| {
+        (&mut r[..], &mut q[..]),
+        |start, (r, q)| {
             let mut sums = [0.0; 2];
             for k in 0..r.len() {
                 let f = load.map_or([0.0; 6], |f| f[start + k]);
                 r[k] = blocks.free(start + k, &std::array::from_fn(|c| f[c] - q[k][c]));
                 q[k] = blocks.apply(start + k, &r[k]);
-                p[k] = q[k];
                 tally(&mut sums, &r[k], &q[k]);
             }
             sums
@@ -123,10 +123,8 @@ pub fn solve(
         both,
     );
     let [mut rz, mut rr] = first.unwrap_or_default();
-    if let Some(coarse) = &by.coarse {
-        rz = by.deepen(coarse, &r, &mut q);
-        p.copy_from_slice(&q);
-    }
+    rz = by.deepen(rz, &r, &mut q);
+    p.copy_from_slice(&q);
     let mut out = Solved { iterations: 0, energy, open: f64::NAN, done: true };
     let mut taken: Vec<f64> = vec![];
     let mut most_energy = energy.abs();
@@ -160,9 +158,8 @@ pub fn solve(
         }
         if let (PATIENCE, None, Some(make)) = (out.iterations, &by.coarse, by.make) {
             // z of the last step still stands in q. Directions begin anew, and so does what they tell of the energy.
-            let coarse = make();
-            rz = by.deepen(&coarse, &r, &mut q);
-            by.coarse = Some(coarse);
+            by.coarse = Some(make());
+            rz = by.deepen(rz, &r, &mut q);
             p.copy_from_slice(&q);
             taken.clear();
         }
@@ -193,9 +190,7 @@ pub fn solve(
         );
         let before = rz;
         [rz, rr] = next.unwrap_or_default();
-        if let Some(coarse) = &by.coarse {
-            rz = by.deepen(coarse, &r, &mut q);
-        }
+        rz = by.deepen(rz, &r, &mut q);
         let beta = rz / before;
         par::each((&mut p[..], &q[..]), |_, (p, z)| {
             for (p, z) in p.iter_mut().zip(z) {

@@ -1,6 +1,6 @@
 //! The stiffness of a body without ends: six strains of a periodic cell, each with the fluctuation that makes its energy least.
 
-use super::coarse::{Coarse, Parts};
+use super::coarse::Coarse;
 use super::dsm::MOST;
 use super::network::{Moved, Network};
 use super::pcg::{MARGIN, Preconditioner, solve};
@@ -29,7 +29,7 @@ impl Cell {
         let mut out = Self { fields: vec![], iterations: [0; 6], open: 0.0, done: true };
         let mut before = from.map_or(vec![], |cell| cell.fields);
         before.resize(6, vec![]);
-        let make = || Coarse::new(&Parts { ties: &[network], grounds: &[] }, blocks);
+        let make = || Coarse::of_network(network, blocks);
         let mut by = Preconditioner::deep(blocks, &make);
         for (case, field) in before.into_iter().enumerate() {
             let mut field =

@@ -19,6 +19,12 @@ pub fn at(row: usize, column: usize) -> usize {
     row * (row + 1) / 2 + column
 }
 
+/// One in one component, nothing in the others.
+#[inline(always)]
+pub fn unit(component: usize) -> Six {
+    std::array::from_fn(|c| f64::from(u8::from(c == component)))
+}
+
 /// The lower triangle of a symmetric matrix.
 pub fn packed(m: &Matrix6) -> Packed {
     let mut out = [0.0; 21];

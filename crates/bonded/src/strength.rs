@@ -3,7 +3,7 @@
 //! E. Schlangen, J. G. M. van Mier, Cem. Concr. Compos. 14, 105 (1992): under small displacements all that bonds bear is proportional to the
 //! load, so that the one which comes nearest to its strength tells the load at which it breaks; without it the body is solved anew.
 
-use super::coarse::{Coarse, Parts};
+use super::coarse::Coarse;
 use super::dsm::MOST;
 use super::ends::Held;
 use super::network::{Modes, Network};
@@ -140,7 +140,7 @@ pub fn crumble(
         }
         let before = std::mem::replace(&mut energy, network.energy(&field).iter().sum());
         let start = energy;
-        let make = || Coarse::new(&Parts { ties: &[&network], grounds: &[] }, &blocks);
+        let make = || Coarse::of_network(&network, &blocks);
         let mut by = Preconditioner::again(&blocks, &make, coarse.take());
         let solved = solve(
             |u, out| network.product(u, out),
@@ -155,7 +155,7 @@ pub fn crumble(
             },
         );
         energy = solved.energy.max(0.0);
-        coarse = by.carried(&solved);
+        coarse = by.kept(&solved);
         out.iterations += solved.iterations;
         out.done &= solved.done;
         out.breaks.push(Break { bonds, load, energy: [before, energy] });

@@ -3,7 +3,7 @@
 use super::coarse::{Coarse, Parts};
 use super::contact::Contact;
 use super::contacts::{Contacts, Touching};
-use super::ends::ROTATIONS;
+use super::ends::{ROTATIONS, WHOLE};
 use super::lattices::{Body, FCC, lattice, random, standard};
 use super::network::Network;
 use super::pcg::{PATIENCE, Preconditioner, Progress, solve};
@@ -44,8 +44,7 @@ fn bodies() -> Vec<Case> {
     for (seed, n, keep) in [(1, 60, 0.9), (2, 700, 0.5), (3, 4000, 0.7)] {
         let network = random(seed, n, keep).network(|_, l| standard(l));
         let mut rng = ParkMiller::new(seed + 10);
-        let mut some =
-            || (0..n).map(|_| if rng.uniform() < 0.05 { 0b111111 } else { 0 }).collect::<Vec<u8>>();
+        let mut some = || (0..n).map(|_| if rng.uniform() < 0.05 { WHOLE } else { 0 }).collect::<Vec<u8>>();
         let (grips, plates) = (some(), some().iter().map(|m| m & 0b100).collect());
         let grounds = (0..n as u32).step_by(7).map(|k| (k, 2, 3e5)).collect();
         out.push(Case { network: network.clone(), held: grips, grounds: vec![] });
@@ -80,7 +79,7 @@ fn symmetric_and_positive() {
 fn one_level_is_galerkins() {
     let network = random(5, 300, 0.8).network(|_, l| standard(l));
     let n = network.particles;
-    let held: Vec<u8> = (0..n).map(|k| [0, 0, 0b111111, 0b100, 0][k % 5]).collect();
+    let held: Vec<u8> = (0..n).map(|k| [0, 0, WHOLE, 0b100, 0][k % 5]).collect();
     let blocks = Blocks::of_network(&network, &held);
     let grounds = [(4, 0, 2e5), (11, 1, 1e5)];
     let coarse = Coarse::new(&Parts { ties: &[&network], grounds: &grounds }, &blocks);
@@ -117,11 +116,11 @@ fn slender() -> Body {
 fn what_bends_is_found_in_few_steps() {
     let network = slender().network(|_, l| standard(l));
     let n = network.particles;
-    let held: Vec<u8> = (0..n).map(|k| if k < 4 { 0b111111 } else { 0 }).collect();
+    let held: Vec<u8> = (0..n).map(|k| if k < 4 { WHOLE } else { 0 }).collect();
     let mut load = vec![[0.0; 6]; n];
     load[n - 1][0] = 1e-3;
     let blocks = Blocks::of_network(&network, &held);
-    let make = || Coarse::new(&Parts { ties: &[&network], grounds: &[] }, &blocks);
+    let make = || Coarse::of_network(&network, &blocks);
     let solved = [Preconditioner::plain(&blocks), Preconditioner::deep(&blocks, &make)].map(|mut by| {
         let mut u = vec![[0.0; 6]; n];
         let first = std::cell::Cell::new(None);
@@ -162,7 +161,7 @@ fn contacts_tie_clusters() {
         };
         let contacts = Contacts::new(n, &ends, |_| contact);
         let springs = contacts.tangent(&vec![[0.0; 6]; n], None);
-        let held: Vec<u8> = (0..n).map(|k| if k < 2 { 0b111111 } else { 0 }).collect();
+        let held: Vec<u8> = (0..n).map(|k| if k < 2 { WHOLE } else { 0 }).collect();
         let mut packed = network.blocks();
         contacts.add_blocks(&springs, &mut packed);
         let blocks = Blocks::new(&packed, &held);
@@ -187,7 +186,7 @@ fn whole_motions_are_left_alone() {
     let network = lattice(&FCC.0, FCC.1, 6, true).network(|k, l| standard(l).times([1.0, 5.0][k % 3 / 2]));
     let n = network.particles;
     let blocks = Blocks::of_network(&network, &vec![0; n]);
-    let coarse = Coarse::new(&Parts { ties: &[&network], grounds: &[] }, &blocks);
+    let coarse = Coarse::of_network(&network, &blocks);
     let mut load = vec![[0.0; 6]; n];
     network.product(&noise(n, 4), &mut load);
     let z = applied(&coarse, &blocks, &load);
@@ -203,11 +202,11 @@ fn whole_motions_are_left_alone() {
 fn the_same_bits_for_any_number_of_threads() {
     let network = random(9, 9000, 0.8).network(|_, l| standard(l));
     let n = network.particles;
-    let held: Vec<u8> = (0..n).map(|k| if k % 100 == 0 { 0b111111 } else { 0 }).collect();
+    let held: Vec<u8> = (0..n).map(|k| if k % 100 == 0 { WHOLE } else { 0 }).collect();
     let solved = [1, 2, 7].map(|threads| {
         par::set_threads(threads);
         let blocks = Blocks::of_network(&network, &held);
-        let make = || Coarse::new(&Parts { ties: &[&network], grounds: &[] }, &blocks);
+        let make = || Coarse::of_network(&network, &blocks);
         let mut by = Preconditioner::deep(&blocks, &make);
         let mut u = vec![[0.0; 6]; n];
         let solved = solve(
@@ -222,4 +221,21 @@ fn the_same_bits_for_any_number_of_threads() {
         (solved.energy.to_bits(), u.iter().flatten().map(|a| a.to_bits()).collect::<Vec<_>>())
     });
     assert!(solved[0] == solved[1] && solved[0] == solved[2]);
+}
+
+/// A bond that pushes where others pull: no solution says that it has ended well.
+#[test]
+fn negative_stiffnesses_are_told() {
+    let body = random(4, 2000, 0.8);
+    let network = body.network(|k, l| standard(l).times(if k % 50 == 0 { -0.5 } else { 1.0 }));
+    let n = network.particles;
+    let held: Vec<u8> = (0..n).map(|k| if k % 400 == 0 { WHOLE } else { 0 }).collect();
+    let blocks = Blocks::of_network(&network, &held);
+    let make = || Coarse::of_network(&network, &blocks);
+    for mut by in [Preconditioner::plain(&blocks), Preconditioner::deep(&blocks, &make)] {
+        let (mut u, load) = (vec![[0.0; 6]; n], noise(n, 5));
+        let solved =
+            solve(|u, o| network.product(u, o), &mut by, Some(&load), &mut u, 0.0, 10_000, |_| false);
+        assert!(!solved.done, "{solved:?}");
+    }
 }

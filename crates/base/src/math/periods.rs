@@ -115,6 +115,8 @@ impl Periods {
     pub fn nearest(&self, mut d: Vec3) -> Vec3 {
         let far = |k: usize, d: &Vec3| self.length[k] > 0.0 && d[k].abs() > 0.5 * self.length[k];
         if self.tilted() && (far(0, &d) || far(1, &d) || far(2, &d)) {
+            // Taken apart: handed on as it comes, both ways out would go through memory, and 100,000 particles on a lattice would
+            // start in 0.35 s in place of 0.23.
             let [x, y, z] = self.brought(d);
             return [x, y, z];
         }

@@ -5,8 +5,6 @@ use crate::six::Six;
 
 /// L D Lᵀ of a positive semidefinite matrix without zeros.
 pub struct Bottom {
-    /// Number of rows.
-    n: usize,
     /// L below its diagonal, row by row.
     l: Vec<f64>,
     /// 1/D, zero for what nothing resists.
@@ -55,7 +53,7 @@ impl Bottom {
             }
             over[k] = if left > NOTHING * whole { 1.0 / left } else { 0.0 };
         }
-        let mut out = Self { n, l, over, idle: vec![], weights };
+        let mut out = Self { l, over, idle: vec![], weights };
         for k in (0..n).filter(|k| out.over[*k] == 0.0) {
             // L D Lᵀ x = 0 where Lᵀ x is 1 in a row without D.
             let mut x = vec![0.0; n];
@@ -78,9 +76,10 @@ impl Bottom {
 
     /// x = L⁻ᵀ x.
     fn back(&self, x: &mut [f64]) {
-        for k in (0..self.n).rev() {
+        let n = self.over.len();
+        for k in (0..n).rev() {
             let (before, from) = x.split_at_mut(k);
-            take(before, from[0], &self.l[k * self.n..][..k]);
+            take(before, from[0], &self.l[k * n..][..k]);
         }
     }
 
@@ -91,9 +90,9 @@ impl Bottom {
             let part = inner(idle, &x);
             x.iter_mut().zip(idle).zip(&self.weights).for_each(|((x, idle), w)| *x -= part * w * idle);
         }
-        let row = |k: usize| &self.l[k * self.n..][..k];
-        for k in 0..self.n {
-            x[k] -= inner(row(k), &x[..k]);
+        let n = self.over.len();
+        for k in 0..n {
+            x[k] -= inner(&self.l[k * n..][..k], &x[..k]);
             if self.over[k] == 0.0 {
                 x[k] = 0.0;
             }
@@ -115,4 +114,32 @@ fn take(x: &mut [f64], part: f64, a: &[f64]) {
 
 fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::six::unit;
+
+    /// Two nodes with a spring of 3 between their x, 2 to the ground at y of the first: ten motions are free, x of both
+    /// together, y of the second, z and rotations.
+    #[test]
+    fn what_is_free_is_left_alone() {
+        let mut a = vec![0.0; 144];
+        for (i, j, k) in [(0, 0, 3.0), (6, 6, 3.0), (0, 6, -3.0), (6, 0, -3.0), (1, 1, 2.0)] {
+            a[12 * i + j] = k;
+        }
+        // The second node is three times as heavy; 0.5 is the square of a length.
+        let weights = (0..12).map(|k| [1.0, 3.0][k / 6] * if k % 6 < 3 { 1.0 } else { 0.5 }).collect();
+        let bottom = Bottom::of(weights, a);
+        assert_eq!(bottom.idle.len(), 10);
+        let apart = bottom.solve(&[unit(0).map(|a| -a), unit(0)]);
+        // 1/3 apart, and the middle of the masses where it was.
+        assert!((apart[0][0] + 0.25).abs() < 1e-15 && (apart[1][0] - 1.0 / 12.0).abs() < 1e-15, "{apart:?}");
+        assert!((bottom.solve(&[unit(1), [0.0; 6]])[0][1] - 0.5).abs() < 1e-15);
+        // A force on both moves nothing: what has no balance is no load. So does a torque that nothing resists.
+        for load in [[unit(0), unit(0).map(|a| 3.0 * a)], [unit(4), [0.0; 6]]] {
+            assert!(bottom.solve(&load).iter().flatten().all(|x| x.abs() < 1e-15));
+        }
+    }
 }

@@ -23,29 +23,45 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// A node that has none of its neighbours in a cluster yet forms one with all of them, and with theirs; who is left joins the cluster
-    /// that most of its neighbours are in. `neighbours(node, take)` hands over the neighbours of a node with the vectors to them.
+    /// `neighbours(node, take)` hands over the neighbours of a node with the vectors to them [length].
     pub fn new(
         nodes: usize,
         stands: impl Fn(usize) -> bool,
         neighbours: impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
     ) -> Self {
-        let (mut of, mut offset, mut count) = (vec![NONE; nodes], vec![[0.0f32; 3]; nodes], 0);
-        for k in (0..nodes).filter(|k| !stands(*k)) {
-            let mut begins = of[k] == NONE;
-            neighbours(k, &mut |j, _| begins &= of[j] == NONE);
+        let mut out =
+            Self { of: vec![NONE; nodes], offset: vec![[0.0; 3]; nodes], members: Lists::default() };
+        let count = out.begin(&stands, &neighbours);
+        out.join(&stands, &neighbours);
+        let held = out.of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE);
+        out.members = Lists::new(count as usize, held.map(|(k, cluster)| (*cluster, k as u32)));
+        out.centre();
+        out
+    }
+
+    /// A node that has none of its neighbours in a cluster yet forms one with all of them, and with theirs; offsets are from that node.
+    /// How many come to be.
+    fn begin(
+        &mut self,
+        stands: &impl Fn(usize) -> bool,
+        neighbours: &impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
+    ) -> u32 {
+        let mut count = 0;
+        for k in (0..self.of.len()).filter(|k| !stands(*k)) {
+            let mut begins = self.of[k] == NONE;
+            neighbours(k, &mut |j, _| begins &= self.of[j] == NONE);
             if !begins {
                 continue;
             }
-            of[k] = count;
+            self.of[k] = count;
             let mut ring = vec![k];
             for _ in 0..RINGS {
                 let mut next = vec![];
                 for i in ring {
-                    let x = offset[i].map(f64::from);
+                    let x = self.offset(i);
                     neighbours(i, &mut |j, d| {
-                        if of[j] == NONE && !stands(j) {
-                            (of[j], offset[j]) = (count, single(add(x, d)));
+                        if self.of[j] == NONE && !stands(j) {
+                            (self.of[j], self.offset[j]) = (count, single(add(x, d)));
                             next.push(j);
                         }
                     });
@@ -54,33 +70,40 @@ impl Clusters {
             }
             count += 1;
         }
-        let first = of.clone();
-        for k in (0..nodes).filter(|k| !stands(*k)) {
-            if first[k] != NONE {
-                continue;
-            }
+        count
+    }
+
+    /// Who is left joins the cluster that most of its neighbours were in before anybody joined.
+    fn join(
+        &mut self,
+        stands: &impl Fn(usize) -> bool,
+        neighbours: &impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
+    ) {
+        let first = self.of.clone();
+        for k in (0..first.len()).filter(|k| first[*k] == NONE && !stands(*k)) {
             // Cluster, how many neighbours are in it, and where it is seen from the first of them.
             let mut near: Vec<(u32, u32, Vec3)> = vec![];
             neighbours(k, &mut |j, d| match near.iter_mut().find(|n| n.0 == first[j]) {
                 _ if first[j] == NONE => {}
                 Some(n) => n.1 += 1,
-                None => near.push((first[j], 1, sub(offset[j].map(f64::from), d))),
+                None => near.push((first[j], 1, sub(self.offset(j), d))),
             });
             // Some neighbour is in a cluster, else it had begun one itself.
             if let Some((cluster, _, x)) = near.iter().reduce(|best, n| if n.1 > best.1 { n } else { best }) {
-                (of[k], offset[k]) = (*cluster, single(*x));
+                (self.of[k], self.offset[k]) = (*cluster, single(*x));
             }
         }
-        let held = of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE);
-        let members = Lists::new(count as usize, held.map(|(k, cluster)| (*cluster, k as u32)));
-        for row in (0..count as usize).map(|cluster| members.of(cluster)) {
-            let sum = row.iter().fold([0.0; 3], |sum, k| add(sum, offset[*k as usize].map(f64::from)));
+    }
+
+    /// Makes offsets those from the middle of each.
+    fn centre(&mut self) {
+        for row in (0..self.count()).map(|cluster| self.members.of(cluster)) {
+            let sum = row.iter().fold([0.0; 3], |sum, k| add(sum, self.offset[*k as usize].map(f64::from)));
             let middle = scale(1.0 / row.len() as f64, sum);
             for x in row.iter().map(|k| *k as usize) {
-                offset[x] = single(sub(offset[x].map(f64::from), middle));
+                self.offset[x] = single(sub(self.offset[x].map(f64::from), middle));
             }
         }
-        Self { of, offset, members }
     }
 
     /// From the middle of its cluster to a node [length].

@@ -1,10 +1,11 @@
 //! Symmetric matrices of 6 × 6 blocks, by rows: what rigid clusters resist.
 
+use super::Parts;
 use super::clusters::{Clusters, NONE, carried, handed};
-use super::{Parts, Ties};
-use crate::pairs::Lists;
+use crate::ends::WHOLE;
+use crate::pairs::{Lists, Ties};
 use crate::precond::{Blocks, Factor};
-use crate::six::{Matrix6, Six, full, packed};
+use crate::six::{Matrix6, Six, full, packed, unit};
 use perigrain_base::math::vec3::{Vec3, add, scale, sub};
 use perigrain_base::par;
 
@@ -117,10 +118,6 @@ fn add_times(sum: &mut Six, columns: &Matrix6, x: &Six) {
     }
 }
 
-fn unit(column: usize) -> Six {
-    std::array::from_fn(|c| f64::from(u8::from(c == column)))
-}
-
 /// sum += TᵀM T' for nodes at x and y within their clusters.
 fn put(sum: &mut Matrix6, m: &Matrix6, [x, y]: [Vec3; 2]) {
     for column in 0..6 {
@@ -138,7 +135,7 @@ pub fn of_particles(parts: &Parts, blocks: &Blocks) -> (Clusters, Matrix) {
     let neighbours = |i: usize, take: &mut dyn FnMut(usize, Vec3)| {
         of(i).for_each(|tie| take(tie.other, tie.vector));
     };
-    let clusters = Clusters::new(particles, |k| blocks.held(k) == 0b111111, neighbours);
+    let clusters = Clusters::new(particles, |k| blocks.held(k) == WHOLE, neighbours);
     let grounds = Lists::new(
         particles,
         parts.grounds.iter().enumerate().map(|(k, (particle, ..))| (*particle, k as u32)),

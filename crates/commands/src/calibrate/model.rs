@@ -12,7 +12,7 @@ use super::telling::warn_sticking;
 use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_bonded::coarse::{Coarse, Parts};
+use perigrain_bonded::coarse::Coarse;
 use perigrain_bonded::dsm::MOST;
 use perigrain_bonded::ends::slope;
 use perigrain_bonded::network::Modes;
@@ -321,7 +321,7 @@ fn poisson_adjoint(scene: &Scene, setup: &Setup, words: &Words) -> Vec<Six> {
     let product = |u: &[Six], out: &mut [Six]| scene.network.product(u, out);
     let tol = tolerance(words);
     let blocks = setup.blocks(scene);
-    let make = || Coarse::new(&Parts { ties: &[&scene.network], grounds: &[] }, &blocks);
+    let make = || Coarse::of_network(&scene.network, &blocks);
     solve(product, &mut Preconditioner::deep(&blocks, &make), Some(&load), &mut lambda, 0.0, MOST, |now| {
         now.fallen.is_some_and(|fallen| fallen <= tol * now.energy.abs())
     });
