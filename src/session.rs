@@ -319,7 +319,7 @@ impl Session {
                 }
                 Err(e) => return Err(e),
             }
-            if self.stop_flag().load(Ordering::Relaxed) && !self.interrupted {
+            if self.world.settings.stop.load(Ordering::Relaxed) && !self.interrupted {
                 self.interrupted = true;
                 self.say_interrupted(&line)?;
             }

@@ -78,7 +78,7 @@ pub struct Extremes {
 pub struct Record {
     nodes: Vec<Node>,
     /// The node of each place and of what it provides there.
-    known: BTreeMap<(Place, Option<Use>), usize>,
+    known: BTreeMap<Place, BTreeMap<Option<Use>, usize>>,
     /// Nodes of a place whose names have gone, for the next name.
     free: BTreeMap<Place, Vec<usize>>,
     /// The nodes that provide a name, the latest last.
@@ -109,7 +109,7 @@ impl Record {
 
     /// Takes up once more a line that has not changed since its last turn; `false` if it has.
     pub fn again(&mut self, span: Span, provides: &Option<Use>, text: &str, turn: u64) -> bool {
-        let Some(&k) = self.known.get(&(place(span), provides.clone())) else { return false };
+        let Some(k) = self.found(place(span), provides) else { return false };
         if self.nodes[k].text != text {
             return false;
         }
@@ -128,12 +128,10 @@ impl Record {
             *before = Some(Extremes { least: old.least.min(x), most: old.most.max(x) });
         }
         let place = place(node.span);
-        let key = (place, node.provides.clone());
-        let same = self.known.get(&key).copied();
+        let same = self.found(place, &node.provides);
         let Some(k) = same.or_else(|| self.free.get_mut(&place)?.pop()) else {
-            let k = self.nodes.len();
             self.nodes.push(node);
-            return self.put(k, key);
+            return self.put(self.nodes.len() - 1);
         };
         self.count(k, false);
         let old = std::mem::replace(&mut self.nodes[k], node);
@@ -144,18 +142,24 @@ impl Record {
             uses.sort();
             uses.dedup();
         }
-        self.put(k, key);
+        self.put(k);
+    }
+
+    /// The node of a place and of what it provides there.
+    fn found(&self, place: Place, provides: &Option<Use>) -> Option<usize> {
+        self.known.get(&place)?.get(provides).copied()
     }
 
     /// Changes the text of the line at a place that provides no name, as by something that became of it.
     pub fn amend(&mut self, span: Span, text: impl FnOnce(&str) -> String) {
-        if let Some(&k) = self.known.get(&(place(span), None)) {
+        if let Some(k) = self.found(place(span), &None) {
             self.nodes[k].text = text(&self.nodes[k].text);
         }
     }
 
-    fn put(&mut self, k: usize, key: (Place, Option<Use>)) {
-        self.known.insert(key, k);
+    fn put(&mut self, k: usize) {
+        let node = &self.nodes[k];
+        self.known.entry(place(node.span)).or_default().insert(node.provides.clone(), k);
         self.count(k, true);
         self.is_latest(k);
     }
@@ -180,10 +184,13 @@ impl Record {
 
     fn is_latest(&mut self, k: usize) {
         let Some(name) = &self.nodes[k].provides else { return };
-        let list = self.providers.entry(name.clone()).or_default();
-        if list.last() != Some(&k) {
-            list.retain(|n| *n != k);
-            list.push(k);
+        match self.providers.get_mut(name) {
+            Some(list) if list.last() == Some(&k) => {}
+            Some(list) => {
+                list.retain(|n| *n != k);
+                list.push(k);
+            }
+            None => drop(self.providers.insert(name.clone(), vec![k])),
         }
     }
 
@@ -195,7 +202,9 @@ impl Record {
             let node = &mut self.nodes[k];
             node.gone = true;
             let place = place(node.span);
-            self.known.remove(&(place, node.provides.clone()));
+            if let Some(here) = self.known.get_mut(&place) {
+                here.remove(&node.provides);
+            }
             self.free.entry(place).or_default().push(k);
         }
     }
@@ -216,9 +225,8 @@ impl Record {
         if let Some(node) = by.and_then(|by| self.provider(by)) {
             return node.span == span && node.uses.contains(name);
         }
-        let first = (place(span), None);
-        let here = self.known.range(first..).take_while(|((at, _), _)| *at == place(span));
-        here.map(|(_, k)| &self.nodes[*k]).any(|n| n.uses.contains(name))
+        let here = self.known.get(&place(span)).into_iter().flat_map(BTreeMap::values);
+        here.map(|k| &self.nodes[*k]).any(|n| n.uses.contains(name))
     }
 
     /// Whether some fix or the pair style depends on this variable, directly or through variables, regions and groups.
@@ -281,7 +289,8 @@ mod tests {
             }
         }
         assert_eq!(r.nodes().len(), 4);
-        let indexed = r.known.len() + r.providers.len() + r.followed.len() + r.free.len();
+        let known: usize = r.known.values().map(BTreeMap::len).sum();
+        let indexed = known + r.providers.len() + r.followed.len() + r.free.len();
         assert!(indexed <= 8, "{indexed} entries are left");
     }
 

@@ -57,7 +57,7 @@ pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, Shape> {
 /// The computes, fixes and variables that the words of a line refer to.
 pub fn variable_uses(cmd: &Command) -> Vec<Use> {
     let mut uses = vec![];
-    for word in &cmd.args {
+    for word in cmd.args.iter().filter(|w| w.text.contains('_')) {
         for part in word.text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')) {
             let Ok(Some(r)) = ValueRef::parse(part, word.span) else { continue };
             let kind = match r.kind {

@@ -40,12 +40,12 @@ impl Session {
         let defines = cmd.name.text == "variable";
         let named = cmd.args.first().filter(|_| defines);
         let named = named.map(|w| Use { kind: UseKind::Variable, name: w.text.clone() });
-        let deleted = named.clone().filter(|_| cmd.args.get(1).is_some_and(|w| w.text == "delete"));
-        if let Some(name) = &deleted {
+        let deleted = defines && cmd.args.get(1).is_some_and(|w| w.text == "delete");
+        if let Some(name) = named.as_ref().filter(|_| deleted) {
             self.graph.lines.delete(name);
             self.world.slots.forget(&format!("v_{}", name.name));
         }
-        let provides = named.filter(|_| deleted.is_none());
+        let provides = named.filter(|_| !deleted);
         self.record_once(cmd, if defines { Role::Declare } else { Role::Act }, provides);
         Ok(flow)
     }

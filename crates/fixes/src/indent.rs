@@ -152,8 +152,11 @@ impl Fix for Declared {
                 return Ok(());
             }
             let body = form.now(w)?;
+            let lammps = w.settings.lammps();
+            let domain = w.domain.clone();
+            let repeats = domain.as_ref().filter(|b| (0..3).any(|k| b.boundary.periodic(k)));
             let [energy, reaction @ ..] = change_forces::<4>(w, &chosen, |w, i, f| {
-                let Some((push, energy)) = body.push(w, w.particles.x[i], k, inside) else {
+                let Some((push, energy)) = body.push(repeats, w.particles.x[i], k, inside, lammps) else {
                     return [0.0; 4];
                 };
                 (0..3).for_each(|d| f[d] += push[d]);

@@ -33,7 +33,7 @@ pub(super) enum Quote {
 }
 
 impl Quote {
-    fn mark(self) -> &'static str {
+    pub(super) fn mark(self) -> &'static str {
         match self {
             Quote::Single => "'",
             Quote::Double => "\"",
@@ -72,11 +72,6 @@ pub(super) fn opening(input: &str) -> IResult<&str, Quote> {
         tag("'").map(|_| Quote::Single),
     ))
     .parse(input)
-}
-
-/// The quote mark that ends a quoted stretch.
-pub(super) fn close_quote(input: &str, quote: Quote) -> IResult<&str, ()> {
-    tag(quote.mark()).map(|_| ()).parse(input)
 }
 
 /// One step of the scan for quotes and comments: what it consumed, and the state after it.
@@ -164,8 +159,8 @@ pub(super) fn unclosed(q: Quote, span: Span) -> Diagnostic {
 
 /// A word: the bytes inside the quotes, and the length of the quote mark (0 for a bare word).
 fn word(input: &str) -> IResult<&str, (&str, usize)> {
-    if !input.starts_with(['"', '\'']) && !input.is_empty() {
-        let end = input.find(blank).unwrap_or(input.len());
+    if !matches!(input.as_bytes().first(), None | Some(b'"' | b'\'')) {
+        let end = until_blank(input);
         if end > 0 {
             return Ok((&input[end..], (&input[..end], 0)));
         }
@@ -181,11 +176,21 @@ pub(super) fn blank(c: char) -> bool {
     c.is_ascii_whitespace() || c == '\x0b'
 }
 
+/// How many bytes stand before the first blank. Blanks are single bytes: the other characters need not be decoded.
+fn until_blank(text: &str) -> usize {
+    text.bytes().position(|b| blank(b.into())).unwrap_or(text.len())
+}
+
+/// What stands behind the blanks at the front.
+fn past_blanks(text: &str) -> &str {
+    &text[text.bytes().position(|b| !blank(b.into())).unwrap_or(text.len())..]
+}
+
 /// Splits a line (comment cut off, values put in) into its words.
 pub(super) fn words(line: &Mapped) -> Result<Vec<Word>> {
     let text = line.text.as_str();
     let mut out = Vec::new();
-    let mut rest = text.trim_start_matches(blank);
+    let mut rest = past_blanks(text);
     while !rest.is_empty() {
         let Ok((after, (body, mark))) = word(rest) else {
             let at = place(text, rest);
@@ -193,22 +198,17 @@ pub(super) fn words(line: &Mapped) -> Result<Vec<Word>> {
             let q = if rest.starts_with('\'') { Quote::Single } else { Quote::Double };
             return Err(unclosed(q, span).into());
         };
-        let next = after.trim_start_matches(blank);
+        let next = past_blanks(after);
         let glued = next.len() == after.len() && !after.is_empty();
         if mark > 0 && glued {
             let at = place(text, after);
-            let end = at + after.find(blank).unwrap_or(after.len());
+            let end = at + until_blank(after);
             return fail(Code::SYNTAX, line.span(at..end), "a closing quote must be followed by a space");
         }
         let at = place(text, rest) + mark;
         let range = at..at + body.len();
-        out.push(Word {
-            text: body.to_owned(),
-            span: line.span(range.clone()),
-            quoted: mark > 0,
-            origin: line.origin(range.clone()),
-            unknown: line.unknown(range),
-        });
+        let (span, origin, unknown) = line.place(range);
+        out.push(Word { text: body.to_owned(), span, quoted: mark > 0, origin, unknown });
         rest = next;
     }
     Ok(out)

@@ -3,7 +3,7 @@
 use super::command::{Command, Line, Word};
 use super::lex::{self, Logical};
 use super::progress::Progress;
-use super::substitute::expand;
+use super::substitute::{expand, outside_quotes};
 use super::text::Mapped;
 use super::value::Env;
 use super::vars::Vars;
@@ -284,7 +284,8 @@ impl Script {
 /// Takes a line apart, into words if no value has to be put in.
 fn prepared(line: Logical) -> Result<Prepared> {
     let code = line.text.head(line.code);
-    let open = code.text.contains('$');
+    // what stands in quotes gets its values from the command that reads it
+    let open = !matches!(outside_quotes(&code.text), Ok(None));
     let body = if open { Body::Open(code) } else { Body::Closed(lex::command(&code)?.map(Arc::new)) };
     Ok(Prepared { raw: line.text.text.into(), body, next: line.next })
 }

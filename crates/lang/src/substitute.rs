@@ -1,7 +1,7 @@
 //! `$x`, `${name}`, `$(formula)` and `$(formula:%8.3f)` inside lines and inside quoted text.
 
 use super::expr::balanced;
-use super::lex::{Quote, close_quote, opening, unclosed};
+use super::lex::{Quote, opening, unclosed};
 use super::number::printf;
 use super::scan::{place, taken};
 use super::text::{Mapped, within};
@@ -60,22 +60,14 @@ pub(super) fn expand(
     let text = line.text.as_str();
     let mut out = Mapped::with_room(text.len());
     let (mut rest, mut from) = (text, 0);
-    let mut quote: Option<(Quote, usize)> = None;
     let (mut echoed, mut passed_over) = (0, false);
-    while let Some(k) = rest.find(['"', '\'', '$']) {
-        rest = &rest[k..];
+    let open_quote = |(q, open): (Quote, &str)| {
+        let at = place(text, open);
+        unclosed(q, line.span(at..at + 1))
+    };
+    while let Some(found) = outside_quotes(rest).map_err(open_quote)? {
+        rest = found;
         let at = place(text, rest);
-        if let Some((q, _)) = quote {
-            match close_quote(rest, q) {
-                Ok((after, ())) => (quote, rest) = (None, after),
-                Err(_) => rest = &rest[1..],
-            }
-            continue;
-        }
-        if let Ok((after, q)) = opening(rest) {
-            (quote, rest) = (Some((q, at)), after);
-            continue;
-        }
         let Ok((after, dollar)) = dollar(rest) else { return Err(no_dollar(line, rest)) };
         let range = at..place(text, after);
         let value = lookup(line, &dollar, range.clone(), vars, env)?;
@@ -96,9 +88,6 @@ pub(super) fn expand(
             echoes.push(echo);
         }
     }
-    if let Some((q, at)) = quote {
-        return Err(unclosed(q, line.span(at..at + 1)).into());
-    }
     if from == 0 {
         return Ok(line.clone());
     }
@@ -107,6 +96,22 @@ pub(super) fn expand(
         echoes.push(out.text.clone());
     }
     Ok(out)
+}
+
+/// The text from its first `$` outside quotes on, `None` if there is none; an error is the quote that is never closed, and
+/// the text from it on.
+pub(super) fn outside_quotes(text: &str) -> std::result::Result<Option<&str>, (Quote, &str)> {
+    let mut rest = text;
+    while let Some(k) = rest.bytes().position(|b| matches!(b, b'"' | b'\'' | b'$')) {
+        rest = &rest[k..];
+        if rest.starts_with('$') {
+            return Ok(Some(rest));
+        }
+        let Ok((inside, quote)) = opening(rest) else { return Ok(None) };
+        let Some(end) = inside.find(quote.mark()) else { return Err((quote, rest)) };
+        rest = &inside[end + quote.mark().len()..];
+    }
+    Ok(None)
 }
 
 fn dollar(input: &str) -> IResult<&str, Dollar<'_>> {

@@ -90,6 +90,17 @@ impl Mapped {
         self.part_span(first, range.clone()).to(self.part_span(last, range))
     }
 
+    /// [`Mapped::span`], [`Mapped::origin`] and [`Mapped::unknown`] of `range` at once.
+    pub fn place(&self, range: Range<usize>) -> (Span, Option<Span>, bool) {
+        let k = self.parts.partition_point(|p| p.start <= range.start).saturating_sub(1);
+        let inside =
+            |p: &&Part| !range.is_empty() && range.end <= self.extent(k).end && range.start >= p.start;
+        match self.parts.get(k).filter(inside) {
+            Some(part) => (self.part_span(part, range), part.origin, part.unknown),
+            None => (self.span(range.clone()), self.origin(range.clone()), self.unknown(range)),
+        }
+    }
+
     /// Where the value inside `range` was defined, if one was substituted there.
     pub fn origin(&self, range: Range<usize>) -> Option<Span> {
         self.overlapping(range).find_map(|p| p.origin)

@@ -113,9 +113,11 @@ pub fn pairs(
     skin: f64,
     keep: &(impl Fn(usize, usize) -> bool + Sync),
 ) -> Vec<Pair> {
-    let mut out = found(v, wanted, skin, 0.0, keep);
-    out.sort_by_key(|p| (v.tag[p.i as usize], v.tag[p.j as usize], p.shift));
-    out
+    let key = |p: Pair| ([p.i, p.j].map(|k| v.tag[k as usize]), p);
+    let mut out: Vec<_> = found(v, wanted, skin, 0.0, keep).into_iter().map(key).collect();
+    // No two agree, so that their order is their tags' and their images', in whatever order they were found.
+    out.sort_unstable_by_key(|(tags, p)| (*tags, p.shift));
+    out.into_iter().map(|(_, p)| p).collect()
 }
 
 /// Takes those of some pairs of particles into a list of [`pairs`] that are within reach plus `skin`, in their places.

@@ -4,7 +4,7 @@ use super::granular::force::grains;
 use super::granular::reach::{reaching, refuse_giants, touching};
 use super::shared::{built_at, find_frozen, near};
 use perigrain_base::diag::Result;
-use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
+use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
@@ -45,16 +45,44 @@ impl ContactProbe {
 
     /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
     fn list(&self, w: &World) -> Result<Vec<Pair>> {
-        let (wanted, skin) = (reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin);
+        self.within(w, built_at(w), w.settings.neighbor.skin)
+    }
+
+    /// Pairs within reach plus `skin` at the positions `x`.
+    fn within(&self, w: &World, x: &[Vec3], skin: f64) -> Result<Vec<Pair>> {
+        let wanted = reaching(&self.rules, &self.wanted, w);
         // Who goes on with the lists of a restart file asks before lists are made anew.
         refuse_giants(w, &wanted, skin)?;
-        Ok(near(w, built_at(w), &wanted, skin, &Allowed::new(w)))
+        Ok(near(w, x, &wanted, skin, &Allowed::new(w)))
+    }
+
+    /// The list of the last rebuild, if it has been made and stands.
+    fn take_list(&mut self, w: &World) -> Option<Vec<Pair>> {
+        let (made, list) = self.listed.take()?;
+        (made == w.rebuild.generation && w.clock.running).then_some(list)
     }
 
     /// Evaluates all contacts at the present places and velocities, with the memory they have, and reads the outcome.
     fn evaluated<T>(
         &mut self,
         w: &World,
+        ask: Ask,
+        read: impl FnOnce(&Grains, &Rules, &Sweep, &Contacts) -> T,
+    ) -> Result<T> {
+        let list = match self.take_list(w) {
+            Some(list) => list,
+            None => self.list(w)?,
+        };
+        let out = self.swept(w, &list, ask, read);
+        self.listed = Some((w.rebuild.generation, list));
+        out
+    }
+
+    /// [`Self::evaluated`] of these pairs.
+    fn swept<T>(
+        &mut self,
+        w: &World,
+        list: &[Pair],
         ask: Ask,
         read: impl FnOnce(&Grains, &Rules, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
@@ -73,17 +101,11 @@ impl ContactProbe {
             self.keep_shrunk(w, &mut memory);
         }
         let still = Advance { dt: w.clock.dt, history: false };
-        let stands = |(made, _): &(u64, Vec<Pair>)| *made == w.rebuild.generation && w.clock.running;
-        let list = match self.listed.take().filter(stands) {
-            Some((_, list)) => list,
-            None => self.list(w)?,
-        };
         let rules = match ask {
             Ask::Felt { setup } => &self.rules.again(setup),
             Ask::Acting | Ask::Idle => &self.rules,
         };
-        self.sweep.run(&list, &grains, rules, &mut memory, still);
-        self.listed = Some((w.rebuild.generation, list));
+        self.sweep.run(list, &grains, rules, &mut memory, still);
         Ok(read(&grains, rules, &self.sweep, &memory))
     }
 
@@ -183,7 +205,12 @@ impl Probe for ContactProbe {
     }
 
     fn springs(&mut self, w: &World) -> Result<Vec<Springs>> {
-        self.evaluated(w, Ask::Acting, |grains, rules, sweep, memory| {
+        // Only what touches has any: a list for that alone is shorter than one that holds until the next rebuild.
+        let list = match self.take_list(w) {
+            Some(list) => list,
+            None => self.within(w, &w.particles.x, 0.0)?,
+        };
+        self.swept(w, &list, Ask::Acting, |grains, rules, sweep, memory| {
             let mut all = vec![];
             sweep.each(grains, rules, memory, |c| {
                 let g = &c.geometry;

@@ -279,6 +279,7 @@ impl Domain {
     }
 
     /// Shortest difference under periodic boundaries (minimum image).
+    #[inline]
     pub fn minimum_image(&self, mut d: [f64; 3]) -> [f64; 3] {
         if self.tilted() {
             return self.every_period().nearest(d);

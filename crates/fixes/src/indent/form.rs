@@ -3,8 +3,8 @@
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_styles::Reading;
 use perigrain_styles::common::orthogonal;
-use perigrain_world::World;
 use perigrain_world::region::across;
+use perigrain_world::{Domain, World};
 
 /// The indenter as the deck gives it; `T` is a parameter there and a reading during a run.
 #[derive(Clone, Copy)]
@@ -140,9 +140,18 @@ fn way_out(p: [f64; 2], half: f64, radii: [f64; 2]) -> [f64; 2] {
 const BEYOND: f64 = 1.0 + 1e-9;
 
 impl Body {
-    /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r − R|³.
+    /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r − R|³. The nearest image in
+    /// `repeats` counts, the box if it is periodic anywhere.
     #[inline]
-    pub fn push(&self, w: &World, x: [f64; 3], k: f64, inside: bool) -> Option<([f64; 3], f64)> {
+    pub fn push(
+        &self,
+        repeats: Option<&Domain>,
+        x: [f64; 3],
+        k: f64,
+        inside: bool,
+        lammps: bool,
+    ) -> Option<([f64; 3], f64)> {
+        let image = |apart| repeats.map_or(apart, |b| b.minimum_image(apart));
         match *self {
             Body::Flat { axis, place, high } => {
                 let sign = if high { 1.0 } else { -1.0 };
@@ -155,8 +164,7 @@ impl Body {
                 Some((f, -(k / 3.0 * depth * depth * depth)))
             }
             Body::Round { center, along, radius } => {
-                let apart = std::array::from_fn(|d| along[d] * (x[d] - center[d]));
-                let d = w.domain.as_ref().map_or(apart, |b| b.minimum_image(apart));
+                let d: [f64; 3] = image(std::array::from_fn(|d| along[d] * (x[d] - center[d])));
                 let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                 // Most are so far away that no root is needed to see it.
                 if !inside && square > BEYOND * radius * radius {
@@ -173,10 +181,8 @@ impl Body {
                 Some((force, -(k / 3.0 * depth * depth * depth)))
             }
             Body::Tapered { middle, axis, half, radii } => {
-                let apart = std::array::from_fn(|d| x[d] - middle[d]);
-                let d = w.domain.as_ref().map_or(apart, |b| b.minimum_image(apart));
-                tapered(d, axis, half, radii, inside)
-                    .map(|way| pushed(d, way, k, inside, w.settings.lammps()))
+                let d = image(std::array::from_fn(|d| x[d] - middle[d]));
+                tapered(d, axis, half, radii, inside).map(|way| pushed(d, way, k, inside, lammps))
             }
         }
     }

