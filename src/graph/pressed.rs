@@ -8,8 +8,8 @@ use perigrain_styles::pressed::Pressed;
 use perigrain_styles::probe::Probe;
 use perigrain_world::contacts::{LOOK, Pressed as Looked};
 use perigrain_world::field::{
-    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG, TRAVEL,
-    V, VOLUME, X,
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, VOLUME, X,
 };
 use perigrain_world::{RunStyle, World};
 
@@ -100,7 +100,7 @@ impl Look {
 impl Op for Look {
     fn about(&self) -> About {
         let reads = X | V | OMEGA | RADIUS | MASS | KIND | MASK | TAG | VOLUME;
-        let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | MOLECULE | TRAVEL;
+        let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | LISTS | MOLECULE | TRAVEL;
         let needs = Needs::new().read(reads | lists).write(FACTS);
         let when = When::Every(LOOK).or(When::First).or(When::Last);
         About { when, ..About::new("contact watch", Stage::Output, needs) }

@@ -45,6 +45,12 @@ fn a_profile_of_a_run_cut_in_two_is_that_of_one() {
     assert_eq!(last("run 40"), last("run 17\nrun 23"));
 }
 
+// In the step in which a bond breaks its pair does not act yet.
+#[test]
+fn bonds_that_break_under_pressure_agree() {
+    agrees("parted");
+}
+
 #[test]
 fn chunks_agree() {
     agrees("chunks");

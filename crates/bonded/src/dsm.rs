@@ -19,6 +19,8 @@ pub enum Stop {
     Certified(f64),
     /// The forces that are left, |r|₂, are below this [force].
     Residual(f64),
+    /// So many steps are done: the stiffness is a bound from above.
+    Steps(usize),
 }
 
 /// A solution.
@@ -67,8 +69,8 @@ pub fn relax(
     let mut gap = None;
     let make = || Coarse::of_network(network, blocks);
     let mut by = match stop {
-        // What the paper does.
-        Stop::Residual(_) => Preconditioner::plain(blocks),
+        // What the paper does, and what is over before coarse levels pay.
+        Stop::Residual(_) | Stop::Steps(_) => Preconditioner::plain(blocks),
         _ => Preconditioner::deep(blocks, &make),
     };
     let solved = solve(
@@ -81,6 +83,7 @@ pub fn relax(
         |now| match stop {
             Stop::Estimate(tol) => now.fallen.is_some_and(|fallen| MARGIN * fallen <= tol * now.energy),
             Stop::Residual(least) => now.residual < least,
+            Stop::Steps(most) => now.iterations >= most,
             Stop::Certified(tol) => {
                 if now.iterations % BETWEEN == 0 {
                     gap = certificate.as_ref().map(|c| c.gap(network, now.r));

@@ -53,7 +53,7 @@ impl ContactProbe {
         let wanted = reaching(&self.rules, &self.wanted, w);
         // Who goes on with the lists of a restart file asks before lists are made anew.
         refuse_giants(w, &wanted, skin)?;
-        Ok(near(w, x, &wanted, skin, &Allowed::new(w)))
+        Ok(near(w, x, &wanted, skin, &Allowed::felt(w)))
     }
 
     /// The list of the last rebuild, if it has been made and stands.
@@ -133,7 +133,7 @@ impl ContactProbe {
                 }
             }
         }
-        near(w, &w.particles.x, &wanted, 0.0, &Allowed::new(w))
+        near(w, &w.particles.x, &wanted, 0.0, &Allowed::felt(w))
     }
 }
 

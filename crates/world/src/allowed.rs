@@ -82,6 +82,18 @@ impl<'a> Allowed<'a> {
         Self { barred, surfaces, families, free, ..excluded }
     }
 
+    /// As they stood when this step's forces were felt: pairs whose bonds have broken since act from the next step on.
+    pub fn felt(w: &'a World) -> Self {
+        let now = Self::new(w);
+        if w.rebuild.freed.is_empty() {
+            return now;
+        }
+        let mut pairs = now.barred.pairs;
+        pairs.extend(w.rebuild.freed.iter().copied());
+        pairs.sort_unstable();
+        Self { barred: Barred::new(pairs), free: false, ..now }
+    }
+
     /// Of `neigh_modify exclude` alone.
     pub fn excluded(w: &'a World) -> Self {
         Self {

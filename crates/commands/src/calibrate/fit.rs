@@ -116,7 +116,7 @@ pub fn run(
         params = from.iter().zip(&step).map(|(p, s)| p + s.clamp(-LONGEST, LONGEST)).collect();
     }
     warn_unfinished(cx, words, model.done);
-    model.tell(cx, words);
+    model.tell(cx, line, &scene, hertz);
     let now = tuned(style, words, &params)?;
     set(cx, words, now.as_ref(), &format!("calibrate fit {}", line.id))?;
     line.found.keep(cx.world, model.numbers(), &values(style, words, &params)?, model.tensor());

@@ -6,6 +6,7 @@ use super::dsm::numbers;
 use super::found::NUMBERS;
 use super::scene::Scene;
 use super::setup::{Response, Setup};
+use super::softer::warn_softer;
 use super::ste::{Estimated, Estimator};
 use super::strength::{self, Tested, broken};
 use super::telling::warn_sticking;
@@ -89,10 +90,12 @@ impl Model {
         }
     }
 
-    /// Tells of contacts that bear much and cannot slip.
-    pub fn tell(&self, cx: &ActCx, words: &Words) {
-        if let Kind::Dsm { setup, solved: Some(r), .. } = &self.kind {
-            warn_sticking(cx, words, setup, r);
+    /// Tells of contacts that bear much and cannot slip, and of an estimate where none holds.
+    pub fn tell(&self, cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) {
+        match &self.kind {
+            Kind::Dsm { setup, solved: Some(r), .. } => warn_sticking(cx, &line.words, setup, r),
+            Kind::Ste { found: Some(e), .. } => warn_softer(cx, line, scene, hertz, (e.body, e.volume)),
+            _ => {}
         }
     }
 

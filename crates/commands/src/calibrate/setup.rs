@@ -177,6 +177,15 @@ impl Setup {
         out
     }
 
+    /// What the stiffness of bonds alone is at most, by some steps from the affine field.
+    pub fn at_most(&self, scene: &Scene, words: &Words, steps: usize) -> f64 {
+        let start =
+            affine(&scene.sample(words.axis), &self.ends, words.holds, &self.held, self.delta, self.nu);
+        let (network, blocks) = (&scene.network, self.blocks(scene));
+        let answer = relax(network, &blocks, &self.held, start, words.rotations, Stop::Steps(steps));
+        2.0 * answer.energy() / self.delta.powi(2)
+    }
+
     fn by_bonds(&self, scene: &Scene, words: &Words, tol: f64, start: Vec<Six>) -> Response {
         let stop = match (words.method, words.bound) {
             (Method::Paper([linear, _]), _) => Stop::Residual(linear),

@@ -5,6 +5,7 @@ use super::cell::moduli;
 use super::found::{NUMBERS, lines};
 use super::scene::Scene;
 use super::setup::ends;
+use super::softer::warn_softer;
 use super::telling;
 use super::touch::{self, Hertz};
 use super::words::{Map, Words};
@@ -50,6 +51,10 @@ pub struct Estimated {
     pub poisson: f64,
     /// By how much the load makes it longer [length].
     pub delta: f64,
+    /// E A/l of what is between the walls [force/length].
+    pub body: f64,
+    /// What its tensor is of [length³].
+    pub volume: f64,
     /// Particles left out.
     pub without: usize,
     /// The share of contacts in Σ k_n L².
@@ -148,6 +153,8 @@ impl Estimator {
             tensor,
             stiffness: if self.walls.is_empty() { body } else { self.between_walls(body) },
             young: body * self.length / self.area,
+            body,
+            volume: self.length * self.area,
             poisson: 0.5 * (a + b),
             delta: self.delta,
             without: estimate.without(),
@@ -261,6 +268,7 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     let (began, words) = (Instant::now(), &line.words);
     let body = Estimator::new(cx.world, scene, line.group, words, hertz, cx.span)?;
     let e = body.estimate(scene, words, cx.span)?;
+    warn_softer(cx, line, scene, hertz, (e.body, e.volume));
     line.found.keep(cx.world, e.numbers(words.order), &[], Some(&e.tensor));
     if let Some(map) = words.map {
         one_image(cx.world, map.1, cx.span)?;
