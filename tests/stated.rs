@@ -64,6 +64,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("wall/op.rs", "columns", "only with heat"),
     ("contact_atom.rs", "x0", "only beside solids"),
     ("graph/virials.rs", "x0", "only beside solids"),
+    ("graph/pressed.rs", "x0", "only where solids touch"),
     (
         "fixes/src/print.rs",
         "x f torque omega radius mass type type_mass mask image molecule columns controls memo box regions v id",

@@ -52,6 +52,11 @@ fn bonds_that_break_under_pressure_agree() {
 }
 
 #[test]
+fn groups_that_lose_particles_agree() {
+    agrees("emptied");
+}
+
+#[test]
 fn chunks_agree() {
     agrees("chunks");
 }

@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::matter::{Masses, check_masses, sum, unwrapped};
+use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
@@ -22,7 +22,8 @@ impl Style for Com {
             syntax: "compute ID group com",
             summary: "Centre of mass of the group.",
             text: "Vector of 3 (intensive): Σ m x / Σ m with positions unwrapped across periodic faces, in distance \
-                   units; zeros where the group has no mass.",
+                   units; zeros where the group has no mass. Under `-compat lammps` Σ m is \
+                   that of the run's beginning, also once particles have been lost or have come.",
             example: "compute c ball com",
         }
     }
@@ -49,6 +50,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
+        let whole = Whole::mass(cx.world(), group);
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
@@ -59,6 +61,7 @@ impl Compute for Declared {
                     let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
                     [x * m, y * m, z * m, m]
                 });
+                let m = whole.of(m);
                 out.vector.clear();
                 out.vector.extend([x, y, z].map(|k| if m > 0.0 { k / m } else { 0.0 }));
                 Ok(())

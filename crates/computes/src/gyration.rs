@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::matter::{Masses, check_masses, sum, unwrapped};
+use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
@@ -23,7 +23,8 @@ impl Style for Gyration {
             summary: "Radius of gyration of the group.",
             text: "Scalar (intensive), in distance units: R² = Σ m |x − x_cm|² / Σ m with positions unwrapped across \
                    periodic faces. Vector of 6 (intensive), squared distances: Σ m (x − x_cm)_a (x − x_cm)_b / Σ m for xx \
-                   yy zz xy xz yz. Zeros where the group has no mass.",
+                   yy zz xy xz yz. Zeros where the group has no mass. Under `-compat lammps` Σ m is that of the run's \
+                   beginning, also once particles have been lost or have come.",
             example: "compute g all gyration",
         }
     }
@@ -50,6 +51,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
+        let whole = Whole::mass(cx.world(), group);
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
@@ -60,6 +62,7 @@ impl Compute for Declared {
                     let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
                     [x * m, y * m, z * m, m]
                 });
+                let mass = whole.of(mass);
                 let over = |a: f64| if mass > 0.0 { a / mass } else { 0.0 };
                 let center = [x, y, z].map(over);
                 let [all, tensor @ ..] = sum::<7>(&w.particles.mask, group, |i| {

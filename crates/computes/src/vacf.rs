@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::matter::{count, keep_places, sum};
+use perigrain_styles::matter::{Whole, count, keep_places, sum};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, MASK, V};
@@ -23,7 +23,8 @@ impl Style for Vacf {
             summary: "Velocity autocorrelation of the group since the compute was declared.",
             text: "Vector of 4 (intensive) in squared velocity units: the means of v_x(t) v_x(0), the same along y and z, and their \
                    sum, v(0) being the velocities when the line was read, of particles made since those they began with. Restart \
-                   files hold them. Zeros where the group is empty.",
+                   files hold them. Zeros where the group is empty. Under `-compat lammps` sums are divided by the number that the \
+                   group had when the run began, also once particles have been lost or have come.",
             example: "compute v all vacf",
         }
     }
@@ -68,14 +69,14 @@ impl Compute for Declared {
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
-        let (me, key) = (self.clone(), self.key);
+        let (me, key, whole) = (self.clone(), self.key, Whole::number(cx.world(), self.group));
         Ok(fill(&self.id, &Wanted { slot, stage, when }, V | MASK | COLUMNS, move |w, _, out| {
             let first = w.columns.get_vector(key).unwrap_or(&[]);
             let [x, y, z] = sum(&w.particles.mask, me.group, |i| {
                 let (now, then) = (w.particles.v[i], first.get(i).copied().unwrap_or_default());
                 std::array::from_fn(|d| now[d] * then[d])
             });
-            let n = count(w, me.group) as f64;
+            let n = whole.of(count(w, me.group) as f64);
             out.vector = [x, y, z, x + y + z].map(|a| if n > 0.0 { a / n } else { 0.0 }).to_vec();
             Ok(())
         }))

@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
-use perigrain_styles::matter::{Masses, centre, check_masses, sum, unwrapped};
+use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
@@ -26,7 +26,9 @@ impl Style for Momentum {
             summary: "Takes the drift of a group, its rotation, or both away every N steps.",
             text: "`linear x y z` (each 0 or 1): the velocity of the centre of mass along these directions. `angular`: the \
                    rotation about the centre of mass, as if the group were rigid. `rescale`: velocities are scaled so that \
-                   the group's kinetic energy of translation stays what it was. At least one of the first two.",
+                   the group's kinetic energy of translation stays what it was. At least one of the first two. Under \
+                   `-compat lammps` the group's mass is that of the run's beginning, also once particles have been lost \
+                   or have come: some of the drift stays.",
             example: "fix calm plate momentum 10 linear 1 1 0 angular",
         }
     }
@@ -83,15 +85,16 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         check_masses(cx.world(), span)?;
+        let whole = Whole::mass(cx.world(), self.group);
         let (me, access) =
             (self.clone(), Needs::new().read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).write(V));
         let op = StepOp::new(format!("fix {} momentum", self.id), Stage::EndOfStep, access, move |w, _| {
             let before = if me.rescale { energy(w, me.group) } else { 0.0 };
             if me.linear.contains(&true) {
-                me.stop_drift(w);
+                me.stop_drift(w, whole);
             }
             if me.angular {
-                me.stop_rotation(w);
+                me.stop_rotation(w, whole);
             }
             let after = if me.rescale { energy(w, me.group) } else { 0.0 };
             if after != 0.0 {
@@ -105,20 +108,21 @@ impl Fix for Declared {
 }
 
 impl Declared {
-    fn stop_drift(&self, w: &mut World) {
+    fn stop_drift(&self, w: &mut World, whole: Whole) {
         let masses = Masses::of(w);
         let [mass, momentum @ ..] = sum::<4>(&w.particles.mask, self.group, |i| {
             let (v, m) = (w.particles.v[i], masses.get(i));
             [m, m * v[0], m * v[1], m * v[2]]
         });
+        let mass = whole.of(mass);
         if mass > 0.0 {
             let drift: Vec3 = std::array::from_fn(|d| if self.linear[d] { momentum[d] / mass } else { 0.0 });
             change(w, self.group, |_, v| sub(v, drift));
         }
     }
 
-    fn stop_rotation(&self, w: &mut World) {
-        let (mass, center) = centre(w, self.group);
+    fn stop_rotation(&self, w: &mut World, whole: Whole) {
+        let (mass, center) = whole.centre(w, self.group);
         if mass <= 0.0 {
             return;
         }

@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::scales;
-use perigrain_styles::matter::{centre, check_masses, publish};
+use perigrain_styles::matter::{Whole, centre, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
@@ -28,7 +28,8 @@ impl Style for Recenter {
                    The group itself is shifted, or another after `shift`. Numbers are in lattice spacings unless `units box`, \
                    or fractions of the box. Velocities stay. Acts after the time integration of fixes declared before: \
                    declare it after them. Scalar (extensive): the length of the last shift; vector of 3 (extensive): the \
-                   shift.",
+                   shift. Under `-compat lammps` the group's mass is that of the run's beginning, also once particles have been \
+                   lost or have come.",
             example: "fix still plate recenter INIT INIT NULL",
         }
     }
@@ -83,8 +84,8 @@ struct Declared {
 
 impl Declared {
     /// What must be added to the positions now.
-    fn shift(&self, w: &World) -> [f64; 3] {
-        let (_, now) = centre(w, self.group);
+    fn shift(&self, w: &World, whole: Whole) -> [f64; 3] {
+        let (_, now) = whole.centre(w, self.group);
         let lo = w.domain.as_ref().map_or([0.0; 3], |d| d.lo);
         let edges = w.edges();
         // A direction that is free counts as none of the others.
@@ -116,13 +117,14 @@ impl Fix for Declared {
         let span = cx.span();
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
+        let whole = Whole::mass(cx.world(), self.group);
         let (me, access) = (
             self.clone(),
             Needs::new().read(IMAGE | MASS | MASK | BOX | TYPE_MASS | MEMO | KIND).write(X | SLOTS),
         );
         let op =
             StepOp::new(format!("fix {} recenter", self.id), Stage::InitialIntegrate, access, move |w, t| {
-                let shift = me.shift(w);
+                let shift = me.shift(w, whole);
                 let (bit, p) = (me.shifted.bit(), &mut w.particles);
                 par::each((&mut p.x[..], &p.mask[..]), |_, (x, mask)| {
                     for (x, _) in x.iter_mut().zip(mask).filter(|(_, m)| **m & bit != 0) {

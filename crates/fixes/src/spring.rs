@@ -6,7 +6,7 @@ use perigrain_base::math::vec3::length;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::number_or_null;
-use perigrain_styles::matter::{Chosen, Masses, centre, change_forces, check_masses, publish};
+use perigrain_styles::matter::{Chosen, Masses, Whole, change_forces, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, X};
@@ -29,7 +29,8 @@ impl Style for Spring {
                    that the group is not turned or strained; centres are taken unwrapped. Acts in the setup of a run too. \
                    Scalar (extensive): the energy K (|r| − R0)²/2, which `fix_modify ID energy yes` adds to the potential \
                    energy. Vector of 4 (extensive): the force on the group and its strength, negative where the spring is \
-                   shorter than R0.",
+                   shorter than R0. Under `-compat lammps` masses are those of the run's beginning, also once particles \
+                   have been lost or have come.",
             example: "fix pull ball spring tether 50.0 0.0 0.0 NULL 0.0",
         }
     }
@@ -99,6 +100,8 @@ impl Fix for Declared {
             None => None,
         };
         let slot = cx.slot(&format!("f_{}", self.id));
+        let whole = Whole::mass(cx.world(), self.group);
+        let other_whole = Whole::mass(cx.world(), self.other.unwrap_or(self.group));
         let (me, access) = (
             self.clone(),
             Needs::new().read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).add(F).write(SLOTS),
@@ -107,8 +110,9 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            let (mass, from) = centre(w, me.group);
-            let (other_mass, to) = others.as_ref().map_or((0.0, [0.0; 3]), |(group, _)| centre(w, *group));
+            let (mass, from) = whole.centre(w, me.group);
+            let (other_mass, to) =
+                others.as_ref().map_or((0.0, [0.0; 3]), |(group, _)| other_whole.centre(w, *group));
             let (force, strength, energy) = me.pull(from, to);
             share(w, &mine, mass, force);
             if let Some((_, chosen)) = &others {

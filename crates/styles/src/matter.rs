@@ -94,6 +94,41 @@ pub fn centre(w: &World, group: GroupId) -> (f64, [f64; 3]) {
     (mass, if mass > 0.0 { moment.map(|a| a / mass) } else { [0.0; 3] })
 }
 
+/// The mass or the number of particles of a group by which a sum over it is divided: the present one, but that of a run's beginning where
+/// LAMMPS has it so (`-compat lammps`), also once particles have been lost or have come. Of dynamic groups it is the present one there too.
+#[derive(Clone, Copy, Debug)]
+pub struct Whole(Option<f64>);
+
+impl Whole {
+    /// The mass, for a run that begins now.
+    pub fn mass(w: &mut World, group: GroupId) -> Self {
+        w.spread_type_masses();
+        Self::begun(w, group, |w| centre(w, group).0)
+    }
+
+    /// The number of particles, for a run that begins now.
+    pub fn number(w: &World, group: GroupId) -> Self {
+        Self::begun(w, group, |w| count(w, group) as f64)
+    }
+
+    fn begun(w: &World, group: GroupId, now: impl Fn(&World) -> f64) -> Self {
+        let kept = w.settings.lammps() && w.groups.dynamic(group).is_none();
+        Self(kept.then(|| now(w)))
+    }
+
+    /// It, where it is `present` now.
+    pub fn of(self, present: f64) -> f64 {
+        self.0.unwrap_or(present)
+    }
+
+    /// The mass and the centre of mass it makes of a group.
+    pub fn centre(self, w: &World, group: GroupId) -> (f64, [f64; 3]) {
+        let (present, at) = centre(w, group);
+        let mass = self.of(present);
+        (mass, if mass == present { at } else { at.map(|a| a * present / mass) })
+    }
+}
+
 /// Where particle `i` would be had it never been wrapped into a periodic box.
 pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
     let by = w.edges().shift(w.particles.image[i].map(f64::from));
