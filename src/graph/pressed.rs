@@ -8,8 +8,8 @@ use perigrain_styles::pressed::Pressed;
 use perigrain_styles::probe::Probe;
 use perigrain_world::contacts::{LOOK, Pressed as Looked};
 use perigrain_world::field::{
-    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS,
-    TAG, TRAVEL, V, VOLUME, X, X0,
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, VOLUME, X, X0,
 };
 use perigrain_world::{RunStyle, World};
 
@@ -45,8 +45,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     let timestep = graph.lines.latest("timestep").map(|n| n.span);
     let span = s.span();
     let place = timestep.unwrap_or(span);
-    let surfaces = !s.world().groups.surfaces().is_empty();
-    s.add(vec![Box::new(Look { probes, movers, surfaces, place })], span);
+    s.add(vec![Box::new(Look { probes, movers, place })], span);
     Ok(())
 }
 
@@ -68,8 +67,6 @@ impl Movers {
 struct Look {
     probes: Vec<Box<dyn Probe>>,
     movers: Movers,
-    /// Solids touch by their surfaces: who belongs together is known from where they were created.
-    surfaces: bool,
     /// The line that set the step, or the run.
     place: Span,
 }
@@ -102,10 +99,9 @@ impl Look {
 
 impl Op for Look {
     fn about(&self) -> About {
-        let reads = X | V | OMEGA | RADIUS | MASS | KIND | MASK | TAG | VOLUME;
+        let reads = X | V | OMEGA | RADIUS | MASS | KIND | MASK | TAG | VOLUME | X0;
         let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | LISTS | MOLECULE | TRAVEL;
-        let created = if self.surfaces { X0 } else { Fields::NONE };
-        let needs = Needs::new().read(reads | lists | created).write(FACTS);
+        let needs = Needs::new().read(reads | lists).write(FACTS);
         let when = When::Every(LOOK).or(When::First).or(When::Last);
         About { when, ..About::new("contact watch", Stage::Output, needs) }
     }

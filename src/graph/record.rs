@@ -204,6 +204,9 @@ impl Record {
             let place = place(node.span);
             if let Some(here) = self.known.get_mut(&place) {
                 here.remove(&node.provides);
+                if here.is_empty() {
+                    self.known.remove(&place);
+                }
             }
             self.free.entry(place).or_default().push(k);
         }

@@ -77,7 +77,9 @@ impl Compute for Declared {
                 std::array::from_fn(|d| now[d] * then[d])
             });
             let n = whole.of(count(w, me.group) as f64);
-            out.vector = [x, y, z, x + y + z].map(|a| if n > 0.0 { a / n } else { 0.0 }).to_vec();
+            // Of nobody sums are zero, or stay as they are in LAMMPS.
+            let over = if n > 0.0 { n } else { 1.0 };
+            out.vector = [x, y, z, x + y + z].map(|a| a / over).to_vec();
             Ok(())
         }))
     }

@@ -135,10 +135,9 @@ impl Fix for Declared {
 
 /// Shares a force out by mass.
 fn share(w: &mut perigrain_world::World, chosen: &Chosen, mass: f64, force: [f64; 3]) {
-    if mass <= 0.0 {
-        return;
-    }
-    let each = force.map(|f| f / mass);
+    // Without a mass nobody feels it, or LAMMPS does not divide.
+    let over = if mass > 0.0 { mass } else { 1.0 };
+    let each = force.map(|f| f / over);
     change_forces::<0>(w, chosen, |w, i, f| {
         let m = Masses::of(w).get(i);
         (0..3).for_each(|d| f[d] += each[d] * m);

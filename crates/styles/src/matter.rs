@@ -101,8 +101,7 @@ pub struct Whole(Option<f64>);
 
 impl Whole {
     /// The mass, for a run that begins now.
-    pub fn mass(w: &mut World, group: GroupId) -> Self {
-        w.spread_type_masses();
+    pub fn mass(w: &World, group: GroupId) -> Self {
         Self::begun(w, group, |w| centre(w, group).0)
     }
 
@@ -125,7 +124,9 @@ impl Whole {
     pub fn centre(self, w: &World, group: GroupId) -> (f64, [f64; 3]) {
         let (present, at) = centre(w, group);
         let mass = self.of(present);
-        (mass, if mass == present { at } else { at.map(|a| a * present / mass) })
+        // Without a mass LAMMPS' sum stays as it is.
+        let over = if mass > 0.0 { mass } else { 1.0 };
+        (mass, if mass == present { at } else { at.map(|a| a * present / over) })
     }
 }
 

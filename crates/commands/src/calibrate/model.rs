@@ -94,7 +94,7 @@ impl Model {
     pub fn tell(&self, cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) {
         match &self.kind {
             Kind::Dsm { setup, solved: Some(r), .. } => warn_sticking(cx, &line.words, setup, r),
-            Kind::Ste { found: Some(e), .. } => warn_softer(cx, line, scene, hertz, (e.body, e.volume)),
+            Kind::Ste { found: Some(e), .. } => warn_softer(cx, line, scene, hertz, e),
             _ => {}
         }
     }

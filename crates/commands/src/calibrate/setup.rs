@@ -154,8 +154,7 @@ impl Setup {
     /// Solves to a part of the stiffness, from a field or from the affine one.
     pub fn solve(&self, scene: &Scene, words: &Words, tol: f64, from: Option<Vec<Six>>) -> Response {
         let sample = scene.sample(words.axis);
-        let mut start =
-            from.unwrap_or_else(|| affine(&sample, &self.ends, words.holds, &self.held, self.delta, self.nu));
+        let mut start = from.unwrap_or_else(|| self.affine(scene, words));
         if matches!(words.method, Method::Paper(_)) {
             for (row, held) in start.iter_mut().zip(&self.held.mask) {
                 *row = std::array::from_fn(|c| if held >> c & 1 == 1 { row[c] } else { 0.0 });
@@ -164,7 +163,12 @@ impl Setup {
         let mut out = if words.by_parts() {
             self.by_parts(scene, words, tol, &start)
         } else if self.linear() {
-            self.by_bonds(scene, words, tol, start)
+            let stop = match (words.method, words.bound) {
+                (Method::Paper([linear, _]), _) => Stop::Residual(linear),
+                (Method::Pcg, Some(_)) => Stop::Certified(tol),
+                (Method::Pcg, None) => Stop::Estimate(tol),
+            };
+            self.by_bonds(scene, words, stop, start)
         } else {
             self.by_newton(scene, words, tol, start)
         };
@@ -177,21 +181,17 @@ impl Setup {
         out
     }
 
-    /// What the stiffness of bonds alone is at most, by some steps from the affine field.
+    /// What the stiffness of bonds alone is at most, by so many steps from the affine field [force/length].
     pub fn at_most(&self, scene: &Scene, words: &Words, steps: usize) -> f64 {
-        let start =
-            affine(&scene.sample(words.axis), &self.ends, words.holds, &self.held, self.delta, self.nu);
-        let (network, blocks) = (&scene.network, self.blocks(scene));
-        let answer = relax(network, &blocks, &self.held, start, words.rotations, Stop::Steps(steps));
-        2.0 * answer.energy() / self.delta.powi(2)
+        self.by_bonds(scene, words, Stop::Steps(steps), self.affine(scene, words)).stiffness
     }
 
-    fn by_bonds(&self, scene: &Scene, words: &Words, tol: f64, start: Vec<Six>) -> Response {
-        let stop = match (words.method, words.bound) {
-            (Method::Paper([linear, _]), _) => Stop::Residual(linear),
-            (Method::Pcg, Some(_)) => Stop::Certified(tol),
-            (Method::Pcg, None) => Stop::Estimate(tol),
-        };
+    /// The field of a body that follows its ends evenly.
+    fn affine(&self, scene: &Scene, words: &Words) -> Vec<Six> {
+        affine(&scene.sample(words.axis), &self.ends, words.holds, &self.held, self.delta, self.nu)
+    }
+
+    fn by_bonds(&self, scene: &Scene, words: &Words, stop: Stop, start: Vec<Six>) -> Response {
         let blocks = self.blocks(scene);
         let answer = relax(&scene.network, &blocks, &self.held, start, words.rotations, stop);
         let energy = answer.energy();

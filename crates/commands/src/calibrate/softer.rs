@@ -3,6 +3,7 @@
 use super::Line;
 use super::scene::Scene;
 use super::setup::Setup;
+use super::ste::Estimated;
 use super::touch::Hertz;
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic};
@@ -18,17 +19,11 @@ const STEPS: usize = 12;
 /// An estimate that is more than so many times what the body has at most is told: those of packings are 5 to 15 % off.
 const APART: f64 = 1.25;
 
-/// Warns of an estimated `stiffness` of a porous body [force/length], over this `volume`, where some steps of `calibrate dsm` find a far
-/// lower one: every field between held ends gives an upper bound. Where contacts carry as well nothing is told.
-pub fn warn_softer(
-    cx: &ActCx,
-    line: &Line,
-    scene: &Scene,
-    hertz: Option<&Hertz>,
-    (stiffness, volume): (f64, f64),
-) {
+/// Warns of an estimate of a porous body where some steps of `calibrate dsm` find a far lower stiffness: every field between held ends gives
+/// an upper bound. Where contacts carry as well nothing is told.
+pub fn warn_softer(cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>, e: &Estimated) {
     let solid: f64 = scene.radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum();
-    if solid >= POROUS * volume {
+    if solid >= POROUS * e.volume {
         return;
     }
     let words = Words {
@@ -47,14 +42,57 @@ pub fn warn_softer(
         return;
     }
     let most = setup.at_most(scene, &words, STEPS);
-    if most.is_nan() || stiffness <= APART * most {
+    if most.is_nan() || e.body <= APART * most {
         return;
     }
     let text = format!(
         "between held ends K is {} at most, and not {}: struts between voids bend, of which a particle's surroundings tell nothing",
         general(most, 5),
-        general(stiffness, 5)
+        general(e.body, 5)
     );
     let d = Diagnostic::warning(Code::SUSPICIOUS, cx.span, text);
     cx.note(d.help("`calibrate dsm … tol 0.1` finds K to a few percent"));
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::calibrate::testing::{Beams, act};
+    use crate::testing::scene as world_of;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn estimates_of_struts_that_bend_are_told() {
+        let of = |generator: &str, gap: &str| {
+            let mut w = world_of(&format!(
+                "units si\nboundary f f f\natom_style hybrid sphere bond\nregion w block -1e-7 4e-7 -1e-7 4e-7 -1e-7 4e-7 units box\n\
+                 region b block 0 247e-9 0 247e-9 0 247e-9 units box\ncreate_box 1 w bond/types 2 extra/bond/per/atom 40\ncreate_atoms 1 {generator}\n\
+                 special_bonds lj/coul 0 1 1\ncreate_bonds gap all all 1 -3e-9 {gap}"
+            ));
+            w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
+            w
+        };
+        let beams = || {
+            let mut beams = Beams::standard(2);
+            beams.0.insert(1, [70e9, 0.17, 3e-9]);
+            beams
+        };
+        let mut opal = of("opal b 180e-9 0.97 0.45 4711 sizes mono 15e-9 axis 100", "10.5e-9");
+        let ste = act(&mut opal, "calibrate ste a all axis z", beams()).unwrap();
+        let dsm = act(&mut opal, "calibrate dsm b all axis z tol 1e-6", beams()).unwrap();
+        let apart = ste.numbers[0] / dsm.numbers[0];
+        assert!(apart > 1.5, "{apart}");
+        assert_eq!(ste.notes.len(), 1);
+        assert!(
+            ste.notes[0]
+                .ends_with("struts between voids bend, of which a particle's surroundings tell nothing")
+        );
+        // What is said to be the most is at most so much, and not far from what it is.
+        let most: f64 = ste.notes[0].split_whitespace().nth(5).unwrap().parse().unwrap();
+        assert!(most > 0.99 * dsm.numbers[0] && most < 1.5 * dsm.numbers[0], "{most} {}", dsm.numbers[0]);
+        let fit = act(&mut opal, "calibrate fit c all target K 1 method ste vary bond 1 E", beams()).unwrap();
+        assert_eq!(fit.notes, ste.notes);
+        // A packing of spheres has no such struts.
+        let mut pack = of("pack b 0.55 4711 sizes mono 30e-9", "6e-9");
+        assert!(act(&mut pack, "calibrate ste a all axis z", beams()).unwrap().notes.is_empty());
+    }
 }

@@ -268,7 +268,7 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     let (began, words) = (Instant::now(), &line.words);
     let body = Estimator::new(cx.world, scene, line.group, words, hertz, cx.span)?;
     let e = body.estimate(scene, words, cx.span)?;
-    warn_softer(cx, line, scene, hertz, (e.body, e.volume));
+    warn_softer(cx, line, scene, hertz, &e);
     line.found.keep(cx.world, e.numbers(words.order), &[], Some(&e.tensor));
     if let Some(map) = words.map {
         one_image(cx.world, map.1, cx.span)?;

@@ -426,38 +426,3 @@ fn pieces_and_loose_particles_are_told() {
     let did = act(&mut w, "calibrate dsm a all low plate high plate", beams).unwrap();
     assert!(did.notes[0].starts_with("1 particles can move in some direction"), "{did:?}");
 }
-
-#[test]
-fn estimates_of_struts_that_bend_are_told() {
-    let of = |generator: &str, gap: &str| {
-        let mut w = world_of(&format!(
-            "units si\nboundary f f f\natom_style hybrid sphere bond\nregion w block -1e-7 4e-7 -1e-7 4e-7 -1e-7 4e-7 units box\n\
-             region b block 0 247e-9 0 247e-9 0 247e-9 units box\ncreate_box 1 w bond/types 2 extra/bond/per/atom 40\ncreate_atoms 1 {generator}\n\
-             special_bonds lj/coul 0 1 1\ncreate_bonds gap all all 1 -3e-9 {gap}"
-        ));
-        w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
-        w
-    };
-    let beams = || {
-        let mut beams = Beams::standard(2);
-        beams.0.insert(1, [70e9, 0.17, 3e-9]);
-        beams
-    };
-    let mut opal = of("opal b 180e-9 0.97 0.45 4711 sizes mono 15e-9 axis 100", "10.5e-9");
-    let ste = act(&mut opal, "calibrate ste a all axis z", beams()).unwrap();
-    let dsm = act(&mut opal, "calibrate dsm b all axis z tol 1e-6", beams()).unwrap();
-    let apart = ste.numbers[0] / dsm.numbers[0];
-    assert!(apart > 1.5, "{apart}");
-    assert_eq!(ste.notes.len(), 1);
-    assert!(
-        ste.notes[0].ends_with("struts between voids bend, of which a particle's surroundings tell nothing")
-    );
-    // What is said to be the most is at most so much, and not far from what it is.
-    let most: f64 = ste.notes[0].split_whitespace().nth(5).unwrap().parse().unwrap();
-    assert!(most > 0.99 * dsm.numbers[0] && most < 1.5 * dsm.numbers[0], "{most} {}", dsm.numbers[0]);
-    let fit = act(&mut opal, "calibrate fit c all target K 1 method ste vary bond 1 E", beams()).unwrap();
-    assert_eq!(fit.notes, ste.notes);
-    // A packing of spheres has no such struts.
-    let mut pack = of("pack b 0.55 4711 sizes mono 30e-9", "6e-9");
-    assert!(act(&mut pack, "calibrate ste a all axis z", beams()).unwrap().notes.is_empty());
-}
