@@ -1,5 +1,6 @@
 //! Short-range repulsion: unbonded pairs that are near, and bonded ones that are squeezed.
 
+use crate::build::detect::distance;
 use crate::families::lattice::LANES;
 use crate::families::list::CLOSE;
 use crate::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
@@ -126,7 +127,10 @@ pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pu
 pub fn repel(families: &Families, closer: [f64; 2], repulsion: &mut Repulsion) {
     for (pairs, closer) in families.near.pairs.iter().zip(closer) {
         for pair in pairs.iter().filter(|pair| f64::from(pair.after) <= closer) {
-            repulsion.pair(pair.ends[0], pair.ends[1]);
+            let [i, j] = pair.ends;
+            if distance(repulsion.view, i, j).0 < f64::from(pair.within) {
+                repulsion.pair(i, j);
+            }
         }
     }
     for body in &families.lattices {

@@ -90,6 +90,35 @@ impl Families {
         2 * (bits + self.list.alive.iter().map(|b| b.count_ones() as usize).sum::<usize>())
     }
 
+    /// Calls `f` for the ends of every living bond, each once, in the order in which they are kept.
+    pub fn living(&self, mut f: impl FnMut(u32, u32)) {
+        let mut join = |i: u32, j: u32| {
+            if i != u32::MAX && j != u32::MAX {
+                f(i, j);
+            }
+        };
+        for body in &self.lattices {
+            for (slot, row) in body.rows.iter().enumerate().filter(|(_, row)| row.len > 0) {
+                let cells = row.start as usize..(row.start + row.len) as usize;
+                for e in 0..body.stencil.len() {
+                    // All bonds of a row's cells along a vector lead equally far.
+                    let Some(far) = cells.clone().find_map(|c| Some(body.ahead(slot, c, e)? - c)) else {
+                        continue;
+                    };
+                    for cell in cells.clone().filter(|cell| body.lives(*cell, e)) {
+                        join(body.particle[cell], body.particle[cell + far]);
+                    }
+                }
+            }
+        }
+        let list = &self.list;
+        for i in 0..list.record.len() {
+            for b in list.own(i).filter(|b| list.lives(*b)) {
+                join(list.particle[i], list.particle[list.partner[b] as usize]);
+            }
+        }
+    }
+
     /// All partners of a particle, broken bonds included, by index.
     pub fn neighbours(&self, i: usize) -> Vec<Neighbour> {
         let mut found = Vec::new();
@@ -190,6 +219,7 @@ impl Families {
             self.scratch.windows.iter().map(|w| w.lock().map_or(0, |w| 8 * w.force.len())).sum();
         let reference = self.reference.as_ref().map_or(0, |r| 24 * r.len());
         let near: usize = self.near.pairs.iter().map(|p| size_of::<NearPair>() * p.capacity()).sum();
+        let near = near + 24 * self.near.looked.len();
         self.lattices.iter().map(crate::families::lattice::LatticeBody::bytes).sum::<usize>()
             + self.list.bytes()
             + 14 * self.place.len()

@@ -82,6 +82,9 @@ impl<'a> Clusters<'a> {
 
     /// Joins the sets of two particles.
     pub fn join(&mut self, i: u32, j: u32) {
+        if self.parent[i as usize] == self.parent[j as usize] {
+            return;
+        }
         let (a, b) = (find(&mut self.parent, i), find(&mut self.parent, j));
         let (low, high) = if self.tag[a as usize] <= self.tag[b as usize] { (a, b) } else { (b, a) };
         self.parent[high as usize] = low;
@@ -116,9 +119,11 @@ pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
 }
 
 /// Calls `f(i, j)` for everything that holds two particles together: unbroken peridynamic bonds, and listed bonds that are
-/// not broken.
+/// not broken. In no order that means anything.
 pub fn held_together(w: &World, mut f: impl FnMut(u32, u32)) {
-    bonds(w, &mut f);
+    if let Some(families) = &*w.families {
+        families.living(&mut f);
+    }
     let tags = &w.particles.tag;
     let index = Index::new(tags);
     for bond in w.bonds.list.iter().filter(|b| b.kind != 0) {

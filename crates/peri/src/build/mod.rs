@@ -6,4 +6,5 @@ pub mod list;
 pub mod near;
 pub mod sites;
 pub mod spacing;
+pub mod wear;
 pub mod weights;

@@ -3,7 +3,8 @@
 //! Any two particles closer than the reach of families when these were built are bonded. So nobody without a
 //! bond can be in contact before two particles have come closer by the reach minus the contact range, and later
 //! searches keep all pairs within the contact range plus a skin. How much closer two particles may have come is
-//! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search.
+//! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search. Where that is
+//! used up, neighbours may have moved far less than the ends of the body: they are looked at place by place ([`super::wear`]).
 
 use crate::build::detect::distance;
 use crate::families::lattice::RowMotion;
@@ -13,6 +14,8 @@ use crate::families::{Families, NearPair, PeriView};
 const CONTACT: f64 = 1.35;
 /// Pairs are kept up to this many spacings beyond that.
 const SKIN: f64 = 0.35;
+/// The part of the skin that must be left for pairs to last longer: below it looking again soon costs more than a search.
+const ENOUGH: f64 = 0.2;
 
 impl Families {
     /// Starts with no pairs, good until something has moved by more than the reach of families leaves free.
@@ -27,6 +30,7 @@ impl Families {
     /// Forgets pairs; they are searched anew at the next force evaluation.
     pub fn forget_near(&mut self) {
         self.near.allowed = [f64::NEG_INFINITY; 2];
+        self.near.looked.clear();
     }
 
     /// Brings the pairs up to date with positions. `within` and `all` are the ranges of displacement changes
@@ -37,8 +41,11 @@ impl Families {
         for (part, change) in [within, all].into_iter().enumerate() {
             let spent = self.near.spent[part] + change;
             if spent >= self.near.allowed[part] {
-                self.search(view, part);
-                continue;
+                // Where nothing is kept there may be a way back, which has not been added up.
+                if !(part == 0 && advance && self.lasts(view, spent)) {
+                    self.search(view, part);
+                    continue;
+                }
             }
             closer[part] = spent;
             if advance {
@@ -48,40 +55,52 @@ impl Families {
         closer
     }
 
+    /// Looks place by place how much closer particles of a body have come, and lets pairs last longer where that leaves enough.
+    fn lasts(&mut self, view: &PeriView, spent: f64) -> bool {
+        let skin = self.near.skin;
+        let left = self.wear(view, CONTACT * self.options.lattice_spacing, skin);
+        if left < ENOUGH * skin {
+            return false;
+        }
+        self.near.allowed[0] = spent + left;
+        true
+    }
+
     fn search(&mut self, view: &PeriView, part: usize) {
         let lc = self.options.lattice_spacing;
         let range = (CONTACT + SKIN) * lc;
-        let mut pairs = std::mem::take(&mut self.near.pairs[part]);
         let mut cells = std::mem::take(&mut self.scratch.cells);
-        pairs.clear();
         self.near.spent[part] = 0.0;
         self.near.allowed[part] = SKIN * lc;
         self.near.skin = SKIN * lc;
-        let mut keep = |families: &Self, i: u32, j: u32, square: f64| {
-            if square >= range * range {
-                return;
-            }
-            let same = families.body_of(i) == families.body_of(j) && families.body_of(i) != u32::MAX;
-            if same == (part == 0)
-                && families.table.get(view.kind[i as usize], view.kind[j as usize]).is_some()
-                && !(same && families.bonded(i, j))
-            {
-                pairs.push(families.near_pair(view, i, j, 0.0));
-            }
-        };
+        let bodied = |p: &u32| self.place[*p as usize] != u32::MAX;
         if part == 0 {
-            let members = (0..self.place.len() as u32).filter(|&p| self.place[p as usize] != u32::MAX);
-            cells.fill(view.x, members, &view.bounds, range);
-            cells.within(&view.bounds, range, |i, j, square, _| keep(self, i, j, square));
+            cells.fill(view.x, (0..self.place.len() as u32).filter(bodied), &view.bounds, range);
         } else {
             let (chosen, gap) = self.across(view, range);
             cells.fill(view.x, chosen.iter().copied(), &view.bounds, range);
-            cells.within(&view.bounds, range, |i, j, square, _| keep(self, i, j, square));
             self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
         }
-        pairs.sort_unstable_by_key(|pair| pair.ends);
+        let mut pairs = cells.gather(&view.bounds, range, |i, j, square| {
+            let bodies = [self.body_of(i), self.body_of(j)];
+            let same = bodies[0] == bodies[1] && bodies[0] != u32::MAX;
+            if square >= range * range
+                || same != (part == 0)
+                || self.table.get(view.kind[i as usize], view.kind[j as usize]).is_none()
+                || (same && self.bonded(i, j))
+            {
+                return None;
+            }
+            let pair = self.near_pair(view, i, j, 0.0);
+            // Whoever cannot come into contact before the next search is not needed.
+            (f64::from(pair.after) <= self.near.allowed[part]).then_some(pair)
+        });
+        pairs.sort_unstable_by_key(|pair| u64::from(pair.ends[0]) << 32 | u64::from(pair.ends[1]));
         self.near.pairs[part] = pairs;
         self.scratch.cells = cells;
+        if part == 0 {
+            self.looked_at(view);
+        }
     }
 
     /// Particles that may be within `range` of another body, and the least gap between bodies if there are none.
@@ -122,7 +141,9 @@ impl Families {
 
     /// Keeps a pair whose bond has just broken in view.
     pub(crate) fn add_broken(&mut self, view: &PeriView, i: u32, j: u32) {
-        let range = CONTACT * self.options.lattice_spacing + self.near.skin.max(0.0);
+        // Since a search in which places were kept, ways there and back are not added up: both may be a skin long.
+        let skins = if self.near.looked.is_empty() { 1.0 } else { 2.0 };
+        let range = CONTACT * self.options.lattice_spacing + skins * self.near.skin.max(0.0);
         if distance(view, i, j).0 < range * range {
             let pair = self.near_pair(view, i, j, self.near.spent[0]);
             self.near.pairs[0].push(pair);
@@ -132,10 +153,12 @@ impl Families {
     /// Two particles that cannot touch before they have come closer by what lies between them now; `spent` is
     /// what has been spent so far.
     fn near_pair(&self, view: &PeriView, i: u32, j: u32, spent: f64) -> NearPair {
-        let gap = distance(view, i, j).0.sqrt() - self.options.contact_range(view, i, j);
+        let contact = self.options.contact_range(view, i, j);
+        let gap = distance(view, i, j).0.sqrt() - contact;
         // Rounded down by more than f32 and the sum of many steps may lose.
         let after = if gap > 0.0 { (spent + gap) * (1.0 - 1e-6) } else { 0.0 };
-        NearPair { ends: [i.min(j), i.max(j)], after: after as f32 }
+        let within = contact * contact * (1.0 + 1e-6);
+        NearPair { ends: [i.min(j), i.max(j)], after: after as f32, within: within as f32 }
     }
 
     /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here.

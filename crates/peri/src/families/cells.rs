@@ -1,6 +1,8 @@
 //! A grid of cells for finding all pairs closer than a distance, each once, in a fixed order.
 
 use crate::families::Bounds;
+use perigrain_base::par::{self, Shared};
+use std::ops::Range;
 
 /// Points sorted into cells; in periodic directions cells tile the box exactly.
 #[derive(Clone, Debug, Default)]
@@ -91,6 +93,82 @@ impl Cells {
 
     fn index(&self, c: [usize; 3]) -> usize {
         c[0] + self.count[0] * (c[1] + self.count[1] * c[2])
+    }
+
+    /// What `keep` makes of the pairs of points no farther apart than `range`, which is no longer than the reach; each pair once, by
+    /// rows of cells that threads share.
+    pub fn gather<T: Send>(
+        &self,
+        bounds: &Bounds,
+        range: f64,
+        keep: impl Fn(u32, u32, f64) -> Option<T> + Sync,
+    ) -> Vec<T> {
+        let (most, images) = (range * range, bounds.periodic != [false; 3]);
+        let mut found: Vec<Vec<T>> = std::iter::repeat_with(Vec::new).take(self.rows()).collect();
+        let rows = Shared::new(&mut found);
+        par::for_rows_if(self.member.len() > par::CHUNK, self.rows(), |row| {
+            // SAFETY: each row is worked on once.
+            let found = unsafe { &mut rows.get(row..row + 1)[0] };
+            self.touching(row, |own, run| {
+                let end = self.start[run.end] as usize;
+                for a in self.start[own] as usize..self.start[own + 1] as usize {
+                    let first = if run.start == own { a + 1 } else { self.start[run.start] as usize };
+                    let x = self.place[a];
+                    for (y, &j) in self.place[first..end].iter().zip(&self.member[first..end]) {
+                        let plain = [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
+                        let square = match images {
+                            false => plain[0] * plain[0] + plain[1] * plain[1] + plain[2] * plain[2],
+                            true => shortest(bounds, plain).0,
+                        };
+                        if square <= most {
+                            found.extend(keep(self.member[a], j, square));
+                        }
+                    }
+                }
+            });
+        });
+        found.into_iter().flatten().collect()
+    }
+
+    /// How many rows of cells there are.
+    pub fn rows(&self) -> usize {
+        self.count[1] * self.count[2]
+    }
+
+    /// How many cells there are along each axis; the first one's neighbours come first.
+    pub fn counts(&self) -> [usize; 3] {
+        self.count
+    }
+
+    /// The members of a cell.
+    pub fn members(&self, cell: usize) -> &[u32] {
+        &self.member[self.start[cell] as usize..self.start[cell + 1] as usize]
+    }
+
+    /// Calls `f(cell, others)` for the cells of a row that have members and the runs of cells that touch them and come no earlier:
+    /// all pairs of the same or touching cells, each once; a run that starts with the cell has itself in it.
+    pub fn touching(&self, row: usize, mut f: impl FnMut(usize, Range<usize>)) {
+        let ([nx, ny, nz], (y, z)) = (self.count, (row % self.count[1], row / self.count[1]));
+        for x in 0..nx {
+            let own = self.index([x, y, z]);
+            if self.start[own] == self.start[own + 1] {
+                continue;
+            }
+            if self.wraps != [false; 3] {
+                let (around, n) = self.around([x, y, z]);
+                around[..n].iter().for_each(|&other| f(own, other..other + 1));
+                continue;
+            }
+            let (before, after) = (x.saturating_sub(1), (x + 2).min(nx));
+            f(own, own..own + after - x);
+            for (dy, dz) in [(1, 0), (-1, 1), (0, 1), (1, 1)] {
+                let (y, z) = (y as isize + dy, z + dz);
+                if (0..ny as isize).contains(&y) && z < nz {
+                    let first = self.index([0, y as usize, z]);
+                    f(own, first + before..first + after);
+                }
+            }
+        }
     }
 
     /// Calls `f` for every pair of the same or touching cells.
@@ -185,6 +263,9 @@ mod tests {
             let mut found = Vec::new();
             cells.within(&bounds, 0.9, |i, j, square, wraps| found.push((i.min(j), i.max(j), square, wraps)));
             found.sort_unstable_by_key(|(i, j, ..)| (*i, *j));
+            let mut gathered = cells.gather(&bounds, 0.9, |i, j, square| Some((i.min(j), i.max(j), square)));
+            gathered.sort_unstable_by_key(|(i, j, _)| (*i, *j));
+            assert_eq!(gathered, found.iter().map(|&(i, j, square, _)| (i, j, square)).collect::<Vec<_>>());
             let mut expected = vec![];
             for i in 0..400u32 {
                 for j in i + 1..400 {

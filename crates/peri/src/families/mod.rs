@@ -438,6 +438,9 @@ pub struct NearPairs {
     pub skin: f64,
     /// Particles without a family whose type has short-range contact, and where they were.
     pub loose: Vec<(u32, [f64; 3])>,
+    /// Where all particles were when pairs within a body were last searched; empty where nobody asks.
+    #[serde(default)]
+    pub looked: Vec<[f64; 3]>,
 }
 
 /// Two particles, the first with the lower number, that may come into short-range contact.
@@ -447,6 +450,8 @@ pub struct NearPair {
     pub ends: [u32; 2],
     /// What [`NearPairs::spent`] must reach before they can touch.
     pub after: f32,
+    /// The square of the distance at which they touch, or a little more.
+    pub within: f32,
 }
 
 /// Memory kept between steps that holds nothing a step depends on; a clone starts empty.
@@ -456,6 +461,8 @@ pub struct Scratch {
     pub windows: Vec<Mutex<Window>>,
     /// Cells of the search for near pairs.
     pub cells: Cells,
+    /// Cells of each body at the last search within bodies, if somebody has asked since.
+    pub looked: Vec<Cells>,
     /// Energy and virial of rows.
     pub rows: Vec<[f64; 7]>,
     /// Bonds that may break.

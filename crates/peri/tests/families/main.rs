@@ -3,6 +3,7 @@
 
 mod cuts;
 mod endurance;
+mod flying;
 mod golden;
 mod kinematics;
 mod lanes;

@@ -64,6 +64,9 @@ impl Families {
             near.clone().all(|p| p.ends[0] < p.ends[1] && (p.ends[1] as usize) < n),
             "a near pair has no two particles",
         )?;
+        let looked = &self.near.looked;
+        must(looked.is_empty() || looked.len() == n, "near pairs were searched among other particles")?;
+        must(looked.as_flattened().iter().all(|x| x.is_finite()), "near pairs were searched nowhere")?;
         must(self.near.loose.iter().all(|l| (l.0 as usize) < n), "a loose particle is none of the scene")
     }
 
