@@ -9,11 +9,11 @@ use perigrain_peri::families::Families;
 pub fn solids(families: &Families, n: usize) -> Vec<u32> {
     let mut root: Vec<u32> = (0..n as u32).collect();
     let mut bonded = vec![false; n];
-    for (i, has_bonds) in bonded.iter_mut().enumerate() {
-        for bond in families.neighbours(i) {
-            *has_bonds = true;
-            join(&mut root, i as u32, bond.partner);
+    families.bonds_as_kept(true, |i, j| {
+        (bonded[i as usize], bonded[j as usize]) = (true, true);
+        if root[i as usize] != root[j as usize] {
+            join(&mut root, i, j);
         }
-    }
+    });
     (0..n as u32).map(|i| if bonded[i as usize] { find(&mut root, i) } else { NO_BODY }).collect()
 }

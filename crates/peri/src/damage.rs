@@ -90,8 +90,8 @@ impl Families {
         2 * (bits + self.list.alive.iter().map(|b| b.count_ones() as usize).sum::<usize>())
     }
 
-    /// Calls `f` for the ends of every living bond, each once, in the order in which they are kept.
-    pub fn living(&self, mut f: impl FnMut(u32, u32)) {
+    /// Calls `f` for the ends of every living bond, each once, in the order in which they are kept; of `broken` ones too.
+    pub fn bonds_as_kept(&self, broken: bool, mut f: impl FnMut(u32, u32)) {
         let mut join = |i: u32, j: u32| {
             if i != u32::MAX && j != u32::MAX {
                 f(i, j);
@@ -101,20 +101,26 @@ impl Families {
             for (slot, row) in body.rows.iter().enumerate().filter(|(_, row)| row.len > 0) {
                 let cells = row.start as usize..(row.start + row.len) as usize;
                 for e in 0..body.stencil.len() {
-                    // All bonds of a row's cells along a vector lead equally far.
-                    let Some(far) = cells.clone().find_map(|c| Some(body.ahead(slot, c, e)? - c)) else {
+                    let ahead = |cell: usize| body.ahead(slot, cell, e);
+                    // All between the first and the last that lead to a cell lead to one, equally far.
+                    let Some((first, to)) = cells.clone().find_map(|c| Some((c, ahead(c)?))) else {
                         continue;
                     };
-                    for cell in cells.clone().filter(|cell| body.lives(*cell, e)) {
-                        join(body.particle[cell], body.particle[cell + far]);
+                    let last = cells.clone().rfind(|c| ahead(*c).is_some()).unwrap_or(first);
+                    for cell in (first..=last).filter(|cell| broken || body.lives(*cell, e)) {
+                        join(body.particle[cell], body.particle[cell + to - first]);
                     }
                 }
             }
         }
         let list = &self.list;
         for i in 0..list.record.len() {
-            for b in list.own(i).filter(|b| list.lives(*b)) {
-                join(list.particle[i], list.particle[list.partner[b] as usize]);
+            for b in list.own(i).filter(|b| broken || list.lives(*b)) {
+                // Groups are filled up with their owner.
+                let j = list.partner[b] as usize;
+                if j != i {
+                    join(list.particle[i], list.particle[j]);
+                }
             }
         }
     }

@@ -122,7 +122,7 @@ pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
 /// not broken. In no order that means anything.
 pub fn held_together(w: &World, mut f: impl FnMut(u32, u32)) {
     if let Some(families) = &*w.families {
-        families.living(&mut f);
+        families.bonds_as_kept(false, &mut f);
     }
     let tags = &w.particles.tag;
     let index = Index::new(tags);

@@ -317,3 +317,39 @@ fn true_forces_conserve_momentum() {
         }
     }
 }
+
+#[test]
+fn bonds_as_kept_are_those_of_all_particles() {
+    for layout in [Layout::Auto, Layout::List] {
+        let mut s = impact(1);
+        // A ball has rows of all lengths.
+        let far = |x: [f64; 3]| x.map(|x| (x / DX - 24.0).powi(2)).iter().sum::<f64>().sqrt();
+        s.fill(DX, [[20, 28]; 3], 1, 2200.0, |x| far(x) < 4.2);
+        s.options.layout = layout;
+        s.setup();
+        for step in 0..2 {
+            if step == 1 {
+                (0..40).for_each(|_| s.step());
+                // A hole, so that rows end here and there.
+                let gone = |i: usize| i % 17 == 3;
+                let mut next = 0..;
+                let map: Vec<Option<u32>> =
+                    (0..s.x.len()).map(|i| if gone(i) { None } else { next.next() }).collect();
+                s.keep(|i| !gone(i));
+                s.families.as_mut().unwrap().remap(&map);
+            }
+            let families = s.families.as_ref().unwrap();
+            for broken in [false, true] {
+                let mut kept = vec![];
+                families.bonds_as_kept(broken, |i, j| kept.push([i.min(j), i.max(j)]));
+                kept.sort_unstable();
+                let of = |i: usize| {
+                    let all = families.neighbours(i).into_iter().filter(move |n| broken || n.alive);
+                    all.map(move |n| [i as u32, n.partner]).filter(|[i, j]| i < j)
+                };
+                assert!(kept.iter().copied().eq((0..s.x.len()).flat_map(of)), "{layout:?} {broken}");
+                assert!(!kept.is_empty());
+            }
+        }
+    }
+}
