@@ -1,6 +1,7 @@
 //! Who belongs to whose peridynamic family, and who comes close without belonging.
 
 pub mod detect;
+mod joined;
 pub mod lattice;
 pub mod list;
 pub mod near;

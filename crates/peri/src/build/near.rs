@@ -7,6 +7,7 @@
 //! used up, neighbours may have moved far less than the ends of the body: they are looked at place by place ([`super::wear`]).
 
 use crate::build::detect::distance;
+use crate::build::joined::Joined;
 use crate::families::lattice::RowMotion;
 use crate::families::{Families, NearPair, PeriView};
 
@@ -81,13 +82,13 @@ impl Families {
             cells.fill(view.x, chosen.iter().copied(), &view.bounds, range);
             self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
         }
+        let joined = Joined::of(self);
         let mut pairs = cells.gather(&view.bounds, range, |i, j, square| {
-            let bodies = [self.body_of(i), self.body_of(j)];
-            let same = bodies[0] == bodies[1] && bodies[0] != u32::MAX;
+            let bond = joined.bond(i, j);
             if square >= range * range
-                || same != (part == 0)
+                || bond.is_some() != (part == 0)
+                || bond == Some(true)
                 || self.table.get(view.kind[i as usize], view.kind[j as usize]).is_none()
-                || (same && self.bonded(i, j))
             {
                 return None;
             }

@@ -268,14 +268,16 @@ impl LatticeBody {
 
     /// The lattice vector (along, across, up) from one cell to another.
     pub fn step(&self, from: usize, to: usize) -> [i32; 3] {
-        let at = |cell: usize| {
-            let slot = self.slot_of(cell);
-            let row = &self.rows[slot];
-            let along = (cell - row.start as usize) as i32 + row.lo;
-            [along, (slot % self.width) as i32, (slot / self.width) as i32]
-        };
-        let (a, b) = (at(from), at(to));
+        let (a, b) = (self.site(from), self.site(to));
         [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+    }
+
+    /// The place of a cell along its row, of the row in its plane, and of the plane.
+    pub fn site(&self, cell: usize) -> [i32; 3] {
+        let slot = self.slot_of(cell);
+        let row = &self.rows[slot];
+        let along = (cell - row.start as usize) as i32 + row.lo;
+        [along, (slot % self.width) as i32, (slot / self.width) as i32]
     }
 
     /// Whether bond `e` of a cell lives.
