@@ -120,8 +120,8 @@ impl Rule {
         dt
     }
 
-    /// What the squares of velocity, force over mass, and both together must stay below for a step to be longer than `least`: in half
-    /// the step that each of them alone allows nobody goes further than `reach`. `unit` is that of force.
+    /// What the squares of velocity, of force over mass, and of velocity times force must stay below for a step to be longer than `least`:
+    /// in half the step that each of them alone allows nobody goes further than `reach`. `unit` turns force over mass into acceleration.
     fn bounds(&self, least: f64, unit: f64, root: f64) -> [f64; 3] {
         let half = 2.0 * least;
         let energy = self.energy.map_or(f64::INFINITY, |e| e / (half * root));

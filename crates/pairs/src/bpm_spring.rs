@@ -1,18 +1,17 @@
 //! `pair_style bpm/spring`: damped repulsion of particles of bonded solids.
 
-use super::shared::{built_at, near, push, view};
+use super::shared::{admit, built_at, near, push};
 use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
-use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference, insert};
+use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
     BONDS, BOX, F, FAMILIES, KIND, LISTS, MASK, MEMO, MOLECULE, RADIUS, TAG, TALLY, V, X, X0,
 };
-use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Constant, Numbers, World};
 use std::collections::BTreeMap;
 
@@ -136,13 +135,7 @@ impl Repulsion {
         let skin = w.settings.neighbor.skin;
         let freed = self.made.filter(|_| !t.setup).and_then(|(since, _)| w.rebuild.only_parted(since));
         if let Some(pairs) = freed {
-            let (tags, index) = (&w.particles.tag, Index::new(&w.particles.tag));
-            let place = |id: u32| index.find(id, tags);
-            let ends: Vec<[usize; 2]> =
-                pairs.iter().filter_map(|p| Some([place(p[0])?, place(p[1])?])).collect();
-            let allowed = Allowed::new(w);
-            let ends: Vec<[usize; 2]> = ends.into_iter().filter(|[i, j]| allowed.pair(*i, *j)).collect();
-            insert(&view(w, built_at(w)), &self.wanted, skin, &ends, &mut self.list);
+            admit(w, pairs, &self.wanted, &Allowed::new(w), &mut self.list);
         } else {
             self.list = near(w, built_at(w), &self.wanted, skin, &Allowed::new(w));
         }

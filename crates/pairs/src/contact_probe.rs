@@ -2,13 +2,13 @@
 
 use super::granular::force::grains;
 use super::granular::reach::{reaching, refuse_giants, touching};
-use super::shared::{built_at, find_frozen, near, view};
+use super::shared::{admit, built_at, find_frozen, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
-use perigrain_neigh::list::{Pair, Reach, Wanted, difference, insert};
+use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
 use perigrain_world::contacts::Contacts;
 use perigrain_world::index::Index;
@@ -62,13 +62,8 @@ impl ContactProbe {
         if made == w.rebuild.generation {
             return Some(list);
         }
-        let (tags, allowed) = (&w.particles.tag, Allowed::felt(w));
-        let index = Index::new(tags);
-        let of = |pair: &[u32; 2]| Some([index.find(pair[0], tags)?, index.find(pair[1], tags)?]);
-        let freed = w.rebuild.only_parted(made)?.iter().filter_map(of);
-        let ends: Vec<_> = freed.filter(|[i, j]| allowed.pair(*i, *j)).collect();
-        let wanted = reaching(&self.rules, &self.wanted, w);
-        insert(&view(w, built_at(w)), &wanted, w.settings.neighbor.skin, &ends, &mut list);
+        let (freed, wanted) = (w.rebuild.only_parted(made)?, reaching(&self.rules, &self.wanted, w));
+        admit(w, freed, &wanted, &Allowed::felt(w), &mut list);
         Some(list)
     }
 

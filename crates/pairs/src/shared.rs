@@ -1,8 +1,9 @@
 //! What pair styles share: who was near whom at the last rebuild, whom fix freeze holds, what a pair adds to sums.
 
 use perigrain_base::math::vec3::{Vec3, add, sub};
-use perigrain_neigh::list::{Pair, View, Wanted, pairs};
+use perigrain_neigh::list::{Pair, View, Wanted, insert, pairs};
 use perigrain_plan::Tick;
+use perigrain_world::index::Index;
 use perigrain_world::tally::add_share;
 use perigrain_world::{Allowed, World};
 
@@ -29,6 +30,15 @@ pub fn view<'a>(w: &'a World, x: &'a [Vec3]) -> View<'a> {
 /// Pairs within reach plus `skin` at the positions `x` that `allowed` lets meet, sorted by their tags.
 pub fn near(w: &World, x: &[Vec3], wanted: &Wanted, skin: f64, allowed: &Allowed) -> Vec<Pair> {
     pairs(&view(w, x), wanted, skin, &|i, j| allowed.pair(i, j))
+}
+
+/// Takes pairs of particles, by their ids, into a list of [`near`] as of the last rebuild, where they are near enough and `allowed` lets
+/// them meet.
+pub fn admit(w: &World, pairs: &[[u32; 2]], wanted: &Wanted, allowed: &Allowed, list: &mut Vec<Pair>) {
+    let (tags, index) = (&w.particles.tag, Index::new(&w.particles.tag));
+    let places = |[a, b]: &[u32; 2]| Some([index.find(*a, tags)?, index.find(*b, tags)?]);
+    let ends: Vec<_> = pairs.iter().filter_map(places).filter(|[i, j]| allowed.pair(*i, *j)).collect();
+    insert(&view(w, built_at(w)), wanted, w.settings.neighbor.skin, &ends, list);
 }
 
 /// Which particles fix freeze holds; empty without one.

@@ -4,13 +4,14 @@
 //! Any others had a whole cell between them, which they must use up first: they are asked for in the same way among cells twice
 //! as wide, and so on. So the ends of a body that flies apart may move far while neighbours hardly do.
 
+use crate::families::cells::touching;
 use crate::families::{Cells, Families, PeriView};
 
 /// Width of the smallest cells, in ranges within which pairs are kept: narrow ones have smaller ranges of displacements, wide ones more
 /// room for what lies beyond.
 const WIDTH: f64 = 2.0;
 
-/// The range of displacements of some particles: least and largest.
+/// The range of displacements of some particles since the search: least and largest [length].
 type Moved = [[f64; 3]; 2];
 
 /// Of no particles.
@@ -30,7 +31,7 @@ impl Families {
         }
     }
 
-    /// How much closer two particles of a body may still come before some that were farther apart than `contact` and `skin` touch; no
+    /// How much closer [length] two particles of a body may still come before some that were farther apart than `contact` and `skin` touch; no
     /// more than `skin`, negative where that is not known.
     pub(super) fn wear(&mut self, view: &PeriView, contact: f64, skin: f64) -> f64 {
         if self.near.looked.len() != view.x.len() || view.bounds.periodic != [false; 3] {
@@ -79,27 +80,18 @@ fn left(cells: &Cells, moved: impl Fn(&u32) -> [f64; 3], (contact, skin, width):
     }
 }
 
-/// The largest range of displacements in a cell and those that touch it, taken two by two.
-fn widest(ranges: &[Moved], [nx, ny, nz]: [usize; 3]) -> f64 {
-    let mut most = 0.0f64;
+/// The largest range of displacements [length] in a cell and those that touch it, taken two by two.
+fn widest(ranges: &[Moved], counts: [usize; 3]) -> f64 {
+    let [nx, ny, _] = counts;
     let filled = |k: usize| ranges[k][0][0] <= ranges[k][1][0];
+    let mut most = 0.0f64;
     for own in (0..ranges.len()).filter(|k| filled(*k)) {
-        let [x, y, z] = [own % nx, own / nx % ny, own / (nx * ny)];
-        let (low, high) = (
-            [x, y, z].map(|c| c.saturating_sub(1)),
-            [(x + 1).min(nx - 1), (y + 1).min(ny - 1), (z + 1).min(nz - 1)],
-        );
-        for c in z..=high[2] {
-            for b in low[1]..=high[1] {
-                for a in low[0]..=high[0] {
-                    let other = a + nx * (b + ny * c);
-                    if other >= own && filled(other) {
-                        let [least, largest] = with(&ranges[own], &ranges[other]);
-                        most = most.max((0..3).map(|k| (largest[k] - least[k]).powi(2)).sum());
-                    }
-                }
+        touching(counts, [own % nx, own / nx % ny, own / (nx * ny)], |run| {
+            for other in run.filter(|k| filled(*k)) {
+                let [least, largest] = with(&ranges[own], &ranges[other]);
+                most = most.max((0..3).map(|k| (largest[k] - least[k]).powi(2)).sum());
             }
-        }
+        });
     }
     most.sqrt()
 }

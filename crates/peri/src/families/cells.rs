@@ -103,28 +103,13 @@ impl Cells {
         range: f64,
         keep: impl Fn(u32, u32, f64) -> Option<T> + Sync,
     ) -> Vec<T> {
-        let (most, images) = (range * range, bounds.periodic != [false; 3]);
         let mut found: Vec<Vec<T>> = std::iter::repeat_with(Vec::new).take(self.rows()).collect();
         let rows = Shared::new(&mut found);
         par::for_rows_if(self.member.len() > par::CHUNK, self.rows(), |row| {
             // SAFETY: each row is worked on once.
             let found = unsafe { &mut rows.get(row..row + 1)[0] };
             self.touching(row, |own, run| {
-                let end = self.start[run.end] as usize;
-                for a in self.start[own] as usize..self.start[own + 1] as usize {
-                    let first = if run.start == own { a + 1 } else { self.start[run.start] as usize };
-                    let x = self.place[a];
-                    for (y, &j) in self.place[first..end].iter().zip(&self.member[first..end]) {
-                        let plain = [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
-                        let square = match images {
-                            false => plain[0] * plain[0] + plain[1] * plain[1] + plain[2] * plain[2],
-                            true => shortest(bounds, plain).0,
-                        };
-                        if square <= most {
-                            found.extend(keep(self.member[a], j, square));
-                        }
-                    }
-                }
+                self.pairs(bounds, range, (own, run), |i, j, square, _| found.extend(keep(i, j, square)));
             });
         });
         found.into_iter().flatten().collect()
@@ -135,7 +120,7 @@ impl Cells {
         self.count[1] * self.count[2]
     }
 
-    /// How many cells there are along each axis; the first one's neighbours come first.
+    /// How many cells there are along each axis; they are numbered along the first one first.
     pub fn counts(&self) -> [usize; 3] {
         self.count
     }
@@ -148,8 +133,8 @@ impl Cells {
     /// Calls `f(cell, others)` for the cells of a row that have members and the runs of cells that touch them and come no earlier:
     /// all pairs of the same or touching cells, each once; a run that starts with the cell has itself in it.
     pub fn touching(&self, row: usize, mut f: impl FnMut(usize, Range<usize>)) {
-        let ([nx, ny, nz], (y, z)) = (self.count, (row % self.count[1], row / self.count[1]));
-        for x in 0..nx {
+        let (y, z) = (row % self.count[1], row / self.count[1]);
+        for x in 0..self.count[0] {
             let own = self.index([x, y, z]);
             if self.start[own] == self.start[own + 1] {
                 continue;
@@ -159,57 +144,46 @@ impl Cells {
                 around[..n].iter().for_each(|&other| f(own, other..other + 1));
                 continue;
             }
-            let (before, after) = (x.saturating_sub(1), (x + 2).min(nx));
-            f(own, own..own + after - x);
-            for (dy, dz) in [(1, 0), (-1, 1), (0, 1), (1, 1)] {
-                let (y, z) = (y as isize + dy, z + dz);
-                if (0..ny as isize).contains(&y) && z < nz {
-                    let first = self.index([0, y as usize, z]);
-                    f(own, first + before..first + after);
-                }
-            }
-        }
-    }
-
-    /// Calls `f` for every pair of the same or touching cells.
-    fn each(&self, mut f: impl FnMut(usize, usize)) {
-        for z in 0..self.count[2] {
-            for y in 0..self.count[1] {
-                for x in 0..self.count[0] {
-                    let own = self.index([x, y, z]);
-                    if self.start[own] == self.start[own + 1] {
-                        continue;
-                    }
-                    let (around, n) = self.around([x, y, z]);
-                    around[..n].iter().for_each(|&other| f(own, other));
-                }
-            }
+            touching(self.count, [x, y, z], |run| f(own, run));
         }
     }
 
     /// Calls `f(i, j, |x_i − x_j|², whether the shortest image crosses a periodic face)` for every pair of points no farther apart
     /// than `range`, which is no longer than the reach, each pair once.
     pub fn within(&self, bounds: &Bounds, range: f64, mut f: impl FnMut(u32, u32, f64, bool)) {
-        let most = range * range;
-        let images = bounds.periodic != [false; 3];
-        self.each(|own, other| {
-            let others = self.start[other] as usize..self.start[other + 1] as usize;
-            for a in self.start[own] as usize..self.start[own + 1] as usize {
-                let x = self.place[a];
-                let rest = if own == other { a + 1..others.end } else { others.clone() };
-                for (y, &j) in self.place[rest.clone()].iter().zip(&self.member[rest]) {
-                    let plain = [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
-                    // Kept apart: the way through an array costs more than all the rest.
-                    let (square, wraps) = match images {
-                        false => (plain[0] * plain[0] + plain[1] * plain[1] + plain[2] * plain[2], false),
-                        true => shortest(bounds, plain),
-                    };
-                    if square <= most {
-                        f(self.member[a], j, square, wraps);
-                    }
+        for row in 0..self.rows() {
+            // Cell by cell: the order is part of what is promised.
+            self.touching(row, |own, run| {
+                run.for_each(|other| self.pairs(bounds, range, (own, other..other + 1), &mut f));
+            });
+        }
+    }
+
+    /// The same for the pairs of a cell's members with those of a run of cells, which starts with the cell or does not have it.
+    fn pairs(
+        &self,
+        bounds: &Bounds,
+        range: f64,
+        (own, run): (usize, Range<usize>),
+        mut f: impl FnMut(u32, u32, f64, bool),
+    ) {
+        let (most, images) = (range * range, bounds.periodic != [false; 3]);
+        let others = self.start[run.start] as usize..self.start[run.end] as usize;
+        for a in self.start[own] as usize..self.start[own + 1] as usize {
+            let x = self.place[a];
+            let rest = if run.start == own { a + 1..others.end } else { others.clone() };
+            for (y, &j) in self.place[rest.clone()].iter().zip(&self.member[rest]) {
+                let plain = [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
+                // Kept apart: the way through an array costs more than all the rest.
+                let (square, wraps) = match images {
+                    false => (plain[0] * plain[0] + plain[1] * plain[1] + plain[2] * plain[2], false),
+                    true => shortest(bounds, plain),
+                };
+                if square <= most {
+                    f(self.member[a], j, square, wraps);
                 }
             }
-        });
+        }
     }
 
     /// The cells touching `c` that come no earlier than it, itself included, without repetition.
@@ -233,6 +207,17 @@ impl Cells {
             }
         }
         (cells, n)
+    }
+}
+
+/// Calls `f` for the runs of cells that touch a cell and come no earlier, of so many along each axis, the first of them with itself.
+pub fn touching([nx, ny, nz]: [usize; 3], [x, y, z]: [usize; 3], mut f: impl FnMut(Range<usize>)) {
+    let row = |y: usize, z: usize| nx * (y + ny * z);
+    let (before, after) = (x.saturating_sub(1), (x + 2).min(nx));
+    f(row(y, z) + x..row(y, z) + after);
+    let above = (y.saturating_sub(1)..(y + 2).min(ny)).map(|y| (y, z + 1));
+    for (y, z) in [(y + 1, z)].into_iter().chain(above).filter(|(y, z)| *y < ny && *z < nz) {
+        f(row(y, z) + before..row(y, z) + after);
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::SIX;
 
 pub mod bond_weights;
-mod cells;
+pub(crate) mod cells;
 mod excluded;
 mod kin;
 pub mod lattice;
