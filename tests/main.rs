@@ -51,6 +51,8 @@ mod safe;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+#[path = "strangers/main.rs"]
+mod strangers;
 #[path = "stress/main.rs"]
 mod stress;
 mod sweep;

@@ -1,0 +1,1 @@
+//! K4, contacts: springs, dashpots and friction never make energy.

@@ -1,0 +1,1 @@
+//! K9: numbers on pages are those that their decks print.

@@ -1,0 +1,1 @@
+//! K7: what pictures and reports show.

@@ -1,0 +1,1 @@
+//! K2: rigid bodies with true masses, centres and inertias.

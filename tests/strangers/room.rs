@@ -1,0 +1,1 @@
+//! K5: memory that input can ask for goes through one door.

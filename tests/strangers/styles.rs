@@ -1,0 +1,1 @@
+//! K6: words and styles of LAMMPS that were refused.

@@ -1,0 +1,1 @@
+//! K7: Python, editors, help, packings.
