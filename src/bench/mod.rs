@@ -14,11 +14,20 @@ pub mod table;
 use crate::session::axes::Axis;
 use crate::sweep::{self, Job, Outcome, Sweep, lammps, series};
 use norm::Norm;
+use order::Order;
 use perigrain_base::diag::{Code, Diagnostics, Result, fail};
 use reference::Against;
 
 /// The knob that makes every run several times.
 pub const REPEAT: &str = "-repeat";
+/// What runs of a setting take together at least where nothing says how often it is run [s]: below that times are those of the clock
+/// and of what else the machine does.
+pub const LEAST: f64 = 0.05;
+/// Runs of a setting at most, where nothing says how often.
+const MOST: f64 = 100.0;
+/// The folder of runs that are made again, in that of the others.
+const AGAIN: &str = "again";
+
 /// The knob of threads.
 pub const THREADS: &str = "-threads";
 /// The knob of the layout of bodies.
@@ -46,8 +55,8 @@ pub struct Bench {
     pub sweep: Sweep,
     /// The knobs, repeats not among them; the last one fastest.
     pub axes: Vec<Axis>,
-    /// How often each setting is run.
-    pub repeats: usize,
+    /// How often each setting is run; `None` for as often as [`Bench::again`] says.
+    pub repeats: Option<usize>,
     /// What is measured.
     pub measures: Vec<Measure>,
 }
@@ -59,8 +68,8 @@ pub struct Error {
     pub value: Option<f64>,
     /// Its error; none of the reference, and where something is missing.
     pub error: Option<f64>,
-    /// The observed order to the setting before, along each knob.
-    pub orders: Vec<Option<f64>>,
+    /// The observed order over three settings up to this one, along each knob.
+    pub orders: Vec<Option<Order>>,
     /// No setting is both faster and nearer.
     pub in_front: bool,
     /// It is what others are compared with.
@@ -84,6 +93,8 @@ pub struct Point {
     pub vars: Vec<(String, String)>,
     /// The least wall time of the steps [s].
     pub seconds: Option<f64>,
+    /// How many runs that is the least of.
+    pub runs: usize,
     /// Steps, particles and threads.
     pub steps: i64,
     /// Particles at the end.
@@ -119,8 +130,13 @@ impl Bench {
     ///
     /// # Errors
     /// A knob with two lists, too many runs.
-    pub fn new(sweep: Sweep, axes: Vec<Axis>, repeats: usize, measures: Vec<Measure>) -> Result<Self> {
-        let mut bench = Self { sweep, axes, repeats: repeats.max(1), measures };
+    pub fn new(
+        sweep: Sweep,
+        axes: Vec<Axis>,
+        repeats: Option<usize>,
+        measures: Vec<Measure>,
+    ) -> Result<Self> {
+        let mut bench = Self { sweep, axes, repeats, measures };
         bench.settle()?;
         Ok(bench)
     }
@@ -131,9 +147,9 @@ impl Bench {
     /// As [`Bench::new`].
     pub fn settle(&mut self) -> Result<()> {
         let mut axes = self.axes.clone();
-        if self.repeats > 1 {
+        if self.turns() > 1 {
             // All settings once, then all of them again: what disturbs the machine for a while disturbs them alike.
-            let turns = (1..=self.repeats).map(|k| vec![k.to_string()]).collect();
+            let turns = (1..=self.turns()).map(|k| vec![k.to_string()]).collect();
             axes.insert(0, Axis { names: vec![REPEAT.into()], rows: turns });
         }
         self.sweep.jobs = Job::all(&axes)?;
@@ -155,9 +171,42 @@ impl Bench {
         Ok(())
     }
 
+    /// How often each setting is run at first.
+    fn turns(&self) -> usize {
+        self.repeats.unwrap_or(1).max(1)
+    }
+
     /// The number of settings.
     pub fn settings(&self) -> usize {
-        self.sweep.jobs.len() / self.repeats
+        self.sweep.jobs.len() / self.turns()
+    }
+
+    /// Short runs once more, until those of a setting have taken [`LEAST`] together; nothing where repeats are given, or none is short.
+    ///
+    /// Turn by turn, as all repeats are. They lie in a folder of their own beside the first runs.
+    pub fn again(&self, outcomes: &[Option<Outcome>]) -> Option<Sweep> {
+        if self.repeats.is_some() {
+            return None;
+        }
+        let wanted = |o: &Option<Outcome>| match o {
+            Some(o) if o.is_ok() && o.loop_seconds > 0.0 => {
+                (LEAST / o.loop_seconds).ceil().min(MOST) as usize
+            }
+            _ => 1,
+        };
+        let wanted: Vec<usize> = outcomes.iter().map(wanted).collect();
+        let job = |turn: usize, k: usize| {
+            let turn = (REPEAT.to_owned(), turn.to_string());
+            Job { vars: std::iter::once(turn).chain(self.sweep.jobs[k].vars.iter().cloned()).collect() }
+        };
+        let turns = 2..=wanted.iter().copied().max().unwrap_or(1);
+        let jobs = turns.flat_map(|turn| {
+            let short = wanted.iter().enumerate().filter(move |(_, n)| **n >= turn);
+            short.map(move |(k, _)| job(turn, k))
+        });
+        let sweep =
+            Sweep { jobs: jobs.collect(), folder: self.sweep.folder.join(AGAIN), ..self.sweep.clone() };
+        (!sweep.jobs.is_empty()).then_some(sweep)
     }
 
     /// The place of a setting on each axis.
@@ -183,10 +232,10 @@ impl Bench {
         axis.rows.iter().map(number).collect()
     }
 
-    /// What the runs tell.
-    pub fn found(&self, outcomes: &[Option<Outcome>]) -> Found {
+    /// What the runs say, and those of [`Bench::again`] with their jobs.
+    pub fn found(&self, outcomes: &[Option<Outcome>], again: &[(Job, Outcome)]) -> Found {
         let mut found = Found::default();
-        let runs: Vec<Run> = (0..self.settings()).map(|k| self.run(k, outcomes, &mut found)).collect();
+        let runs: Vec<Run> = (0..self.settings()).map(|k| self.run(k, outcomes, again, &mut found)).collect();
         found.failures = failures(&found.points);
         for (which, measure) in self.measures.iter().enumerate() {
             let errors = reference::errors(self, measure, &runs, &mut found.problems);
@@ -209,19 +258,30 @@ impl Bench {
     }
 
     /// One setting: the least of its times, and the numbers of the first of its runs that went well.
-    fn run(&self, point: usize, outcomes: &[Option<Outcome>], found: &mut Found) -> Run {
+    fn run(
+        &self,
+        point: usize,
+        outcomes: &[Option<Outcome>],
+        again: &[(Job, Outcome)],
+        found: &mut Found,
+    ) -> Run {
         let n = self.settings();
         let job = |turn: usize| turn * n + point;
-        let ended = || (0..self.repeats).filter_map(|t| Some((job(t), outcomes.get(job(t))?.as_ref()?)));
+        let ended = || (0..self.turns()).filter_map(|t| Some((job(t), outcomes.get(job(t))?.as_ref()?)));
         let fine: Vec<(usize, &Outcome)> = ended().filter(|(_, o)| o.is_ok()).collect();
         let own = self.sweep.jobs[point].vars.iter().filter(|(name, _)| name != REPEAT);
         let mut out = Point { vars: own.cloned().collect(), ..Point::default() };
         let mut run = Run::default();
         if let Some((first, o)) = fine.first() {
             (out.steps, out.atoms, out.threads) = (o.steps, o.atoms, o.threads);
-            out.seconds = fine.iter().map(|(_, o)| o.loop_seconds).reduce(f64::min);
-            if let Some((other, _)) = fine.iter().find(|(_, other)| other.measures != o.measures) {
-                let text = format!("runs {} and {} are alike and gave other numbers", first + 1, other + 1);
+            // Behind the number of the repeat stand the knobs.
+            let same = |job: &Job| job.vars[1..] == out.vars[..];
+            let more = again.iter().filter(|(job, o)| o.is_ok() && same(job)).map(|(_, o)| o);
+            let all: Vec<&Outcome> = fine.iter().map(|(_, o)| *o).chain(more).collect();
+            out.runs = all.len();
+            out.seconds = all.iter().map(|o| o.loop_seconds).reduce(f64::min);
+            if let Some(other) = all.iter().position(|other| other.measures != o.measures) {
+                let text = format!("run {} and its repeat {} gave other numbers", first + 1, other + 1);
                 found.problems.append(fault(Code::SUSPICIOUS, text));
             }
             let file = sweep::home_of(&self.sweep, *first).join(series::FILE);

@@ -1,10 +1,25 @@
-//! Observed orders: by which power of a knob an error falls.
+//! Observed orders: by which power of a knob an error falls, over three settings of it.
 
 use super::reference::{Against, finest};
 use super::{Bench, Error, Measure};
 
-/// Of each setting and each knob the order to the setting before.
-pub fn all(bench: &Bench, measure: &Measure, errors: &[Error]) -> Vec<Vec<Option<f64>>> {
+/// Halves of an order that differ by more than this are uneven.
+const EVEN: f64 = 0.5;
+
+/// The order over three settings of a knob.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// The power.
+    pub power: f64,
+    /// Whether both halves, from the first setting to the second and on to the third, say about the same. Where one error is small by
+    /// chance they do not.
+    pub is_even: bool,
+}
+
+/// Of each setting and each knob the order over it and the two settings before.
+///
+/// Where errors are differences to a finer run along the knob, the second setting has an order too: that run is the third.
+pub fn all(bench: &Bench, measure: &Measure, errors: &[Error]) -> Vec<Vec<Option<Order>>> {
     let numbers: Vec<Option<Vec<f64>>> = (0..bench.axes.len()).map(|k| bench.numbers(k)).collect();
     let order = |point: usize, axis: usize| {
         let steps = numbers[axis].as_ref()?;
@@ -13,16 +28,26 @@ pub fn all(bench: &Bench, measure: &Measure, errors: &[Error]) -> Vec<Vec<Option
         }
         let mut places = bench.places(point);
         let here = places[axis];
-        places[axis] = here.checked_sub(1)?;
-        let before = bench.at(&places);
-        let (coarse, fine) = (errors[before].counted()?, errors[point].counted()?);
+        let mut error = |place: usize| {
+            places[axis] = place;
+            errors[bench.at(&places)].counted()
+        };
+        let (fine, middle) = (error(here)?, error(here.checked_sub(1)?)?);
+        let coarse = here.checked_sub(2).map(error);
         // The reference has an error of its own along the line that it is on; switches of the program change no numbers.
         let on_line = finest(bench, measure, point).is_some_and(|reference| {
             let both = bench.places(reference).into_iter().zip(bench.places(point));
             both.enumerate().all(|(k, (a, b))| k == axis || a == b || bench.axes[k].is_switch())
         });
         let last = steps.last().filter(|_| on_line).copied();
-        of([steps[here - 1], steps[here]], [coarse, fine], last)
+        let half = of([steps[here - 1], steps[here]], [middle, fine], last);
+        let Some(coarse) = coarse else {
+            return half.filter(|_| last.is_some()).map(|power| Order { power, is_even: true });
+        };
+        let coarse = coarse?;
+        let power = of([steps[here - 2], steps[here]], [coarse, fine], last)?;
+        let other = of([steps[here - 2], steps[here - 1]], [coarse, middle], last)?;
+        Some(Order { power, is_even: (half? - other).abs() <= EVEN })
     };
     (0..errors.len()).map(|k| (0..numbers.len()).map(|a| order(k, a)).collect()).collect()
 }

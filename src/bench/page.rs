@@ -23,15 +23,16 @@ pub fn markdown(outcomes: &[Outcome], manner: &Manner, pictures: &str) -> (Strin
     let lammps = manner.lammps.as_ref().map(|_| version(outcomes).unwrap_or_else(|| "LAMMPS".into()));
     let beside = lammps.map_or(String::new(), |version| format!(" Beside it {version} on the same decks."));
     let many = match manner.repeat {
-        1 => "once".into(),
-        n => format!("{n} times, the least time counts"),
+        Some(1) => "once".into(),
+        Some(n) => format!("{n} times, the least time counts"),
+        None => format!("until its runs have taken {:.0} ms, the least time counts", 1e3 * super::LEAST),
     };
     let mut out = format!(
         "# Benchmarks\n\nWall time against error over time steps, spacings, horizons and lengths of steps, as `perigrain bench -suite` \
          wrote it: [what the command does](styles/bench.md).\n\n{}, {} thread{}, one run at a time, each {many}. \
          Seconds are the wall time of the steps, setups not included. An error with a star is on the Pareto front: no other setting is both faster and \
-         nearer. Orders are observed between a line and the one before along a knob, positive where the error falls; that a reference run has an error, too, is \
-         reckoned with.{beside}\n",
+         nearer. Orders are observed over a line and the two before along a knob, positive where the error falls; that a reference run has an error, too, is \
+         reckoned with, and `~` marks an order whose two halves differ by more than a half.{beside}\n",
         origin(&machine()),
         manner.threads,
         if manner.threads == 1 { "" } else { "s" },

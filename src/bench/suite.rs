@@ -87,8 +87,8 @@ pub struct Manner {
     pub folder: PathBuf,
     /// Threads of each run.
     pub threads: usize,
-    /// How often each setting is run.
-    pub repeat: usize,
+    /// How often each setting is run; `None` until its runs have taken [`super::LEAST`].
+    pub repeat: Option<usize>,
     /// A LAMMPS that runs the decks too.
     pub lammps: Option<PathBuf>,
     /// This program.

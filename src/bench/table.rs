@@ -1,5 +1,6 @@
 //! What a bench has found as a table: for people, for programs, for a page.
 
+use super::order::Order;
 use super::{Bench, Found, Point};
 use crate::sweep::table::{aligned, line};
 use perigrain_base::diag::Result;
@@ -30,10 +31,11 @@ pub fn seconds(s: f64) -> String {
     format!("{s:.digits$}")
 }
 
-/// An order in hundredths, without a sign of nothing.
-pub fn hundredths(order: f64) -> String {
-    let text = format!("{order:.2}");
-    if text == "-0.00" { "0.00".into() } else { text }
+/// An order in hundredths, without a sign of nothing; `~` in front of one whose halves are uneven.
+pub fn hundredths(order: Order) -> String {
+    let text = format!("{:.2}", order.power);
+    let text = if text == "-0.00" { "0.00".into() } else { text };
+    if order.is_even { text } else { format!("~{text}") }
 }
 
 /// Heads and rows for people: knobs, seconds, and of each measure value, error (with a star on the front) and observed orders.
@@ -92,11 +94,11 @@ pub fn csv(bench: &Bench, found: &Found) -> String {
         let mut row: Vec<String> = knobs.iter().map(|name| value(point, name)).collect();
         row.push(number(point.seconds));
         row.extend([point.steps.to_string(), point.atoms.to_string(), point.threads.to_string()]);
-        row.push(bench.repeats.to_string());
+        row.push(point.runs.to_string());
         for (m, e) in bench.measures.iter().zip(&point.errors) {
             let front = if e.in_front { "1" } else { "0" };
             row.extend([number(e.value), number(e.error), m.norm.name().into(), front.into()]);
-            row.extend(ordered.iter().map(|axis| number(e.orders[*axis])));
+            row.extend(ordered.iter().map(|axis| number(e.orders[*axis].map(|order| order.power))));
         }
         row.push(point.problem.clone().unwrap_or_default());
         row

@@ -22,8 +22,8 @@ pub struct Request {
     pub against: Reference,
     /// The norm's name.
     pub norm: Option<String>,
-    /// How often each setting is run.
-    pub repeat: usize,
+    /// How often each setting is run; `None` until its runs have taken [`crate::bench::LEAST`].
+    pub repeat: Option<usize>,
     /// The words as they were typed, for messages.
     pub typed: String,
 }
@@ -55,7 +55,7 @@ impl Request {
     /// Words that are not understood.
     pub fn parse(words: Vec<String>) -> Result<Self, Usage> {
         let typed = format!("perigrain bench {}", words.join(" "));
-        let mut request = Self { typed, repeat: 1, ..Self::default() };
+        let mut request = Self { typed, ..Self::default() };
         let mut rest = vec![];
         let mut words = words.into_iter().peekable();
         while let Some(word) = words.next() {
@@ -103,7 +103,7 @@ impl Request {
                 None => return needs("a name"),
             },
             "-repeat" => match values.first().and_then(|v| v.parse::<usize>().ok()).filter(|n| *n > 0) {
-                Some(n) => self.repeat = n,
+                Some(n) => self.repeat = Some(n),
                 None => return needs("a number from 1"),
             },
             _ => {
@@ -189,7 +189,10 @@ mod tests {
             "in.x -each dt 2 1 -threads 1 2 -measure pe c_k -against form 0 v_k -norm l2 -repeat 3 -jobs 1",
         )
         .unwrap();
-        assert_eq!((r.measures.join(" ").as_str(), r.repeat, r.norm.as_deref()), ("pe c_k", 3, Some("l2")));
+        assert_eq!(
+            (r.measures.join(" ").as_str(), r.repeat, r.norm.as_deref()),
+            ("pe c_k", Some(3), Some("l2"))
+        );
         assert_eq!(r.against(1), Against::Form("v_k".into()));
         assert_eq!((r.own_axes().len(), r.own_axes()[0].rows.len(), r.sweep.lists.len()), (1, 2, 1));
         let r = read("in.x -threads 2 -each dt 2 1 -measure pe -against finest dt").unwrap();

@@ -124,25 +124,57 @@ fn leave_out(request: &Request, bench: &mut Bench) -> std::result::Result<bool, 
 /// Has the runs made, one after the other, and shows what they say.
 fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     let quiet = request.sweep.options.screen == Target::None;
-    let mut show = Show { jobs: &bench.sweep.jobs, quiet, tally: Tally::default() };
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
-    let results = sweep::work_off(&bench.sweep, request.sweep.anew, &mut show, &stop);
-    show.tally.clear();
-    let results = results?;
-    if results.interrupted {
+    let (results, found) = measured(bench, request.sweep.anew, quiet, &stop)?;
+    let Some(found) = found else {
         if !quiet {
-            super::show(&format!("{}\ninterrupted: the same command goes on\n", counts(&results)));
+            super::show(&format!("{}\ninterrupted: the same command continues\n", counts(&results)));
         }
         return Ok(INTERRUPTED);
-    }
-    let found = bench.found(&results.outcomes);
+    };
     let pictures = table::write(bench, &found)?;
     if !quiet {
         super::show(&told(bench, &found, &pictures));
     }
     complain(&found);
     Ok(if found.is_whole() && results.all_ok() && !left_out { OK } else { FAILED })
+}
+
+/// The runs of a bench, short ones again and again, and what they say: nothing if they were interrupted.
+///
+/// # Errors
+/// Folders and journals that cannot be read or written.
+fn measured(
+    bench: &Bench,
+    anew: bool,
+    quiet: bool,
+    stop: &AtomicBool,
+) -> Result<(sweep::Results, Option<Found>)> {
+    let make = |runs: &sweep::Sweep, quiet: bool| {
+        let mut show = Show { jobs: &runs.jobs, quiet, tally: Tally::default() };
+        let results = sweep::work_off(runs, anew, &mut show, stop);
+        show.tally.clear();
+        results
+    };
+    let results = make(&bench.sweep, quiet)?;
+    if results.interrupted {
+        return Ok((results, None));
+    }
+    let mut again = vec![];
+    if let Some(more) = bench.again(&results.outcomes) {
+        if !quiet {
+            let least = 1e3 * crate::bench::LEAST;
+            super::show(&format!("{} short runs again: {least:.0} ms for each setting\n", more.jobs.len()));
+        }
+        let repeated = make(&more, true)?;
+        if repeated.interrupted {
+            return Ok((repeated, None));
+        }
+        again = more.jobs.into_iter().zip(repeated.outcomes).filter_map(|(j, o)| Some((j, o?))).collect();
+    }
+    let found = bench.found(&results.outcomes, &again);
+    Ok((results, Some(found)))
 }
 
 /// Says what is missing.
@@ -162,8 +194,11 @@ fn told(bench: &Bench, found: &Found, pictures: &[String]) -> String {
     }
     let folder = bench.sweep.folder.display();
     text += &format!("\n{folder}/{}: seconds are the wall time of the steps", table::TABLE);
-    if bench.repeats > 1 {
-        text += &format!(", the least of {}", bench.repeats);
+    let runs = found.points.iter().map(|point| point.runs);
+    match (runs.clone().min(), runs.max()) {
+        (Some(few), Some(many)) if many > few => text += &format!(", the least of {few} to {many}"),
+        (_, Some(many)) if many > 1 => text += &format!(", the least of {many}"),
+        _ => {}
     }
     if bench.sweep.at_once > 1 {
         text += &format!(", {} runs at once, which disturb each other", bench.sweep.at_once);

@@ -4,11 +4,8 @@ use crate::bench::page::{self, Outcome};
 use crate::bench::suite::{Case, DECKS, Manner};
 use crate::bench::{Bench, table};
 use crate::cli::args::Usage;
-use crate::cli::progress::Tally;
 use crate::cli::sweeping::listen;
-use crate::cli::sweeping::show::Show;
 use crate::cli::{FAILED, INTERRUPTED, OK, cases, deck, show};
-use crate::sweep;
 use crate::sweep::starter::Starter;
 use perigrain_base::diag::Sources;
 use perigrain_out::file::replace;
@@ -39,7 +36,7 @@ pub struct Wanted {
     /// Threads of each run (1)
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// Run each setting N times, the least time counts (1)
+    /// Run each setting N times, the least time counts (until its runs have taken 50 ms)
     #[arg(long, value_name = "N")]
     pub repeat: Option<usize>,
     /// Where the runs are (bench.suite)
@@ -111,7 +108,7 @@ fn manner(wanted: &Wanted) -> Result<Manner, Usage> {
     Ok(Manner {
         folder: wanted.out.clone().unwrap_or_else(|| "bench.suite".into()),
         threads: wanted.threads.unwrap_or(1).max(1),
-        repeat: wanted.repeat.unwrap_or(1).max(1),
+        repeat: wanted.repeat.map(|n| n.max(1)),
         lammps,
         program,
         telling: std::io::stderr().is_terminal(),
@@ -123,14 +120,8 @@ type Ran = Option<(Bench, crate::bench::Found, bool)>;
 /// Runs a case and shows its table; nothing if it was interrupted. The last word says whether all went well.
 fn one(case: &Case, manner: &Manner, anew: bool, stop: &AtomicBool) -> perigrain_base::diag::Result<Ran> {
     let bench = case.bench(manner)?;
-    let mut watch = Show { jobs: &bench.sweep.jobs, quiet: false, tally: Tally::default() };
-    let results = sweep::work_off(&bench.sweep, anew, &mut watch, stop);
-    watch.tally.clear();
-    let results = results?;
-    if results.interrupted {
-        return Ok(None);
-    }
-    let found = bench.found(&results.outcomes);
+    let (results, found) = super::measured(&bench, anew, false, stop)?;
+    let Some(found) = found else { return Ok(None) };
     table::write(&bench, &found)?;
     show(&format!("\n{}", table::text(&bench, &found, 160, 60)));
     if case.has_lammps(manner) {
