@@ -102,7 +102,8 @@ const BOOK: [&str; 2] = [
      - [Decisions: lanes](decisions/lanes.md)\n\
      - [Decisions: threads and memory](decisions/threads.md)\n\
      - [Decisions: adding laws](decisions/adding-laws.md)\n\
-     - [Decisions: dependencies](decisions/dependencies.md)\n",
+     - [Decisions: dependencies](decisions/dependencies.md)\n\
+     - [Decisions: what strangers hit](decisions/strangers.md)\n",
 ];
 
 /// The book's table of contents: every page once.
