@@ -38,11 +38,13 @@ impl Style for RunStyleCommand {
                 what takes components of forces away (setforce, aveforce, lineforce, planeforce, enforce2d, freeze) in every \
                 level, with its value in that one; walls in the outermost; `nve`, `nve/sphere` and `nve/limit` kick in every \
                 level, nve/noforce moves in level 1 and `move` in the outermost. Values of such a fix (f_ID) count all levels. \
-                Lists are made anew at the beginning of an outermost step. Refused with the reason: rigid bodies, `fix move` with \
+                Lists are made anew at the beginning of an outermost step. Springs and dashpots of contacts in a longer step go by the \
+                way of that step, and while springs stick no energy is made; LAMMPS, and `compat lammps`, takes its length times \
+                the velocity at its end, which makes energy where bonds swing in the shorter steps. Refused with the reason: rigid bodies, `fix move` with \
                 free components, energy/ledger, dt/guard and plastic grains (`mdr`).\n\n\
                 `staggered`: `timestep` is the long step. Contacts, walls and body forces kick everybody by half a long step \
                 at both of its ends; in between solids make m velocity-Verlet steps under their bonds alone. Momentum is \
-                conserved; with m = 1 the bits are those of `verlet`. `m auto` (the default) takes the fewest short steps \
+                conserved, contacts go by the way of the long step; with m = 1 the bits are those of `verlet`. `m auto` (the default) takes the fewest short steps \
                 that stay within 0.8 of the solids' stable step, and looks again when the step changes. `respa 2 m hybrid \
                 1 2`, with the peridynamic sub-style named first, comes to the same, but moves grains in the short steps too.\n\n\
                 `faster grains`: bonds act at every N-th step only, with N times their force; `timestep` is then the grains' step, \

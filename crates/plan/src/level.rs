@@ -1,5 +1,6 @@
 //! Levels of steps within each other: which one the present step is, and in which an op acts.
 
+use perigrain_world::{Vectors, World};
 use std::sync::Arc;
 
 /// Which of several levels of steps this is (`run_style respa`, `run_style staggered`): each step of a level holds some
@@ -12,11 +13,13 @@ pub struct Phase {
     pub levels: usize,
     /// Who alone moves in the short ones of two, and only there; `None`: everybody moves in the shortest steps.
     pub solids: Option<Arc<Solids>>,
+    /// Where the paths of the step and mean spins stand, each over its length, if it held shorter ones and something remembers them.
+    pub path: [Option<Vectors>; 2],
 }
 
 impl Default for Phase {
     fn default() -> Self {
-        Self { level: 0, levels: 1, solids: None }
+        Self { level: 0, levels: 1, solids: None, path: [None; 2] }
     }
 }
 
@@ -29,6 +32,15 @@ impl Phase {
     /// Whether everybody moves in the shortest of several levels.
     pub fn nested(&self) -> bool {
         self.levels > 1 && self.solids.is_none()
+    }
+
+    /// Velocities and spins as contacts see them. Springs grow by what has passed since they were looked at last: in a step that
+    /// holds shorter ones that is the path of the step, not its length times a velocity at its end.
+    pub fn motion<'a>(&self, w: &'a World) -> [&'a [[f64; 3]]; 2] {
+        let (p, n) = (&w.particles, w.n());
+        let mean = |key: Option<Vectors>| w.columns.get_vector(key?).filter(|c| c.len() == n);
+        let [path, spin] = self.path;
+        [mean(path).unwrap_or(&p.v), mean(spin).unwrap_or(&p.omega)]
     }
 }
 

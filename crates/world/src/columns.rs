@@ -29,13 +29,21 @@ pub struct Level {
     pub forces: [Vectors; 2],
     /// Heat flow.
     pub heat: Numbers,
+    /// How far particles have gone in a step of it, over its length, and their mean spins; while the step is under way, how far
+    /// they have gone so far.
+    pub path: [Vectors; 2],
 }
 
 impl Level {
     /// Those of a level, from 0.
     pub fn new(level: usize) -> Self {
         let of = |what| format!("{LEVEL}{level}/{what}");
-        Self { forces: ["force", "torque"].map(|what| Key::new(&of(what))), heat: Key::new(&of("heat")) }
+        let vectors = |words: [&'static str; 2]| words.map(|what| Key::new(&of(what)));
+        Self {
+            forces: vectors(["force", "torque"]),
+            heat: Key::new(&of("heat")),
+            path: vectors(["path", "spin"]),
+        }
     }
 }
 

@@ -3,8 +3,10 @@
 //! The reversible scheme of Tuckerman, Berne & Martyna (1992): the forces of a level kick by half of its step at both ends
 //! of it, and what lies between is a whole number of steps of the level below; particles drift in the shortest ones.
 //! `run_style respa` is just that, with lists made anew at the beginning of a long step as in LAMMPS; of two levels for
-//! grains and solids (`staggered`) the long one moves the grains, and lists follow once all have moved.
+//! grains and solids (`staggered`) the long one moves the grains, and lists follow once all have moved. Contacts of a level see
+//! paths of its step (`path.rs`).
 
+use super::path::{self, Path};
 use super::verlet::tick;
 use crate::{Phase, Solids, Stage, StepPlan, Tick};
 use perigrain_base::diag::Result;
@@ -23,6 +25,10 @@ pub struct Levels {
     pub(super) own: Arc<[columns::Level]>,
 }
 
+/// What of the steps under way is added up in the shortest ones: where mean spins of a level stand, and how many of the shortest
+/// its step holds.
+type Spins = Vec<(Vectors, i64)>;
+
 impl Levels {
     /// Levels of which each holds so many steps of the one before.
     pub fn new(loops: Vec<i64>, solids: Option<Arc<Solids>>) -> Self {
@@ -33,7 +39,7 @@ impl Levels {
     /// Forgets what they have of their own.
     pub(super) fn forget(&self, w: &mut World) {
         for own in self.own.iter() {
-            own.forces.into_iter().for_each(|key| w.columns.remove(key));
+            own.forces.into_iter().chain(own.path).for_each(|key| w.columns.remove(key));
             w.columns.remove(own.heat);
         }
     }
@@ -45,8 +51,34 @@ impl Levels {
 
     /// A tick as those who act in a level see it.
     pub(super) fn at(&self, t: &Tick, level: usize) -> Tick {
-        let phase = Phase { level, levels: self.count(), solids: self.solids.clone() };
+        let phase = Phase { level, levels: self.count(), solids: self.solids.clone(), path: [None; 2] };
         Tick { phase, ..t.clone() }
+    }
+
+    /// How many of the shortest steps a step of a level holds.
+    fn shortest(&self, level: usize) -> i64 {
+        self.loops[..level].iter().product()
+    }
+
+    /// Begins the path of a step of a level that holds shorter ones and has contacts. LAMMPS knows none.
+    fn begin_path(&self, plan: &StepPlan, w: &mut World, here: &Phase, spins: &mut Spins) -> Option<Path> {
+        let lammps = here.nested() && w.settings.lammps();
+        if here.level == 0 || lammps || !path::remembers(plan, here) {
+            return None;
+        }
+        let own = &self.own[here.level];
+        if w.particles.style.sphere && path::turns_within(plan, here) {
+            spins.push((path::begin_spins(w, own), self.shortest(here.level)));
+        }
+        Some(Path::begin(w, own))
+    }
+
+    /// Ends it: where contacts find it. In steps of two lengths grains move in one piece.
+    fn end_path(&self, w: &mut World, t: &mut Tick, way: Option<Path>, spins: &mut Spins) {
+        let Some(way) = way else { return };
+        let grain = |kind| self.solids.as_ref().is_some_and(|solids| !solids.has(kind));
+        let spin = self.own[t.phase.level].path[1];
+        t.phase.path = [Some(way.end(w, t.dt, grain)), spins.pop_if(|(key, _)| *key == spin).map(|s| s.0)];
     }
 }
 
@@ -103,40 +135,64 @@ fn first_forces(w: &World) -> &'static [&'static [Stage]] {
 /// # Errors
 /// The first op's that fails.
 pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels) -> Result<()> {
-    level(plan, w, t, (l, l.count() - 1), false)?;
+    level(plan, w, t, (l, l.count() - 1), (false, &mut vec![]))?;
     join(w, l);
     Ok(())
 }
 
 /// One step of a level. Only the last of the steps in it have their sums asked for: those end where the step ends. Of the
 /// shortest the last kick is made with the first one of the next where `more` follow at once.
-fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, (l, k): (&Levels, usize), more: bool) -> Result<()> {
-    const NEWS: [Stage; 3] = [Stage::PostIntegrate, Stage::Exchange, Stage::Neighbor];
-    let here = l.at(t, k);
+fn level(
+    plan: &mut StepPlan,
+    w: &mut World,
+    t: &Tick,
+    (l, k): (&Levels, usize),
+    (more, spins): (bool, &mut Spins),
+) -> Result<()> {
+    let mut here = l.at(t, k);
     let (first, last) = (here.phase.nested(), here.phase.outermost());
     exchange(w, l, k);
+    let way = l.begin_path(plan, w, &here.phase, spins);
     if !plan.goes_on() {
         plan.run(w, &here, &[Stage::InitialIntegrate])?;
     }
     if first && last {
-        plan.run(w, &here, &NEWS)?;
+        news(plan, w, &here, way)?;
+        if let Some(way) = way {
+            way.leave(w);
+        }
     }
-    if let Some(below) = k.checked_sub(1) {
-        let m = l.loops[below];
-        let lasting = Tick { dt: t.dt / m as f64, ..t.clone() };
-        let passing = lasting.silent();
-        for i in 1..=m {
-            let t = if i < m { &passing } else { &lasting };
-            level(plan, w, t, (l, below), i < m)?;
+    match k.checked_sub(1) {
+        None => spins.iter().for_each(|(key, steps)| path::add_spins(w, *key, *steps)),
+        Some(below) => {
+            let m = l.loops[below];
+            let lasting = Tick { dt: t.dt / m as f64, ..t.clone() };
+            let passing = lasting.silent();
+            for i in 1..=m {
+                let t = if i < m { &passing } else { &lasting };
+                level(plan, w, t, (l, below), (i < m, &mut *spins))?;
+            }
         }
     }
     if last && !first {
-        plan.run(w, &here, &NEWS)?;
+        news(plan, w, &here, way)?;
+    } else if let Some(way) = way {
+        way.arrive(w);
     }
+    l.end_path(w, &mut here, way, spins);
     forces(plan, w, &here)?;
     plan.end(w, &here, |_| more && k == 0)?;
     exchange(w, l, k);
     Ok(())
+}
+
+/// What follows a motion before forces. A path ends before particles are wrapped, come and go.
+fn news(plan: &mut StepPlan, w: &mut World, t: &Tick, way: Option<Path>) -> Result<()> {
+    plan.run(w, t, &[Stage::PostIntegrate])?;
+    if let Some(way) = way {
+        way.arrive(w);
+    }
+    plan.run(w, t, &[Stage::Exchange, Stage::Neighbor])
 }
 
 /// The forces of a level, but for what fixes do to them.

@@ -3,6 +3,7 @@
 pub mod guarded;
 pub mod levels;
 pub mod minimize;
+mod path;
 pub mod staggered;
 pub mod verlet;
 
