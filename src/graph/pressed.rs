@@ -89,8 +89,8 @@ impl Look {
         let say = 0.8 * limit * (t.dt / dt);
         Diagnostic::warning(Code::UNSTABLE, self.place, text)
             .help(
-                "beyond 2/ω, ω the largest frequency of grains on their contacts with each other and with walls, they swing ever \
-                 farther until contacts open: such a run may end well, and is wrong",
+                "beyond 2/ω, ω the largest frequency of grains on their contacts with each other and with walls (less where dashpots \
+                 act), they swing ever farther until contacts open: such a run may end well, and is wrong",
             )
             .help(format!("say `timestep {say:.1e}` or less, or take softer grains"))
             .help("`fix ID all dt/critical 100 0.8` lets the step follow")

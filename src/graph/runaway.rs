@@ -8,9 +8,13 @@ use perigrain_out::log::Log;
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::pair::Deck;
+use perigrain_styles::probe::Probe;
 use perigrain_styles::{Pair, SealCx};
-use perigrain_world::field::{KIND, MASS, TALLY, TYPE_MASS, V};
-use perigrain_world::{RunStyle, World};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TALLY, TRAVEL, TYPE_MASS, V, X, X0,
+};
+use perigrain_world::{Fields, RunStyle, World};
 
 /// What becomes of a run whose energy has grown beyond reason (`thermo_modify energy`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +30,9 @@ pub enum Runaway {
 /// The energy over that at the beginning of the run from which on it is beyond reason: of a scene that nobody does work on, or
 /// kinetic energy where speeds are beyond reason too.
 const GROWN: f64 = 1e6;
+
+/// The same for grains: their energy is known to the last contact, and nothing that a law of contacts makes comes near.
+const GROWN_OF_GRAINS: f64 = 100.0;
 
 /// Speeds over those of waves in solids and beds of grains: there neither bonds nor contacts mean anything any more.
 const FASTER: f64 = 10.0;
@@ -70,22 +77,35 @@ struct Scales {
 }
 
 /// Adds the op that looks at speeds with each row of the step table.
-pub fn seal(s: &mut Sealer, rows: &When) {
+///
+/// # Errors
+/// What the pair style lacks.
+pub fn seal(s: &mut Sealer, rows: &When) -> Result<()> {
     let (graph, lammps) = (s.graph(), s.world().settings.lammps());
     let how = graph.thermo.runaway.unwrap_or(if lammps { Runaway::Warn } else { Runaway::Error });
-    let Some(pair) = graph.pair.as_ref().filter(|_| how != Runaway::Ignore) else { return };
+    let Some(pair) = graph.pair.as_ref().filter(|_| how != Runaway::Ignore) else { return Ok(()) };
     let mut parts = pair.pair.parts();
     parts.push(pair.pair.as_ref());
     let scales = scales(s.world(), &parts);
     let timestep = graph.lines.latest("timestep").map(|n| n.span);
     let when = rows.clone().or(When::Every(INTERVAL));
-    // The energies of solids are known, those of touching grains are not.
-    let solids = parts.iter().all(|p| p.facts().true_forces.is_some() || !p.parts().is_empty());
-    let closed = solids && graph.bond.is_none() && graph.fixes.iter().all(|f| IDLE.contains(&f.style));
+    // The energies of solids are known, and those of touching grains that do not stick.
+    let facts = parts.iter().filter(|p| p.parts().is_empty()).map(|p| p.facts());
+    let of = facts.map(|f| (f.true_forces.is_some(), f.elastic_grains)).collect::<Vec<_>>();
+    let known = of.iter().all(|(solid, grains)| *solid || *grains);
+    let closed = known && graph.bond.is_none() && graph.fixes.iter().all(|f| IDLE.contains(&f.style));
+    let (solids, grains) = (of.iter().any(|f| f.0), closed && of.iter().any(|f| f.1));
+    let probes = if grains { s.probes()? } else { vec![] };
+    if !grains {
+        // What a run does that something drives is in no budget.
+        s.world().parts.budget = None;
+    }
     let op = Look {
         how,
         scales,
         closed,
+        solids,
+        probes,
         timestep,
         when,
         log: s.log.clone(),
@@ -95,6 +115,7 @@ pub fn seal(s: &mut Sealer, rows: &When) {
     };
     let span = s.span();
     s.add(vec![Box::new(op)], span);
+    Ok(())
 }
 
 fn scales(w: &World, parts: &[&dyn Pair]) -> Scales {
@@ -132,6 +153,10 @@ struct Look {
     scales: Scales,
     /// Whether nobody does work on particles and all energies are known.
     closed: bool,
+    /// Whether there are solids: their energy is tallied.
+    solids: bool,
+    /// Pair styles of grains where the scene is closed.
+    probes: Vec<Box<dyn Probe>>,
     /// The line that set the step.
     timestep: Option<Span>,
     when: When,
@@ -153,12 +178,40 @@ impl Look {
         }
         let masses = Masses::of(w);
         let half = 0.5 * w.settings.units.constants().mvv2e;
-        State { square, kinetic: half * par::sum(n, |i| masses.get(i) * dot(v[i], v[i])) }
+        let straight = par::sum(n, |i| masses.get(i) * dot(v[i], v[i]));
+        let turning = if self.probes.is_empty() {
+            0.0
+        } else {
+            let (omega, radius) = (&w.particles.omega, &w.particles.radius);
+            par::sum(n, |i| 0.4 * masses.get(i) * radius[i] * radius[i] * dot(omega[i], omega[i]))
+        };
+        State { square, kinetic: half * (straight + turning) }
+    }
+
+    /// All energy at the beginning of a run, if it is known. A closed scene that a run goes on with unchanged has no more than it had.
+    fn budget(&mut self, w: &mut World, t: &Tick, kinetic: f64) -> Result<Option<f64>> {
+        let tallied = !self.solids || w.tally.step == Some(t.step);
+        let strain = if self.solids { w.tally.pair.abs() } else { 0.0 };
+        if self.probes.is_empty() {
+            return Ok(tallied.then(|| kinetic + strain));
+        }
+        if t.unchanged
+            && let Some(budget) = w.parts.budget
+        {
+            return Ok(Some(budget));
+        }
+        let mut held = 0.0;
+        for probe in &mut self.probes {
+            held += probe.held(w)?.iter().sum::<f64>();
+        }
+        w.parts.budget = tallied.then(|| kinetic + strain + held);
+        Ok(w.parts.budget)
     }
 
     /// What is beyond reason, if something is.
     fn beyond(&self, now: State) -> Option<String> {
-        if let Some(budget) = self.budget.filter(|b| *b > 0.0 && now.kinetic > GROWN * b) {
+        let grown = if self.solids { GROWN } else { GROWN_OF_GRAINS };
+        if let Some(budget) = self.budget.filter(|b| *b > 0.0 && now.kinetic > grown * b) {
             let (kinetic, times) = (now.kinetic, now.kinetic / budget);
             return Some(format!(
                 "kinetic energy is {kinetic:.3e}, {times:.1e} times all there was when the run began, and nothing does work on \
@@ -204,11 +257,16 @@ impl Look {
 
 impl Op for Look {
     fn about(&self) -> About {
-        let reads = if self.closed { V | MASS | KIND | TYPE_MASS | TALLY } else { V };
-        About {
-            when: self.when.clone(),
-            ..About::new("energy watch", Stage::Output, Needs::new().read(reads))
+        let when = self.when.clone();
+        if self.probes.is_empty() {
+            let reads = if self.closed { V | MASS | KIND | TYPE_MASS | TALLY } else { V };
+            return About { when, ..About::new("energy watch", Stage::Output, Needs::new().read(reads)) };
         }
+        let tally = if self.solids { TALLY } else { Fields::NONE };
+        let reads = X | V | OMEGA | RADIUS | MASS | KIND | TYPE_MASS | MASK | TAG | X0 | tally;
+        let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | LISTS | MOLECULE | TRAVEL;
+        let needs = Needs::new().read(reads | lists).write(FACTS);
+        About { when, ..About::new("energy watch", Stage::Output, needs) }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -218,8 +276,9 @@ impl Op for Look {
         let now = self.state(w);
         if t.setup {
             self.begin = now;
-            let tallied = self.closed && w.tally.step == Some(t.step);
-            self.budget = tallied.then(|| now.kinetic + w.tally.pair.abs());
+            if self.closed {
+                self.budget = self.budget(w, t, now.kinetic)?;
+            }
             return Ok(());
         }
         let Some(why) = self.beyond(now) else { return Ok(()) };

@@ -293,7 +293,7 @@ impl Session {
         if pass == Pass::Run {
             // Behind the guard, whose blocks end where others act.
             let rows = self.graph.thermo.when(&mut s)?;
-            crate::graph::runaway::seal(&mut s, &rows);
+            crate::graph::runaway::seal(&mut s, &rows)?;
             crate::graph::pressed::seal(&mut s)?;
         }
         s.say_what_is_missing();

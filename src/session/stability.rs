@@ -3,7 +3,7 @@
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_styles::Pair;
-use perigrain_styles::pair::{Deck, Scales};
+use perigrain_styles::pair::{Deck, Scales, ToCome};
 use perigrain_styles::swing::swinging;
 use perigrain_world::RunStyle;
 
@@ -17,7 +17,8 @@ impl Session {
         if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
             return;
         }
-        let deck = self.said();
+        let to_come = self.to_come();
+        let deck = Deck { to_come: &to_come, ..self.said() };
         let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()));
         let pairs: Vec<Scales> = pairs.map(|p| p.scales(&self.world, deck)).collect();
         let line = self.graph.lines.latest("timestep");
@@ -48,11 +49,11 @@ impl Session {
         if decided || !matches!(w.settings.run_style, RunStyle::Verlet) || w.clock.dt <= 0.0 {
             return None;
         }
-        let deck = self.said();
+        let to_come = self.to_come();
+        let deck = Deck { to_come: &to_come, ..self.said() };
         let pairs = g.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref())).map(|p| p.scales(w, deck));
         let own = pairs.flat_map(|p| [p.stable_step.map(|s| 0.8 * s), p.contact_time.map(|c| 0.05 * c)]);
-        let said = deck.density.zip(deck.diameter);
-        let walls = g.fixes.iter().map(|f| f.fix.contact_time(w, said).map(|c| 0.05 * c));
+        let walls = g.fixes.iter().map(|f| f.fix.contact_time(w, deck).map(|c| 0.05 * c));
         own.chain(walls).flatten().reduce(f64::min).map(|longest| longest / w.clock.dt)
     }
 
@@ -125,7 +126,6 @@ impl Session {
 
     /// A warning where contacts of grains, with each other or with walls, last less than ten steps.
     fn check_contacts(&self, place: Span, pairs: &[Scales], deck: Deck, found: &mut Diagnostics) {
-        let said = deck.density.zip(deck.diameter);
         let whole = self.world.clock.dt;
         let pairs = pairs.iter().enumerate().filter_map(|(k, p)| {
             let dt =
@@ -134,7 +134,7 @@ impl Session {
         });
         let walls = self.graph.fixes.iter();
         let walls = walls.filter_map(|f| {
-            Some((f.fix.contact_time(&self.world, said)?, whole, format!(" with the wall of fix {}", f.id)))
+            Some((f.fix.contact_time(&self.world, deck)?, whole, format!(" with the wall of fix {}", f.id)))
         });
         let worst = pairs.chain(walls).reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
         let Some((contact, dt, wall)) = worst.filter(|(contact, dt, _)| *dt > 0.1 * contact) else { return };
@@ -179,9 +179,29 @@ impl Session {
 
     /// The largest density and the smallest diameter that the deck has set, for a check that has no particles: no other
     /// particles' numbers shall draw a warning.
-    fn said(&self) -> Deck {
+    fn said(&self) -> Deck<'static> {
         let said = |fact| self.graph.lines.said(fact);
-        Deck { density: said("density").map(|d| d.most), diameter: said("diameter").map(|d| d.least) }
+        let (density, diameter) = (said("density").map(|d| d.most), said("diameter").map(|d| d.least));
+        Deck { density, diameter, to_come: &[] }
+    }
+
+    /// Grains that fixes make during the run.
+    fn to_come(&self) -> Vec<ToCome> {
+        self.graph.fixes.iter().flat_map(|f| f.fix.to_come(&self.world)).collect()
+    }
+
+    /// What to do about grains far in each other: where the step is longer than a tenth of a contact, stiffer grains make it worse.
+    fn deep_remedy(&self) -> String {
+        let room = self.room_for_step().filter(|room| *room < 0.5);
+        match room.map(|room| room * self.world.clock.dt) {
+            Some(step) => format!(
+                "say `timestep {step:.1e}` or less first: the step is longer than a tenth of a contact, and grains go that deep before it \
+                 pushes them back"
+            ),
+            None => "look for particles that were created inside each other, or take stiffer grains and a shorter step: contacts last as \
+                     1/√k"
+                .to_string(),
+        }
     }
 
     /// Tells once of grains that a run has pushed far into each other.
@@ -193,9 +213,10 @@ impl Session {
             "particles {i} and {j} overlap by {part:.0} % of the smaller radius at step {}: contact laws hold below 10 %",
             deep.step
         );
+        let remedy = self.deep_remedy();
         self.note_once(
             Diagnostic::warning(Code::SUSPICIOUS, span, text)
-                .help("take stiffer grains, or look for particles that were created inside each other")
+                .help(remedy)
                 .help("only the first such pair is reported"),
         );
         self.say_notes()

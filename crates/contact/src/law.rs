@@ -20,6 +20,8 @@ pub enum Arm {
     Middle,
     /// At the full radius, as `pair_style gran/*` has it.
     Radius,
+    /// At the point of a peridynamic solid, which does not turn: the grain's arm is all of the distance, and the point has none.
+    Point,
 }
 
 /// What a deck says about contacts of one pair of types.
@@ -58,6 +60,8 @@ pub struct Classic {
     pub mu: f64,
     /// Whether the normal force never pulls.
     pub limit_damping: bool,
+    /// Where friction takes hold.
+    pub arm: Arm,
 }
 
 impl Model {
@@ -76,7 +80,7 @@ impl Model {
     }
 
     /// `hooke`, `hooke/history` or `hertz/history` of the older styles: mass-proportional damping, springs projected
-    /// into the tangent plane, full lever arms.
+    /// into the tangent plane, full lever arms unless said otherwise.
     pub fn classic(hertz: bool, history: bool, c: &Classic) -> Self {
         let [stiffness, kt] = c.stiffness;
         let [eta, gamma_t] = c.gamma;
@@ -88,7 +92,7 @@ impl Model {
         let normal = Normal::new(style, &[stiffness, eta]);
         let kind = if history { spring } else { Friction::LinearNohistory };
         let tangential = Tangential { kind, stiffness: Some(kt), drag: Drag::Own(gamma_t), mu: c.mu };
-        Self { limit_damping: c.limit_damping, arm: Arm::Radius, ..Self::new(normal, damping, tangential) }
+        Self { limit_damping: c.limit_damping, arm: c.arm, ..Self::new(normal, damping, tangential) }
     }
 
     /// The law for a pair of types whose model was given.
@@ -106,6 +110,9 @@ impl Model {
             if a != b {
                 return Err(Unmixable(a, b));
             }
+        }
+        if self.arm != other.arm {
+            return Err(Unmixable("arms middle", "arms point"));
         }
         if let Some(number) = self.normal.unlike(&other.normal) {
             return Err(Unmixable(number, number));
@@ -147,6 +154,7 @@ impl Model {
             heat: self.heat.mixed(&other.heat),
             arm: self.arm,
             by_radius,
+            rubs_pulling: compat.lammps(),
             compat,
         }
     }
@@ -176,6 +184,8 @@ pub struct Granular {
     pub arm: Arm,
     /// Whether some part asks for the radius of the contact.
     by_radius: bool,
+    /// Whether friction acts too where a dashpot pulls at the end of a contact: LAMMPS takes |F_n| for what presses.
+    rubs_pulling: bool,
     /// Whose faults it has.
     compat: Compat,
 }
@@ -221,11 +231,46 @@ impl Granular {
         [self.normal.tangent(g).max(0.0), self.spring.present(self.normal.radius(g))]
     }
 
-    /// What the contact holds, given what it remembers.
-    pub fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
+    /// Stiffness and damping of the contact as it is now: along the normal and across it [force/length, force time/length], then
+    /// against rolling and twisting [torque, torque time].
+    pub fn resistance(&self, g: &Geometry, history: &[f64]) -> [[f64; 4]; 2] {
+        let a = self.normal.radius(g);
+        let secant = self.normal.push(g, a, &mut self.normal_memory(history)).secant;
+        let form = self.damping.form(a, secant, g.mass);
+        let finite = |eta: f64| if eta.is_finite() { eta.max(0.0) } else { 0.0 };
+        let ([along, across], square) = (self.springs(g), g.curvature * g.curvature);
+        let rolling = self.rolling.resistance().map(|k| square * k);
+        let twisting = self.twisting.resistance(&self.spring, a, form);
+        let dashpots = [self.damping_constant, self.spring.damping].map(|eta| finite(form * eta));
+        [
+            [along, across, rolling[0], twisting[0]],
+            [dashpots[0], dashpots[1], rolling[1], finite(twisting[1])],
+        ]
+    }
+
+    /// What the normal law remembers of `history`, then zeros.
+    fn normal_memory(&self, history: &[f64]) -> [f64; MOST_MEMORY] {
         let mut memory = [0.0; MOST_MEMORY];
         let own = history.get(self.before_normal()..).unwrap_or(&[]);
         memory.iter_mut().zip(own).for_each(|(to, from)| *to = *from);
+        memory
+    }
+
+    /// The elastic and cohesive force along the normal, and of a law that flows what the contact holds, else zero.
+    pub fn pressing(&self, g: &Geometry, history: &[f64]) -> [f64; 2] {
+        let mut memory = self.normal_memory(history);
+        let held = if self.normal.flows() { self.normal.energy(g, &memory) } else { 0.0 };
+        [self.normal.push(g, self.normal.radius(g), &mut memory).force, held]
+    }
+
+    /// Whether what the contact takes is not given back.
+    pub fn flows(&self) -> bool {
+        self.normal.flows()
+    }
+
+    /// What the contact holds, given what it remembers.
+    pub fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
+        let mut memory = self.normal_memory(history);
         let a = self.normal.radius(g);
         let normal = self.normal.energy(g, &memory);
         let push = self.normal.push(g, a, &mut memory).force;
@@ -253,7 +298,13 @@ impl Granular {
         if self.limit_damping {
             normal_force = normal_force.most(zero);
         }
-        let carried = if self.normal.sticks() { push.force + push.hold } else { normal_force }.abs();
+        let carried = if self.normal.sticks() {
+            (push.force + push.hold).abs()
+        } else if self.rubs_pulling {
+            normal_force.abs()
+        } else {
+            normal_force.most(zero)
+        };
 
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
         let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
@@ -352,7 +403,7 @@ impl Granular {
     fn arm<R: Real>(&self, g: &Geometry<R>, k: usize) -> R {
         match self.arm {
             Arm::Middle => g.radii[k] - g.overlap * 0.5,
-            Arm::Radius => g.radii[k],
+            Arm::Radius | Arm::Point => g.radii[k],
         }
     }
 

@@ -45,7 +45,7 @@ pub struct Slider<R> {
     pub slack: R,
     /// η [mass/time].
     pub damping: R,
-    /// Whether a spring that slides is rid of no more drag than the limit: a spring that must not be set beyond rest.
+    /// Whether a spring that slides is rid of no more drag along the sliding than the limit: a spring that must not be set beyond rest.
     pub capped: bool,
     /// The largest force it carries.
     pub limit: R,
@@ -77,8 +77,15 @@ impl<R: Real> Slider<R> {
         let slack = R::choose(stiff, self.slack, zero.like(1.0));
         // Both quotients by one division.
         let inverse = zero.like(1.0) / (size * slack);
-        let sliding = scale(R::choose(stretched, self.limit * slack * inverse, zero), trial);
-        let elastic = sub(sliding, if self.capped { self.at_most_limit(drag) } else { drag });
+        let along = slack * inverse;
+        let sliding = scale(R::choose(stretched, self.limit * along, zero), trial);
+        let mut elastic = sub(sliding, drag);
+        if self.capped {
+            // Along the sliding direction a drag beyond the limit leaves the spring at rest; across it all of the drag counts, so that
+            // what slid gives the same force when it is looked at once more.
+            let beyond = (dot(drag, trial) * along - self.limit).most(zero);
+            elastic = add(elastic, scale(beyond * along, trial));
+        }
         let (carried, fits) = if by_force {
             (elastic, R::both(slides, stretched))
         } else {
@@ -86,13 +93,6 @@ impl<R: Real> Slider<R> {
         };
         *xi = choose::<R>(fits, carried, *xi);
         choose::<R>(slides, sliding, trial)
-    }
-
-    /// `drag`, shortened to the limit where it is larger.
-    #[inline(always)]
-    fn at_most_limit(&self, drag: Vec3<R>) -> Vec3<R> {
-        let size = length(drag);
-        scale(R::choose(size.above(self.limit), self.limit / size, size.like(1.0)), drag)
     }
 
     /// The force that [`Slider::force`] gave as it left the displacement `xi` behind, where a spring that slides is

@@ -196,9 +196,9 @@ pub struct Spring {
     /// LAMMPS' `…_classic` springs of granular models and walls: the contact radius stiffens `linear_history_classic` too
     /// (until 2026), and is forgotten where a spring that slides is shortened.
     pub loose: bool,
-    /// Whether a spring that slides is rid of no more drag than it may carry. Luding's rule leaves −k ξ = F + η v; in
-    /// young contacts η v is beyond all friction, and a spring that k ∝ a stiffens more than η grows then drives the
-    /// sliding it should resist, the harder the shorter the first steps are. LAMMPS 22Jul2025 has it so.
+    /// Whether a spring that slides is rid of no more drag along the sliding than it may carry. Luding's rule leaves
+    /// −k ξ = F + η v; in young contacts η v is beyond all friction, and a spring that k ∝ a stiffens more than η grows then
+    /// drives the sliding it should resist, the harder the shorter the first steps are. LAMMPS 22Jul2025 has it so.
     pub capped: bool,
     /// Whether a contact is looked at once more.
     pub look: Look,

@@ -62,6 +62,14 @@ impl Rolling {
         if *self == Rolling::None { 0 } else { 3 }
     }
 
+    /// Stiffness [force/length] and damping [mass/time] of the pseudo-force.
+    pub fn resistance(&self) -> [f64; 2] {
+        match self {
+            Rolling::None => [0.0; 2],
+            Rolling::Sds(c) => [c.stiffness, c.damping],
+        }
+    }
+
     /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω the difference of spins, at most
     /// `mu` times the normal force `carried` at the arm R̄; its opposite acts on j.
     #[inline(always)]
@@ -129,6 +137,16 @@ impl Twisting {
     #[inline(always)]
     pub fn memory(&self) -> usize {
         usize::from(*self != Twisting::None)
+    }
+
+    /// Stiffness [torque] and damping [torque time]; `a` and `form` as for [`Twisting::torque`].
+    pub fn resistance(&self, spring: &Spring, a: f64, form: f64) -> [f64; 2] {
+        let half = 0.5 * a * a;
+        match self {
+            Twisting::None => [0.0; 2],
+            Twisting::Sds(c) => [c.stiffness, c.damping],
+            Twisting::Marshall => [half * spring.stiffness, half * (form * spring.damping)],
+        }
     }
 
     /// The torque about the normal on i, against the twisting velocity `omega` about it, at most a friction

@@ -117,7 +117,17 @@ fn between(a: u16, b: u16) -> Granular {
         2 => mindlin,
         3 => {
             let (stiffness, gamma) = ([stiffness; 2], [4.0, 1.0]);
-            Model::classic(false, true, &Classic { stiffness, gamma, mu: 0.5, limit_damping: true })
+            Model::classic(
+                false,
+                true,
+                &Classic {
+                    stiffness,
+                    gamma,
+                    mu: 0.5,
+                    limit_damping: true,
+                    arm: perigrain_contact::Arm::Radius,
+                },
+            )
         }
         _ => Model { rolling: Rolling::Sds(sds(50.0)), twisting: Twisting::Sds(sds(5.0)), ..mindlin },
     };

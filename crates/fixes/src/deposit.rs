@@ -8,8 +8,9 @@ use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
-use perigrain_styles::molecules::{Copy, Molecules};
+use perigrain_styles::molecules::{self, Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
+use perigrain_styles::pair::ToCome;
 use perigrain_styles::{BuildCx, Doc, PlaceTest, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::X;
@@ -204,6 +205,14 @@ impl Depositing {
 }
 
 impl Fix for Depositing {
+    fn to_come(&self, w: &World) -> Vec<ToCome> {
+        let mask = GroupId::ALL.bit() | self.group.bit();
+        if let Some(molecules) = &self.molecules {
+            return molecules.to_come(w, mask);
+        }
+        molecules::default_sphere(w, self.kind, mask).into_iter().collect()
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         Account::maker(w, self.seed).store(w, self.key());
         Ok(())

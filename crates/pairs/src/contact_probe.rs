@@ -6,10 +6,10 @@ use super::shared::{admit, built_at, find_frozen, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
-use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
+use perigrain_contact::driver::{Grains, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
-use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
+use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, Springs};
 use perigrain_world::contacts::Contacts;
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, World};
@@ -91,7 +91,7 @@ impl ContactProbe {
         ask: Ask,
         read: impl FnOnce(&Grains, &Rules, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
-        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        let asked = self.rules.ask_for_bodies();
         let body = match &*w.families {
             Some(families) if asked => solids(families, w.n()),
             _ => vec![],
@@ -219,10 +219,12 @@ impl Probe for ContactProbe {
             let mut all = vec![];
             sweep.each(grains, rules, memory, |c| {
                 let g = &c.geometry;
+                let [stiffness, damping] = c.law.resistance(g, c.history).map(|all| all.map(|k| c.share * k));
                 all.push(Springs {
                     ends: [c.pair.i, c.pair.j],
                     normal: g.normal,
-                    stiffness: c.law.springs(g).map(|k| c.share * k),
+                    stiffness,
+                    damping,
                     arms: g.radii.map(|r| r - 0.5 * g.overlap),
                 });
             });
@@ -239,25 +241,13 @@ impl Probe for ContactProbe {
         Some([stored.push, law.springs(&g)[1], stored.normal])
     }
 
-    fn balance(&mut self, w: &World) -> Result<Balance> {
+    fn held(&mut self, w: &World) -> Result<[f64; 2]> {
         self.evaluated(w, Ask::Felt { setup: false }, |grains, rules, sweep, memory| {
-            let mut sum = Balance::default();
+            let mut sum = [0.0; 2];
             sweep.each(grains, rules, memory, |c| {
-                let (i, j) = (c.pair.i as usize, c.pair.j as usize);
-                let (n, f) = (c.geometry.normal, c.wrench.force);
                 let stored = c.law.stored(&c.geometry, c.history);
-                let v = sub(grains.v[i], grains.v[j]);
-                let (along, central) = (dot(v, n), dot(f, n));
-                let turning =
-                    dot(c.wrench.torque_i, grains.omega[i]) + dot(c.wrench.torque_j, grains.omega[j]);
-                if stored.flows {
-                    sum.flowing[0] += c.share * stored.normal;
-                    sum.flowing[1] -= c.share * stored.push * along;
-                }
-                sum.stored[0] += c.share * stored.normal;
-                sum.stored[1] += c.share * stored.across;
-                sum.damping -= (central - c.share * stored.push) * along;
-                sum.across -= dot(f, v) - central * along + turning;
+                sum[0] += c.share * stored.normal;
+                sum[1] += c.share * stored.across;
             });
             sum
         })

@@ -15,12 +15,12 @@ impl Style for GranHertzHistory {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style gran/hertz/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping]",
+            syntax: "pair_style gran/hertz/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] [arms radius|middle]",
             summary: "Contacts of spheres: Hertz along the normal, a spring across it, damping, friction.",
             text: "F_n = a (Kn δ − m̄ gamma_n v_n) along the normal for an overlap δ > 0, a = √(δ R_i R_j/(R_i + R_j)), \
-                   m̄ = m_i m_j/(m_i + m_j); across it F_t = −a (Kt ξ + m̄ gamma_t v_t), at most xmu |F_n|. ξ is the \
+                   m̄ = m_i m_j/(m_i + m_j); across it F_t = −a (Kt ξ + m̄ gamma_t v_t), at most xmu F_n and nothing where F_n pulls (`compat lammps`: xmu |F_n|). ξ is the \
                    slip accumulated while the contact lasts, without its part along the normal, and shortened to what \
-                   slides. Kn is 4G/(3(1−ν)) for equal materials, Kt 4G/(2−ν).\n\nThe numbers, `limit_damping` and \
+                   slides. Kn is 4G/(3(1−ν)) for equal materials, Kt 4G/(2−ν).\n\nThe numbers, `limit_damping`, `arms` and \
                    `pair_coeff` are those of pair_style gran/hooke/history.",
             example: "pair_style gran/hertz/history 1.0e7 NULL 1.0e5 NULL 0.5 1\npair_coeff * *",
         }
@@ -33,6 +33,6 @@ impl PairStyle for GranHertzHistory {
     }
 
     fn options(&self) -> &'static [&'static str] {
-        &["limit_damping"]
+        &["limit_damping", "arms"]
     }
 }

@@ -1,5 +1,6 @@
 //! What a fix is: a style that reads its line, and what it declares.
 
+use super::pair::{Deck, ToCome};
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
 use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -112,10 +113,15 @@ pub trait Fix: DynClone + Send {
         fail(Code::WRONG_KIND, span, "this fix has no rigid bodies")
     }
 
-    /// How long the shortest contacts with it last, if it is a wall for grains; `said`: density and diameter in the
-    /// deck, for a check that has no particles.
-    fn contact_time(&self, _w: &World, _said: Option<(f64, f64)>) -> Option<f64> {
+    /// How long the shortest contacts with it last, if it is a wall for grains; `deck`: what the deck says of particles that are not
+    /// there yet.
+    fn contact_time(&self, _w: &World, _deck: Deck) -> Option<f64> {
         None
+    }
+
+    /// The grains it makes during a run, so that the step is known to suit them before they come.
+    fn to_come(&self, _w: &World) -> Vec<ToCome> {
+        vec![]
     }
 
     /// Options of `fix_modify ID …` other than `energy`, which the graph keeps.

@@ -1,11 +1,12 @@
 //! The ledger of energy: what a scene holds, and what has gone through each channel since the ledger was opened.
 
-use crate::probe::{Balance, Probe};
+use crate::probe::Probe;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{Vec3, dot, sub};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
+use perigrain_world::contacts::PairTouch;
 use perigrain_world::{Constant, Named, World};
 
 /// What does work on particles besides their mutual forces.
@@ -36,7 +37,9 @@ static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 /// How many powers the ledger follows.
 const POWERS: usize = 7;
 /// How many numbers the book has.
-const NUMBERS: usize = 2 * POWERS + 12;
+const NUMBERS: usize = 2 * POWERS + 16;
+/// How many those of restart files before contacts of particles told what they do.
+const FORMER_NUMBERS: usize = NUMBERS - 4;
 
 /// The channels' sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,6 +57,63 @@ struct Book {
     flow: [f64; 2],
     /// What walls do and hold.
     walls: Walls,
+    /// What contacts of particles do.
+    pairs: Pairs,
+}
+
+/// What contacts of particles with each other do at a step: the forces that acted, at the velocities of the step's end. Their
+/// trapezoidal sums are of second order, since kinetic energy grows by just these forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Pairs {
+    /// Power of dashpots, across the normal, and against the elastic forces of laws that flow.
+    damping: f64,
+    across: f64,
+    pressing: f64,
+    /// What overlaps of laws that flow hold.
+    held: f64,
+}
+
+impl Pairs {
+    /// At the present velocities.
+    fn now(w: &World, step: i64) -> Self {
+        let told = w.parts.pair_touches.iter().flat_map(Named::values).filter(|told| told.step == step);
+        told.fold(Self::default(), |sum, told| sum.plus(Self::of_list(w, &told.list)))
+    }
+
+    fn of_list(w: &World, list: &[PairTouch]) -> Self {
+        let p = &w.particles;
+        let chunk = |range: std::ops::Range<usize>| {
+            list[range].iter().fold(Self::default(), |sum, c| {
+                let [i, j] = c.ends.map(|k| k as usize);
+                let v = sub(p.v[i], p.v[j]);
+                let turning = dot(c.torques[0], p.omega[i]) + dot(c.torques[1], p.omega[j]);
+                sum.plus(Self {
+                    damping: -dot(c.damping, v),
+                    across: -dot(c.across, v) - turning,
+                    pressing: -dot(c.pressing, v),
+                    held: c.held,
+                })
+            })
+        };
+        par::reduce(list.len(), chunk, Self::plus).unwrap_or_default()
+    }
+
+    fn plus(self, more: Self) -> Self {
+        Self {
+            damping: self.damping + more.damping,
+            across: self.across + more.across,
+            pressing: self.pressing + more.pressing,
+            held: self.held + more.held,
+        }
+    }
+
+    fn numbers(&self) -> [f64; 4] {
+        [self.damping, self.across, self.pressing, self.held]
+    }
+
+    fn of([damping, across, pressing, held]: [f64; 4]) -> Self {
+        Self { damping, across, pressing, held }
+    }
 }
 
 /// What contacts with granular walls hold and do at a step.
@@ -104,7 +164,7 @@ impl Walls {
 
 impl Book {
     fn read(w: &World) -> Option<Self> {
-        let m = w.memo.get(*BOOK).filter(|m| m.len() == NUMBERS)?;
+        let m = w.memo.get(*BOOK).filter(|m| [NUMBERS, FORMER_NUMBERS].contains(&m.len()))?;
         let powers = |k: usize| std::array::from_fn(|i| m[k + i]);
         let rest = &m[2 * POWERS..];
         Some(Self {
@@ -114,6 +174,7 @@ impl Book {
             base: rest[2],
             flow: [rest[3], rest[4]],
             walls: Walls::of(std::array::from_fn(|i| rest[5 + i])),
+            pairs: Pairs::of(std::array::from_fn(|i| rest.get(12 + i).copied().unwrap_or(0.0))),
         })
     }
 
@@ -123,6 +184,7 @@ impl Book {
         m.push(self.base);
         m.extend(self.flow);
         m.extend(self.walls.numbers());
+        m.extend(self.pairs.numbers());
         w.memo.insert(*BOOK, m);
     }
 }
@@ -144,6 +206,7 @@ pub fn open(w: &mut World) -> Result<()> {
     }
     w.bonds.counts_losses |= w.memo.contains(*BOOK);
     w.parts.wall_touches.get_or_insert_default();
+    w.parts.pair_touches.get_or_insert_default();
     Ok(())
 }
 
@@ -151,6 +214,7 @@ pub fn open(w: &mut World) -> Result<()> {
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
     w.parts.wall_touches = None;
+    w.parts.pair_touches = None;
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 
@@ -228,15 +292,12 @@ fn kinetic(w: &World, who: impl Fn(usize) -> bool + Sync) -> [f64; 2] {
     par::reduce(p.len(), chunk, |a, b| [a[0] + b[0], a[1] + b[1]]).unwrap_or_default().map(|e| half * e)
 }
 
-/// What all pair styles say of contacts.
-fn balance(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Balance> {
-    let mut sum = Balance::default();
+/// What contacts of all pair styles hold.
+fn held(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<[f64; 2]> {
+    let mut sum = [0.0; 2];
     for probe in probes {
-        let b = probe.balance(w)?;
-        (0..2).for_each(|k| sum.stored[k] += b.stored[k]);
-        (0..2).for_each(|k| sum.flowing[k] += b.flowing[k]);
-        sum.damping += b.damping;
-        sum.across += b.across;
+        let own = probe.held(w)?;
+        (0..2).for_each(|k| sum[k] += own[k]);
     }
     Ok(sum)
 }
@@ -248,7 +309,6 @@ fn balance(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Balance> {
 /// # Errors
 /// What is missing in the scene.
 pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32) -> Result<()> {
-    let contacts = balance(w, probes)?;
     let p = &w.particles;
     let power = |k: usize| {
         let force = w.columns.get_vector(*FORCES[k]).unwrap_or(&[]);
@@ -260,18 +320,20 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
     let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
     let driven = par::sum(p.len(), forces);
-    let damping = contacts.damping + w.bonds.power.iter().sum::<f64>();
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();
-    // Where nothing has changed since the last run walls have nothing new to tell.
-    let walls = if t.unchanged && known.is_some() { book.walls } else { Walls::now(w) };
-    book.walls = walls;
-    let pressing = contacts.flowing[1] + walls.pressing;
-    let (damping, across) = (damping + walls.damping, contacts.across + walls.across);
+    // Where nothing has changed since the last run contacts have nothing new to tell.
+    if !t.unchanged || known.is_none() {
+        (book.walls, book.pairs) = (Walls::now(w), Pairs::now(w, t.step));
+    }
+    let (walls, pairs) = (book.walls, book.pairs);
+    let pressing = pairs.pressing + walls.pressing;
+    let damping = pairs.damping + walls.damping + w.bonds.power.iter().sum::<f64>();
+    let across = pairs.across + walls.across;
     // What contacts with walls take they hold or turn into heat: work is what walls do by moving.
     let now = [power(0) - walls.taken, power(1), power(2), damping, across, driven, pressing];
     let moving: f64 = kinetic(w, held).iter().sum();
-    let springs = contacts.flowing[0] + walls.held;
+    let springs = pairs.held + walls.held;
     if t.setup || known.is_none() {
         (book.power, book.driven[0]) = (now, moving);
         book.base = 0.0;
@@ -343,11 +405,11 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
     for (i, energy) in w.tally.atom.iter().enumerate().take(w.n()) {
         strain[usize::from(w.particles.kind[i]) - 1] += scale(w, i) * energy;
     }
-    let contacts = balance(w, probes)?;
+    let contacts = held(w, probes)?;
     let bonds = strain.iter().sum::<f64>() + w.tally.bond;
     let released = w.bonds.released + w.families.as_ref().map_or(0.0, |f| f.released);
     let [walls, gravity, imposed, damping, across, ..] = book.work;
-    let [normal, springs] = [0, 1].map(|k| contacts.stored[k] + book.walls.stored[k]);
+    let [normal, springs] = [0, 1].map(|k| contacts[k] + book.walls.stored[k]);
     let channels = [
         straight,
         turning,

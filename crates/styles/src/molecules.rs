@@ -1,6 +1,7 @@
 //! Molecule templates as commands and fixes take them: by name, in given shares, turned at random.
 
 use super::newcomers::settle;
+use super::pair::ToCome;
 use super::{BuildCx, SealCx};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::math::body::{Quat, turn};
@@ -9,6 +10,7 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Args, Word};
 use perigrain_world::template::Numbering;
 use perigrain_world::{GroupId, Template, World};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -208,6 +210,13 @@ impl Words {
     }
 }
 
+/// A new particle of a type as LAMMPS makes it where nothing is said of its size, a sphere of diameter and density 1; nothing where
+/// particles have no size.
+pub fn default_sphere(w: &World, kind: u16, mask: u32) -> Option<ToCome> {
+    let sphere = ToCome { kind, mask, mass: PI / 6.0, radius: 0.5 };
+    w.particles.style.sphere.then_some(sphere)
+}
+
 /// A molecule where it is to appear.
 pub struct Copy {
     /// Which of the templates.
@@ -232,6 +241,23 @@ impl Molecules {
         let t = &self.set[copy.which];
         // LAMMPS' default sphere.
         (0..t.count).map(|k| t.radii.get(k).copied().unwrap_or(0.5))
+    }
+
+    /// The lightest and smallest grains of each type.
+    pub fn to_come(&self, w: &World, mask: u32) -> Vec<ToCome> {
+        let mut least: BTreeMap<u16, ToCome> = BTreeMap::new();
+        for t in self.set.iter() {
+            for k in 0..t.count {
+                let kind = t.kinds.get(k).map_or(self.kind, |kind| kind + self.kind);
+                let Some(usual) = default_sphere(w, kind, mask) else { continue };
+                let radius = t.radii.get(k).copied().unwrap_or(usual.radius);
+                let sphere = usual.mass * (radius / usual.radius).powi(3);
+                let mass = t.masses.get(k).copied().unwrap_or(sphere);
+                let grain = least.entry(kind).or_insert(ToCome { kind, mask, mass, radius });
+                (grain.mass, grain.radius) = (grain.mass.min(mass), grain.radius.min(radius));
+            }
+        }
+        least.into_values().collect()
     }
 
     /// The largest radius of their particles.

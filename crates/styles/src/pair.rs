@@ -37,6 +37,8 @@ pub struct Facts {
     pub needs: &'static [&'static str],
     /// For peridynamic styles: whether forces are true forces (else force densities, as LAMMPS).
     pub true_forces: Option<bool>,
+    /// Whether all that its forces can give is held by its contacts: elastic grains without cohesion.
+    pub elastic_grains: bool,
     /// Types whose particles belong to peridynamic solids.
     pub solids: Vec<u16>,
     /// A type whose material says nothing of when its bonds break.
@@ -47,11 +49,33 @@ pub struct Facts {
 
 /// What the deck has said of particles, for a check without particles.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Deck {
+pub struct Deck<'a> {
     /// The density.
     pub density: Option<f64>,
     /// The smallest diameter.
     pub diameter: Option<f64>,
+    /// Grains that come during the run.
+    pub to_come: &'a [ToCome],
+}
+
+impl Deck<'_> {
+    /// Density and diameter, where the deck has set both.
+    pub fn said(&self) -> Option<(f64, f64)> {
+        self.density.zip(self.diameter)
+    }
+}
+
+/// The lightest and smallest grains of a type that a fix makes during a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToCome {
+    /// Their type.
+    pub kind: u16,
+    /// The bits of their groups.
+    pub mask: u32,
+    /// The least mass.
+    pub mass: f64,
+    /// The smallest radius [length].
+    pub radius: f64,
 }
 
 /// How far forces reach and how fast they change.

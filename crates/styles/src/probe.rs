@@ -76,24 +76,12 @@ pub struct Springs {
     pub ends: [u32; 2],
     /// Unit vector between the centres.
     pub normal: Vec3,
-    /// Stiffness along it and across it [force/length].
-    pub stiffness: [f64; 2],
+    /// Stiffness along it and across it [force/length], and against rolling and twisting [torque].
+    pub stiffness: [f64; 4],
+    /// Damping of the same.
+    pub damping: [f64; 4],
     /// How far from each centre they touch [length].
     pub arms: [f64; 2],
-}
-
-/// What the contacts of a pair style hold and turn into heat at a moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Balance {
-    /// Energy of overlaps and of tangential springs [energy].
-    pub stored: [f64; 2],
-    /// Power that dashpots along the normal take up [force length/time].
-    pub damping: f64,
-    /// Power of everything across the normal and of torques, springs included: what these do not keep is friction
-    /// [force length/time].
-    pub across: f64,
-    /// Of laws that flow: the energy of overlaps [energy], and the power against their elastic force [force length/time].
-    pub flowing: [f64; 2],
 }
 
 /// A pair style's answer about single pairs. It reads the world as it is after forces are computed: contact history
@@ -136,12 +124,12 @@ pub trait Probe: Send {
         None
     }
 
-    /// What all contacts hold and take up at the present velocities.
+    /// What all contacts hold: energy of overlaps and of tangential springs [energy].
     ///
     /// # Errors
     /// As `look`.
-    fn balance(&mut self, _w: &World) -> Result<Balance> {
-        Ok(Balance::default())
+    fn held(&mut self, _w: &World) -> Result<[f64; 2]> {
+        Ok([0.0; 2])
     }
 }
 

@@ -160,6 +160,32 @@ pub struct WallTouch {
     pub flows: bool,
 }
 
+/// What the contacts of a pair style did at a step, as the ledger of energy books it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PairTouches {
+    /// When.
+    pub step: i64,
+    /// Each contact.
+    pub list: Vec<PairTouch>,
+}
+
+/// What two touching particles do to each other beside the elastic force of their overlap.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PairTouch {
+    /// Which particles.
+    pub ends: [u32; 2],
+    /// Damping along the normal, on the first [force].
+    pub damping: [f64; 3],
+    /// What acts across the normal, on the first [force].
+    pub across: [f64; 3],
+    /// Torques on both.
+    pub torques: [[f64; 3]; 2],
+    /// Of a law that flows, its elastic and cohesive force on the first; else zero [force].
+    pub pressing: [f64; 3],
+    /// And what its overlap holds [energy].
+    pub held: f64,
+}
+
 /// The last look at how contacts are pressed, and at the step they stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pressed {
@@ -178,8 +204,10 @@ pub struct WallSpring {
     pub tag: u32,
     /// Unit vector from the wall to its centre.
     pub normal: [f64; 3],
-    /// Stiffness along it and across it [force/length].
-    pub stiffness: [f64; 2],
+    /// Stiffness along it and across it [force/length], and against rolling and twisting [torque].
+    pub stiffness: [f64; 4],
+    /// Damping of the same.
+    pub damping: [f64; 4],
     /// How far from its centre they touch [length].
     pub arm: f64,
 }

@@ -170,6 +170,10 @@ pub struct Parts {
     pub wall_springs: contacts::WallSprings,
     /// Contacts with each wall at the last step, by the fix's ID; nothing where nobody keeps a ledger of energy.
     pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
+    /// The same of the contacts of each pair style.
+    pub pair_touches: Option<Named<contacts::PairTouches>>,
+    /// All energy of a scene of grains as the run began, where nothing does work on it.
+    pub budget: Option<f64>,
     /// The last look at the step that contacts stand.
     pub pressed: Option<contacts::Pressed>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.

@@ -2,7 +2,7 @@
 
 use super::rules::{Curvature, Rule, Rules};
 use crate::together::Met;
-use crate::{Geometry, Motion};
+use crate::{Arm, Geometry, Motion};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, add, length};
 use perigrain_neigh::list::{Pair, difference};
@@ -106,6 +106,14 @@ impl Grains<'_> {
                 [true, false] => g.with_curvature(g.radii[0]),
                 [false, true] => g.with_curvature(g.radii[1]),
                 _ => g,
+            };
+        }
+        if rule.law.arm == Arm::Point {
+            // The laws take radii for arms, of slip and of torque.
+            g.radii = match [p.i, p.j].map(|k| self.body(k) == NO_BODY) {
+                [true, false] => [distance, 0.0],
+                [false, true] => [0.0, distance],
+                _ => g.radii.map(|r| r - 0.5 * g.overlap),
             };
         }
         (g, distance)

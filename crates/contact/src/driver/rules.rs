@@ -1,6 +1,6 @@
 //! What contacts of each pair of types obey.
 
-use crate::Granular;
+use crate::{Arm, Granular};
 
 /// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
 /// momentum-conserving: every contact's force and its reaction are divided by the same N).
@@ -72,6 +72,14 @@ impl Rules {
     pub fn again(&self, setup: bool) -> Self {
         let again = |rule: &Rule| Rule { law: rule.law.again(setup), ..*rule };
         Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
+    }
+
+    /// Whether some rule asks which particles belong to solids.
+    pub fn ask_for_bodies(&self) -> bool {
+        let asks = |r: &Rule| {
+            r.average == Average::Body || r.curvature == Curvature::Impactor || r.law.arm == Arm::Point
+        };
+        self.any(asks)
     }
 
     /// Whether some rule is of this kind.

@@ -4,7 +4,8 @@ use super::Alike;
 use super::found::Found;
 use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
-use crate::{Geometry, Granular, Motion};
+use crate::driver::told::touch;
+use crate::{Geometry, Granular, Motion, Wrench};
 use perigrain_base::math::lanes::{Lanes, load_rows, place, store_rows};
 use perigrain_base::math::vec3::SIX;
 use rooms::{Outgoing, Room};
@@ -163,6 +164,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             if cx.heat.is_some() {
                 self.add_heat(cx, law, count);
             }
+            if cx.tells {
+                self.tell::<W>(cx, law, count, slab);
+            }
             for group in 0..count / N {
                 for lane in 0..N {
                     self.add(cx, group, lane);
@@ -284,8 +288,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let d = unsafe { [0, 1, 2].map(|k| *self.apart(k).add(at)) };
             // SAFETY: as above.
             let force = unsafe { self.force.at(group) };
-            let xy = &force.xy[lane % 2][lane / 2 * 2..];
-            let f = [xy[0], xy[1], force.z[lane]];
+            let f = force.numbers(lane);
             for (s, (a, b)) in sum.iter_mut().zip(SIX) {
                 *s += d[a] * f[b];
             }
@@ -294,6 +297,46 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 }
 
 impl<V: Lanes<N>, const N: usize> Batch<V, N> {
+    /// How one of the contacts touches that have been met.
+    ///
+    /// # Safety
+    /// There must be such a contact.
+    #[inline]
+    unsafe fn geometry_of(&self, at: usize) -> Geometry {
+        // SAFETY: passed on.
+        unsafe {
+            let (g, lane) = (self.geometry.at(at / N), at % N);
+            Geometry {
+                normal: [0, 1, 2].map(|k| number(&g.normal[k], lane)),
+                overlap: number(&g.overlap, lane),
+                radii: [number(&g.radii[0], lane), number(&g.radii[1], lane)],
+                curvature: number(&g.curvature, lane),
+                mass: number(&g.mass, lane),
+            }
+        }
+    }
+
+    /// Lets the first contacts, which must have acted, tell the ledger of energy what they do: in plain numbers and out of line, as
+    /// with heat.
+    #[inline(never)]
+    unsafe fn tell<const W: usize>(&self, cx: &Cx, law: &Granular, count: usize, slab: &mut Slab) {
+        let none = [0.0; W];
+        for at in 0..count {
+            let (group, lane) = (at / N, at % N);
+            // SAFETY: the caller's promise.
+            let (g, force, [own, other]) =
+                unsafe { (self.geometry_of(at), self.force.at(group), self.torque.at(group)) };
+            // SAFETY: each contact has its row of memory, which nobody else has now.
+            let row = unsafe { std::slice::from_raw_parts(self.past[at], W) };
+            // Where nothing was stored the row may be that of an earlier contact.
+            let lasts = row[W - 1] > cx.now - 0.5;
+            let history = if lasts { &row[..law.memory()] } else { &none[..law.memory()] };
+            let [force, torque_i, torque_j] = [force, own, other].map(|v| v.numbers(lane));
+            let w = Wrench { force, torque_i, torque_j };
+            slab.told.push(touch([self.i[at], self.j[at]], (law, 1.0), &g, history, &w));
+        }
+    }
+
     /// Adds the heat through the first contacts, which must have been met: in plain numbers and out of line, so that scenes
     /// without heat do not carry it.
     #[inline(never)]
@@ -302,14 +345,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         for at in 0..count {
             // SAFETY: the caller's promise; entries are grains, and the caller keeps other threads away.
             unsafe {
-                let (g, lane) = (self.geometry.at(at / N), at % N);
-                let geometry = Geometry {
-                    normal: [0, 1, 2].map(|k| number(&g.normal[k], lane)),
-                    overlap: number(&g.overlap, lane),
-                    radii: [number(&g.radii[0], lane), number(&g.radii[1], lane)],
-                    curvature: number(&g.curvature, lane),
-                    mass: number(&g.mass, lane),
-                };
+                let geometry = self.geometry_of(at);
                 let (i, j) = (self.i[at] as usize, self.j[at] as usize);
                 let into = law.conductance(&geometry) * (temperature[j] - temperature[i]);
                 *flow.as_ptr().add(i) += into;

@@ -32,7 +32,7 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_neigh::list::small;
 use perigrain_neigh::slabs::{Slabs, edges};
-use perigrain_world::contacts::Contacts;
+use perigrain_world::contacts::{Contacts, PairTouch};
 use upkeep::Upkeep;
 
 /// Lists of so many grains keep their room when they are made anew.
@@ -189,6 +189,8 @@ pub struct Fast {
     due: Vec<usize>,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
+    /// Whether contacts tell what they do, for the ledger of energy: see [`Fast::told`].
+    pub tells: bool,
     /// Of the pairs that were the first to overlap too far, the one of smallest ids, and by which part of its radius.
     pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
@@ -225,6 +227,7 @@ impl Fast {
             width,
             due: vec![],
             book: None,
+            tells: false,
             deep: None,
             spare: vec![],
             spare_per_list: Default::default(),
@@ -422,6 +425,11 @@ impl Fast {
                 }
             });
         }
+    }
+
+    /// What each contact of the last evaluation did, if they were to tell; in the same order for any number of threads.
+    pub fn told(&self) -> impl Iterator<Item = &PairTouch> {
+        self.lists.iter().flat_map(|list| &list.told)
     }
 
     /// Pairs in long lists and in short ones.

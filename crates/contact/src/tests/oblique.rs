@@ -126,7 +126,7 @@ fn mixed_models_agree_with_lammps() {
 #[test]
 fn older_styles_agree_with_lammps() {
     let classic = |hertz, history, stiffness, gamma, mu, limit_damping| {
-        Model::classic(hertz, history, &Classic { stiffness, gamma, mu, limit_damping })
+        Model::classic(hertz, history, &Classic { stiffness, gamma, mu, limit_damping, arm: Arm::Radius })
             .law(Compat::Lammps2025)
     };
     let sevenths = |k: f64| [k, k * 2.0 / 7.0];

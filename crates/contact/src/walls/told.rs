@@ -6,19 +6,19 @@ use perigrain_world::contacts::{Contacts, WallSpring, WallTouch};
 
 impl WallSweep {
     /// The springs of the contacts of the last evaluation.
-    pub fn springs(&self, grains: &Spheres, law: &Granular) -> Vec<WallSpring> {
-        let spring = |t: &Touch| {
+    pub fn springs(&self, grains: &Spheres, law: &Granular, memory: &Contacts) -> Vec<WallSpring> {
+        let spring = |(t, history): (&Touch, &[f64])| {
             let i = t.grain as usize;
             let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
             let (tag, arm) = (grains.tag[i], t.near.distance);
-            WallSpring { tag, normal: g.normal, stiffness: law.springs(&g), arm }
+            let [stiffness, damping] = law.resistance(&g, history);
+            WallSpring { tag, normal: g.normal, stiffness, damping, arm }
         };
-        self.touching.iter().map(spring).collect()
+        self.touching.iter().zip(rows(memory)).map(spring).collect()
     }
 
     /// The contacts of the last evaluation with what they hold and do; `memory` is that of this evaluation.
     pub fn touches(&self, grains: &Spheres, law: &Granular, memory: &Contacts) -> Vec<WallTouch> {
-        let rows = (0..).map(|k| memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]));
         let touch = |((t, wrench), history): ((&Touch, &crate::Wrench), &[f64])| {
             let i = t.grain as usize;
             let stored = law.stored(&geometry(&t.near, grains.radius[i], grains.mass[i]), history);
@@ -33,6 +33,11 @@ impl WallSweep {
                 flows: stored.flows,
             }
         };
-        self.contacts().zip(rows).map(touch).collect()
+        self.contacts().zip(rows(memory)).map(touch).collect()
     }
+}
+
+/// What each contact remembers.
+fn rows(memory: &Contacts) -> impl Iterator<Item = &[f64]> {
+    (0..).map(|k| memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]))
 }

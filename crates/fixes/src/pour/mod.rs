@@ -11,10 +11,12 @@ use perigrain_plan::Op;
 use perigrain_styles::common::{bad_keyword, seed};
 use perigrain_styles::molecules::{self, Molecules};
 use perigrain_styles::newcomers::{Account, Ids};
+use perigrain_styles::pair::ToCome;
 use perigrain_styles::{BuildCx, Doc, Pull, SealCx, Shape, Style};
 use perigrain_world::{GroupId, Key, Numbers, World};
 use rain::Rain;
 use sizes::Sizes;
+use std::f64::consts::PI;
 use volume::Volume;
 
 /// The style.
@@ -242,6 +244,16 @@ impl Pouring {
 impl Fix for Pouring {
     fn facts(&self, _: &World) -> Facts {
         Facts { counts_steps: true, makes_particles: true, orthogonal: true, ..Facts::default() }
+    }
+
+    fn to_come(&self, w: &World) -> Vec<ToCome> {
+        let mask = GroupId::ALL.bit() | self.group.bit();
+        if let Some(molecules) = &self.molecules {
+            return molecules.to_come(w, mask);
+        }
+        let radius = self.sizes.smallest();
+        let mass = 4.0 / 3.0 * PI * radius.powi(3) * self.density[0];
+        vec![ToCome { kind: self.kind, mask, mass, radius }]
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

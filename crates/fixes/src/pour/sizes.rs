@@ -38,6 +38,14 @@ impl Sizes {
         })
     }
 
+    /// The smallest radius.
+    pub fn smallest(&self) -> f64 {
+        match self {
+            Self::One(r) | Self::Range(r, _) => *r,
+            Self::Poly(list) => list.iter().filter(|p| p[1] > 0.0).fold(f64::INFINITY, |a, p| p[0].min(a)),
+        }
+    }
+
     /// The largest radius.
     pub fn largest(&self) -> f64 {
         match self {

@@ -15,6 +15,7 @@ use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::Param;
 use perigrain_pairs::contact::durations;
 use perigrain_plan::{Op, Tick};
+use perigrain_styles::pair::Deck;
 use perigrain_styles::{BuildCx, SealCx, Shape};
 use perigrain_world::contacts::Contacts;
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -119,9 +120,9 @@ impl<F: Form> Fix for Declared<F> {
         Shape { vector: op::FELT, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
     }
 
-    fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
+    fn contact_time(&self, w: &World, deck: Deck) -> Option<f64> {
         let law = self.common.material.law(w.settings.compat);
-        durations::on_wall(w, &law, self.common.group.bit(), said)
+        durations::on_wall(w, &law, self.common.group.bit(), deck)
     }
 }
 

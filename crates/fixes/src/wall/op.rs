@@ -405,12 +405,12 @@ impl Op for WallOp {
             [] => Cow::Borrowed(&p.mass[..]),
             _ => w.contact_masses(),
         };
-        let grains =
-            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
+        let [v, omega] = t.phase.motion(w);
+        let grains = Spheres { x: &p.x, v, omega, radius: &p.radius, mass: &masses, tag: &p.tag };
         let step = Advance { dt: t.dt, history: !t.setup };
         self.sweep.act(&grains, &self.law, &mut memory, step);
         let asked = w.parts.wall_springs.wanted(t.step, t.setup, t.last);
-        let springs = asked.then(|| self.sweep.springs(&grains, &self.law));
+        let springs = asked.then(|| self.sweep.springs(&grains, &self.law, &memory));
         let booked = w.parts.wall_touches.is_some();
         let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
         if let Some(list) = springs {
@@ -452,7 +452,7 @@ impl Op for WallOp {
             );
             w.parts.notes.push(
                 Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
-                    .help("take a stiffer wall, or look for particles that were created inside it")
+                    .help("look for particles that were created inside it, or take a stiffer wall and a shorter step")
                     .help("only the first step at which it is so is reported"),
             );
         }

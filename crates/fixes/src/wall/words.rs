@@ -79,6 +79,8 @@ fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
         "`average` is for contacts of particles with each other"
     } else if c.curvature != Curvature::Both {
         "`curvature` is for contacts of particles with each other"
+    } else if c.model.arm == Arm::Point {
+        "`arms` is for contacts of particles with each other"
     } else if c.cutoff.is_some() {
         "`cutoff` is for contacts of particles with each other"
     } else {

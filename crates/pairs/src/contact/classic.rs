@@ -2,11 +2,26 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::units::UnitSystem;
-use perigrain_contact::Classic;
+use perigrain_contact::{Arm, Classic};
 use perigrain_lang::Args;
 
 /// The largest coefficient of friction that is taken for one, as in LAMMPS.
 const MOST_FRICTION: f64 = 1e4;
+
+/// Reads what may follow the numbers of a pair style: `arms radius|middle`, and `limit_damping` behind it.
+///
+/// # Errors
+/// Another end of the arms.
+pub fn options(args: &mut Args, numbers: &mut Classic) -> Result<()> {
+    if args.eat("arms") {
+        numbers.arm = match args.choice("end of the arms", &["radius", "middle"])? {
+            "middle" => Arm::Middle,
+            _ => Arm::Radius,
+        };
+    }
+    numbers.limit_damping |= args.eat("limit_damping");
+    Ok(())
+}
 
 /// Reads `Kn Kt gamma_n gamma_t xmu dampflag [limit_damping]`; of `hertz` styles Kn and Kt are pressures in the deck's
 /// units.
@@ -35,5 +50,5 @@ pub fn numbers(args: &mut Args, hertz: bool, units: UnitSystem) -> Result<Classi
     let gamma = [gamma_n, if flag == 1 { gamma_t } else { 0.0 }];
     let pressure = if hertz { units.constants().nktv2p } else { 1.0 };
     let stiffness = [kn, kt].map(|k| k / pressure);
-    Ok(Classic { stiffness, gamma, mu, limit_damping })
+    Ok(Classic { stiffness, gamma, mu, limit_damping, arm: Arm::Radius })
 }

@@ -2,6 +2,7 @@
 
 use perigrain_contact::Granular;
 use perigrain_contact::driver::Rules;
+use perigrain_styles::pair::{Deck, ToCome};
 use perigrain_world::World;
 use std::f64::consts::PI;
 
@@ -12,11 +13,12 @@ const USUAL_OVERLAP: f64 = 0.01;
 type Smallest = Option<[f64; 2]>;
 
 /// The shortest contact between equal grains of the lightest kind of each type, at the largest speed there is now;
-/// `said`: density and diameter, where there are no particles yet.
-pub fn between_grains(w: &World, rules: &Rules, said: Option<(f64, f64)>) -> Option<f64> {
+/// `deck`: what the deck says of grains that are not there yet.
+pub fn between_grains(w: &World, rules: &Rules, deck: Deck) -> Option<f64> {
     let types = 1..=w.types as u16;
     let kind = &w.particles.kind;
-    let sizes: Vec<Smallest> = types.clone().map(|t| smallest(w, |i| kind[i] == t, said)).collect();
+    let of = |t: u16| smallest(w, deck, |i| kind[i] == t, |c| c.kind == t);
+    let sizes: Vec<Smallest> = types.clone().map(of).collect();
     // Equal grains meet at twice the speed of each.
     let speed = 2.0 * largest_speed(w);
     let units = w.settings.units.constants().ftm2v;
@@ -30,9 +32,9 @@ pub fn between_grains(w: &World, rules: &Rules, said: Option<(f64, f64)>) -> Opt
     times.reduce(f64::min)
 }
 
-/// The contact of the lightest grain of a group with a flat wall; `said` as above.
-pub fn on_wall(w: &World, law: &Granular, group: u32, said: Option<(f64, f64)>) -> Option<f64> {
-    let [mass, radius] = smallest(w, |i| w.particles.mask[i] & group != 0, said)?;
+/// The contact of the lightest grain of a group with a flat wall; `deck` as above.
+pub fn on_wall(w: &World, law: &Granular, group: u32, deck: Deck) -> Option<f64> {
+    let [mass, radius] = smallest(w, deck, |i| w.particles.mask[i] & group != 0, |c| c.mask & group != 0)?;
     duration(law, w.settings.units.constants().ftm2v, mass, [radius; 2], largest_speed(w))
 }
 
@@ -40,15 +42,22 @@ fn largest_speed(w: &World) -> f64 {
     w.particles.v.iter().map(|v| perigrain_base::math::vec3::length(*v)).fold(0.0, f64::max)
 }
 
-fn smallest(w: &World, chosen: impl Fn(usize) -> bool, said: Option<(f64, f64)>) -> Smallest {
+fn smallest(
+    w: &World,
+    deck: Deck,
+    chosen: impl Fn(usize) -> bool,
+    comes: impl Fn(&ToCome) -> bool,
+) -> Smallest {
     let p = &w.particles;
-    if p.is_empty() {
-        let (density, diameter) = said?;
-        return Some([PI / 6.0 * density * diameter.powi(3), 0.5 * diameter]);
+    let least = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].min(b[1])];
+    let to_come = deck.to_come.iter().filter(|c| comes(c)).map(|c| [c.mass, c.radius]);
+    if let (true, Some((density, diameter))) = (p.is_empty(), deck.said()) {
+        let said = [PI / 6.0 * density * diameter.powi(3), 0.5 * diameter];
+        return Some(to_come.fold(said, least));
     }
     let own = (0..p.len()).filter(|&i| chosen(i) && p.radius.get(i).is_some_and(|r| *r > 0.0));
     let sizes = own.filter_map(|i| Some([*p.mass.get(i)?, p.radius[i]]));
-    sizes.filter(|s| s[0] > 0.0).reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
+    sizes.chain(to_come).filter(|s| s[0] > 0.0).reduce(least)
 }
 
 /// The duration of an undamped impact: π √(m̄/k) for F = k δ, 2.943 δ/v for F = k δ^1.5; c δ/v for F = k δⁿ with

@@ -4,11 +4,11 @@ use super::Coeff;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_contact::driver::{Average, Curvature};
 use perigrain_contact::normal::{Bound, Number, STYLES};
-use perigrain_contact::{Damping, Friction, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
+use perigrain_contact::{Arm, Damping, Friction, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
 use perigrain_lang::{Args, Word};
 
 /// Keywords after the normal model.
-const KEYWORDS: [&str; 9] = [
+const KEYWORDS: [&str; 10] = [
     "tangential",
     "damping",
     "limit_damping",
@@ -18,6 +18,7 @@ const KEYWORDS: [&str; 9] = [
     "cutoff",
     "average",
     "curvature",
+    "arms",
 ];
 
 /// Reads a granular model: to the end of the line, or to one of the words `ends` (what follows the model of a wall).
@@ -58,6 +59,12 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
                 c.curvature = match args.choice("curvature", &["both", "impactor"])? {
                     "impactor" => Curvature::Impactor,
                     _ => Curvature::Both,
+                }
+            }
+            "arms" => {
+                c.model.arm = match args.choice("end of the arms", &["middle", "point"])? {
+                    "point" => Arm::Point,
+                    _ => Arm::Middle,
                 }
             }
             _ => return Err(args.unknown(word, &KEYWORDS)),
@@ -196,8 +203,10 @@ fn check_mdr(normal: &Word, c: &Coeff) -> Result<()> {
     let own = matches!(c.model.damping, Damping::Mdr | Damping::MdrConstant);
     let text = match (c.model.normal.in_grains(), own) {
         (true, false) => "the normal model mdr goes with `damping mdr` alone",
-        (true, true) if c.average != Average::None || c.curvature != Curvature::Both => {
-            "the normal model mdr knows no `average` and no `curvature`"
+        (true, true)
+            if c.average != Average::None || c.curvature != Curvature::Both || c.model.arm == Arm::Point =>
+        {
+            "the normal model mdr knows no `average`, no `curvature` and no `arms point`"
         }
         (true, true) | (false, false) => return Ok(()),
         (false, true) => "damping mdr goes with the normal model mdr alone",

@@ -46,7 +46,8 @@ pub fn classic(
 ) -> Result<Box<dyn Pair>> {
     needs_spheres(name, cx)?;
     let span = args.here();
-    let numbers = crate::contact::classic::numbers(args, hertz, cx.world.settings.units)?;
+    let mut numbers = crate::contact::classic::numbers(args, hertz, cx.world.settings.units)?;
+    crate::contact::classic::options(args, &mut numbers)?;
     let model = Model::classic(hertz, history, &numbers);
     let (average, curvature, cutoff) = (Average::None, Curvature::Both, None);
     let all = Some(Coeff { model, average, curvature, cutoff, span });
@@ -147,7 +148,9 @@ impl Declared {
 
 impl Pair for Declared {
     fn facts(&self) -> Facts {
-        Facts { name: self.name, needs: &["diameter", "density"], ..Facts::default() }
+        let elastic_grains =
+            self.given.values().all(|c| !c.model.normal.pulls() && !c.model.normal.in_grains());
+        Facts { name: self.name, needs: &["diameter", "density"], elastic_grains, ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -209,8 +212,7 @@ impl Pair for Declared {
         let probes = self.probes(w, false).unwrap_or_default();
         let cutoff = probes.iter().filter_map(|(_, p)| p.cutoff(w)).reduce(f64::max);
         let rules = self.tables(w.types, w.settings.compat).ok();
-        let said = deck.density.zip(deck.diameter);
-        let contact_time = rules.and_then(|(rules, _)| durations::between_grains(w, &rules, said));
+        let contact_time = rules.and_then(|(rules, _)| durations::between_grains(w, &rules, deck));
         Scales { cutoff, contact_time, stable_step: None }
     }
 

@@ -11,11 +11,11 @@ use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
 use perigrain_contact::mdr::Manner;
-use perigrain_contact::{Advance, MOST_MEMORY};
+use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_world::Fields;
-use perigrain_world::contacts::{Contacts, Deep};
+use perigrain_world::contacts::{Contacts, Deep, PairTouch, PairTouches};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
@@ -89,7 +89,7 @@ impl Force {
     /// Which solid each particle belongs to, where some rule asks.
     fn find_bodies(&mut self, w: &World) {
         self.plain.body.clear();
-        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        let asked = self.rules.ask_for_bodies();
         if let (true, Some(families)) = (asked, &*w.families) {
             self.plain.body = solids(families, w.n());
         }
@@ -156,16 +156,18 @@ impl Force {
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let mut heat = Heating::take(w, &self.rules);
-        let mass = masses(&self.lent, w);
-        let grains = Grains { mass, ..grains(w, period, &[], &self.frozen)? };
+        let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
+        let grains = Grains { mass, v, omega, ..grains(w, period, &[], &self.frozen)? };
         if anew {
             fast.weigh(&grains);
         }
         let heating = heat.as_mut().map(|heat| (&heat.temperature[..], &mut heat.flow[..]));
         let sums = Sums { force: &mut f, torque: &mut torque, heat: heating };
+        fast.tells = w.parts.pair_touches.is_some();
         let virial = fast.run(&grains, sums, step, store, t.virial);
         let deep = fast.deep;
         (w.particles.f, w.particles.torque) = (f, torque);
+        tell(w, t, self.key, |all| all.extend(fast.told()));
         if let Some(heat) = heat {
             heat.give(w);
         }
@@ -188,7 +190,7 @@ impl Force {
         (period, store, anew): (Periods, bool, bool),
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
-        let plain = !t.virial && !t.contacts && !conducts(&self.rules);
+        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_touches.is_none();
         let alone = self.lent.is_none();
         let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_list());
         let Some(fast) = fast else { return Ok(false) };
@@ -253,14 +255,18 @@ impl Force {
         let manner =
             Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
         let (plain, press) = (&mut self.plain, &mut self.press);
-        let mass = masses(&self.lent, w);
-        let grains = Grains { mass, ..grains(w, period, &plain.body, &self.frozen)? };
+        let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
+        let grains = Grains { mass, v, omega, ..grains(w, period, &plain.body, &self.frozen)? };
         let step = Advance { dt: t.dt, history: !t.setup };
         plain.sweep.meet(&plain.list, &grains, &self.rules, &mut memory);
         if let Some(press) = press {
             press.act(&grains, &plain.sweep, &mut memory, manner);
         }
         plain.sweep.act(&grains, &self.rules, &mut memory, step);
+        let mut told = vec![];
+        if w.parts.pair_touches.is_some() {
+            plain.sweep.tell(&grains, &self.rules, &memory, &mut told);
+        }
         // Plastic grains are made for deep contacts.
         let deep = if press.is_none() { plain.sweep.deep(&grains) } else { None };
         let kept = match press {
@@ -276,6 +282,7 @@ impl Force {
             heat.give(w);
         }
         report(w, t, deep);
+        tell(w, t, self.key, |all| all.append(&mut told));
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             let part = plain.sweep.virial(&w.particles.x, &period);
@@ -300,14 +307,13 @@ impl Op for Force {
                         | LISTS
                         | TAG
                         | TRAVEL
-                        | FACTS
                         | MASK
                         | MOLECULE
                         | FAMILIES
                         | BONDS,
                 )
                 .add(F | TORQUE)
-                .write(CONTACTS | TALLY | RADIUS)
+                .write(CONTACTS | TALLY | RADIUS | FACTS)
                 .keep(COLUMNS | MEMO)
         } else {
             Needs::new()
@@ -389,6 +395,7 @@ fn laws(rules: &Rules, wanted: &Wanted, types: usize) -> Option<Laws> {
         r.law.is_told()
             || r.average != Average::None
             || r.curvature != Curvature::Both
+            || r.law.arm == Arm::Point
             || r.law.memory() > MOST_MEMORY
     });
     let touch = |a, b| wanted.get(a, b).is_none_or(|r| r == Reach::Touch);
@@ -421,6 +428,19 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
         frozen,
         travel: *w.travel,
     })
+}
+
+/// Tells the ledger of energy, where there is one, what contacts did.
+fn tell(w: &mut World, t: &Tick, key: Key<Contacts>, add: impl FnOnce(&mut Vec<PairTouch>)) {
+    // To open what nobody keeps is to write.
+    if w.parts.pair_touches.is_none() {
+        return;
+    }
+    let Some(all) = &mut w.parts.pair_touches else { return };
+    let told = all.get_or(key.of(), PairTouches::default);
+    told.step = t.step;
+    told.list.clear();
+    add(&mut told.list);
 }
 
 /// Keeps the first grains that were seen too deep in each other.

@@ -55,6 +55,13 @@ impl<const N: usize> Outgoing<N> {
         (xy, self.z[lane])
     }
 
+    /// The vector of a lane.
+    #[inline(always)]
+    pub(super) fn numbers(&self, lane: usize) -> Vec3 {
+        let xy = &self.xy[lane % 2][lane / 2 * 2..];
+        [xy[0], xy[1], self.z[lane]]
+    }
+
     /// Adds the vector of a lane to that of grain `i`.
     #[inline(always)]
     pub(super) unsafe fn add<P: Pair>(&self, to: *mut f64, lane: usize, i: u32) {
