@@ -28,6 +28,9 @@ pub const DECKS: &[(&str, &str)] = decks![
     "plate_impact",
     "dense_bed",
     "multiscale_bed",
+    "staggered_friction",
+    "oblique_ledger",
+    "heap_ledger",
     "cantilever",
 ];
 

@@ -29,6 +29,8 @@ pub const DECKS: &[(&str, &str)] = decks![
     "grains/bouncing",
     "grains/haff_cooling",
     "grains/order_in_time",
+    "grains/staggered_friction",
+    "grains/ledger_of_contacts",
     "peridynamics/lattice_moduli",
     "peridynamics/lattice_moduli_states",
     "peridynamics/dispersion",
