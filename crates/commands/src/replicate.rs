@@ -5,6 +5,8 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter};
+use perigrain_world::bonds::ascending;
+use perigrain_world::index::Index;
 use perigrain_world::{Bond, Domain, memory};
 
 /// The command.
@@ -17,10 +19,12 @@ impl Style for Replicate {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "replicate NX NY NZ",
+            syntax: "replicate NX NY NZ [bond/periodic]",
             summary: "Repeats the scene along the edges of its box.",
             text: "The box grows to NX, NY, NZ times its lengths, and each particle gets a copy in each repetition, with \
-                   everything that belongs to it; bonds join the copies of one repetition, and molecules get new IDs. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
+                   everything that belongs to it; bonds join the copies of one repetition, and molecules get new IDs. \
+                   Bonds through a periodic face then span a whole repetition, which a warning counts: with `bond/periodic` each joins the nearest copies, so that \
+                   a bonded crystal goes on through all repetitions. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
                    fastest in ids). It must come before the first run of a scene with peridynamic bonds.",
             example: "units lj\nlattice sc 0.5\nregion cell block 0 2 0 2 0 2\ncreate_box 1 cell\ncreate_atoms 1 box\n\
                       mass 1 1.0\nreplicate 2 2 1\nprint \"$(atoms) particles\"",
@@ -39,18 +43,57 @@ impl CommandStyle for Replicate {
                 return fail(Code::CONFLICT, span, "a flat scene cannot be repeated along z");
             }
         }
-        if a.peek_text() == "bbox" {
-            // LAMMPS' faster way to the same particles.
-            a.next();
+        let mut nearest = false;
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                // LAMMPS' faster way to the same particles.
+                "bbox" => {}
+                "bond/periodic" => nearest = true,
+                _ => return Err(a.unknown(word, &["bond/periodic", "bbox"])),
+            }
         }
-        if let Some(word) = a.peek().filter(|w| w.text == "bond/periodic") {
-            return Err(common::not_here(word, "replicate"));
-        }
-        Ok(on_particles(vec![], move |cx| repeat(cx, count)))
+        Ok(on_particles(vec![], move |cx| repeat(cx, count, nearest)))
     }
 }
 
-fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
+/// Which particles of all repetitions a bond joins.
+struct Joints {
+    old: Domain,
+    count: [i64; 3],
+    /// Distance of the ids of one repetition from those of the one before.
+    ids: i64,
+    /// Ids and places of the particles that are repeated; images undone [length].
+    tags: Vec<u32>,
+    places: Vec<[f64; 3]>,
+    /// Bonds join the nearest copies, not those of one repetition.
+    nearest: bool,
+}
+
+impl Joints {
+    /// By how many repetitions the nearest copy of the second end is away from the first.
+    fn reach(&self, index: &Index, ends: [u32; 2]) -> [i64; 3] {
+        let [Some(a), Some(b)] = ends.map(|tag| index.find(tag, &self.tags)) else { return [0; 3] };
+        let (a, b) = (self.places[a], self.places[b]);
+        let d = self.old.minimum_image([0, 1, 2].map(|k| b[k] - a[k]));
+        let [here, there] = [b, [0, 1, 2].map(|k| a[k] + d[k])].map(|x| self.old.fractions(&x));
+        [0, 1, 2].map(|k| if self.count[k] > 1 { (there[k] - here[k]).round() as i64 } else { 0 })
+    }
+
+    /// The ids of particles of one repetition lie this far behind those of the first.
+    fn offset(&self, place: [i64; 3]) -> u32 {
+        let [nx, ny, _] = self.count;
+        ((place[2] * ny * nx + place[1] * nx + place[0]) * self.ids) as u32
+    }
+
+    /// The ends of a bond in the repetition at `place`.
+    fn ends(&self, index: &Index, [a, b]: [u32; 2], place: [i64; 3]) -> [u32; 2] {
+        let reach = if self.nearest { self.reach(index, [a, b]) } else { [0; 3] };
+        let there = [0, 1, 2].map(|k| (place[k] + reach[k]).rem_euclid(self.count[k]));
+        [a + self.offset(place), b + self.offset(there)]
+    }
+}
+
+fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
     if cx.world.families.is_some() {
         let d = Diagnostic::error(Code::WRONG_ORDER, None, "peridynamic bonds cannot be repeated");
         return Err(d.help("put `replicate` before the first run").into());
@@ -78,6 +121,17 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     let unwrapped: Vec<[f64; 3]> = (0..n).map(|i| matter::unwrapped(cx.world, i)).collect();
     let from: Vec<usize> = (0..copies).flat_map(|_| 0..n).collect();
     let edges = old.edges();
+    let tags = cx.world.particles.tag.to_vec();
+    let index = Index::new(&tags);
+    let joints = Joints { old: old.clone(), count, ids: last, tags, places: unwrapped, nearest };
+    if !nearest {
+        let far = cx.world.bonds.list.iter().filter(|b| joints.reach(&index, b.ends) != [0; 3]).count();
+        if far > 0 {
+            let text = format!("{far} bonds through periodic faces will span whole repetitions");
+            let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
+            cx.note(d.help("`replicate … bond/periodic` joins the nearest copies instead"));
+        }
+    }
     let world = &mut *cx.world;
     let molecules = world.particles.last_molecule();
     let (bonds, special) = (std::mem::take(&mut world.bonds.list), std::mem::take(&mut world.bonds.special));
@@ -89,17 +143,21 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     let p = &mut world.particles;
     for copy in 0..copies {
         let place = [copy / (ny * nz), copy / nz % ny, copy % nz];
-        let offset = (place[2] * ny * nx + place[1] * nx + place[0]) * last;
+        let offset = joints.offset(place);
         let shift = edges.shift(place.map(|k| k as f64));
         let number = (place[2] * ny * nx + place[1] * nx + place[0]) as u32;
-        let moved = |ends: [u32; 2]| ends.map(|t| t + offset as u32);
+        let moved = |ends: [u32; 2]| joints.ends(&index, ends, place);
         world.bonds.list.extend(bonds.iter().map(|b| Bond { ends: moved(b.ends), ..*b }));
-        world.bonds.special.extend(special.iter().map(|p| moved(*p)));
-        world.bonds.memory.extend(memory.iter().map(|(ends, m)| (moved(*ends), *m)));
-        world.bonds.turned.extend(turned.iter().map(|(ends, q)| (moved(*ends), *q)));
-        for (k, old) in unwrapped.iter().enumerate() {
+        world.bonds.special.extend(special.iter().map(|p| ascending(moved(*p))));
+        world.bonds.memory.extend(memory.iter().map(|(ends, m)| (ascending(moved(*ends)), *m)));
+        world.bonds.turned.extend(turned.iter().map(|(ends, q)| {
+            // The turn is that from the lower id to the higher one; in another repetition the other end may be the lower.
+            let [a, b] = moved(*ends);
+            ([a.min(b), a.max(b)], if a < b { *q } else { [q[0], -q[1], -q[2], -q[3]] })
+        }));
+        for (k, old) in joints.places.iter().enumerate() {
             let i = copy as usize * n + k;
-            p.tag[i] += offset as u32;
+            p.tag[i] += offset;
             if let Some(m) = p.molecule.get_mut(i).filter(|m| **m > 0) {
                 *m += number * molecules;
             }
@@ -170,6 +228,6 @@ mod tests {
         assert_eq!((p.image[0], p.image[4], p.x[2][2]), ([0; 3], [1, 0, 0], 5.0));
         assert_eq!((p.radius[7], p.v[7][0], p.kind[7]), (0.15, 7.0, 2));
         assert_eq!(refused(&w, "replicate 1 0 1").0, "0");
-        assert_eq!(refused(&w, "replicate 1 1 1 bond/periodic").0, "bond/periodic");
+        assert_eq!(refused(&w, "replicate 1 1 1 bond/periodical").0, "bond/periodical");
     }
 }

@@ -12,6 +12,7 @@ mod cluster_atom;
 mod com;
 mod contact_atom;
 mod coord_atom;
+mod count_type;
 mod crack;
 mod damage_atom;
 mod dilatation_atom;
@@ -88,6 +89,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &com::Com,
     &contact_atom::ContactAtom,
     &coord_atom::CoordAtom,
+    &count_type::CountType,
     &crack::CrackTip,
     &damage_atom::DamageAtom,
     &dilatation_atom::DilatationAtom,

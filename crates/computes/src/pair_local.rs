@@ -29,7 +29,7 @@ impl Style for PairLocal {
                    `force`: force along the line of centres, positive where it pushes apart; `fx fy fz`: that force on the first; \
                    `eng`: energy of the pair, 0 for granular styles as in LAMMPS.\n\n\
                    `p1` … are the pair style's own. `granular` has 12: the tangential force on the first (1–3) and its size (4), \
-                   the rolling force (5–7) and its size (8), the twisting torque (9), x_1 − x_2 (10–12); with `normal mdr` a 13th, the mean of the areas of contact of both sides. `gran/…` have 10: the \
+                   the rolling force (5–7) and its size (8), the twisting torque (9), x_1 − x_2 (10–12); with `normal mdr` a 13th, the mean of the areas of contact of both sides, and with a model of `heat` one more, the heat that flows into the first [energy/time]. `gran/…` have 10: the \
                    tangential force (1–3) and its size (4), the relative velocity along the line of centres (5–7) and across \
                    it (8–10). Forces are those at the present positions and velocities; history is what the contact remembers of \
                    the last step.\n\n\
@@ -230,7 +230,7 @@ mod tests {
             "",
             "cutoff type",
             "dist p0",
-            "dist p14",
+            "dist p15",
             "distance",
             "dist cutoff radius",
             "dist cutoff",

@@ -193,12 +193,16 @@ impl Sweep {
 
     /// Adds the heat that flows through the contacts to `flow`, from the temperatures of all particles.
     pub fn conduct(&self, temperature: &[f64], flow: &mut [f64]) {
-        for (p, conductance) in self.touching.iter().zip(&self.conductances) {
-            let (i, j) = (p.i as usize, p.j as usize);
-            let into = conductance * (temperature[j] - temperature[i]);
-            flow[i] += into;
-            flow[j] -= into;
+        for (p, into) in self.touching.iter().zip(self.heat(temperature)) {
+            flow[p.i as usize] += into;
+            flow[p.j as usize] -= into;
         }
+    }
+
+    /// The heat that flows through each contact into its first particle [energy/time], from the temperatures of all particles.
+    pub fn heat<'a>(&'a self, temperature: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let at = |i: u32| temperature[i as usize];
+        self.touching.iter().zip(&self.conductances).map(move |(p, k)| k * (at(p.j) - at(p.i)))
     }
 
     /// Virial Σ d ⊗ F over contacts: xx yy zz xy xz yz.

@@ -24,8 +24,8 @@ impl Style for Freeze {
             summary: "Takes all force and torque from the group's spheres.",
             text: "What acts on these spheres is set to zero, so that they keep their velocity under any integrator; \
                    granular contacts with others take them for infinitely heavy. Only what was computed before counts: \
-                   forces of pair styles and of fixes declared earlier. Acts in the setup of a run too. There is one \
-                   fix freeze at a time. Vector of 3 (extensive): the total force before the change.",
+                   forces of pair styles and of fixes declared earlier. Acts in the setup of a run too. \
+                   Several at a time hold a group each (LAMMPS has one). Vector of 3 (extensive): the total force on its own group before the change.",
             example: "fix still ball freeze",
         }
     }
@@ -37,13 +37,6 @@ impl FixStyle for Freeze {
         if !cx.world.particles.style.sphere {
             return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix freeze needs spheres")
                 .help("put `atom_style sphere` at the top of the deck, or use `fix setforce 0 0 0`")
-                .into());
-        }
-        let other = cx.world.parts.frozen.as_ref().filter(|(id, _)| id != cx.id);
-        if let Some((id, _)) = other {
-            let text = format!("there is one fix freeze at a time, and `{id}` is one");
-            return Err(Diagnostic::error(Code::CONFLICT, cx.span, text)
-                .help(format!("freeze a `group … union …` of both, or say `unfix {id}` before this line"))
                 .into());
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
@@ -74,12 +67,13 @@ struct Declared {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        w.parts.frozen = Some((self.id.clone(), self.group));
+        self.remove(w);
+        w.parts.frozen.push((self.id.clone(), self.group));
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.parts.frozen = None;
+        w.parts.frozen.retain(|(id, _)| *id != self.id);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -127,14 +121,16 @@ mod tests {
         b.world.particles.mask[2] = 0;
         let fix = b.fix(&Freeze, "").unwrap();
         fix.declare(&mut b.world).unwrap();
-        assert_eq!(b.world.parts.frozen, Some(("f".to_string(), GroupId::ALL)));
+        assert_eq!(b.world.parts.frozen, [("f".to_string(), GroupId::ALL)]);
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();
         let p = &b.world.particles;
         assert_eq!(p.f, [[0.0; 3], [0.0; 3], [4.0; 3]]);
         assert_eq!(p.torque, [[0.0; 3], [0.0; 3], [1.0; 3]]);
         assert_eq!(b.slot_of("f_f").vector, [11.0, 22.0, 33.0]);
-        b.world.parts.frozen = Some(("other".into(), GroupId::ALL));
-        assert_eq!(b.fix(&Freeze, "").err().unwrap().0[0].code, Code::CONFLICT);
+        // Another one stays when this one goes.
+        b.world.parts.frozen.push(("other".into(), GroupId::ALL));
+        fix.remove(&mut b.world);
+        assert_eq!(b.world.parts.frozen, [("other".to_string(), GroupId::ALL)]);
     }
 }

@@ -17,6 +17,7 @@ mod bond_break;
 mod components;
 mod controller;
 mod crowd;
+mod damping_cundall;
 pub mod deform;
 mod deposit;
 mod drag;
@@ -88,6 +89,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &balance::Balance,
     &bond_break::BondBreak,
     &controller::Controller,
+    &damping_cundall::DampingCundall,
     &deform::Deform,
     &deform::DeformPressure,
     &deposit::Deposit,

@@ -72,9 +72,9 @@ fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
         let text = format!("particles of atom_style {} have molecules by themselves", style.name());
         return fail(Code::CONFLICT, word.span, text);
     }
-    // A fix of this ID may be declared again.
-    let again = cx.names.fix_style(cx.id) == Some("property/atom");
-    if before || (style.molecules && !again) {
+    // A fix of this ID may be declared again. Behind `read_restart` particles have their molecules, and no fix has declared them yet.
+    let other = |p: &Properties| p.fix != cx.id && p.names.iter().any(|name| name == MOLECULE);
+    if before || cx.world.properties.iter().any(other) {
         return fail(Code::DUPLICATE_NAME, word.span, "`mol` exists already");
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! What fix viscous and fix viscous/sphere share: a resistance against motion, scaled by type or by particle.
+//! What fix viscous, fix viscous/sphere and fix damping/cundall share: a resistance, scaled by type or by particle.
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
@@ -7,15 +7,76 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Reading, SealCx};
-use perigrain_world::{GroupId, Particles};
+use perigrain_world::{GroupId, Particles, World};
 
-/// What the coefficient is multiplied by.
+/// What a coefficient is multiplied by.
 #[derive(Clone)]
-enum Scale {
+pub enum Scale {
     /// By type − 1.
     Kinds(Vec<f64>),
     /// By particle.
     Each(Param),
+}
+
+/// The same during a run.
+pub struct Factors {
+    kinds: Vec<f64>,
+    each: Option<Reading>,
+}
+
+impl Factors {
+    /// That of a particle.
+    pub fn of(&self, w: &World, i: usize) -> f64 {
+        match &self.each {
+            Some(reading) => reading.atom(w, i),
+            None => self.kinds[usize::from(w.particles.kind[i]) - 1],
+        }
+    }
+}
+
+impl Scale {
+    /// Reads `[scale type ratio]…`, and `scale v_name` where particles may differ (`each`).
+    ///
+    /// # Errors
+    /// Every mistake in the words.
+    pub fn read(each: bool, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let types = cx.world.types;
+        let (mut scale, mut given) = (Scale::Kinds(vec![1.0; types]), false);
+        while let Some(word) = args.next() {
+            if word.text != "scale" {
+                return Err(args.unknown(word, &["scale"]));
+            }
+            let twice = "scale either by type or by a variable";
+            if each && args.peek_text().starts_with("v_") {
+                if given {
+                    return fail(Code::CONFLICT, word.span.to(args.here()), twice);
+                }
+                let by = variable_param(args, "the factor")?;
+                cx.param(&by, true)?;
+                scale = Scale::Each(by);
+            } else {
+                let Scale::Kinds(ratio) = &mut scale else { return fail(Code::CONFLICT, word.span, twice) };
+                let (lo, hi) = args.type_range(types)?;
+                let by = args.number("the ratio of coefficients")?;
+                (lo..=hi).for_each(|k| ratio[usize::from(k) - 1] = by);
+            }
+            given = true;
+        }
+        Ok(scale)
+    }
+
+    /// What it is at each step.
+    ///
+    /// # Errors
+    /// A variable that is gone.
+    pub fn factors(&self, cx: &mut dyn SealCx) -> Result<Factors> {
+        Ok(match self {
+            Scale::Kinds(ratio) => Factors { kinds: ratio.clone(), each: None },
+            Scale::Each(by) => {
+                Factors { kinds: vec![], each: Some(cx.param(by, Stage::PostForce, &When::Always)?) }
+            }
+        })
+    }
 }
 
 /// A declared resistance.
@@ -40,29 +101,8 @@ impl Resistance {
     /// # Errors
     /// Every mistake in the words.
     pub fn read(style: &str, each: bool, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let types = cx.world.types;
         let gamma = args.number("the drag coefficient gamma")?;
-        let (mut scale, mut given) = (Scale::Kinds(vec![1.0; types]), false);
-        while let Some(word) = args.next() {
-            if word.text != "scale" {
-                return Err(args.unknown(word, &["scale"]));
-            }
-            let twice = "scale either by type or by a variable";
-            if each && args.peek_text().starts_with("v_") {
-                if given {
-                    return fail(Code::CONFLICT, word.span.to(args.here()), twice);
-                }
-                let by = variable_param(args, "the factor")?;
-                cx.param(&by, true)?;
-                scale = Scale::Each(by);
-            } else {
-                let Scale::Kinds(ratio) = &mut scale else { return fail(Code::CONFLICT, word.span, twice) };
-                let (lo, hi) = args.type_range(types)?;
-                let by = args.number("the ratio of drag coefficients")?;
-                (lo..=hi).for_each(|k| ratio[usize::from(k) - 1] = by);
-            }
-            given = true;
-        }
+        let scale = Scale::read(each, args, cx)?;
         Ok(Self { name: format!("fix {} {style}", cx.id), group: cx.group, gamma, scale })
     }
 
@@ -77,10 +117,7 @@ impl Resistance {
         cx: &mut dyn SealCx,
     ) -> Result<Box<dyn Op>> {
         let (gamma, bit) = (self.gamma, self.group.bit());
-        let (kinds, each) = match &self.scale {
-            Scale::Kinds(ratio) => (ratio.clone(), None),
-            Scale::Each(by) => (vec![], Some(cx.param(by, Stage::PostForce, &When::Always)?)),
-        };
+        let factors = self.scale.factors(cx)?;
         let op = StepOp::new(self.name.clone(), Stage::PostForce, needs, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -89,14 +126,10 @@ impl Resistance {
             let world = &*w;
             let motion = motion_in(&world.particles);
             let p = &world.particles;
-            let factor = |i: usize| match each {
-                Some(reading) => Reading::atom(&reading, world, i),
-                None => kinds[usize::from(p.kind[i]) - 1],
-            };
             par::each((&mut against[..], motion, &p.mask[..]), |start, (against, motion, mask)| {
                 for (k, ((against, motion), mask)) in against.iter_mut().zip(motion).zip(mask).enumerate() {
                     if mask & bit != 0 {
-                        let drag = gamma * factor(start + k);
+                        let drag = gamma * factors.of(world, start + k);
                         (0..3).for_each(|d| against[d] -= drag * motion[d]);
                     }
                 }

@@ -1,6 +1,7 @@
 //! What touching grains do to each other at a moment, by the rules of any granular pair style.
 
 use super::granular::force::grains;
+use super::granular::heating::conducts;
 use super::granular::reach::{reaching, refuse_giants, touching};
 use super::shared::{admit, built_at, find_frozen, near};
 use perigrain_base::diag::Result;
@@ -10,6 +11,7 @@ use perigrain_contact::driver::{Grains, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, Springs};
+use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::contacts::Contacts;
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, World};
@@ -17,9 +19,10 @@ use perigrain_world::{Allowed, Key, World};
 /// The numbers a granular style gives to each pair, in LAMMPS' order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Own {
-    /// `granular`: tangential force and its size, rolling force and its size, twisting torque, x_i − x_j.
+    /// `granular`: tangential force and its size, rolling force and its size, twisting torque, x_i − x_j, and where contacts conduct heat
+    /// what flows into the first.
     Granular,
-    /// The same of plastic grains (`mdr`), and the mean area of contact of both sides.
+    /// The same of plastic grains (`mdr`), and the mean area of contact of both sides before the heat.
     Mdr,
     /// `gran/…`: tangential force and its size, relative velocity along and across the line of centres.
     Gran,
@@ -149,8 +152,8 @@ impl Probe for ContactProbe {
 
     fn own(&self) -> usize {
         match self.own {
-            Own::Granular => 12,
-            Own::Mdr => 13,
+            Own::Granular => 12 + usize::from(conducts(&self.rules)),
+            Own::Mdr => 13 + usize::from(conducts(&self.rules)),
             Own::Gran => 10,
         }
     }
@@ -178,6 +181,8 @@ impl Probe for ContactProbe {
     fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
         let p = &w.particles;
         let own = self.own;
+        let warm = conducts(&self.rules).then(|| w.columns.property(*TEMPERATURE)).flatten();
+        let (warm, last) = (warm.and_then(|key| w.columns.get_scalar(key)), self.own() - 1);
         let acting = self.evaluated(w, ask, |grains, _, sweep, memory| {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
@@ -186,6 +191,9 @@ impl Probe for ContactProbe {
                 let rows = memory.history.chunks_exact(memory.width.max(1));
                 let area = |row: &[f64]| row.iter().rev().nth(1).copied().unwrap_or(0.0);
                 all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = area(row));
+            }
+            if let Some(temperature) = warm {
+                all.iter_mut().zip(sweep.heat(temperature)).for_each(|(a, heat)| a.own[last] = heat);
             }
             all
         })?;

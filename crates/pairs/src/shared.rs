@@ -44,8 +44,9 @@ pub fn admit(w: &World, pairs: &[[u32; 2]], wanted: &Wanted, allowed: &Allowed, 
 /// Which particles fix freeze holds; empty without one.
 pub fn find_frozen(w: &World, out: &mut Vec<bool>) {
     out.clear();
-    if let Some((_, group)) = &w.parts.frozen {
-        out.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
+    let bits = w.parts.frozen.iter().fold(0, |bits, (_, group)| bits | group.bit());
+    if bits != 0 {
+        out.extend(w.particles.mask.iter().map(|m| m & bits != 0));
     }
 }
 

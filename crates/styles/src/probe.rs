@@ -5,7 +5,7 @@ use perigrain_base::math::vec3::{SIX, Vec3, dot, length, scale, sub};
 use perigrain_world::World;
 
 /// How many numbers of its own a pair style may give to each pair.
-pub const OWN: usize = 13;
+pub const OWN: usize = 14;
 
 /// Two particles and what they do to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

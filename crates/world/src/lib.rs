@@ -176,8 +176,8 @@ pub struct Parts {
     pub budget: Option<f64>,
     /// The last look at the step that contacts stand.
     pub pressed: Option<contacts::Pressed>,
-    /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
-    pub frozen: Option<(String, GroupId)>,
+    /// Every fix freeze in force by its ID, and its group: contact laws take these grains for infinitely heavy.
+    pub frozen: Vec<(String, GroupId)>,
     /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.
     pub plastic: Option<[f64; 5]>,
     /// What ops have to say about the deck; told when the run is over.
