@@ -6,7 +6,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, on_particles, scales, units_lattice};
-use perigrain_styles::near::bonds_allow;
+use perigrain_styles::near::{bonds_across, bonds_fit};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Boundary, Domain, Face, GroupId};
 
@@ -35,7 +35,8 @@ impl Style for ChangeBox {
                    shrink-wrapped faces follow the particles and periodic ones wrap them. `triclinic` \
                    makes the box one that may lean, `ortho` one that may not, for which its tilts must be 0; `xy`, `xz` and `yz` \
                    set its tilts or change them. Distances are in lattice spacings unless `units box` is said, \
-                   `xy` and `xz` in those along x, `yz` in those along y.",
+                   `xy` and `xz` in those along x, `yz` in those along y. Where peridynamic bonds cross a periodic face, its edge may \
+                   change with `remap` alone: the body is strained evenly with the box, from the state at the first run.",
             example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",
         }
     }
@@ -214,7 +215,11 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
         }
     }
     let (before, now) = (cx.world.domain()?.edges().vectors(), domain.edges().vectors());
-    bonds_allow(cx.world, [0, 1, 2].map(|d| before[d] != now[d])).map_err(|e| e.at(span))?;
+    let along = steps.iter().any(|step| matches!(step, Step::Remap));
+    let changes = [0, 1, 2].map(|d| before[d] != now[d]);
+    if bonds_across(cx.world, changes, along).map_err(|e| e.at(span))?.is_some() {
+        bonds_fit(cx.world, &domain.periods()).map_err(|e| e.at(span))?;
+    }
     common::warn_of_skew(cx, &domain);
     cx.say("Changing box ...");
     for domain in boxes {

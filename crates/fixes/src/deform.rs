@@ -12,10 +12,10 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{scales, units_lattice};
-use perigrain_styles::near::bonds_allow;
+use perigrain_styles::near::{bonds_across, bonds_fit};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
-use perigrain_world::field::{BONDS, BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, X, X0};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, TAG, X};
 use perigrain_world::{Face, Fields, GroupId, Key, Numbers, RATES, World};
 use pressure::{Controls, Pressed};
 use track::{Track, tracks};
@@ -48,8 +48,9 @@ impl Style for Deform {
                    edge less, at the next rebuild of lists: another box of the same lattice, in which everybody is where it was. `remap x` (default) stretches the positions of the group's \
                    particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
                    of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
-                   A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Peridynamic bonds \
-                   that cross a periodic face keep its length: such a run is refused. \
+                   A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Where peridynamic bonds \
+                   cross a periodic face, its edge may change with `remap x` and `flip no` alone: the body is strained evenly with the box, \
+                   from the state at the first run. \
                    Under `-compat lammps` particles that cross a face just before a flip keep their velocity with `remap v`, as in \
                    LAMMPS.",
             example: "fix squeeze all deform 1 x scale 0.9999 remap x",
@@ -302,7 +303,7 @@ impl Fix for Declared {
             w.domain.iter_mut().for_each(|d| d.flow = Some(flow));
         }
         let name = format!("fix {} {}", self.id, self.style());
-        Ok(vec![Box::new(Move { name, stretch, tracks, leans, flips, remap, group, when })])
+        Ok(vec![Box::new(Move { name, stretch, tracks, leans, flips, remap, group, when, crossed: false })])
     }
 
     fn computes(&self) -> Vec<(String, &'static str, String)> {
@@ -383,6 +384,8 @@ struct Move {
     remap: Remap,
     group: GroupId,
     when: When,
+    /// Peridynamic bonds cross faces whose edges change.
+    crossed: bool,
 }
 
 impl Move {
@@ -411,7 +414,10 @@ impl Op for Move {
                 Stage::EndOfStep,
                 Needs::new()
                     .read(
-                        MASK | SLOTS | FAMILIES | X0 | if self.turns_images() { BONDS } else { Fields::NONE },
+                        TAG | MASK
+                            | SLOTS
+                            | FAMILIES
+                            | if self.turns_images() { BONDS } else { Fields::NONE },
                     )
                     .write(X | BOX | if self.flips { LISTS } else { Fields::NONE })
                     .keep(MEMO),
@@ -436,7 +442,14 @@ impl Op for Move {
                     .help("`remap x` will do")
                     .into());
             }
-            return bonds_allow(w, self.changes());
+            let along = self.remap == Remap::Positions;
+            self.crossed = bonds_across(w, self.changes(), along)?.is_some();
+            if self.crossed && self.flips && self.leans.iter().any(Lean::moves) {
+                let text = "peridynamic bonds cross periodic faces: the box cannot flip";
+                let help = "say `flip no`: bonds go by the edges of the box at the first run";
+                return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text).help(help).into());
+            }
+            return Ok(());
         }
         let Some(domain) = &mut *w.domain else { return Ok(()) };
         let before = domain.clone();
@@ -445,6 +458,11 @@ impl Op for Move {
         if domain.tilt.is_some() {
             domain.tilt = Some(tilt);
         }
+        let edges = domain.periods();
+        if self.crossed {
+            bonds_fit(w, &edges)?;
+        }
+        let Some(domain) = &mut *w.domain else { return Ok(()) };
         if self.flips {
             domain.flip = lean::flip(domain);
             if domain.flip.is_some() {

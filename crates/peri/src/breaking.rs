@@ -9,10 +9,9 @@
 //! stretches of the bonds that were the least ones of both families when these were looked at last are mostly a far better one.
 
 use crate::families::list::ListBody;
-use crate::families::{Candidate, FamilyOptions, Measures};
+use crate::families::{Candidate, Cell, FamilyOptions, Measures};
 use crate::lanes::isa::Isa;
 use crate::law::series::stretch;
-use perigrain_base::math::periods::Periods;
 
 /// A layout, as breaking sees it. Sites are cells or records.
 pub trait Bonds: Sync + Sized {
@@ -93,12 +92,19 @@ pub fn banded(z: f64, length: f64, options: &FamilyOptions) -> f64 {
 
 impl ListBody {
     /// z of the bond between two records, from displacements of this step or of the last one, and |xi|.
-    pub(super) fn z(&self, last: bool, i: usize, j: usize, period: Periods) -> (f64, f64) {
+    pub(super) fn z(&self, last: bool, i: usize, j: usize, cell: &Cell) -> (f64, f64) {
         let (a, b) = (&self.record[i], &self.record[j]);
         let (mut q, mut square) = (0.0, 0.0);
+        let (period, strained) = (&cell.birth, cell.strained());
         let (tilted, mut nearest) = (period.tilted(), [0.0; 3]);
         if tilted {
             nearest = period.nearest(std::array::from_fn(|k| b.reference[k] - a.reference[k]));
+        }
+        let mut away = [0.0; 3];
+        if strained {
+            let d: [f64; 3] = std::array::from_fn(|k| b.reference[k] - a.reference[k]);
+            let near = period.nearest(d);
+            away = cell.shift(last, std::array::from_fn(|k| d[k] - near[k]));
         }
         for k in 0..3 {
             let mut xi = b.reference[k] - a.reference[k];
@@ -108,7 +114,10 @@ impl ListBody {
             } else if length > 0.0 && xi.abs() > 0.5 * length {
                 xi -= length * (xi / length).round();
             }
-            let eta = if last { self.last[j][k] - self.last[i][k] } else { b.u[k] - a.u[k] };
+            let mut eta = if last { self.last[j][k] - self.last[i][k] } else { b.u[k] - a.u[k] };
+            if strained {
+                eta -= away[k];
+            }
             q += eta * (2.0 * xi + eta);
             square += xi * xi;
         }

@@ -1,12 +1,14 @@
 //! Cracks made by hand: bonds cut before or between runs.
 
 use crate::families::lattice::LANES;
-use crate::families::{Families, PeriView};
+use crate::families::{Families, Moved, PeriView};
 
 impl Families {
     /// Breaks every living bond for which `cuts` is true of the places of its ends; returns how many.
     pub fn cut(&mut self, view: &PeriView, cuts: impl Fn([f64; 3], [f64; 3]) -> bool) -> usize {
         let mut ends = vec![];
+        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
+        let cell = self.cell(view);
         let crosses = |i: u32, j: u32| {
             let (a, b) = (view.x[i as usize], view.x[j as usize]);
             let d = view.bounds.nearest([0, 1, 2].map(|k| b[k] - a[k]));
@@ -23,6 +25,9 @@ impl Families {
                     let (i, j) = (body.particle[cell], body.particle[to]);
                     if crosses(i, j) {
                         body.set(cell, e, false);
+                        if frees {
+                            body.free(cell, e, kind, Moved::Before);
+                        }
                         body.intact[cell / LANES] = false;
                         ends.push([i, j]);
                     }
@@ -35,6 +40,9 @@ impl Families {
                 let (i, j) = (list.particle[record], list.particle[list.partner[b] as usize]);
                 if list.lives(b) && crosses(i, j) {
                     list.end(b);
+                    if frees {
+                        list.free(b, &self.law, &cell, Moved::Before);
+                    }
                     ends.push([i, j]);
                 }
             }

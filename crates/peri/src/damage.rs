@@ -2,9 +2,8 @@
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::list::ListBody;
-use crate::families::{Families, NearPair};
+use crate::families::{Cell, Families, Law, LawKind, Moved, NearPair};
 use crate::lattice::sweep::extent;
-use perigrain_base::math::periods::Periods;
 use perigrain_base::par::{self, Shared};
 
 /// One partner of a particle.
@@ -28,10 +27,10 @@ enum Link<'a> {
 
 impl Link<'_> {
     /// Length at the start, by the shortest way where the box repeats in these `periods`.
-    fn length(&self, periods: Periods) -> f64 {
+    fn length(&self, cell: &Cell) -> f64 {
         match self {
             Link::Lattice(body, e) => body.xi(*e).iter().map(|x| x * x).sum::<f64>().sqrt(),
-            Link::List(list, [i, j]) => list.z(false, *i, *j, periods).1,
+            Link::List(list, [i, j]) => list.z(false, *i, *j, cell).1,
         }
     }
 }
@@ -133,10 +132,10 @@ impl Families {
         found
     }
 
-    /// The same with the lengths of bonds at the start; the box repeats in these `periods`.
-    pub fn neighbours_apart(&self, i: usize, periods: Periods) -> Vec<(Neighbour, f64)> {
+    /// The same with the lengths of bonds at the start.
+    pub fn neighbours_apart(&self, i: usize) -> Vec<(Neighbour, f64)> {
         let mut found = Vec::new();
-        self.each_apart(i, periods, |n, length| found.push((n, length)));
+        self.each_apart(i, |n, length| found.push((n, length)));
         found.sort_unstable_by_key(|(n, _)| n.partner);
         found
     }
@@ -147,8 +146,9 @@ impl Families {
     }
 
     /// Calls `f` for all partners of a particle with the length of the bond at the start.
-    pub(super) fn each_apart(&self, i: usize, periods: Periods, mut f: impl FnMut(Neighbour, f64)) {
-        self.walk(i, |n, link| f(n, link.length(periods)));
+    pub(super) fn each_apart(&self, i: usize, mut f: impl FnMut(Neighbour, f64)) {
+        let cell = Cell::unstrained(self.birth.periods());
+        self.walk(i, |n, link| f(n, link.length(&cell)));
     }
 
     fn walk(&self, i: usize, mut f: impl FnMut(Neighbour, Link)) {
@@ -181,6 +181,8 @@ impl Families {
     /// Renumbers particles; `None` marks a removed one, whose bonds end (and count as damage of its partners).
     pub fn remap(&mut self, old_to_new: &[Option<u32>]) {
         let n = old_to_new.iter().flatten().count();
+        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
+        let cell = self.cell_before();
         for body in &mut self.lattices {
             for cell in 0..body.particle.len() {
                 let old = body.particle[cell];
@@ -189,6 +191,9 @@ impl Families {
                 }
                 body.particle[cell] = old_to_new[old as usize].unwrap_or(u32::MAX);
                 if body.particle[cell] == u32::MAX {
+                    if frees {
+                        free_all(body, cell, kind);
+                    }
                     body.vacate(cell);
                 }
             }
@@ -200,7 +205,8 @@ impl Families {
             }
             self.list.particle[r] = old_to_new[old as usize].unwrap_or(u32::MAX);
             if self.list.particle[r] == u32::MAX {
-                end_bonds(&mut self.list, r);
+                let law = frees.then_some(&self.law);
+                end_bonds(&mut self.list, r, law, &cell);
             }
         }
         self.family_volume = moved(&self.family_volume, old_to_new, n, 0.0);
@@ -333,11 +339,25 @@ fn moved<T: Copy>(column: &[T], old_to_new: &[Option<u32>], n: usize, empty: T) 
     out
 }
 
-/// Ends all bonds of a record.
-fn end_bonds(list: &mut ListBody, record: usize) {
+/// Sets the extensions of all living bonds of a cell free.
+fn free_all(body: &mut LatticeBody, cell: usize, kind: LawKind) {
+    let mut living = Vec::new();
+    body.around(cell, |_, owner, e| {
+        if body.lives(owner, e) {
+            living.push((owner, e));
+        }
+    });
+    living.into_iter().for_each(|(owner, e)| body.free(owner, e, kind, Moved::Before));
+}
+
+/// Ends all bonds of a record, and sets their extensions free under a law that does so.
+fn end_bonds(list: &mut ListBody, record: usize, frees: Option<&Law>, cell: &Cell) {
     let mut ended = Vec::new();
     list.around(record, |_, b| ended.push(b));
     for b in ended {
+        if let Some(law) = frees.filter(|_| list.lives(b)) {
+            list.free(b, law, cell, Moved::Before);
+        }
         list.set(b, false);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::law::{COLUMNS, SiteState};
-use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
 use crate::lanes::isa::Isa;
 use crate::lanes::single::Single;
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
@@ -11,7 +11,6 @@ use crate::law::settle::{columns_of, moment};
 use crate::law::weighing::{Weighing, banded};
 use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
 use crate::list;
-use perigrain_base::math::periods::Periods;
 use perigrain_base::par::{self, Shared};
 
 /// Energy and virial of one row of cells or one record.
@@ -27,7 +26,7 @@ pub fn tally<K: Isa>(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
-    (advanced, period): (bool, Periods),
+    (advanced, cell): (bool, &Cell),
 ) {
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
@@ -37,7 +36,7 @@ pub fn tally<K: Isa>(
         let body = &families.lattices[k];
         for (cell, &p) in body.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
             let p = p as usize;
-            own(families, view, p, body.state.theta[PAD + cell], scale(p), t);
+            own(families, view, p, (&body.state, PAD + cell), scale(p), t);
         }
         let one = |slot: usize, t: &mut PeriTally| one_by_one(families, view, (body, slot), (advanced, t));
         if t.per_atom() {
@@ -53,9 +52,9 @@ pub fn tally<K: Isa>(
     families.scratch.rows = rows;
     let list = &families.list;
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
-        own(families, view, p as usize, list.state.theta[record], scale(p as usize), t);
+        own(families, view, p as usize, (&list.state, record), scale(p as usize), t);
     }
-    list::energy::tally::<K>(families, t, (advanced, period));
+    list::energy::tally::<K>(families, t, (advanced, cell));
 }
 
 /// Sums of `row(k, sum)` for `k` below `n`, each row by itself.
@@ -179,9 +178,19 @@ fn in_lanes<K: Isa>(
     (state.earlier, state.touched) = (earlier, touched);
 }
 
-/// The energy of a particle's dilatation.
-fn own(families: &Families, view: &PeriView, p: usize, theta: f64, scale: f64, t: &mut PeriTally) {
-    let energy = 0.5 * families.law.of(view.kind[p]).bulk * theta * theta * scale;
+/// The energy of a particle's dilatation, and what its broken bonds have of the rest.
+fn own(
+    families: &Families,
+    view: &PeriView,
+    p: usize,
+    (state, at): (&SiteState, usize),
+    scale: f64,
+    t: &mut PeriTally,
+) {
+    let (moduli, theta) = (families.law.of(view.kind[p]), state.theta[at]);
+    let free = state.freed.of(at, state.weighted[at], (3.0 * moduli.bulk, 15.0 * moduli.shear));
+    let density = 0.5 * moduli.bulk * theta * theta + free.map_or(0.0, |free| free.energy(theta));
+    let energy = density * scale;
     t.energy += energy;
     if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
         atoms[p] += energy;

@@ -11,8 +11,8 @@ use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::lattice::RowMotion;
 use crate::families::{
-    AlmostLattice, Bounds, Candidate, Families, FamilyOptions, Law, LawKind, Layout, NearPairs, PeriTally,
-    PeriView, PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Candidate, Cell, Edges, Families, FamilyOptions, Law, LawKind, Layout, Moved,
+    NearPairs, PeriTally, PeriView, PmbCoeff, PmbTable, Scratch,
 };
 #[cfg(target_arch = "x86_64")]
 use crate::lanes::Avx2;
@@ -57,7 +57,7 @@ impl Families {
             families.weighed = Some(weights::weigh(list, view, (law, options), spacing));
         }
         if families.law.kind.has_states() {
-            families.weigh(view, periods(&view.bounds));
+            families.weigh(view, &families.cell_before());
         }
         let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
         let finest = families.spacing.iter().copied().reduce(f64::min).unwrap_or(1.0);
@@ -92,7 +92,7 @@ impl Families {
         families.number_places();
         families.refresh(view, table);
         if families.law.kind.has_states() {
-            families.weigh(view, periods(&view.bounds));
+            families.weigh(view, &families.cell_before());
         }
         families.start_near(far);
         Ok(families)
@@ -110,6 +110,8 @@ impl Families {
             lattices: vec![],
             list: Default::default(),
             reference: (view.x != view.x0).then(|| view.x.to_vec()),
+            birth: periods(&view.bounds).into(),
+            before: periods(&view.bounds).into(),
             place: vec![u32::MAX; n],
             family_volume: vec![0.0; n],
             family_size: vec![0; n],
@@ -201,21 +203,29 @@ impl Families {
         self.near.loose = loose.map(|p| (p as u32, view.x[p])).collect();
     }
 
+    /// Whether bonds may break, flow or remember anything else.
+    pub fn change(&self) -> bool {
+        let breaks = |c: &PmbCoeff| c.s00.is_finite();
+        self.law.kind.memory() > 0 || self.table.iter().any(breaks) || self.of_bonds.iter().any(breaks)
+    }
+
+    /// How long the longest bond at the start may be.
+    pub fn reach(&self) -> f64 {
+        match self.of_bonds.is_empty() {
+            true => detect::reach(&self.table, &self.options, &self.spacing),
+            false => self.of_bonds.iter().map(|c| c.horizon).fold(0.0, f64::max),
+        }
+    }
+
     /// Takes over coefficients, types and volumes that a deck has changed since families were built. Families
     /// themselves stay.
     pub fn refresh(&mut self, view: &PeriView, table: &PmbTable) {
         self.table = table.clone();
+        let cell = self.cell_before();
         for body in &mut self.lattices {
             tables::refresh(body, view, table, &self.options, &self.law);
         }
-        list::refresh(
-            &mut self.list,
-            view,
-            table,
-            &self.options,
-            (&self.law, &self.of_bonds),
-            periods(&view.bounds),
-        );
+        list::refresh(&mut self.list, view, table, &self.options, (&self.law, &self.of_bonds), &cell);
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.
@@ -263,7 +273,11 @@ impl Families {
         mut tallied: Option<&mut PeriTally>,
     ) {
         self.welcome(view);
-        let period = periods(&view.bounds);
+        let cell = &self.cell(view);
+        if self.before != Edges::from(periods(&view.bounds)) {
+            // Images have come nearer to each other.
+            self.forget_near();
+        }
         let reference = self.reference.as_deref().unwrap_or(view.x0);
         // Bonded particles that were put close to each other before families were built push each other from the start.
         let repels = !self.options.no_repulsion;
@@ -275,16 +289,16 @@ impl Families {
         let short_range = repels && self.list.contact >= 0.0;
         let moved = list::gather(&mut self.list, view, short_range);
         self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()));
-        self.sweep_list::<K>(view, f, (advance, tallied.is_some()), period);
+        self.sweep_list::<K>(view, f, (advance, tallied.is_some()), cell);
         if advance && self.counts_losses {
-            self.count_heat::<K>(view, period);
+            self.count_heat::<K>(view, cell);
         }
         self.contact(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {
-            tally::<K>(self, view, t, (advance, period));
+            tally::<K>(self, view, t, (advance, cell));
         }
         if advance {
-            self.advance::<K>(view, period);
+            self.advance::<K>(view, cell);
         }
     }
 
@@ -294,7 +308,7 @@ impl Families {
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
-        period: Periods,
+        cell: &Cell,
     ) {
         let Self { list, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
@@ -302,10 +316,10 @@ impl Families {
         let settling = lattice::settling((law, table), options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.
-            list::measure(list, law, period);
+            list::measure(list, law, cell);
         }
         let f = Shared::new(f);
-        list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, (&scratch.windows, period));
+        list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, (&scratch.windows, cell));
     }
 
     fn contact(
@@ -328,11 +342,12 @@ impl Families {
     }
 
     /// Breaks bonds and makes this step the previous one.
-    fn advance<K: Isa>(&mut self, view: &PeriView, period: Periods) {
+    fn advance<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
         if self.breaking_enabled {
-            self.break_and_count::<K>(view, period);
+            self.break_and_count::<K>(view, cell);
         }
         self.breaking_enabled = true;
+        self.before = periods(&view.bounds).into();
         for body in &mut self.lattices {
             body.u.swap(0, 1);
         }
@@ -340,17 +355,21 @@ impl Families {
         list::breaking::roll(&mut self.list);
     }
 
-    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, period: Periods) {
+    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
         let lasting = &self.lasting;
         let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
+        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
         for body in &mut self.lattices {
             break_bonds::<K, _>(body, &self.options, &mut found, &spared);
+            for c in found.iter().filter(|_| frees) {
+                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
+            }
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
-        let rules = Rules::new(period, &self.options, &self.law);
+        let rules = Rules::new(cell, &self.options, &self.law);
         list::breaking::candidates::<K>(
             &mut self.list,
             (&rules, &self.options),
@@ -358,6 +377,9 @@ impl Families {
             &mut found,
         );
         self.list.break_all(&mut found, &spared);
+        for c in found.iter().filter(|_| frees) {
+            self.list.free(c.bond as usize, &self.law, cell, Moved::Now);
+        }
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
             self.damaged[i as usize] = true;

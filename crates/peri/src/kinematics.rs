@@ -35,6 +35,52 @@ impl Families {
     }
 }
 
+/// Families whose shape tensor has less than this share of the least eigenvalue of the whole family's are torn: F then is what a few
+/// bonds about a hinge say.
+const HINGE: f64 = 0.05;
+
+impl Families {
+    /// Whether so much of a particle's family is broken that what is left is a mechanism: more than `most` of its volume, or in some
+    /// direction nearly all. F of such a family measures how its hinges turn, not how a solid is strained.
+    pub fn torn(&self, view: &PeriView, i: usize, most: f64) -> bool {
+        if !self.damaged.get(i).copied().unwrap_or(false) {
+            return false;
+        }
+        let (mut left, mut whole, mut broken) = ([[0.0; 3]; 3], [[0.0; 3]; 3], false);
+        self.each(i, |n| {
+            let j = n.partner as usize;
+            let Some(pair) = self.table.get(view.kind[i], view.kind[j]) else { return };
+            let xi = self.first_bond(view, i, j);
+            let length = length(xi);
+            let volume = self.weight_of(&n, length, pair.horizon);
+            let share = self.law.influence.of(length, pair.horizon) * volume * view.volume[j];
+            broken |= !n.alive;
+            for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                let term = share * xi[a] * xi[b];
+                whole[a][b] += term;
+                left[a][b] += if n.alive { term } else { 0.0 };
+            }
+        });
+        broken
+            && (self.damage(i, view.volume) > most
+                || least_eigenvalue(&left) < HINGE * least_eigenvalue(&whole))
+    }
+}
+
+/// The least eigenvalue of a symmetric tensor (Smith, Comm. ACM 4 (1961) 168).
+fn least_eigenvalue(t: &Tensor) -> f64 {
+    let mean = (t[0][0] + t[1][1] + t[2][2]) / 3.0;
+    let off = t[0][1] * t[0][1] + t[0][2] * t[0][2] + t[1][2] * t[1][2];
+    let square = (0..3).map(|k| (t[k][k] - mean).powi(2)).sum::<f64>() + 2.0 * off;
+    let size = (square / 6.0).sqrt();
+    if size == 0.0 {
+        return mean;
+    }
+    let unit = [0, 1, 2].map(|a| [0, 1, 2].map(|b| (t[a][b] - if a == b { mean } else { 0.0 }) / size));
+    let angle = (0.5 * determinant(&unit)).clamp(-1.0, 1.0).acos() / 3.0;
+    mean + 2.0 * size * (angle + 2.0 * std::f64::consts::PI / 3.0).cos()
+}
+
 /// The inverse of a tensor whose eigenvalues are not negative; `None` if one of them vanishes.
 fn inverse(t: &Tensor) -> Option<Tensor> {
     let mean = (t[0][0] + t[1][1] + t[2][2]) / 3.0;
@@ -91,6 +137,25 @@ pub fn von_mises(s: &[f64; 6]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_least_eigenvalue() {
+        // diag(1, 2, 5) turned by 0.3 about z and then 0.8 about x, and tensors with equal ones.
+        let turn = |t: &Tensor, a: usize, b: usize, by: f64| {
+            let mut r = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            (r[a][a], r[b][b], r[a][b], r[b][a]) = (by.cos(), by.cos(), -by.sin(), by.sin());
+            let times = |a: &Tensor, b: &Tensor, back: bool| -> Tensor {
+                let of = |i: usize, j: usize, k: usize| a[i][k] * if back { b[j][k] } else { b[k][j] };
+                [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| of(i, j, k)).sum()))
+            };
+            times(&times(&r, t, false), &r, true)
+        };
+        let t = turn(&turn(&[[5.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]], 0, 1, 0.3), 1, 2, 0.8);
+        assert!((least_eigenvalue(&t) - 1.0).abs() < 1e-14);
+        assert_eq!(least_eigenvalue(&[[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]), 3.0);
+        // One direction alone: the others have none.
+        assert!(least_eigenvalue(&[[4.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]).abs() < 1e-14);
+    }
 
     #[test]
     fn closed_forms_of_the_neo_hooke_solid() {

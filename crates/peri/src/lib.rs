@@ -23,9 +23,10 @@ mod limit;
 pub mod linked;
 mod list;
 pub mod moduli;
+mod pulled;
 mod released;
-/// What bonds that soften leave of their peak where they break.
+/// What bonds that soften leave of their peak where they break, and where that is.
 pub mod softening {
-    pub use super::law::REST;
+    pub use super::law::{REST, last_of_area};
 }
 pub mod stretches;

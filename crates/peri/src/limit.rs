@@ -1,6 +1,5 @@
 //! How long a step peridynamic bodies stand: from the largest frequency of the scene as it is, and by two estimates.
 
-use crate::evaluate::periods;
 use crate::families::{Families, ForceUnit, PeriView};
 use perigrain_base::math::lanczos::largest_eigenvalue;
 use perigrain_base::par;
@@ -22,10 +21,9 @@ impl Families {
     /// The step of Silling & Askari (2005), √(2 ρ/Σ c w V/|ξ|) over the bonds that live, about half the true limit; c is
     /// 18K/(πδ⁴) for state-based laws. `None` without bonds.
     pub fn silling_step(&self, view: &PeriView, density: &[f64], ftm2v: f64) -> Option<f64> {
-        let periods = periods(&view.bounds);
         let step = |i: usize| {
             let (mut stiffness, own) = (0.0, self.stiffness_of(i));
-            self.each_apart(i, periods, |b, length| {
+            self.each_apart(i, |b, length| {
                 let j = b.partner as usize;
                 let Some(p) = self.table.get(view.kind[i], view.kind[j]).filter(|_| b.alive) else { return };
                 let weight = self.share_of(i, &b, length, p.horizon);

@@ -64,12 +64,11 @@ impl Families {
     /// How strained the bonds of a particle of the list are; `None` where none lives.
     pub fn strain(&self, view: &PeriView, i: usize) -> Option<Strain> {
         let place = self.place.get(i).filter(|p| **p != u32::MAX && **p >= self.list.first_place)?;
-        let (record, period) =
-            ((place - self.list.first_place) as usize, crate::evaluate::periods(&view.bounds));
+        let (record, cell) = ((place - self.list.first_place) as usize, self.cell(view));
         let mut all = vec![];
         self.list.around(record, |other, b| {
             if self.list.lives(b) {
-                let (z, length) = self.list.z(false, record, other, period);
+                let (z, length) = self.list.z(false, record, other, &cell);
                 all.push((banded(z, length, &self.options), *self.list.constants(b)));
             }
         });

@@ -3,51 +3,53 @@
 use crate::energy::tally;
 use crate::families::lattice::PAD;
 use crate::families::law::SiteState;
-use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
 use crate::lanes::isa::Isa;
-use perigrain_base::math::periods::Periods;
+use crate::law::freed::Freed;
 
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after.
-    pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, period: Periods) {
+    pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
         if !self.counts_losses {
-            return self.break_bonds::<K>(view, period);
+            return self.break_bonds::<K>(view, cell);
         }
         let mut alive: Vec<Vec<u8>> = self.lattices.iter().map(|b| b.alive.clone()).collect();
         let mut listed = self.list.alive.clone();
-        self.break_bonds::<K>(view, period);
+        let mut freed: Vec<Freed> = self.states().map(|s| s.freed.clone()).collect();
+        self.break_bonds::<K>(view, cell);
         if self.scratch.ends.is_empty() {
             return;
         }
-        let after = self.living_energy::<K>(view, period);
-        self.exchange(&mut alive, &mut listed);
-        let before = self.living_energy::<K>(view, period);
-        self.exchange(&mut alive, &mut listed);
+        let after = self.living_energy::<K>(view, cell);
+        self.exchange(&mut alive, &mut listed, &mut freed);
+        let before = self.living_energy::<K>(view, cell);
+        self.exchange(&mut alive, &mut listed, &mut freed);
         self.released += before - after;
     }
 
     /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
     /// energies before and after they flowed; what softening bonds have lost counts with that of broken ones; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
-    pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, period: Periods) {
+    pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
+        self.heat += self.heat_of_broken(view);
         match self.law.kind {
             _ if self.options.compat_lammps => {}
             LawKind::ElasticPlastic | LawKind::Yield => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }
-                let before = self.bond_energy::<K>(view, period);
+                let before = self.bond_energy::<K>(view, cell);
                 self.forget_earlier();
-                self.heat += before - self.bond_energy::<K>(view, period);
+                self.heat += before - self.bond_energy::<K>(view, cell);
             }
             kind if kind.softens() => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }
                 self.law.lost = true;
-                let before = self.bond_energy::<K>(view, period);
+                let before = self.bond_energy::<K>(view, cell);
                 self.forget_earlier();
-                self.released += self.bond_energy::<K>(view, period) - before;
+                self.released += self.bond_energy::<K>(view, cell) - before;
                 self.law.lost = false;
             }
             LawKind::Ves => {
@@ -59,7 +61,7 @@ impl Families {
                 let mut springs = self.law.clone();
                 springs.moduli.iter_mut().for_each(|m| (m.bulk, m.lambda) = (0.0, 1.0));
                 let law = std::mem::replace(&mut self.law, springs);
-                let power = 2.0 / own.tau * own.lambda * self.bond_energy::<K>(view, period);
+                let power = 2.0 / own.tau * own.lambda * self.bond_energy::<K>(view, cell);
                 self.law = law;
                 self.relax(power);
             }
@@ -68,10 +70,9 @@ impl Families {
                 let kept = self.springs_alone(view);
                 let law = self.law.clone();
                 self.law.moduli.iter_mut().for_each(|m| m.bulk = 0.0);
-                let power = self.bond_energy::<K>(view, period);
+                let power = self.bond_energy::<K>(view, cell);
                 self.law = law;
-                let states = self.lattices.iter_mut().map(|b| &mut b.state).chain([&mut self.list.state]);
-                states.zip(kept).for_each(|(state, columns)| state.columns = columns);
+                self.states().zip(kept).for_each(|(state, columns)| state.columns = columns);
                 self.relax(power);
             }
             _ => {}
@@ -115,7 +116,25 @@ impl Families {
         self.list.state.earlier.clear();
     }
 
-    fn exchange(&mut self, alive: &mut [Vec<u8>], listed: &mut Vec<u8>) {
+    /// What sites of all bodies carry.
+    fn states(&mut self) -> impl Iterator<Item = &mut SiteState> {
+        self.lattices.iter_mut().map(|body| &mut body.state).chain([&mut self.list.state])
+    }
+
+    /// What the broken bonds of all sites have turned into heat in the step that advances.
+    fn heat_of_broken(&self, view: &PeriView) -> f64 {
+        let of = |particle: &[u32], state: &SiteState, pad: usize| -> f64 {
+            let own = particle.iter().zip(state.freed.heat.iter().skip(pad)).filter(|(p, _)| **p != u32::MAX);
+            own.map(|(p, heat)| heat * view.volume[*p as usize]).sum()
+        };
+        let lattices: f64 = self.lattices.iter().map(|b| of(&b.particle, &b.state, PAD)).sum();
+        lattices + of(&self.list.particle, &self.list.state, 0)
+    }
+
+    fn exchange(&mut self, alive: &mut [Vec<u8>], listed: &mut Vec<u8>, freed: &mut [Freed]) {
+        for (state, freed) in self.states().zip(freed) {
+            std::mem::swap(&mut state.freed, freed);
+        }
         for (body, bits) in self.lattices.iter_mut().zip(alive) {
             std::mem::swap(&mut body.alive, bits);
         }
@@ -123,21 +142,21 @@ impl Families {
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
-    fn living_energy<K: Isa>(&mut self, view: &PeriView, period: Periods) -> f64 {
+    fn living_energy<K: Isa>(&mut self, view: &PeriView, cell: &Cell) -> f64 {
         if !self.law.kind.bond_based() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
             self.sweep_lattices::<K>(view, &mut aside, (false, true));
-            self.sweep_list::<K>(view, &mut aside, (false, true), period);
+            self.sweep_list::<K>(view, &mut aside, (false, true), cell);
         }
-        self.bond_energy::<K>(view, period)
+        self.bond_energy::<K>(view, cell)
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, with the dilatations of that.
-    fn bond_energy<K: Isa>(&mut self, view: &PeriView, period: Periods) -> f64 {
+    fn bond_energy<K: Isa>(&mut self, view: &PeriView, cell: &Cell) -> f64 {
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
-        tally::<K>(self, view, &mut sum, (true, period));
+        tally::<K>(self, view, &mut sum, (true, cell));
         let total = sum.energy;
         if dense { atoms.iter().zip(view.volume).map(|(e, v)| e * v).sum() } else { total }
     }

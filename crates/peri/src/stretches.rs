@@ -1,7 +1,6 @@
 //! What single bonds and particles show of their stretches: LAMMPS' critical stretch, first lengths, their pull.
 
 use crate::breaking::{Bonds, banded};
-use crate::evaluate::periods;
 use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
 use crate::families::{Families, PeriView};
@@ -41,11 +40,11 @@ impl Families {
     }
 
     fn critical_of_list(&self, view: &PeriView, all: &mut [f64]) {
-        let (list, period) = (&self.list, periods(&view.bounds));
+        let (list, cell) = (&self.list, self.cell(view));
         let mut most = vec![f64::NEG_INFINITY; list.record.len()];
         let mut count = |i: usize, b: usize| {
             let (j, pair) = (list.partner[b] as usize, list.constants(b));
-            let (z, length) = list.z(true, i, j, period);
+            let (z, length) = list.z(true, i, j, &cell);
             let s00 = pair.s00 * list.scatter.strength([i, j]);
             let critical = s00 - pair.alpha * banded(z, length, &self.options);
             for site in [i, j] {
@@ -64,7 +63,7 @@ impl Families {
     /// The bond from particle `i` to particle `j` at the start, by the shortest way where the box repeats.
     pub fn first_bond(&self, view: &PeriView, i: usize, j: usize) -> Vec3 {
         let at = self.reference.as_deref().unwrap_or(view.x0);
-        view.bounds.nearest(sub(at[j], at[i]))
+        self.birth.periods().nearest(sub(at[j], at[i]))
     }
 
     /// The pull of a bond between particles of two types, at first `r0` long and now `r`, and its energy, both over the

@@ -2,6 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::forest::find;
+use perigrain_base::math::periods::Periods;
 use perigrain_neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Bond, GroupId, World};
@@ -133,30 +134,52 @@ pub fn held_together(w: &World, mut f: impl FnMut(u32, u32)) {
     }
 }
 
-/// Refuses to change lengths of the box that bonds cross: those would keep the length they had.
+/// The share of each height of a box that repeats beyond which bonds may not reach where it is strained.
+const LONGEST: f64 = 0.4;
+
+/// The ids of two particles whose bond crosses a periodic face along an edge that changes, if there are such.
 ///
 /// # Errors
-/// The ids of two particles bonded across a periodic face of such a dimension.
-pub fn bonds_allow(w: &World, changes: [bool; 3]) -> Result<()> {
+/// Where particles do not move along with the box: their bonds would be pulled at the faces alone.
+pub fn bonds_across(w: &World, changes: [bool; 3], along: bool) -> Result<Option<[u32; 2]>> {
     let (period, p) = (w.periods(), &w.particles);
     let dims: Vec<usize> = (0..3).filter(|&d| changes[d] && period.length[d] > 0.0).collect();
     let mut crossing = None;
     if !dims.is_empty() {
         bonds(w, |i, j| {
-            let (a, b) = (p.x0[i as usize], p.x0[j as usize]);
+            let (a, b) = (p.x[i as usize], p.x[j as usize]);
             let turns = period.turns(std::array::from_fn(|d| a[d] - b[d]));
             if dims.iter().any(|&d| turns[d] != 0.0) {
                 crossing = Some([p.tag[i as usize], p.tag[j as usize]]);
             }
         });
     }
-    let Some([a, b]) = crossing else { return Ok(()) };
+    let Some([a, b]) = crossing.filter(|_| !along) else { return Ok(crossing) };
     let text = format!(
-        "peridynamic bonds cross this periodic face (of particles {a} and {b}): its length cannot change"
+        "peridynamic bonds cross this periodic face (of particles {a} and {b}): particles must move along where its length changes"
     );
     Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text)
-        .help("make the boundary f, or pull at particles (`fix move`, `velocity`) instead of the box")
+        .help("say `remap` (`change_box`) or `remap x` (`fix deform`), which strains the body evenly with the box")
         .into())
+}
+
+/// Refuses a box in which bonds that cross its faces could meet their own images.
+///
+/// # Errors
+/// A height less than two and a half times what bonds reach.
+pub fn bonds_fit(w: &World, edges: &Periods) -> Result<()> {
+    let reach = w.families.as_ref().map_or(0.0, |f| f.reach());
+    let heights = edges.heights();
+    let Some(d) = (0..3).find(|&d| edges.length[d] > 0.0 && reach > LONGEST * heights[d]) else {
+        return Ok(());
+    };
+    let text = format!(
+        "the box is only {:.4e} across along {}, and peridynamic bonds that cross its faces reach {reach:.4e}: more than {LONGEST} of it",
+        heights[d],
+        ["x", "y", "z"][d]
+    );
+    let help = "take a longer box or a shorter horizon: a bond must not meet its own image";
+    Err(Diagnostic::error(Code::BAD_VALUE, None, text).help(help).into())
 }
 
 #[cfg(test)]

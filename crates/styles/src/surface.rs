@@ -61,10 +61,10 @@ pub fn members(w: &World, s: &Surface) -> Vec<bool> {
 
 /// By the bonds that live.
 fn bonded(w: &World, families: &Families, of_solid: &[bool]) -> Vec<Around> {
-    let (volume, periods) = (&w.particles.volume, w.periods());
+    let volume = &w.particles.volume;
     let of = |i: usize| {
         let mut a = Around::default();
-        for (b, length) in families.neighbours_apart(i, periods).into_iter().filter(|(b, _)| b.alive) {
+        for (b, length) in families.neighbours_apart(i).into_iter().filter(|(b, _)| b.alive) {
             let j = b.partner as usize;
             a.weight += length * length * volume[j];
             if length < NEAREST * volume[i].cbrt() {

@@ -2,7 +2,6 @@
 
 use super::bonds::ascending;
 use super::{Particles, World};
-use perigrain_base::math::periods::Periods;
 use perigrain_peri::families::{Excluded, Families};
 
 /// The rules of `neigh_modify exclude`; `None` where none stands.
@@ -33,7 +32,7 @@ pub struct Allowed<'a> {
     /// Group bits of solids and of their hybrid particles.
     surfaces: Vec<[u32; 2]>,
     /// Families of solids that have hybrid particles.
-    families: Option<(&'a Families, Periods)>,
+    families: Option<&'a Families>,
     /// Whether there is no rule at all.
     free: bool,
 }
@@ -75,7 +74,7 @@ impl<'a> Allowed<'a> {
     pub fn new(w: &'a World) -> Self {
         let bits = w.groups.surfaces().iter().map(|(g, s)| [s.parent.bit(), g.bit()]);
         let surfaces: Vec<[u32; 2]> = bits.collect();
-        let families = w.families.as_ref().filter(|_| !surfaces.is_empty()).map(|f| (f, w.periods()));
+        let families = w.families.as_ref().filter(|_| !surfaces.is_empty());
         let excluded = Self::excluded(w);
         let barred = Barred::new(w.bonds.barred());
         let free = excluded.free && surfaces.is_empty() && barred.pairs.is_empty();
@@ -127,7 +126,7 @@ impl<'a> Allowed<'a> {
         if inside(p.mask[i]) || inside(p.mask[j]) {
             return false;
         }
-        self.families.is_none_or(|(families, period)| !families.related(&p.x0, &p.kind, period, i, j))
+        self.families.is_none_or(|families| !families.related(&p.x0, &p.kind, i, j))
     }
 }
 

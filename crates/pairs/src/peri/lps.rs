@@ -27,7 +27,9 @@ impl Style for PeriLps {
                 weight, a particle has the weighted volume m = Σ ω w |ξ|² V_j of its family at the first run and the \
                 dilatation θ = (3/m) Σ ω w |ξ| e V_j. Each end of a bond acts along it with the force density \
                 t = ω w (3Kθ |ξ|/m + 15G (e − θ|ξ|/3)/m), and a particle feels t of both ends times V_j \
-                (Silling et al. 2007). m keeps its value when bonds break, as in LAMMPS; θ counts the living ones. `K` and \
+                (Silling et al. 2007). m keeps its value when bonds break, as in LAMMPS; the extension of a broken bond is \
+                free, so that breaking never makes energy: θ = (3/m) Σ ω w |ξ| e V_j/D over living bonds, D = φ + (1 − φ) \
+                3K/(5G), φ being their share of m (`compat lammps`: D = 1, which may make energy where ν is not 1/4). `K` and \
                 `G` belong to particles: between two types each end has its own, from `pair_coeff i i`; the line of the \
                 pair itself gives horizon, s00 and alpha. Bonds break, and close particles repel each other, as under \
                 `peri/pmb` with c = 18K/(πδ⁴).\n\n\

@@ -34,7 +34,7 @@ pub(super) fn check_spheres(style: &Solid, w: &World) -> Result<()> {
     let p = &w.particles;
     let radius = |i: usize| p.radius.get(i).copied().unwrap_or(0.0);
     for i in (0..p.len()).filter(|&i| outside(w, i)) {
-        let near = families.neighbours_apart(i, w.periods()).into_iter();
+        let near = families.neighbours_apart(i).into_iter();
         // Radii and lengths are both rounded from the deck's numbers: 1e-9 is no overlap.
         let deep = near.filter(|(b, _)| b.alive).find(|(b, length)| {
             let j = b.partner as usize;

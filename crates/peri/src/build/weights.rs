@@ -99,7 +99,8 @@ pub fn weigh(
             let by_volume = w.by_volume(b);
             [n + 1.0, part + f64::from(u8::from(by_volume < 1.0)), sum + by_volume]
         });
-    let factors = options.weights.whole_families.then(|| w.made_whole(&mut own));
+    let corrected = options.weights.whole_families || options.weights.whole_energies;
+    let factors = corrected.then(|| w.made_whole(&mut own));
     body.own_weight = own;
     Weighed { in_part: in_part / f64::max(bonds, 1.0), mean: sum / f64::max(bonds, 1.0), factors }
 }
@@ -181,7 +182,11 @@ impl Weighing<'_> {
         let mut told = Factors { least: f64::INFINITY, ..Factors::default() };
         let mut count = 0.0;
         for (b, own) in own.iter_mut().enumerate().filter(|(b, _)| self.body.lives(*b)) {
-            let factor = all[b].clamp(FACTORS[0], FACTORS[1]);
+            // A sum over a family has no small divisor.
+            let factor = match self.options.weights.whole_families {
+                true => all[b].clamp(FACTORS[0], FACTORS[1]),
+                false => all[b],
+            };
             *own *= factor;
             count += 1.0;
             told.cut += f64::from(u8::from(factor != all[b]));
@@ -217,6 +222,10 @@ impl Weighing<'_> {
         let whole = if self.law.kind.bond_based() { 1.0 } else { all };
         if all <= 0.0 {
             return Asked::NOTHING;
+        }
+        if !self.options.weights.whole_families {
+            // The same factor in all directions.
+            return Asked { scale: whole / all, ..Asked::NOTHING };
         }
         let mut lacking = [0.0; MOMENTS];
         for k in 0..MOMENTS {

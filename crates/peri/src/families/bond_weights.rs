@@ -9,12 +9,15 @@ pub struct BondWeights {
     pub own_horizons: bool,
     /// Families are made whole in each direction (`peri_modify surface tensor`).
     pub whole_families: bool,
+    /// Families are given the energy of whole ones at an even growth (`peri_modify surface energy`), under laws whose bonds remember:
+    /// plain ones have it in their law, see [`super::Law::surface`].
+    pub whole_energies: bool,
 }
 
 impl BondWeights {
     /// Whether there is such a thing.
     pub fn any(self) -> bool {
-        self.own_horizons || self.whole_families
+        self.own_horizons || self.whole_families || self.whole_energies
     }
 }
 

@@ -1,13 +1,12 @@
 //! Who belonged to one family at the start, and whether the bond between two still lives: contacts ask.
 
 use crate::families::Families;
-use perigrain_base::math::periods::Periods;
 
 impl Families {
     /// Whether two particles are kept from touching by their family: they belonged to one at the start, by their distance
     /// then, and, where those whose bond is broken meet again, their bond lives. Families from a table of bonds leave this
     /// to `special_bonds`.
-    pub fn related(&self, x0: &[[f64; 3]], kind: &[u16], period: Periods, i: usize, j: usize) -> bool {
+    pub fn related(&self, x0: &[[f64; 3]], kind: &[u16], i: usize, j: usize) -> bool {
         if !self.of_bonds.is_empty() {
             return false;
         }
@@ -15,6 +14,7 @@ impl Families {
         let Some(coeff) = self.table.get(kind[i], kind[j]).filter(|_| has(i) && has(j)) else { return false };
         let start = self.reference.as_deref().unwrap_or(x0);
         let reach = self.options.volume.reach(coeff.horizon, self.options.lattice_spacing);
+        let period = self.birth.periods();
         let turns = period.turns(std::array::from_fn(|d| start[i][d] - start[j][d]));
         let by = period.shift(turns);
         let square = |d: usize| (start[i][d] - start[j][d] - by[d]).powi(2);

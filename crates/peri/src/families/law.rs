@@ -1,5 +1,6 @@
 //! Which material the bonds are made of: bond-based or ordinary state-based, and what of it outlives a step.
 
+use crate::law::freed::Freed;
 use crate::law::{BondLaw, of_law};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 
@@ -117,6 +118,16 @@ impl LawKind {
                 | Self::Softening
                 | Self::Decaying
         )
+    }
+
+    /// Whether a share of the shear modulus relaxes.
+    pub fn relaxes(self) -> bool {
+        matches!(self, Self::Ves | Self::VesApart)
+    }
+
+    /// Whether the extension of a broken bond is set free, under LAMMPS' laws (`compat`) or not.
+    pub fn frees(self, compat: bool) -> bool {
+        !self.bond_based() && !compat
     }
 
     /// Whether bonds lose energy for good while they live.
@@ -255,6 +266,8 @@ pub struct SiteState {
     pub unrelaxed: Vec<f64>,
     /// Accumulated plastic multiplier.
     pub plastic: Vec<f64>,
+    /// What broken bonds have left; nothing under LAMMPS' laws.
+    pub freed: Freed,
     /// Numbers that each bond remembers; the layout knows the order.
     pub memory: Vec<f64>,
     /// The form of that under the viscous law.
@@ -298,6 +311,7 @@ impl SiteState {
             + self.before.len()
             + self.unrelaxed.len()
             + self.plastic.len()
+            + self.freed.numbers()
             + self.memory.len()
             + self.earlier.len()
             + self.columns.len()

@@ -7,8 +7,10 @@ use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::SIX;
 
 pub mod bond_weights;
+mod cell;
 pub(crate) mod cells;
 mod excluded;
+mod free;
 mod kin;
 pub mod lattice;
 pub mod law;
@@ -19,8 +21,11 @@ mod sound;
 
 pub use crate::damage::Neighbour;
 pub use bond_weights::{BondWeights, Factors, Weighed};
+pub use cell::Edges;
+pub(crate) use cell::{BoxStrain, Cell};
 pub use cells::Cells;
 pub use excluded::Excluded;
+pub(crate) use free::Moved;
 pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
 
@@ -372,6 +377,10 @@ pub struct Families {
     pub list: list::ListBody,
     /// Reference positions, per particle, where they are not the positions at creation.
     pub reference: Option<Vec<[f64; 3]>>,
+    /// The edges of the box when families were found.
+    pub birth: Edges,
+    /// The same in the last step that advanced.
+    pub before: Edges,
     /// Where each particle is: a cell of a lattice or a record of the list, counted through all bodies;
     /// `u32::MAX` for particles without a family.
     pub place: Vec<u32>,

@@ -3,12 +3,11 @@
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::families::law::SiteState;
 use crate::families::list::ListBody;
-use crate::families::{FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
+use crate::families::{Cell, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
 use crate::lattice::chunk::constant;
 use crate::lattice::kernels::{FROM_TERM, TWICE_XI};
 use crate::law::series::SERIES;
 use crate::law::weighing::Weighing;
-use perigrain_base::math::periods::Periods;
 
 /// √(1 + z) − 1 = Σ `STRETCH[k]` z^(k + 1): the binomial series.
 pub const STRETCH: [f64; 8] = [
@@ -120,13 +119,13 @@ pub fn weigh_lattice(body: &mut LatticeBody, view: &PeriView, options: &FamilyOp
 }
 
 /// Weighs the families of the list as they are now.
-pub fn weigh_list(body: &mut ListBody, period: Periods, law: &Law) {
+pub fn weigh_list(body: &mut ListBody, cell: &Cell, law: &Law) {
     let mut state = columns(body.record.len(), body.partner.len() * law.kind.memory());
     for i in 0..body.record.len() {
         for b in body.own(i).filter(|&b| body.lives(b)) {
             let j = body.partner[b] as usize;
             let pair = body.constants(b);
-            let length = body.z(false, i, j, period).1;
+            let length = body.z(false, i, j, cell).1;
             let omega = law.influence.of(length, pair.horizon);
             let one = law.weight(length, pair.horizon, body.weight(b, length));
             for (a, b) in [(i, j), (j, i)] {

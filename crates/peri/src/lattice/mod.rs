@@ -13,12 +13,11 @@ pub mod states;
 pub mod sweep;
 pub mod tables;
 
-use perigrain_base::math::periods::Periods;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::law::COLUMNS;
-use crate::families::{Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
+use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
 use crate::lanes::isa::Isa;
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
 use crate::law::Moment;
@@ -28,11 +27,11 @@ use states::{States, Sum, find_active};
 
 impl Families {
     /// Weighs all families: at their building.
-    pub(crate) fn weigh(&mut self, view: &PeriView, period: Periods) {
+    pub(crate) fn weigh(&mut self, view: &PeriView, cell: &Cell) {
         for body in &mut self.lattices {
             constants::weigh_lattice(body, view, &self.options, &self.law);
         }
-        constants::weigh_list(&mut self.list, period, &self.law);
+        constants::weigh_list(&mut self.list, cell, &self.law);
     }
 
     /// Adds the forces of all bonds of bodies on lattices.

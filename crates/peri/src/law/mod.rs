@@ -5,6 +5,7 @@
 //! Mitchell 2011). Both ends act along y/|y|; y = xi + eta and |y| = |xi| (1 + s), so that a law returns
 //! (t_i + t_j)/(ω |y|).
 
+pub mod freed;
 pub mod polynomials;
 pub mod series;
 pub mod settle;
@@ -15,7 +16,7 @@ pub mod weighing;
 
 use crate::families::law::{COLUMNS, Held};
 use crate::lanes::Lanes;
-pub use softening::{REST, Softening};
+pub use softening::{REST, Softening, last_of_area};
 pub use viscous::{Viscous, ViscousApart};
 
 /// A bond's stretch s in the forms that laws need.

@@ -2,6 +2,7 @@
 
 use crate::families::law::{COLUMNS, Held, SiteState};
 use crate::families::{Law, LawKind, PmbTable};
+use crate::law::freed::{Free, Freed};
 use crate::law::{BondLaw, Moment, of_law};
 use perigrain_base::par::{self, Shared};
 
@@ -59,6 +60,13 @@ pub struct Sites<'a> {
     pub stiffness: &'a [f64],
 }
 
+impl Stiffness {
+    /// 3K and 15G.
+    fn moduli(&self) -> (f64, f64) {
+        (self.bulk, self.shear)
+    }
+}
+
 impl Settling<'_> {
     fn stiffness(&self) -> Vec<Stiffness> {
         let types = 1..=self.table.types() as u16;
@@ -79,6 +87,22 @@ impl Settling<'_> {
         types.map(of).collect()
     }
 
+    /// The share of a site's shear modulus that relaxes, and what is left of it after the step.
+    fn relaxing(&self, own: &Stiffness) -> (f64, (f64, f64)) {
+        match self.law.kind {
+            LawKind::Ves => (self.moment.lambda, (self.moment.decay, self.moment.fresh)),
+            _ => (own.lambda, own.left),
+        }
+    }
+
+    /// Makes room for the heat that broken bonds make in this evaluation, where that is counted.
+    fn forget_heat(&self, freed: &mut Freed) {
+        freed.heat.clear();
+        if self.counted {
+            freed.heat.resize(freed.gone.len(), 0.0);
+        }
+    }
+
     /// Notes the form in which bonds remember from now on.
     pub fn held(&self, state: &mut SiteState) {
         if self.advance && self.law.kind == LawKind::Ves {
@@ -93,7 +117,9 @@ impl Settling<'_> {
         if let (LawKind::Lps, Some(only)) = (kind, sites.only) {
             return elastic(&stiffness[usize::from(only) - 1], state, sites);
         }
-        let SiteState { weighted, theta, before, unrelaxed, columns, sums, .. } = state;
+        self.forget_heat(&mut state.freed);
+        let SiteState { weighted, theta, before, unrelaxed, freed, columns, sums, .. } = state;
+        let freeing = Freeing::new(freed);
         let (theta, columns) = (Shared::new(theta), Shared::new(columns));
         let (before, unrelaxed) = (Shared::new(before), Shared::new(unrelaxed));
         par::for_chunks(sites.count, |range| {
@@ -107,14 +133,29 @@ impl Settling<'_> {
                 if p != u32::MAX && m > 0.0 {
                     let own = stiffness[usize::from(sites.kind[p as usize]) - 1];
                     let by_m = 1.0 / m;
-                    angle = 3.0 * by_m * sums[at];
+                    angle = match freeing.of(at, m, own.moduli()) {
+                        Some(free) if kind.relaxes() => {
+                            let (lambda, left) = self.relaxing(&own);
+                            let step = free.relax([freeing.sum(at), sums[at]], lambda, left);
+                            if self.advance {
+                                // What has broken since has changed θ at once, which is not relaxed.
+                                *unrelaxed += step.before - *before;
+                                *before = step.before;
+                                // SAFETY: as above.
+                                unsafe {
+                                    freeing.put(at, step.slip, step.heat);
+                                    freeing.advance(at, sums[at]);
+                                }
+                            }
+                            step.theta
+                        }
+                        Some(free) => free.dilatation(sums[at]),
+                        None => 3.0 * by_m * sums[at],
+                    };
                     let shear = own.shear * by_m;
                     row = match kind {
                         LawKind::Ves | LawKind::VesApart => {
-                            let (lambda, (decay, fresh)) = match kind {
-                                LawKind::Ves => (self.moment.lambda, (self.moment.decay, self.moment.fresh)),
-                                _ => (own.lambda, own.left),
-                            };
+                            let (lambda, (decay, fresh)) = self.relaxing(&own);
                             let left = decay * *unrelaxed + fresh * (angle - *before);
                             let third = ((1.0 - lambda) * angle + lambda * left) / 3.0;
                             if self.advance {
@@ -172,8 +213,9 @@ impl Settling<'_> {
     /// From the sums of norms to how much of each site's trial state flows.
     pub fn flow(&self, state: &mut SiteState, sites: &Sites) {
         let stiffness = self.stiffness();
-        let SiteState { weighted, spread, theta, plastic, columns, sums, .. } = state;
-        let (plastic, columns) = (Shared::new(plastic), Shared::new(columns));
+        let SiteState { weighted, spread, theta, plastic, freed, columns, sums, .. } = state;
+        let freeing = Freeing::new(freed);
+        let (theta, plastic, columns) = (Shared::new(theta), Shared::new(plastic), Shared::new(columns));
         par::for_chunks(sites.count, |range| {
             for site in range {
                 let (at, p) = (sites.pad + site, sites.particle[site]);
@@ -183,11 +225,16 @@ impl Settling<'_> {
                 }
                 let own = stiffness[usize::from(sites.kind[p as usize]) - 1];
                 let shear = own.shear / m;
+                // SAFETY: each site is one task's.
+                let angle = unsafe { &mut theta.get(at..at + 1)[0] };
+                let trial = *angle;
+                let free = freeing.of(at, m, own.moduli());
+                let sum = sums[at] + free.map_or(0.0, |free| free.rest(trial).powi(2) * freeing.spread(at));
                 let (norm, limit) = match self.compat {
-                    true => (own.shear * sums[at].sqrt(), own.limit.sqrt()),
+                    true => (own.shear * sum.sqrt(), own.limit.sqrt()),
                     // In shear of the yield stress, directions averaged: 5 σ² Σ ω² w |xi|² V/m²; whole families with
                     // ω = 1 have 2 · 25 σ²/(8π δ⁵) (Mitchell 2011).
-                    false => (shear * sums[at].sqrt(), own.yield_stress * (5.0 * spread[at]).sqrt() / m),
+                    false => (shear * sum.sqrt(), own.yield_stress * (5.0 * spread[at]).sqrt() / m),
                 };
                 let yields = self.advance && norm > limit;
                 let (scale, more) = match yields {
@@ -196,10 +243,18 @@ impl Settling<'_> {
                 };
                 // SAFETY: each site is one task's.
                 unsafe { plastic.get(at..at + 1)[0] += more };
-                let pressure = own.bulk * theta[at] / m;
+                let mut pressure = own.bulk * trial / m;
+                if let Some(free) = free.filter(|_| yields) {
+                    let (slip, next, heat) = free.flow(trial, scale);
+                    // SAFETY: each site is one task's.
+                    unsafe { freeing.put(at, slip, heat) };
+                    // Bonds flow under the dilatation of the trial state and pull under the one that is left.
+                    pressure = own.bulk * next / m - shear * (next - trial) / 3.0;
+                    *angle = next;
+                }
                 let row = match self.compat {
-                    true => [pressure, shear, theta[at] / 3.0, scale, more, 0.0],
-                    false => [pressure, shear, theta[at] / 3.0, 1.0 - scale, 0.0, 0.0],
+                    true => [pressure, shear, trial / 3.0, scale, more, 0.0],
+                    false => [pressure, shear, trial / 3.0, 1.0 - scale, 0.0, 0.0],
                 };
                 put(&columns, sites, at, &row, columns_of(LawKind::ElasticPlastic, self.compat));
             }
@@ -207,9 +262,66 @@ impl Settling<'_> {
     }
 }
 
+/// Broken bonds of sites while many tasks settle each its own sites.
+struct Freeing<'a> {
+    gone: &'a [f64],
+    spread: &'a [f64],
+    slip: Shared<'a, f64>,
+    sum: Shared<'a, f64>,
+    heat: Shared<'a, f64>,
+}
+
+impl<'a> Freeing<'a> {
+    fn new(freed: &'a mut Freed) -> Self {
+        let Freed { gone, slip, spread, sum, heat } = freed;
+        Self { gone, spread, slip: Shared::new(slip), sum: Shared::new(sum), heat: Shared::new(heat) }
+    }
+
+    /// The broken bonds of a site with this weighted volume and these moduli; `None` where all live.
+    fn of(&self, at: usize, m: f64, (bulk, shear): (f64, f64)) -> Option<Free> {
+        let gone = self.gone.get(at).copied().filter(|gone| *gone > 0.0)?;
+        // SAFETY: each site is one task's.
+        let slip = unsafe { self.slip.get(at..at + 1)[0] };
+        Some(Free { m, gone: gone.min(m), slip, bulk, shear })
+    }
+
+    fn spread(&self, at: usize) -> f64 {
+        self.spread.get(at).copied().unwrap_or(0.0)
+    }
+
+    /// Σ ω w |xi| e V over living bonds in the last step that advanced, of a site with broken bonds.
+    fn sum(&self, at: usize) -> f64 {
+        // SAFETY: each site is one task's.
+        unsafe { self.sum.get(at..at + 1)[0] }
+    }
+
+    /// Keeps that sum.
+    ///
+    /// # Safety
+    /// No other task may touch the site, which has broken bonds.
+    unsafe fn advance(&self, at: usize, sum: f64) {
+        // SAFETY: passed on to the caller.
+        unsafe { self.sum.get(at..at + 1)[0] = sum };
+    }
+
+    /// Keeps S and adds to the heat, where that is counted.
+    ///
+    /// # Safety
+    /// No other task may touch the site, which has broken bonds.
+    unsafe fn put(&self, at: usize, slip: f64, heat: f64) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            self.slip.get(at..at + 1)[0] = slip;
+            if at < self.heat.len() {
+                self.heat.get(at..at + 1)[0] += heat;
+            }
+        }
+    }
+}
+
 /// [`Settling::dilatations`] of a linear elastic body of one material: nothing but arithmetic for each site.
 fn elastic(own: &Stiffness, state: &mut SiteState, sites: &Sites) {
-    let SiteState { weighted, theta, columns, sums, .. } = state;
+    let SiteState { weighted, theta, freed, columns, sums, .. } = state;
     let (theta, columns) = (Shared::new(theta), Shared::new(columns));
     let pressure = own.bulk - own.shear / 3.0;
     par::for_chunks(sites.count, |range| {
@@ -220,11 +332,19 @@ fn elastic(own: &Stiffness, state: &mut SiteState, sites: &Sites) {
             (theta.get(lo..hi), columns.get(lo..hi), second)
         };
         let known = sites.particle[range].iter().zip(&weighted[lo..hi]).zip(&sums[lo..hi]);
-        let columns = theta.iter_mut().zip(first).zip(second);
+        let columns = theta.iter_mut().zip(first.iter_mut()).zip(second);
         for (((p, m), sum), ((theta, first), second)) in known.zip(columns) {
             let by_m = if *p != u32::MAX && *m > 0.0 { 1.0 / m } else { 0.0 };
             let angle = 3.0 * by_m * sum;
             (*theta, *first, *second) = (angle, pressure * angle * by_m, own.shear * by_m);
+        }
+        let damaged =
+            freed.gone.get(lo..hi).unwrap_or(&[]).iter().enumerate().filter(|(_, gone)| **gone > 0.0);
+        for (k, _) in damaged {
+            let m = weighted[lo + k];
+            let Some(free) = freed.of(lo + k, m, own.moduli()) else { continue };
+            theta[k] = free.dilatation(sums[lo + k]);
+            first[k] = pressure * theta[k] / m;
         }
     });
 }

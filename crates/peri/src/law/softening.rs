@@ -21,6 +21,17 @@ use crate::law::{Angles, BondLaw, Ends, Moment, Stretch};
 /// What is left of the peak where an exponential bond breaks.
 pub const REST: f64 = 1e-3;
 
+/// The stretch at which nothing is left of a bond whose curve has this peak and `factor` times the area of one that ends at `last`.
+pub fn last_of_area(exponential: bool, (peak, last): (f64, f64), factor: f64) -> f64 {
+    if !exponential {
+        // A triangle of this height.
+        return factor * last;
+    }
+    let (rise, scale) = (0.5 * peak * peak, (last - peak) / -REST.ln());
+    let beyond = peak * scale * (1.0 - REST);
+    peak + (last - peak) * (factor * (rise + beyond) - rise) / beyond
+}
+
 /// The law. Columns: none; in the place of ω the peak. Memory: damage; of an exponential bond also the largest stretch so far.
 pub struct Softening<const EXPONENTIAL: bool>;
 
@@ -198,6 +209,20 @@ mod tests {
             _ if s <= PEAK => s,
             false => PEAK * (LIMIT - s).max(0.0) / (LIMIT - PEAK),
             true => PEAK * (REST.ln() * (s - PEAK) / (LIMIT - PEAK)).exp(),
+        }
+    }
+
+    #[test]
+    fn curves_of_other_horizons_have_their_share_of_the_area() {
+        for exponential in [false, true] {
+            let area = |last: f64| match exponential {
+                false => 0.5 * PEAK * last,
+                true => 0.5 * PEAK * PEAK + PEAK * (last - PEAK) / -REST.ln() * (1.0 - REST),
+            };
+            for factor in [0.6, 1.0, 2.5] {
+                let last = last_of_area(exponential, (PEAK, LIMIT), factor);
+                assert!((area(last) / area(LIMIT) - factor).abs() < 1e-14, "{exponential} {factor}");
+            }
         }
     }
 

@@ -1,11 +1,10 @@
 //! Energy and virial of the list's bonds under any law: asked for at some steps only, so a pass of its own.
 
-use perigrain_base::math::periods::Periods;
 use std::marker::PhantomData;
 
 use crate::energy::{ROWS, Sums, collect, shares};
 use crate::families::list::ListBody;
-use crate::families::{Families, ForceUnit, PeriTally};
+use crate::families::{Cell, Families, ForceUnit, PeriTally};
 use crate::lanes::isa::Isa;
 use crate::lattice::chunk::SUMS;
 use crate::law::settle::{columns_of, moment};
@@ -27,10 +26,10 @@ struct Energies<'a> {
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
-pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, period): (bool, Periods)) {
+pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, cell): (bool, &Cell)) {
     let (law, options, n) = (&families.law, &families.options, families.list.record.len());
     let (kind, compat) = (law.kind, options.compat_lammps);
-    let rules = Rules::new(period, options, law);
+    let rules = Rules::new(cell, options, law);
     let list = &families.list;
     let columns = columns_of(kind, compat);
     let ends = in_rows(&list.state, n, columns);

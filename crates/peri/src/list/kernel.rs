@@ -3,11 +3,10 @@
 //! A record's bonds are taken [`MOST`] at a time, in steps that leave their results in a [`Block`]: the processor then has
 //! many independent bonds to work on, polynomials are chosen once for all of them, and a law is a short loop of its own.
 
-use perigrain_base::math::periods::Periods;
 use std::ptr::{null, null_mut};
 
 use crate::families::list::{GROUP, ListBody};
-use crate::families::{FamilyOptions, Influence, Law};
+use crate::families::{BoxStrain, Cell, FamilyOptions, Influence, Law};
 use crate::lanes::Lanes;
 use crate::lanes::isa::{Isa, Kernel};
 use crate::lanes::rows::{self, Rows};
@@ -130,6 +129,9 @@ pub struct Rules {
     /// Edges that lean, from that of z on, and whether some do.
     edges: [[f64; 3]; 3],
     images: u8,
+    /// Whether the box is no longer as it was when bonds were found, and how it is strained now and was in the last step.
+    strained: bool,
+    strain: [BoxStrain; 2],
     /// |z| below which there is no force: the first number plus the second over |xi|.
     dead: [f64; 2],
     influence: Influence,
@@ -143,7 +145,8 @@ pub struct Rules {
 
 impl Rules {
     /// Those of a scene.
-    pub fn new(period: Periods, options: &FamilyOptions, law: &Law) -> Self {
+    pub fn new(cell: &Cell, options: &FamilyOptions, law: &Law) -> Self {
+        let period = cell.birth;
         let band = options.dead_band(1.0);
         let length = period.length.map(|l| if l > 0.0 { l } else { f64::INFINITY });
         let images = match period.length {
@@ -155,6 +158,8 @@ impl Rules {
         Self {
             length,
             edges: period.vectors(),
+            strained: cell.strained(),
+            strain: cell.strain,
             images,
             dead,
             influence: law.shape(),
@@ -259,7 +264,8 @@ unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut B
                     let [u, v, w, _] = L::quads(&rows);
                     [u, v, w]
                 };
-                let mut xi = [xj.sub(x[0]), yj.sub(x[1]), zj.sub(x[2])];
+                let apart = [xj.sub(x[0]), yj.sub(x[1]), zj.sub(x[2])];
+                let mut xi = apart;
                 if IMAGES == UPRIGHT {
                     xi[0] = nearest(xi[0], rules.length[0]);
                     xi[1] = nearest(xi[1], rules.length[1]);
@@ -268,7 +274,20 @@ unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut B
                 if IMAGES == LEANING {
                     xi = nearest_leaning(xi, rules);
                 }
-                let eta = [to[0].sub(u[0]), to[1].sub(u[1]), to[2].sub(u[2])];
+                let mut eta = [to[0].sub(u[0]), to[1].sub(u[1]), to[2].sub(u[2])];
+                if IMAGES != NONE && rules.strained {
+                    let away = [apart[0].sub(xi[0]), apart[1].sub(xi[1]), apart[2].sub(xi[2])];
+                    let strain = &rules.strain[(WHAT == LAST) as usize];
+                    let mut d = 0;
+                    while d < 3 {
+                        let mut k = d;
+                        while k < 3 {
+                            eta[d] = away[k].fnma(L::splat(strain[d][k]), eta[d]);
+                            k += 1;
+                        }
+                        d += 1;
+                    }
+                }
                 let y = [xi[0].add(eta[0]), xi[1].add(eta[1]), xi[2].add(eta[2])];
                 let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2].mul(xi[2])));
                 let q = eta[1].fma(y[1].add(xi[1]), eta[2].mul(y[2].add(xi[2])));
@@ -312,7 +331,15 @@ unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut B
                     square.store(b.square.as_mut_ptr().add(at));
                     omega.keep(alive).store(b.omega.as_mut_ptr().add(at));
                     if rules.limited {
-                        L::splat(pair.s00).keep(alive).store(b.limit.as_mut_ptr().add(at));
+                        let limit = if body.scatter.uneven() {
+                            let strengths = partners!(L, 1.0, |k| body
+                                .scatter
+                                .strength([row.i, *partner.add(k) as usize]));
+                            L::splat(pair.s00).mul(L::load(strengths.as_ptr()))
+                        } else {
+                            L::splat(pair.s00)
+                        };
+                        limit.keep(alive).store(b.limit.as_mut_ptr().add(at));
                     }
                 }
             }

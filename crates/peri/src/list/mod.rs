@@ -8,8 +8,9 @@ pub mod sweep;
 
 use crate::families::lattice::RowMotion;
 use crate::families::list::{GROUP, ListBody, PairConstants};
-use crate::families::{FamilyOptions, ForceUnit, Influence, Law, PeriView, PmbCoeff, PmbTable, VolumeRule};
-use perigrain_base::math::periods::Periods;
+use crate::families::{
+    Cell, FamilyOptions, ForceUnit, Influence, Law, PeriView, PmbCoeff, PmbTable, VolumeRule,
+};
 use perigrain_base::par::{self, Shared};
 
 /// Fills constants, types and volumes; bonds with types of their own have the coefficients of those.
@@ -19,7 +20,7 @@ pub fn refresh(
     table: &PmbTable,
     options: &FamilyOptions,
     (law, of_bonds): (&Law, &[PmbCoeff]),
-    period: Periods,
+    cell: &Cell,
 ) {
     let n = body.kinds.len();
     body.pairs.clear();
@@ -37,18 +38,18 @@ pub fn refresh(
         }
     }
     body.limits.least.clear();
-    measure(body, law, period);
+    measure(body, law, cell);
 }
 
 /// Keeps the lengths of bonds, and what takes an exponential of them.
-pub fn measure(body: &mut ListBody, law: &Law, period: Periods) {
+pub fn measure(body: &mut ListBody, law: &Law, cell: &Cell) {
     let places = body.partner.len();
     body.inverse.resize(places, 0.0);
     body.influence.resize(if law.shape() == Influence::Gaussian { places } else { 0 }, 0.0);
     for b in 0..places {
         let [i, j] = [body.owner[b / GROUP], body.partner[b]].map(|r| r as usize);
         // Fillers lead from a record to itself.
-        let length = if i == j { 1.0 } else { body.z(false, i, j, period).1 };
+        let length = if i == j { 1.0 } else { body.z(false, i, j, cell).1 };
         body.inverse[b] = 1.0 / length;
         let horizon = body.constants(b).horizon;
         if let Some(influence) = body.influence.get_mut(b) {

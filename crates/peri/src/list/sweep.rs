@@ -3,14 +3,13 @@
 //! Slabs, groups, partners and lengths of columns are as `build::list` makes them; of lists from restart files `families::sound` has
 //! looked at each of them.
 
-use perigrain_base::math::periods::Periods;
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Mutex;
 
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
-use crate::families::{FamilyOptions, LawKind, PeriView, Window};
+use crate::families::{Cell, FamilyOptions, LawKind, PeriView, Window};
 use crate::lanes::isa::Isa;
 use crate::lattice::sweep::Mode;
 use crate::lattice::{keep_earlier, window};
@@ -31,7 +30,7 @@ pub fn forces<K: Isa>(
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
     settling: &Settling,
-    (windows, period): (&[Mutex<Window>], Periods),
+    (windows, cell): (&[Mutex<Window>], &Cell),
 ) {
     let n = list.record.len();
     if n == 0 {
@@ -39,7 +38,7 @@ pub fn forces<K: Isa>(
     }
     let kind = settling.law.kind;
     let judge = Judge::new(list, mode, options);
-    let mut rules = Rules::new(period, options, settling.law);
+    let mut rules = Rules::new(cell, options, settling.law);
     rules.measures = judge.keeps;
     if mode.advance {
         list.limits.strained.resize_with(list.slabs(), Default::default);

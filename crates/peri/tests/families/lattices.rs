@@ -276,7 +276,7 @@ fn layouts_say_the_same_while_bonds_break() {
         near(rows.heat, list.heat, all[1].energy.abs());
         let critical = [rows, list].map(|f| f.critical_stretches(&view));
         for i in 0..n {
-            let [a, b] = [rows, list].map(|f| f.neighbours_apart(i, Default::default()));
+            let [a, b] = [rows, list].map(|f| f.neighbours_apart(i));
             assert_eq!(a.len(), b.len(), "{name}");
             for ((p, length), (q, other)) in a.iter().zip(&b) {
                 assert_eq!(p, q, "{name}");

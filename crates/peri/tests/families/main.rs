@@ -4,6 +4,7 @@
 mod cuts;
 mod endurance;
 mod flying;
+mod freed;
 mod golden;
 mod kinematics;
 mod lanes;

@@ -129,6 +129,16 @@ fn states(state: &SiteState, law: LawKind, (sites, bonds): (usize, usize)) -> Fa
     ] {
         equal(&format!("the number of {what} is"), column.len(), sites)?;
     }
+    let freed = &state.freed;
+    for (what, column) in [
+        ("broken weights", &freed.gone),
+        ("broken slips", &freed.slip),
+        ("broken norms", &freed.spread),
+        ("sums over living bonds", &freed.sum),
+    ] {
+        let expected = if column.is_empty() && freed.is_empty() { 0 } else { sites };
+        equal(&format!("the number of {what} is"), column.len(), expected)?;
+    }
     equal("the number of numbers that bonds remember is", state.memory.len(), numbers)
 }
 
