@@ -28,14 +28,19 @@ impl Style for DefgradAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group peri/defgrad/atom",
+            syntax: "compute ID group peri/defgrad/atom [torn nan|zero] [damage PHI]",
             summary: "Deformation gradient of each peridynamic particle, from its unbroken bonds.",
             text: "Per-atom array of 10 columns: F_xx F_xy F_xz F_yx … F_zz, and J = det F, without dimension. \
                    F = (Σ ω w Y⊗ξ V_j) K⁻¹ with K = Σ ω w ξ⊗ξ V_j over the unbroken bonds, ξ a bond at the first run and Y \
                    the same bond now (Silling et al. 2007; Hartmann et al. 2023, equations 26 and 27); the influence ω is that of \
                    the pair style. Exact for every family when the body deforms evenly, at surfaces too. All columns are 0, J \
-                   among them, where no three bonds have independent directions (one layer of particles, torn families), \
-                   before the first run, for particles without a family, and outside the group.",
+                   among them, where no three bonds have independent directions (one layer of particles), \
+                   before the first run, for particles without a family, and outside the group.\n\n\
+                   The few bonds of a torn family are a mechanism: its F tells how hinges turn, not how a solid is strained, and \
+                   its stress may be hundreds of times what a bond ever bears. All columns are NaN, or 0 with `torn zero`, \
+                   where more than `damage PHI` of the family's volume is broken (default 0.7), or where the least eigenvalue of K \
+                   is below 0.05 of that of the whole family. `compute reduce` with min and max passes over NaN; means and sums of \
+                   a body with torn families are NaN unless `torn zero` is said, and then count those as 0.",
             example: "compute F all peri/defgrad/atom",
         }
     }
@@ -47,11 +52,11 @@ impl Style for StrainAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group peri/strain/atom",
+            syntax: "compute ID group peri/strain/atom [torn nan|zero] [damage PHI]",
             summary: "Green–Lagrange strain of each peridynamic particle.",
             text: "Per-atom array of 6 columns xx yy zz xy xz yz: E = ½(FᵀF − 1), without dimension, F as that of compute \
                    peri/defgrad/atom; rotations have no strain. Shear components are half the change of angle. 0 where there is \
-                   no F.",
+                   no F, NaN (or 0) in torn families: `torn` and `damage` as of that compute.",
             example: "compute E all peri/strain/atom",
         }
     }
@@ -63,13 +68,14 @@ impl Style for CauchyAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group peri/stress/atom neohooke E nu\ncompute ID group peri/stress/atom neohooke material ID",
+            syntax: "compute ID group peri/stress/atom neohooke E nu [torn nan|zero] [damage PHI]\ncompute ID group peri/stress/atom neohooke material ID [torn nan|zero] [damage PHI]",
             summary: "Cauchy stress of each peridynamic particle, as of a Neo-Hooke solid that is deformed alike.",
             text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
                    J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
                    λ = K − 2G/3 of Young's modulus `E` and Poisson's ratio `nu`, or of a `material` (Hartmann et al. 2023, equations \
                    28 to 30). A picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
-                   of it. 0 where there is no F, and but for J where J is not positive.",
+                   of it; compute stress/atom has what bonds bear, torn families included. 0 where there is no F, and but for J where J is not \
+                   positive; NaN (or 0) in torn families: `torn` and `damage` as of compute peri/defgrad/atom.",
             example: "compute S all peri/stress/atom neohooke 1.0e5 0.48",
         }
     }
@@ -124,9 +130,36 @@ fn of_material(args: &mut Args, cx: &BuildCx) -> Result<Elastic> {
 }
 
 fn declared(measure: Measure, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-    args.finish()?;
+    let mut torn = Torn { most: 0.7, value: f64::NAN };
+    while args.peek().is_some() {
+        let word = args.here();
+        match args.choice("keyword", &["torn", "damage"])? {
+            "torn" => {
+                torn.value = if args.choice("value of torn families", &["nan", "zero"])? == "zero" {
+                    0.0
+                } else {
+                    f64::NAN
+                };
+            }
+            _ => {
+                torn.most = args.positive("the share of a family beyond which it is torn")?;
+                if torn.most > 1.0 {
+                    return fail(Code::BAD_VALUE, word, "damage is a share of the family: from 0 to 1");
+                }
+            }
+        }
+    }
     super::need_bonds(measure.name(), cx)?;
-    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, measure }))
+    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, measure, torn }))
+}
+
+/// What is said of families that are mechanisms.
+#[derive(Clone, Copy)]
+struct Torn {
+    /// The broken share beyond which families are.
+    most: f64,
+    /// What stands in all columns.
+    value: f64,
 }
 
 /// What is made of a deformation gradient.
@@ -178,6 +211,7 @@ struct Declared {
     id: String,
     group: GroupId,
     measure: Measure,
+    torn: Torn,
 }
 
 impl Compute for Declared {
@@ -187,6 +221,7 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (bit, measure, width) = (self.group.bit(), self.measure, self.measure.columns());
+        let torn = self.torn;
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
@@ -200,7 +235,12 @@ impl Compute for Declared {
                 let rows = par::Rows { data: &mut out.atom[..], width };
                 par::each((rows, &w.particles.mask[..]), |start, (rows, mask)| {
                     for (k, (row, mask)) in rows.data.chunks_exact_mut(width).zip(mask).enumerate() {
-                        if let (true, Some(f)) = (mask & bit != 0, families.gradient(&view, start + k)) {
+                        if mask & bit == 0 {
+                            continue;
+                        }
+                        if families.torn(&view, start + k, torn.most) {
+                            row.fill(torn.value);
+                        } else if let Some(f) = families.gradient(&view, start + k) {
                             measure.put(&f, row);
                         }
                     }
