@@ -2,7 +2,8 @@
 
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_peri::families::{Families, FamilyOptions, VolumeRule, Weighed};
+use perigrain_peri::families::{Families, FamilyOptions, LawKind, VolumeRule, Weighed};
+use perigrain_peri::softening::{REST, last_of_area};
 use perigrain_world::World;
 
 /// So many factors at their bounds mean that families cannot be made whole.
@@ -68,12 +69,59 @@ impl Solid {
     }
 }
 
-/// A particle's factor on critical stretches that follow from fracture energies: √(δ/δ_i), as in a body of that horizon.
+/// The least stretch at which nothing is left of a softening bond, in peaks.
+const LEAST_ROOM: f64 = 1.01;
+
+/// A particle's factor on critical stretches that follow from fracture energies: √(δ/δ_i), as in a body of that horizon. Of bonds
+/// that soften the curve has δ/δ_i times the area, and its peak stays.
 pub fn strength(style: &Solid, families: &Families, kind: u16, i: usize) -> f64 {
+    if let Some((curve, _)) = curve(style, kind) {
+        let factor = families.spacing_of(i).recip();
+        return last_of_area(style.law.kind == LawKind::Decaying, curve, factor) / curve.1;
+    }
     match style.materials.by_energy(kind) {
         true => families.spacing_of(i).recip().sqrt(),
         false => 1.0,
     }
+}
+
+/// Peak and end of the curve of a type's bonds, where they soften, and their horizon.
+fn curve(style: &Solid, kind: u16) -> Option<((f64, f64), f64)> {
+    let own = style.table.get(kind, kind).filter(|_| style.law.kind.softens())?;
+    Some(((style.law.of(kind).peak, own.s00), own.horizon))
+}
+
+/// Refuses families whose longest horizons leave no room for bonds to soften in.
+///
+/// # Errors
+/// Bonds that would snap back, with the longest horizon that there can be.
+pub fn leave_room(style: &Solid, families: &Families, w: &World) -> Result<()> {
+    if !style.weights.own_horizons {
+        return Ok(());
+    }
+    for kind in 1..=style.table.types() as u16 {
+        let Some(((peak, last), horizon)) = curve(style, kind) else { continue };
+        let own = (0..w.n()).filter(|i| w.particles.kind[*i] == kind).map(|i| families.spacing_of(i));
+        let [_, widest] = extremes(own);
+        let decays = style.law.kind == LawKind::Decaying;
+        if widest == 0.0 || last_of_area(decays, (peak, last), widest.recip()) >= LEAST_ROOM * peak {
+            continue;
+        }
+        // The area goes as 1/δ, and that of a triangle with no room beside its peak is ½ peak².
+        let area = match decays {
+            false => peak * last,
+            true => peak * peak + 2.0 * peak * (last - peak) / -REST.ln() * (1.0 - REST),
+        };
+        let text = format!(
+            "bonds of type {kind} with a peak at {peak:.4e} would snap back: with `peri_modify horizon own` horizons reach {:.4e}",
+            widest * horizon
+        );
+        let most = area * horizon / (LEAST_ROOM * peak * peak);
+        let help =
+            format!("let no horizon be longer than {most:.4e}, 10 Gc/(18 K peak²), or take a lower peak");
+        return Err(Diagnostic::error(Code::BAD_VALUE, None, text).help(help).into());
+    }
+    Ok(())
 }
 
 /// Tells what families have been weighed by, when they are found.
@@ -85,8 +133,15 @@ pub fn tell(style: &Solid, families: &Families, w: &mut World) {
     partial(families.options.volume, weighed, w);
     if let Some(factors) = weighed.factors {
         let text = format!(
-            "peridynamic bonds: families made whole in each direction (`surface tensor`): factors {:.3} to {:.3}, mean {:.4}",
-            factors.least, factors.most, factors.mean
+            "peridynamic bonds: families made whole {}: factors {:.3} to {:.3}, mean {:.4}",
+            if style.weights.whole_families {
+                "in each direction (`surface tensor`)"
+            } else {
+                "at an even growth (`surface energy`)"
+            },
+            factors.least,
+            factors.most,
+            factors.mean
         );
         w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
         if factors.cut > TOO_MANY {

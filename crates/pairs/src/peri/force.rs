@@ -1,7 +1,7 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
 use super::scatter::Scatter;
-use super::{Pair, Solid, bond_weights, reunion};
+use super::{Pair, Solid, bond_weights, pulled, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
 use perigrain_plan::{About, Level, Needs, Op, Stage, Tick};
@@ -96,7 +96,7 @@ impl Op for Force {
         let advance = match t.setup {
             // LAMMPS advances bonds in the setup of every run but the first, be that one of no steps.
             true => w.settings.lammps() && !first && !t.unchanged,
-            false => true,
+            false => !t.trial,
         };
         let mut f = std::mem::take(&mut w.particles.f);
         let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
@@ -178,11 +178,14 @@ impl Force {
             None => {
                 let law = self.style.law.clone();
                 let families = Families::build_of(&view(w)?, &table, self.options, law)?;
+                bond_weights::leave_room(&self.style, &families, w)?;
                 self.tell_lone(w, &families);
                 self.tell_doubles(w, &families);
                 tell_almost(w, &families);
                 self.scatter.tell(w);
                 bond_weights::tell(&self.style, &families, w);
+                let notes = pulled::notes(&self.style, &families, &view(w)?);
+                notes.into_iter().for_each(|note| w.parts.notes.push(note));
                 families
             }
         };

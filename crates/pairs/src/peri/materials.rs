@@ -73,6 +73,11 @@ impl Materials {
         self.types.get(&kind).map(|s| s.density)
     }
 
+    /// Young's modulus of a type that has a material.
+    pub fn young(&self, kind: u16) -> Option<f64> {
+        self.types.get(&kind).map(|s| s.solid.young)
+    }
+
     /// Whether the critical stretch of a type's bonds follows from a fracture energy.
     pub fn by_energy(&self, kind: u16) -> bool {
         self.types.get(&kind).is_some_and(|s| matches!(s.strength, Some(Strength::FractureEnergy(_))))

@@ -11,6 +11,7 @@ mod numbers;
 mod options;
 mod plastic;
 mod pmb;
+mod pulled;
 mod reunion;
 mod scatter;
 mod softening;

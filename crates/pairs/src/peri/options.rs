@@ -3,7 +3,7 @@
 use super::{Calibrate, Solid, bond_weights};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::Args;
-use perigrain_peri::families::{Families, ForceUnit, Influence, LawKind, VolumeRule};
+use perigrain_peri::families::{BondWeights, Families, ForceUnit, Influence, LawKind, VolumeRule};
 use perigrain_styles::BuildCx;
 
 const KNOWN: [&str; 10] = [
@@ -62,7 +62,11 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                     let text = "peri_modify surface energy concerns peri/pmb: a state-based particle weighs its own family (`surface tensor` corrects it, too)";
                     return fail(Code::CONFLICT, word.span, text);
                 }
-                (style.law.surface, style.weights.whole_families) = (how == "energy", how == "tensor");
+                // Bonds that remember have no columns of sites: each is weighed by itself.
+                let remember = style.law.kind.softens() || flows(style.law.kind);
+                style.law.surface = how == "energy" && !remember;
+                style.weights.whole_energies = how == "energy" && remember;
+                style.weights.whole_families = how == "tensor";
                 settled(style, &word.text, word.span, cx)?;
             }
             "horizon" => {
@@ -102,9 +106,15 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
     Ok(())
 }
 
-/// Refuses options that shape bonds where they cannot: under plastic bonds, or once bonds have been weighed.
+/// Whether microelastic bonds flow in compression.
+fn flows(kind: LawKind) -> bool {
+    matches!(kind, LawKind::Yield | LawKind::NonlinearElastic)
+}
+
+/// Refuses options that shape bonds where they cannot: bonds that flow or soften are alike at any length; nothing changes once bonds
+/// have been weighed.
 fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
-    if style.law.kind.softens() || matches!(style.law.kind, LawKind::Yield | LawKind::NonlinearElastic) {
+    if option == "influence" && (style.law.kind.softens() || flows(style.law.kind)) {
         let text = format!("peri_modify {option} does not concern pair_style {}", style.name);
         return fail(Code::CONFLICT, at, text);
     }
@@ -113,8 +123,8 @@ fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
         "influence" => f.law.influence != style.law.influence,
         "horizon" => f.options.weights.own_horizons != style.weights.own_horizons,
         _ => {
-            (f.law.surface, f.options.weights.whole_families)
-                != (style.law.surface, style.weights.whole_families)
+            let surfaces = |surface: bool, w: BondWeights| (surface, w.whole_families, w.whole_energies);
+            surfaces(f.law.surface, f.options.weights) != surfaces(style.law.surface, style.weights)
         }
     };
     if cx.world.families.as_ref().is_some_and(other) {

@@ -27,7 +27,7 @@ impl Style for PeriPmbPlastic {
                 remembers what has flowed, its force is c (s − s_p), and s_p follows so that s − s_p never falls below syc; \
                 after unloading the bond is left shorter. `nonlinear`: the force is a function of the present stretch, \
                 c max(s, syc). One rule holds for all pairs. Breaking looks at the whole stretch s.\n\n\
-                perigrain's own style; options of `peri_modify` as under `peri/pmb`. Bodies of one type and one volume on a \
+                perigrain's own style; options of `peri_modify` as under `peri/pmb`, but for `influence`. Bodies of one type and one volume on a \
                 lattice run fast, all others as lists.",
             example: "pair_style peri/pmb/plastic\npair_coeff * * 1.6863e22 0.0015001 5.0e-4 0.25 -0.002",
         }

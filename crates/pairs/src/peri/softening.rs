@@ -36,7 +36,10 @@ impl Style for PeriPmbSoftening {
                 material whose strength is a stretch (`s00`) has no G and is refused. A G below the energy up to the peak would \
                 make bonds snap back, and is refused with the largest peak that the horizon allows: with a finer lattice \
                 (a shorter horizon) the peak may be higher.\n\n\
-                perigrain's own style; options of `peri_modify` as under `peri/pmb`, but for `influence` and `surface`. Bodies of \
+                `peri_modify surface energy|tensor` multiplies the force of a bond by its factor and leaves its curve where it is: \
+                missing bonds and stiffer ones make up for each other. With `peri_modify horizon own` the peak stays, and \
+                nothing is left where a body of the bond's own horizon would have it; horizons beyond 10 Gc/(18 K peak²) are refused.\n\n\
+                perigrain's own style; options of `peri_modify` as under `peri/pmb`, but for `influence`. Bodies of \
                 one type and one volume on a lattice run fast, all others as lists.",
             example: "pair_style peri/pmb/softening exponential\npair_coeff * * 1.6863e22 0.0015001 3.0e-4 25.0",
         }
