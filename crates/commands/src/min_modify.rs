@@ -38,8 +38,9 @@ impl Style for MinModify {
         Doc {
             syntax: "min_modify keyword value …",
             summary: "Sets the numbers of `minimize`.",
-            text: "- `dmax D`: how far a coordinate may change in one line search, or in one step of `fire` [length] (0.1). \
-                   **Set it**: 0.1 is meant for units in which atoms are about 1 apart.\n\
+            text: "- `dmax D`: how far a coordinate may change in one line search, or in one step of `fire` [length]. By \
+                   default a tenth of the smallest particle (of a diameter, or of the root of a volume), and 0.1 where none has a size; \
+                   under `-compat lammps` 0.1, which is meant for units in which atoms are about 1 apart.\n\
                    - `norm two|max|inf`: the length of the forces that is held against `ftol`: root of the sum of squares, \
                    longest force on a particle, largest component.\n\
                    - `line quadratic|backtrack` (`cg`, `sd`): halve steps until the energy has fallen by 0.4 of what the slope \
@@ -85,7 +86,7 @@ impl CommandStyle for MinModify {
 fn option(set: &mut Minimizer, keyword: &Word, a: &mut Args) -> Result<()> {
     let fire = &mut set.fire;
     match keyword.text.as_str() {
-        "dmax" => set.dmax = a.positive("the largest displacement")?,
+        "dmax" => set.dmax = Some(a.positive("the largest displacement")?),
         "line" => {
             let lammps = ["forcezero", "spin_cubic", "spin_none"];
             set.line = match choice_or_refuse(a, "line search", &["quadratic", "backtrack"], &lammps)? {

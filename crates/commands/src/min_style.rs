@@ -1,7 +1,7 @@
 //! `min_style`: the algorithm of `minimize`.
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::{choice_or_refuse, setting};
 use perigrain_styles::{BuildCx, Doc, Style};
@@ -40,7 +40,15 @@ impl CommandStyle for MinStyleCommand {
         let elsewhere = ["hftn", "fire/old", "spin", "spin/cg", "spin/lbfgs"];
         let name = choice_or_refuse(a, "minimization style", &known, &elsewhere)?;
         let style = MinStyle::ALL.iter().find(|(n, _)| *n == name).map_or(MinStyle::Cg, |(_, s)| *s);
+        let span = a.span();
         Ok(setting(move |cx| {
+            if cx.world.settings.minimizer.modified() {
+                let text = "min_style puts all numbers back to their defaults: those of a `min_modify` before it are lost";
+                cx.note(
+                    Diagnostic::warning(Code::SUSPICIOUS, span, text)
+                        .help("say `min_modify` after `min_style`"),
+                );
+            }
             cx.world.settings.minimizer = Minimizer { style, ..Minimizer::default() };
             Ok(())
         }))

@@ -199,6 +199,8 @@ pub struct Tick {
     pub unchanged: bool,
     /// The end has come early (a minimization has converged): all outputs show it, whatever their intervals.
     pub ending: bool,
+    /// A place that a line search tries: no bond breaks or flows there, and none remembers it.
+    pub trial: bool,
     /// Somebody reads the energy at this step.
     pub energy: bool,
     /// Somebody reads the virial at this step.
@@ -235,6 +237,7 @@ impl Tick {
             setup: false,
             unchanged: true,
             ending: false,
+            trial: false,
             energy: false,
             virial: false,
             atom_energy: false,

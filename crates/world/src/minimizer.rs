@@ -118,8 +118,8 @@ impl Default for Fire {
 pub struct Minimizer {
     /// The algorithm.
     pub style: MinStyle,
-    /// How far a coordinate may change in one line search or step [length].
-    pub dmax: f64,
+    /// How far a coordinate may change in one line search or step [length], where a line says so.
+    pub dmax: Option<f64>,
     /// The line search of `cg` and `sd`.
     pub line: LineSearch,
     /// Which length of the forces counts.
@@ -128,11 +128,26 @@ pub struct Minimizer {
     pub fire: Fire,
 }
 
+/// LAMMPS' longest move, meant for units in which atoms are about 1 apart.
+pub const FARTHEST: f64 = 0.1;
+
+impl Minimizer {
+    /// How far a coordinate may change where particles are of this size; where none has a size as in units of which it is 1.
+    pub fn farthest(&self, size: Option<f64>) -> f64 {
+        self.dmax.unwrap_or_else(|| FARTHEST * size.unwrap_or(1.0))
+    }
+
+    /// Whether `min_modify` has changed something.
+    pub fn modified(&self) -> bool {
+        *self != Self { style: self.style, ..Self::default() }
+    }
+}
+
 impl Default for Minimizer {
     fn default() -> Self {
         Self {
             style: MinStyle::default(),
-            dmax: 0.1,
+            dmax: None,
             line: LineSearch::default(),
             norm: ForceNorm::default(),
             fire: Fire::default(),

@@ -38,7 +38,7 @@ pub(super) const MINIMIZE: Entry = (
         text: "Stops when the energy changes by less than the part `ETOL` in an iteration, when the forces together are \
             shorter than `FTOL` [force; force density for peridynamic particles in LAMMPS' convention], after `MAXITER` \
             iterations, or after `MAXEVAL` evaluations of forces (`cg` and `sd` only, as in LAMMPS). `min_style` chooses the \
-            algorithm, `min_modify` its numbers: set `dmax` to the scene's lengths.\n\n\
+            algorithm, `min_modify` its numbers. Where a line search of `cg` or `sd` only looks, no bond breaks or flows; it may where the search ends (LAMMPS: anywhere; so under `-compat lammps`).\n\n\
             Iterations are steps: thermo output, dumps and restart files come at their intervals, and once more where the \
             end is early. The time they show is of no meaning and is not counted by the next run. The log then gives the \
             criterion that ended it, energies and forces before and after.\n\n\

@@ -354,8 +354,8 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             coeffs: &self.coeffs,
             body,
             damped: self.law.damped(),
-            // Nothing breaks in the setup of a run.
-            breaks: self.law.breaks() && !t.setup,
+            // Nothing breaks in the setup of a run, nor where a line search tries.
+            breaks: self.law.breaks() && !t.setup && !t.trial,
             counts: w.bonds.counts_losses && self.law.damped(),
         };
         self.law.law().sweep(&pass, &mut self.out);

@@ -47,7 +47,7 @@ impl Op for Force {
         let Some(mut families) = w.families.take() else { return Ok(()) };
         families.law.dt = t.dt;
         self.pull(w, t, &mut families)?;
-        if !t.setup && !families.broken().is_empty() {
+        if !t.setup && !t.trial && !families.broken().is_empty() {
             take_away(w, &mut families);
         }
         publish(w, &families);
@@ -134,7 +134,7 @@ impl Force {
         }
         let mut f = std::mem::take(&mut w.particles.f);
         let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
-        families.force(&view(w)?, &mut f, !t.setup, tally);
+        families.force(&view(w)?, &mut f, !t.setup && !t.trial, tally);
         w.particles.f = f;
         let (energy, virial) = (sums.energy, sums.virial);
         (w.tally.bond_atom, w.tally.atom_bonds) = (energies, virials);

@@ -24,6 +24,10 @@ pub fn descend(s: &mut Search) -> Result<Stop> {
         if let Some(stop) = line::search(s, &mut line)? {
             return Ok(stop);
         }
+        if s.tries {
+            // What breaks or flows does so here.
+            s.evaluate()?;
+        }
         if s.evaluations >= s.goal.evaluations {
             return Ok(Stop::Evaluations);
         }

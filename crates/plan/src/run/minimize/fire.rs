@@ -70,7 +70,7 @@ fn iterate(s: &mut Search, d: &mut Damping) -> Result<Stop> {
         } else if !slow_down(s, d)? {
             return Ok(Stop::Stuck);
         }
-        limit(s.w, d);
+        limit(s, d);
         if !downhill {
             s.w.particles.v.fill([0.0; 3]);
         }
@@ -135,15 +135,15 @@ fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
 }
 
 /// Shortens this step so that nobody goes further than `dmax`.
-fn limit(w: &World, d: &mut Damping) {
+fn limit(s: &Search, d: &mut Damping) {
     // The unbiased way limits speeds instead.
-    d.limited = if d.set.unbiased { d.dt } else { shortened(w, d.dt) };
+    d.limited = if d.set.unbiased { d.dt } else { shortened(s.w, d.dt, s.farthest) };
 }
 
 /// One step of motion with its evaluation.
 fn step(s: &mut Search, d: &Damping) -> Result<()> {
     let dt = d.limited;
-    let dmax = s.w.settings.minimizer.dmax;
+    let dmax = s.farthest;
     let drift = |w: &mut World, dt: f64| {
         if d.set.unbiased {
             let most = dmax / dt;

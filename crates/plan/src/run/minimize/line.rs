@@ -68,11 +68,11 @@ impl Line {
     }
 
     /// Puts the particles `alpha` along the direction.
-    fn put(&mut self, w: &mut World, alpha: f64) -> Result<()> {
+    fn put(&mut self, w: &mut World, alpha: f64, farthest: f64) -> Result<()> {
         if w.n() != self.start.len() {
             let text = "particles were lost through a fixed face while the energy was minimized";
             return Err(Diagnostic::error(Code::LOST, None, text)
-                .help("let the box follow them with `boundary s s s`, or lower `min_modify dmax`")
+                .help(format!("let the box follow them with `boundary s s s`, or lower `min_modify dmax`, which is {farthest:.3e} here"))
                 .into());
         }
         self.follow(w);
@@ -101,7 +101,7 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
         return Ok(Some(Stop::ZeroForce));
     }
     let quadratic = s.w.settings.minimizer.line == LineSearch::Quadratic;
-    let longest = LONGEST.min(s.w.settings.minimizer.dmax / steepest);
+    let longest = LONGEST.min(s.farthest / steepest);
     let from = s.energy;
     line.hold(s.w);
     // The trial before: step, force along the line, energy.
@@ -142,8 +142,8 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
 }
 
 fn go(s: &mut Search, line: &mut Line, alpha: f64) -> Result<()> {
-    line.put(s.w, alpha)?;
-    s.evaluate()
+    line.put(s.w, alpha, s.farthest)?;
+    s.attempt()
 }
 
 /// Back to the start of the line, whose forces the last output finds; LAMMPS counts that evaluation, and reports the
@@ -154,7 +154,7 @@ fn give_up(
     (shortest, energy): (f64, f64),
     why: Stop,
 ) -> Result<Option<Stop>> {
-    line.put(s.w, 0.0)?;
+    line.put(s.w, 0.0, s.farthest)?;
     s.energy = energy;
     s.evaluations += 1;
     s.alpha = shortest;

@@ -8,7 +8,7 @@ mod quickmin;
 use super::verlet::{cpu_seconds, tick};
 use super::{Made, Outcome, Watch};
 use crate::{Stage, StepPlan, Tick};
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_base::par;
 use perigrain_world::World;
 use perigrain_world::minimizer::{ForceNorm, MinStyle};
@@ -115,6 +115,10 @@ struct Search<'a> {
     /// The time step before FIRE changed it.
     dt: f64,
     interrupted: bool,
+    /// How far a coordinate may change in one line search or step [length].
+    farthest: f64,
+    /// Places on a line are only tried: what can break or flow does so where a line search ends.
+    tries: bool,
 }
 
 /// Minimizes the energy that `read` finds, as the world's settings say; output appears as in a run, iterations being
@@ -131,6 +135,7 @@ pub fn minimize(
 ) -> Result<(Outcome, Stats)> {
     let per = if normalized { w.n().max(1) as f64 } else { 1.0 };
     let (first, dt) = (w.clock.step, w.clock.dt);
+    let farthest = farthest(w);
     let mut s = Search {
         plan,
         w,
@@ -145,8 +150,11 @@ pub fn minimize(
         first,
         dt,
         interrupted: false,
+        farthest,
+        tries: false,
     };
     s.begin()?;
+    s.tries = tries(s.w);
     let (initial, norms) = (s.energy, s.norms());
     s.previous = initial;
     let (clock, cpu) = (Instant::now(), cpu_seconds());
@@ -195,10 +203,10 @@ impl Search<'_> {
     }
 
     /// Forces and energy where the particles are now. Not counted.
-    fn look(&mut self, ending: bool) -> Result<f64> {
+    fn look(&mut self, ending: bool, trial: bool) -> Result<f64> {
         // Values belong to a scene, not to a step: several scenes share one here.
         self.w.slots.invalidate();
-        let mut t = Tick { ending, ..tick(self.w, false) };
+        let mut t = Tick { ending, trial, ..tick(self.w, false) };
         if self.w.settings.lammps() {
             // Springs of contacts grow there by the time step that the deck named, whatever FIRE makes of it.
             t.dt = self.dt;
@@ -206,13 +214,20 @@ impl Search<'_> {
         self.plan.ask(&mut t);
         let forces = [Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce, Stage::EndOfStep];
         let (plan, w) = (&mut *self.plan, &mut *self.w);
-        par::inside(|| plan.run(w, &t, &forces))?;
+        par::inside(|| plan.run(w, &t, &forces)).map_err(|e| thrown(e, self.farthest))?;
         Ok((self.read)(self.w))
     }
 
     /// As `look`, counted and kept as the present energy.
     fn evaluate(&mut self) -> Result<()> {
-        self.energy = self.look(false)?;
+        self.energy = self.look(false, false)?;
+        self.evaluations += 1;
+        Ok(())
+    }
+
+    /// As `evaluate`, of a place that a line search tries.
+    fn attempt(&mut self) -> Result<()> {
+        self.energy = self.look(false, self.tries)?;
         self.evaluations += 1;
         Ok(())
     }
@@ -250,7 +265,7 @@ impl Search<'_> {
     /// The end came early: all outputs show the last scene, whatever their intervals.
     fn last_output(&mut self) -> Result<()> {
         self.w.clock.last = self.w.clock.step;
-        self.energy = self.look(true)?;
+        self.energy = self.look(true, false)?;
         let mut t = Tick { ending: true, ..tick(self.w, false) };
         self.plan.ask(&mut t);
         self.plan.run(self.w, &t, &[Stage::Output])
@@ -286,6 +301,35 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// How far a coordinate may change: LAMMPS' 0.1 knows no particles.
+fn farthest(w: &World) -> f64 {
+    let least = |list: &[f64]| list.iter().copied().filter(|a| *a > 0.0).reduce(f64::min);
+    let grain = least(&w.particles.radius).map(|r| 2.0 * r);
+    let site = least(&w.particles.volume).map(f64::cbrt);
+    let size = grain.into_iter().chain(site).reduce(f64::min).filter(|_| !w.settings.lammps());
+    w.settings.minimizer.farthest(size)
+}
+
+/// Whether places of a line search are only tried: where bonds may break or flow. LAMMPS lets them do so wherever it looks.
+fn tries(w: &World) -> bool {
+    let line = matches!(w.settings.minimizer.style, MinStyle::Cg | MinStyle::Sd);
+    let bonds = !w.bonds.list.is_empty() || w.families.as_ref().is_some_and(|f| f.change());
+    line && bonds && !w.settings.lammps()
+}
+
+/// Lost particles have mostly been thrown: says how far they may go.
+fn thrown(e: Diagnostics, farthest: f64) -> Diagnostics {
+    let named = |d: Diagnostic| {
+        match d.code == Code::LOST {
+        true => d.help(format!(
+            "or lower `min_modify dmax`: in one line search or step a coordinate may change by {farthest:.3e} here"
+        )),
+        false => d,
+    }
+    };
+    Diagnostics(e.0.into_iter().map(named).collect())
+}
+
 /// v ← v + f/m · dt, then v ← a v + b f.
 fn kick(w: &mut World, dt: f64, mix: Option<(f64, f64)>) {
     let factor = dt * w.settings.units.constants().ftm2v;
@@ -301,10 +345,10 @@ fn kick(w: &mut World, dt: f64, mix: Option<(f64, f64)>) {
     });
 }
 
-/// This time step, or the one in which nobody goes further than `dmax`.
-fn shortened(w: &World, dt: f64) -> f64 {
-    let (fastest, dmax) = (largest(&w.particles.v), w.settings.minimizer.dmax);
-    if dt * fastest > dmax { dmax / fastest } else { dt }
+/// This time step, or the one in which no coordinate changes by more than `farthest`.
+fn shortened(w: &World, dt: f64, farthest: f64) -> f64 {
+    let fastest = largest(&w.particles.v);
+    if dt * fastest > farthest { farthest / fastest } else { dt }
 }
 
 /// x ← x + v · dt.

@@ -29,7 +29,7 @@ pub fn relax(s: &mut Search) -> Result<Stop> {
                 *v = f.map(|f| scale * f);
             }
         }
-        let step = shortened(s.w, s.w.clock.dt);
+        let step = shortened(s.w, s.w.clock.dt, s.farthest);
         s.previous = s.energy;
         drift(s.w, step);
         kick(s.w, step, None);
