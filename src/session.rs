@@ -377,8 +377,16 @@ impl Session {
                 _ => {}
             }
         }
-        let outcome = self.within_limits(cmd).and_then(|()| self.command(script, cmd));
+        let stop = self.heeded();
+        if stop.is_late() {
+            return self.cut_short(&stop, line, cmd.span, &Diagnostics::default()).map(|()| None);
+        }
+        let outcome = stop.heed(|| self.within_limits(cmd).and_then(|()| self.command(script, cmd)));
         self.say_notes()?;
+        if stop.has_cut() {
+            let told = outcome.err().unwrap_or_default();
+            return self.cut_short(&stop, line, cmd.span, &told).map(|()| None);
+        }
         outcome
             .map_err(|e| checking::with_origins(belongs::told(self.sources.adopt(e), cmd).at(cmd.span), cmd))
     }

@@ -40,6 +40,7 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the program with the words of the command line.
 pub fn main() -> ExitCode {
+    signals::outlive_large_files();
     ExitCode::from(work())
 }
 

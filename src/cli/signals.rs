@@ -1,16 +1,37 @@
-//! Requests of the system to end: of a queue at its time limit, of `kill`, of a terminal that is closed.
+//! Requests of the system to end: of a queue at its time limit, of `kill`, of a terminal that is closed; and limits of the shell.
 
 /// Calls `ask` for each of them, on a thread of its own. One that the caller has switched off, as `nohup` does, stays so.
 #[cfg(unix)]
 pub fn listen(ask: impl Fn() + Send + 'static) {
-    use signal_hook::consts::{SIGHUP, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGTERM, SIGXCPU};
     let ignored = ignored();
-    let wanted =
-        [SIGTERM, SIGHUP].into_iter().filter(|s| ignored.is_some_and(|mask| mask >> (s - 1) & 1 == 0));
+    let wanted = [SIGTERM, SIGHUP, SIGXCPU]
+        .into_iter()
+        .filter(|s| ignored.is_some_and(|mask| mask >> (s - 1) & 1 == 0));
     // Without a handler they end the program as they always did.
     let Ok(mut signals) = signal_hook::iterator::Signals::new(wanted) else { return };
-    std::thread::spawn(move || signals.forever().for_each(|_| ask()));
+    std::thread::spawn(move || {
+        // Past its limit of processor time (`ulimit -t`) a program gets that signal again every second.
+        let mut spent = false;
+        for signal in signals.forever() {
+            if signal != SIGXCPU || !std::mem::replace(&mut spent, true) {
+                ask();
+            }
+        }
+    });
 }
+
+/// A file that outgrows the limit for files (`ulimit -f`) fails as on a full disk: the write returns an error, and the signal
+/// that would end the program at once does nothing.
+#[cfg(unix)]
+pub fn outlive_large_files() {
+    // A handler, as commands that a deck starts would inherit a signal that is ignored. Without one all is as it was.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
+}
+
+/// Nothing to outlive.
+#[cfg(not(unix))]
+pub fn outlive_large_files() {}
 
 /// Nothing to listen to.
 #[cfg(not(unix))]

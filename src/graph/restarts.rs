@@ -115,7 +115,7 @@ impl Restarts {
         let mut ops: Vec<Box<dyn Op>> = vec![];
         for (rhythm, names) in each.into_iter().chain(turn) {
             let (pair, declared) = (graph.force_lines(), graph.declared());
-            ops.push(Box::new(Write { when: rhythm.when(s)?, names, pair, declared }));
+            ops.push(Box::new(Write { when: rhythm.when(s)?, names, pair, declared, written: None }));
         }
         Ok(ops)
     }
@@ -145,12 +145,14 @@ enum Names {
     Turn([PathBuf; 2]),
 }
 
-/// Writes a restart file at its steps, but not where a run begins.
+/// Writes a restart file at its steps, but not where a run begins; and where a run ended early.
 struct Write {
     when: When,
     names: Names,
     pair: Vec<Said>,
     declared: Vec<String>,
+    /// The step of the last file.
+    written: Option<i64>,
 }
 
 impl Op for Write {
@@ -163,7 +165,8 @@ impl Op for Write {
         }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if t.step == t.first {
+        let passes = if t.ending { self.written == Some(t.step) } else { t.step == t.first };
+        if passes {
             return Ok(());
         }
         let path: PathBuf = match &self.names {
@@ -174,22 +177,22 @@ impl Op for Write {
                 files[usize::from(next)].clone()
             }
         };
-        save(&path, w, true, true, &self.pair, &self.declared)
+        save(&path, w, true, &self.pair, &self.declared)?;
+        self.written = Some(t.step);
+        Ok(())
     }
 }
 
-/// Writes a restart file of a scene.
+/// Writes a restart file of a scene, at whole steps of a run (`ran`) or between runs: the only way to one.
+///
+/// Forces stand while a run goes on, and after it as long as no line changes the scene. A minimization leaves none: velocities
+/// may change before the next run.
 ///
 /// # Errors
 /// The disk's.
-pub fn save(
-    path: &Path,
-    w: &World,
-    ran: bool,
-    standing: bool,
-    pair: &[Said],
-    declared: &[String],
-) -> Result<()> {
+pub fn save(path: &Path, w: &World, ran: bool, pair: &[Said], declared: &[String]) -> Result<()> {
+    let ran = ran && !w.clock.minimizing;
+    let standing = ran && (w.clock.running || !w.parts.changed);
     write(path, &Saving { world: w, ran, standing, pair, declared })
 }
 

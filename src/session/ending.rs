@@ -2,19 +2,25 @@
 
 use super::Session;
 use crate::human::{about, bytes, count, duration};
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_base::par;
+use perigrain_base::stop::Stop;
 use perigrain_lang::Line;
 use perigrain_out::log::Log;
 use perigrain_plan::run::verlet::Outcome;
 use perigrain_plan::{OpClass, StepPlan};
 use perigrain_world::memory;
+use std::time::Duration;
 
 /// Files that are named one by one; of more the number is told.
 const NAMED: usize = 6;
 
 /// A share of the time from which it is worth a word.
 const MUCH: f64 = 0.25;
+
+/// How much longer than `-timeout` says a line may be at work: a tenth of the limit within these bounds.
+const LEAST_GRACE: Duration = Duration::from_secs(2);
+const MOST_GRACE: Duration = Duration::from_secs(60);
 
 /// Particles for which several threads pay.
 const MANY: usize = 2000;
@@ -80,13 +86,57 @@ impl Session {
         }
     }
 
-    /// Says that a line was the last one because somebody asked for an end; a run says so itself.
-    pub(super) fn say_interrupted(&self, line: &Line) -> Result<()> {
-        let place = line.command.as_ref().map(|cmd| cmd.span).filter(|span| self.prompt != Some(span.file));
-        let text = place.map_or("Interrupted".into(), |span| {
-            let name = self.sources.get(span.file).map_or("", |source| &source.name);
-            let (row, _) = self.sources.place(span);
-            format!("Interrupted behind {name}:{row}: no further line is worked off")
+    /// What ends a line before it is done: a signal, or the limit of `-timeout` where that is past for a while.
+    pub(super) fn heeded(&self) -> Stop {
+        let limit = self.options.limit.as_ref();
+        // A `timer timeout` in the deck has the last word.
+        let given = limit.zip(self.world.settings.deadline).filter(|(l, end)| self.born + l.time == *end);
+        let deadline = given.map(|(l, end)| end + (l.time / 10).clamp(LEAST_GRACE, MOST_GRACE));
+        Stop::new(self.stop_flag(), deadline)
+    }
+
+    /// What becomes of a line that was given up.
+    ///
+    /// # Errors
+    /// At the prompt, where the line is taken back; and at the limit of time, as the deck is not done.
+    pub(super) fn cut_short(
+        &mut self,
+        stop: &Stop,
+        line: &Line,
+        span: Span,
+        told: &Diagnostics,
+    ) -> Result<()> {
+        let told: Vec<&Diagnostic> = told.0.iter().filter(|d| d.code == Code::INTERRUPTED).collect();
+        if stop.is_late() {
+            let text = "the limit of `-timeout` has passed, and this line is not done";
+            let text = told.iter().fold(text.to_string(), |text, d| format!("{text}: {}", d.message));
+            return fail(Code::INTERRUPTED, span, text);
+        }
+        if self.prompt == Some(span.file) {
+            return fail(Code::INTERRUPTED, span, "interrupted: this line was not done");
+        }
+        self.interrupted = true;
+        let place = self.place_of(line).unwrap_or_default();
+        self.options.log.line(&format!("Interrupted in {place}: this line is not done, and none follows"))?;
+        let details = told.iter().filter(|d| !d.help.is_empty());
+        details.map(|d| self.options.log.line(&format!("  {}; {}", d.message, d.help.join("; ")))).collect()
+    }
+
+    /// The file and row of a line that was not typed.
+    fn place_of(&self, line: &Line) -> Option<String> {
+        let span = line.command.as_ref().map(|cmd| cmd.span).filter(|span| self.prompt != Some(span.file))?;
+        let name = self.sources.get(span.file).map_or("", |source| &source.name);
+        Some(format!("{name}:{}", self.sources.place(span).0))
+    }
+
+    /// Says that a line was the last one because a signal asked for an end; a run says so itself. What the last run left is
+    /// saved if the scene is still as it was then.
+    pub(super) fn say_interrupted(&mut self, line: &Line) -> Result<()> {
+        if let Some(plan) = self.plan.as_mut().filter(|_| self.ran && !self.world.parts.changed) {
+            plan.part(&mut self.world)?;
+        }
+        let text = self.place_of(line).map_or("Interrupted".into(), |place| {
+            format!("Interrupted behind {place}: no further line is worked off")
         });
         self.options.log.line(&text)
     }

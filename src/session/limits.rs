@@ -33,13 +33,14 @@ impl Session {
         problem.map_or(Ok(()), |d| Err(d.at(cmd.span).into()))
     }
 
-    /// Refuses a run that makes more steps than the deck may make in all.
+    /// Refuses a run that makes more steps, each of `short` short ones, than the deck may make in all.
     ///
     /// # Errors
     /// It does.
-    pub(super) fn steps_left(&self, steps: i64, span: Span) -> Result<()> {
-        let all = self.made as f64 + steps as f64;
-        let what = format!("{steps} steps after {}", self.made);
+    pub(super) fn steps_left(&self, steps: i64, short: i64, span: Span) -> Result<()> {
+        let all = self.made as f64 + steps as f64 * short as f64;
+        let of = if short > 1 { format!(" of {short} short ones each") } else { String::new() };
+        let what = format!("{steps} steps{of} after {}", self.made);
         gate::beyond(all, |l| l.steps, "steps", &what).map_or(Ok(()), |d| Err(d.at(span).into()))
     }
 }

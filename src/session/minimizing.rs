@@ -8,7 +8,7 @@ use perigrain_base::math::cformat::{Format, Value, general};
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command};
 use perigrain_plan::explain;
-use perigrain_plan::run::minimize::{self, Goal, Stats};
+use perigrain_plan::run::minimize::{self, Goal, Stats, Stop};
 use perigrain_styles::matter::check_masses;
 use perigrain_world::minimizer::MinStyle;
 use perigrain_world::{Halt, NeighborSettings};
@@ -24,7 +24,7 @@ impl Session {
             evaluations: args.integer_from(0, "the most evaluations of forces")?,
         };
         args.finish()?;
-        self.steps_left(goal.iterations, cmd.span)?;
+        self.steps_left(goal.iterations, 1, cmd.span)?;
         self.made = self.made.saturating_add(goal.iterations);
         self.thermo_computes();
         self.record(cmd, Role::Run, None, vec![], vec![]);
@@ -92,10 +92,10 @@ impl Session {
             let total = energy.map_or(0.0, |e| e.get(w));
             if normalized { total / w.n().max(1) as f64 } else { total }
         };
-        self.world.clock.running = true;
+        (self.world.clock.running, self.world.clock.named_dt) = (true, Some(self.world.clock.dt));
         let watch = self.watch.as_mut();
         let outcome = minimize::minimize(&mut plan, &mut self.world, watch, (&read, normalized), goal);
-        self.world.clock.running = false;
+        (self.world.clock.running, self.world.clock.named_dt) = (false, None);
         // Energies belong to the scene now; the next run computes forces anew, as velocities may have changed since.
         self.world.parts.changed &= outcome.is_err();
         let finished = plan.finish(&mut self.world);
@@ -103,6 +103,9 @@ impl Session {
         finished?;
         self.ran = false;
         self.interrupted |= outcome.interrupted;
+        if outcome.interrupted || stats.stop != Stop::Iterations {
+            plan.part(&mut self.world)?;
+        }
         self.say_end(&plan, &outcome, Some(&block(&stats)), self.timer.tables())?;
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;

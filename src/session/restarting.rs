@@ -46,10 +46,9 @@ impl Session {
     pub(super) fn save_restart(&mut self, name: &str) -> Result<()> {
         let name = pattern(name)?;
         self.world.spread_type_masses();
-        let standing = self.ran && !self.world.parts.changed;
         let path = name.at(self.world.clock.step);
         let (pair, declared) = (self.graph.force_lines(), self.graph.declared());
-        save(&path, &self.world, self.ran, standing, &pair, &declared)
+        save(&path, &self.world, self.ran, &pair, &declared)
     }
 
     /// Where nothing is written: files that a line would have written, for the lines that read them.

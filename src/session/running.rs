@@ -160,7 +160,7 @@ impl Session {
             return refuse(Code::BAD_VALUE, span, format!("a run cannot make {steps} steps"));
         }
         out.steps = steps;
-        self.steps_left(steps, span)?;
+        self.steps_left(steps, self.world.settings.run_style.short_steps(), span)?;
         let first = self.world.clock.step;
         let Some(last) = first.checked_add(steps) else {
             let text =
@@ -347,11 +347,18 @@ impl Session {
         let finished = plan.finish(&mut self.world);
         self.world.fall_back();
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
-        let outcome = outcome.map_err(|e| e.at(span))?;
+        let (outcome, used_up) = outcome.map_err(|e| e.at(span))?;
         finished?;
         self.ran = true;
-        self.made = self.made.saturating_add(outcome.steps);
+        let short = self.world.settings.run_style.short_steps();
+        self.made = self.made.saturating_add(outcome.steps.saturating_mul(short));
         self.interrupted |= outcome.interrupted;
+        if outcome.interrupted || (self.world.clock.halt == Halt::All && self.world.settings.timed_out()) {
+            plan.part(&mut self.world).map_err(|e| e.at(span))?;
+        }
+        if let Some(d) = used_up {
+            return Err(d.at(span).into());
+        }
         self.say_notes()?;
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
         self.say_deep(span)?;
@@ -365,25 +372,32 @@ impl Session {
         Ok(())
     }
 
-    fn steps(&mut self, plan: &mut StepPlan, unchanged: bool, pace: &Pace) -> Result<verlet::Outcome> {
+    /// The setup and the steps of a run; also why it ended early, if it used up what a deck may use.
+    fn steps(
+        &mut self,
+        plan: &mut StepPlan,
+        unchanged: bool,
+        pace: &Pace,
+    ) -> Result<(verlet::Outcome, Option<Diagnostic>)> {
         let timed = self.timer.tables() || self.options.mode == Mode::Measure;
         pace.setup(plan, &mut self.world, unchanged)?;
         // What is wrong from the first step on is told before it.
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         self.say_notes()?;
+        self.options.log.flush()?;
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         plan.reset_meters(timed);
         watch.begins(w);
         w.clock.began = Some(Instant::now());
         if gate::limits().is_none() {
-            return pace.run(plan, w, watch);
+            return Ok((pace.run(plan, w, watch)?, None));
         }
         if let Some(d) = gate::too_much_memory() {
             return Err(d.into());
         }
         let mut warden = Warden { watch, stop: w.settings.stop.clone(), problem: None };
         let outcome = pace.run(plan, w, &mut warden)?;
-        warden.problem.map_or(Ok(outcome), |d| Err(d.into()))
+        Ok((outcome, warden.problem))
     }
 
     /// What a run, or a minimization with its own block of text, says at its end.

@@ -2,8 +2,11 @@
 
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::stop;
 use perigrain_lang::{Args, Command, Word};
 use std::path::Path;
+use std::process::{Child, ExitStatus};
+use std::time::Duration;
 
 impl Session {
     /// The `shell` command. What fails there is a warning, as in LAMMPS: the deck goes on.
@@ -92,8 +95,8 @@ impl Session {
         let line: Vec<&str> = std::iter::once(what).chain(words).map(|w| w.text.as_str()).collect();
         let line = line.join(" ");
         let mut shell = std::process::Command::new("sh");
-        let status = shell.arg("-c").arg(&line).envs(self.vars.environment()).status();
-        match status {
+        let child = shell.arg("-c").arg(&line).envs(self.vars.environment()).spawn();
+        match child.and_then(waited) {
             Ok(s) if s.success() => {}
             Ok(s) => self.warn(span, format!("`{line}` ended with {s}")),
             Err(e) => self.warn(span, format!("`{line}` could not be started: {e}")),
@@ -108,5 +111,21 @@ impl Session {
 
     fn warn(&mut self, span: Span, text: String) {
         self.notes.push(Diagnostic::warning(Code::SUSPICIOUS, span, text));
+    }
+}
+
+/// Waits for a command, and ends it where a signal asks the deck to end.
+fn waited(mut child: Child) -> std::io::Result<ExitStatus> {
+    let mut pause = Duration::from_micros(200);
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status);
+        }
+        if stop::cuts() {
+            child.kill()?;
+            return child.wait();
+        }
+        std::thread::sleep(pause);
+        pause = (2 * pause).min(Duration::from_millis(20));
     }
 }

@@ -3,7 +3,7 @@
 mod forged;
 mod kill;
 mod refusals;
-mod scenes;
+pub mod scenes;
 
 use perigrain::out::log::{Buffer, Log};
 use perigrain::session::{Options, Session};
@@ -23,7 +23,7 @@ fn run(folder: &Path, deck: &str, list: bool) -> (World, String) {
 }
 
 /// Thermo rows by step.
-fn rows(said: &str) -> Vec<(i64, String)> {
+pub fn rows(said: &str) -> Vec<(i64, String)> {
     let numbers =
         |l: &&str| l.split_whitespace().count() > 1 && l.split_whitespace().all(|w| w.parse::<f64>().is_ok());
     said.lines()
@@ -32,7 +32,7 @@ fn rows(said: &str) -> Vec<(i64, String)> {
         .collect()
 }
 
-fn bits(w: &World) -> Vec<u64> {
+pub fn bits(w: &World) -> Vec<u64> {
     let p = &w.particles;
     let vectors = [&p.x, &p.v, &p.f, &p.omega, &p.torque, &p.x0].into_iter().flatten().flatten();
     let scalars = [&p.mass, &p.radius, &p.volume].into_iter().flatten();
@@ -41,7 +41,7 @@ fn bits(w: &World) -> Vec<u64> {
 }
 
 /// Broken bonds and history, as text.
-fn memory(w: &World) -> String {
+pub fn memory(w: &World) -> String {
     let bonds = w.families.as_ref().map(|f| {
         let alive: Vec<_> = f.lattices.iter().map(|b| &b.alive).collect();
         format!("{alive:?} {:?} {:?}", f.list.alive, f.damaged)

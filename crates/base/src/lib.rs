@@ -12,4 +12,5 @@ pub mod gate;
 pub mod math;
 pub mod memory;
 pub mod par;
+pub mod stop;
 pub mod units;

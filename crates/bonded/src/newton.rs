@@ -116,7 +116,7 @@ impl Body<'_> {
     pub fn relax(&self, start: Vec<Six>, end: End) -> Found {
         let mut out = self.begin(start);
         let (mut forcing, mut coarse) = (FORCING, None);
-        while out.residuals.len() <= STEPS {
+        while out.residuals.len() <= STEPS && !perigrain_base::stop::cuts() {
             let before = out.residuals.last().copied().unwrap_or(0.0);
             if let End::Residuals([_, least]) = end
                 && before < least

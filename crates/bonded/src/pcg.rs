@@ -152,7 +152,7 @@ pub fn solve(
         if stop(&progress) {
             return out;
         }
-        if out.iterations >= most {
+        if out.iterations >= most || perigrain_base::stop::cuts() {
             out.done = false;
             return out;
         }

@@ -8,6 +8,7 @@ use super::six::{Matrix6, PIVOT, Packed, at, full};
 use super::tensor::VOIGT;
 use perigrain_base::math::vec3::{Vec3, add, dot, scale, sub};
 use perigrain_base::par;
+use perigrain_base::stop;
 
 /// A vector for each of the six load cases, fluctuations φ or forces: all x, all y, all z.
 type Six3 = [f64; 18];
@@ -41,6 +42,9 @@ impl Estimate {
         // The first sweep begins with what follows the strain.
         (out.own, out.other) = (vec![[0.0; 18]; network.particles], vec![[0.0; 18]; network.particles]);
         for _ in 0..order {
+            if stop::cuts() {
+                break;
+            }
             std::mem::swap(&mut out.own, &mut out.other);
             sweep(network, &inverse, &out.other, &mut out.own);
         }

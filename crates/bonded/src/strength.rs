@@ -105,7 +105,7 @@ pub fn crumble(
     let mut coarse = None;
     let (mut alive, mut highest, mut reached) = (vec![true; network.bonds()], 0.0, 0.0f64);
     let mut shares = vec![0.0; network.bonds()];
-    while out.breaks.len() < limits.most {
+    while out.breaks.len() < limits.most && !perigrain_base::stop::cuts() {
         par::each((&mut shares[..], &alive[..]), |first, (shares, alive)| {
             for (k, (out, alive)) in shares.iter_mut().zip(alive).enumerate() {
                 *out = if *alive { share(first + k, &network.borne(first + k, &field)) } else { 0.0 };

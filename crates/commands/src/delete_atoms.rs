@@ -4,6 +4,7 @@ use super::create_atoms::subset::{Amount, Subset};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
+use perigrain_base::stop;
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_styles::common::{self, bad_keyword, on_particles, unknown_style};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
@@ -206,6 +207,9 @@ fn overlapping(p: &Particles, domain: &Domain, cutoff: f64, first: GroupId, seco
     let is = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
     let mut marked = vec![false; p.len()];
     for i in (0..p.len()).filter(|&i| is(i, first)) {
+        if stop::cuts_at(i) {
+            break;
+        }
         marked[i] = cells.any_near(p.x[i], |j, y, image| {
             let apart = (0..3).map(|d| (p.x[i][d] - y[d]).powi(2)).sum::<f64>();
             if (j == i && !image) || apart >= cutoff * cutoff || !is(j, second) {

@@ -3,11 +3,11 @@
 mod respa;
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
 use perigrain_styles::{BuildCx, Doc, Style};
-use perigrain_world::{RunStyle, World};
+use perigrain_world::{MOST_SHORT, RunStyle, World};
 
 /// The command.
 pub struct RunStyleCommand;
@@ -111,12 +111,28 @@ fn put(w: &mut World, style: RunStyle) {
     }
 }
 
+/// Refuses a step that would last for ever: a run ends at whole steps.
+fn refuse_many(short: i64, span: Span) -> Result<()> {
+    if short <= MOST_SHORT {
+        return Ok(());
+    }
+    let text = format!("{short} of the shortest steps would fill one of the longest, {MOST_SHORT} may");
+    Err(Diagnostic::error(Code::BAD_VALUE, span, text)
+        .help("a longer shortest step, or a shorter `timestep`: runs, output and restart files know whole steps only")
+        .into())
+}
+
 fn staggered(a: &mut Args, cx: &BuildCx) -> Result<RunStyle> {
     let (mut ratio, mut rare, mut twice) = (None, false, None);
     while let Some(word) = a.next() {
         match word.text.as_str() {
             "m" if a.eat("auto") => ratio = None,
-            "m" => ratio = Some(a.integer_from(1, "the number of short steps in a long one, or auto")?),
+            "m" => {
+                let span = a.here();
+                let m = a.integer_from(1, "the number of short steps in a long one, or auto")?;
+                refuse_many(m, span)?;
+                ratio = Some(m);
+            }
             "faster" => rare = a.choice("side with the shorter steps", &["solids", "grains"])? == "grains",
             "scheme" => {
                 if a.choice("scheme", &["kick", "hartmann"])? == "hartmann" {

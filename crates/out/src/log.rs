@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::file;
 use super::rows::{Row, Tables};
@@ -43,6 +44,8 @@ pub struct Log(Arc<Mutex<Inner>>);
 struct Inner {
     screen: Option<Box<dyn Write + Send>>,
     file: Option<(PathBuf, BufWriter<File>)>,
+    /// When the file was last handed to the system.
+    handed: Instant,
     /// The file, if another process was writing it when it was opened and nobody has been told.
     shared: Option<PathBuf>,
     echo: Echo,
@@ -53,6 +56,9 @@ struct Inner {
     /// Set where the screen wants few words: how many characters fit beside each other.
     width: Option<Width>,
 }
+
+/// Lines that come faster than this are handed to the system together.
+const RARELY: Duration = Duration::from_millis(100);
 
 /// How many characters fit beside each other on a screen, asked each time.
 type Width = Box<dyn Fn() -> usize + Send>;
@@ -72,7 +78,9 @@ impl Log {
     /// A log with this screen (`None`: silent) and no file yet.
     pub fn new(screen: Option<Box<dyn Write + Send>>) -> Self {
         let (shared, tables, last_row, width) = (None, None, false, None);
-        let inner = Inner { screen, file: None, shared, echo: Echo::default(), tables, last_row, width };
+        let handed = Instant::now();
+        let inner =
+            Inner { screen, file: None, handed, shared, echo: Echo::default(), tables, last_row, width };
         Self(Arc::new(Mutex::new(inner)))
     }
 
@@ -236,7 +244,13 @@ impl Inner {
     /// A file that cannot be written is reported once and then dropped.
     fn record(&mut self, line: &str) -> Result<()> {
         let Some((_, file)) = &mut self.file else { return Ok(()) };
-        let outcome = writeln!(file, "{line}");
+        let mut outcome = writeln!(file, "{line}");
+        // Whoever looks into the file sees each row of a slow run, and what is left when the program is killed; loops of a
+        // deck that echo a million lines need not wait for the system at each.
+        if outcome.is_ok() && self.handed.elapsed() >= RARELY {
+            outcome = file.flush();
+            self.handed = Instant::now();
+        }
         self.report(outcome)
     }
 
@@ -357,6 +371,18 @@ mod tests {
         assert_eq!(within("results: a_long_name.txt b", 8), "results:\n  a_long_name.txt\n  b");
         assert_eq!(within("  Step   Temp   ", 13), "  Step   Temp");
         assert_eq!(within("  a_long_name.txt b", 8), "  a_long_name.txt\n  b");
+    }
+
+    #[test]
+    fn a_row_of_a_slow_run_is_in_the_file_at_once() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.log");
+        let log = Log::silent();
+        log.open(&path, false).unwrap();
+        log.line("quick").unwrap();
+        std::thread::sleep(RARELY);
+        log.line("slow").unwrap();
+        assert_eq!(read(&path), "quick\nslow\n");
     }
 
     #[test]

@@ -28,6 +28,7 @@ use crate::list;
 use crate::list::kernel::Rules;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::{self, Shared};
+use perigrain_base::stop;
 
 impl Families {
     /// Finds all bonds: partners closer than the horizon of their types in the present positions. They are
@@ -49,8 +50,10 @@ impl Families {
             families.spacing = spacings(view, table, options.lattice_spacing);
         }
         check_box(view, detect::reach(table, &options, &families.spacing))?;
+        stop::check()?;
         families.lay_out(view);
         families.number_places();
+        stop::check()?;
         families.refresh(view, table);
         if options.weights.any() {
             let Self { list, law, options, spacing, .. } = &mut families;
@@ -59,6 +62,7 @@ impl Families {
         if families.law.kind.has_states() {
             families.weigh(view, &families.cell_before());
         }
+        stop::check()?;
         let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
         let finest = families.spacing.iter().copied().reduce(f64::min).unwrap_or(1.0);
         families.start_near(finest * reaches.fold(f64::INFINITY, f64::min));

@@ -285,7 +285,7 @@ pub struct About {
     pub fuses: bool,
     /// Whether `run` can begin the next step as well, where [`Tick::on`] asks for it.
     pub goes_on: bool,
-    /// Whether it acts too where a run is ended from outside before its last step: what saves the run.
+    /// Whether it acts too, once the run is over, where that ended before its last step ([`Tick::ending`]): what saves the run.
     pub at_parting: bool,
     /// The row of the timing table.
     pub class: OpClass,

@@ -221,6 +221,10 @@ impl StepPlan {
             {
                 continue;
             }
+            if t.ending && p.about.at_parting {
+                // It acts once the run is over.
+                continue;
+            }
             let ends = t.ending && p.about.stage == Stage::Output && p.about.when != When::Never;
             if ends || self.fires(&p.about.when, t) {
                 let clock = match self.ops[k].about.when {
@@ -255,18 +259,15 @@ impl StepPlan {
         Ok(())
     }
 
-    /// Runs what saves a run that ends before its last step, unless it acted at this step.
+    /// Runs what saves a run that ended before its last step. The plan is finished by then: what its ops held of the scene
+    /// is back in the world.
     ///
     /// # Errors
     /// The first op's that fails, with the place of its command.
-    pub fn part(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        for k in 0..self.ops.len() {
-            let about = &self.ops[k].about;
-            if about.at_parting && !self.fires(&about.when, t) {
-                self.ops[k].alone(w, t, &mut Stopwatch::all(), |op, w| op.run(w, t))?;
-            }
-        }
-        Ok(())
+    pub fn part(&mut self, w: &mut World) -> Result<()> {
+        let t = Tick { ending: true, ..Tick::between_runs(&w.clock) };
+        let saving = self.ops.iter_mut().filter(|p| p.about.at_parting);
+        saving.map(|p| p.alone(w, &t, &mut Stopwatch::all(), |op, w| op.run(w, &t))).collect()
     }
 
     /// Runs what acts at the end of steps at the first tick of a run without motion: those that act in no setup too.

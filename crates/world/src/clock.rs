@@ -1,7 +1,10 @@
 //! Time: the step counter, the step size and what has elapsed.
 
 /// Where a run stands in time.
+///
+/// Stored as between runs, at whatever step of one it is stored: files of one step differ in nothing.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(from = "Stored", into = "Stored")]
 pub struct Clock {
     /// Present step.
     pub step: i64,
@@ -20,18 +23,72 @@ pub struct Clock {
     /// Step at which `run … stop` ends (for ramps); the last step by default.
     pub stop: i64,
     /// When the present run's steps began, for the keyword `cpu`.
-    #[serde(skip)]
     pub began: Option<std::time::Instant>,
     /// Whether a run is going on.
     pub running: bool,
     /// The steps since `time_step` were iterations of a minimization: the next run does not count their time.
-    #[serde(default)]
     pub minimizing: bool,
+    /// The step size that the deck named, while a minimization has one of its own [time].
+    pub named_dt: Option<f64>,
     /// The run goes on without a setup of its own (`pre no`).
-    #[serde(skip)]
     pub onward: bool,
     /// Whether a fix has ended the run.
     pub halt: Halt,
+}
+
+/// A [`Clock`] as restart files have it.
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "Clock")]
+struct Stored {
+    step: i64,
+    dt: f64,
+    time_base: f64,
+    time_step: i64,
+    first: i64,
+    last: i64,
+    start: i64,
+    stop: i64,
+    running: bool,
+    #[serde(default)]
+    minimizing: bool,
+    halt: Halt,
+}
+
+impl From<Clock> for Stored {
+    fn from(c: Clock) -> Self {
+        Self {
+            step: c.step,
+            dt: c.named_dt.unwrap_or(c.dt),
+            time_base: c.time_base,
+            time_step: c.time_step,
+            first: c.first,
+            last: c.step,
+            start: c.start,
+            stop: if c.stop == c.last { c.step } else { c.stop },
+            running: false,
+            minimizing: c.minimizing,
+            halt: Halt::No,
+        }
+    }
+}
+
+impl From<Stored> for Clock {
+    fn from(s: Stored) -> Self {
+        Self {
+            step: s.step,
+            dt: s.dt,
+            time_base: s.time_base,
+            time_step: s.time_step,
+            first: s.first,
+            last: s.last,
+            start: s.start,
+            stop: s.stop,
+            running: s.running,
+            minimizing: s.minimizing,
+            halt: s.halt,
+            ..Self::default()
+        }
+    }
 }
 
 /// What `fix halt` has said.
@@ -60,6 +117,7 @@ impl Default for Clock {
             began: None,
             running: false,
             minimizing: false,
+            named_dt: None,
             onward: false,
             halt: Halt::No,
         }

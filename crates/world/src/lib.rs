@@ -73,7 +73,7 @@ pub use properties::Properties;
 pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
 pub use resume::{Resume, Said};
-pub use settings::{Compat, NeighborSettings, Newton, Respa, RunStyle, Settings};
+pub use settings::{Compat, MOST_SHORT, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;

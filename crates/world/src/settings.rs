@@ -115,6 +115,9 @@ pub struct Respa {
     pub subs: Option<Vec<usize>>,
 }
 
+/// The most short steps that may fill a long one.
+pub const MOST_SHORT: i64 = 1_000_000;
+
 impl Respa {
     /// How many steps of a level the longest step holds.
     pub fn steps(&self, level: usize) -> i64 {
@@ -147,6 +150,15 @@ pub enum RunStyle {
 }
 
 impl RunStyle {
+    /// How many short steps fill a long one; 1 where the scene decides.
+    pub fn short_steps(&self) -> i64 {
+        match self {
+            RunStyle::Verlet | RunStyle::Staggered { rare: true, .. } => 1,
+            RunStyle::Staggered { ratio, .. } => ratio.unwrap_or(1),
+            RunStyle::Respa(r) => r.steps(0),
+        }
+    }
+
     /// The name in a deck.
     pub fn name(&self) -> &'static str {
         match self {

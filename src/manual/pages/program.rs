@@ -68,7 +68,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     takes all words up to the next switch, so put the deck first or write `-in`;\n\
     - `-threads N`: uses at most N threads (without it as many as `OMP_NUM_THREADS` says, else one per core); runs find out by themselves whether one is faster; results are the same bits for any N;\n\
     - `-timeout TIME`: ends runs TIME (seconds, MM:SS or H:MM:SS) after the program began, at a whole step, with a last restart file, `DECK.STEP.restart` unless the deck has \
-    `restart`; further runs are left out, the other lines are worked off. A `timer timeout` in the deck has the last word;\n\
+    `restart`; further runs are left out, the other lines are executed. What is still at work a tenth of TIME later (two seconds at least, a minute at most), and lines that follow then, \
+    end with the error PG0209. A `timer timeout` in the deck has the last word, and ends runs alone;\n\
     - `-report FILE`: writes what the run was as one web page, see [Look at a run](../howto/report.md); the file is opened before the run begins;\n\
     - `-view [PORT]`: shows the run in a browser on this machine while it goes on, at the address that it prints; with pause, step and stop;\n\
     - `-compat lammps[/2025|/2026]`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md), and of which version (without one the newest, 2026; `lammps/2025` is LAMMPS 22Jul2025);\n\
@@ -82,8 +83,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     LAMMPS' other switches are refused by name.\n\n\
     Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
     wrong, 130 ended by Ctrl-C or a signal. The first Ctrl-C (and SIGTERM, as queues send it, or SIGHUP of a closed terminal, unless \
-    `nohup` has it ignored) ends a run at a whole step with all files complete and a last file of `restart`; a second one ends the \
-    program at once. \n\n\
+    `nohup` has it ignored, or SIGXCPU behind `ulimit -t`) ends a run at a whole step with all files complete and a last file of `restart`, and any other \
+    line that takes long within half a second, as not done; a second one ends the program at once. A file that outgrows `ulimit -f` is an error, as on a full disk.\n\n\
     On a terminal few words are said: a line for each command that makes something, how much memory the particles are about to take, the step table as far as whole columns fit, and \
     behind a run three lines: time and speed; where results are; what would make it faster. LAMMPS' blocks stand in the log, in pipes and with `-screen full`. A live line shows \
     how many steps of all the deck's runs are made (of the present run where only a run can tell), speed and time left as the runs so far teach them, step, time and thermo \

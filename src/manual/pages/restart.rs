@@ -11,8 +11,10 @@ pub(super) const RESTART: Entry = (
         text: "At steps that are multiples of `N`, but not where a run begins. With one name every step has a file of its \
             own: `*` in the name becomes the step, else `.` and the step are appended. With two names the files are \
             written in turn; a restarted run goes on with the one it did not come from. Both kinds may be in force. \
-            `restart 0` ends both. A run that is ended before its last step (Ctrl-C, a signal, `timer timeout`) writes one more \
-            file where it stops. What is in a file and how it is read is on the page of `read_restart`.\n\n\
+            `restart 0` ends both. A run or minimization that is ended before its last step (Ctrl-C, a signal, `timer timeout`) makes one step \
+            more as its last one, with a row of the step table, and then writes one more file: byte by byte the one that \
+            `write_restart` writes behind a run of so many steps. A run that an error ends (particles lost, energy out of \
+            control) leaves none besides those of its schedule. What is in a file and how it is read is on the page of `read_restart`.\n\n\
             A file is written beside its place, brought to the disk and then moved there: whenever the program or the \
             machine dies, a file of this name is whole. `N` may be `v_name`: the variable names the next step each time, by \
             `logfreq()`, `stride()` and the like. LAMMPS' `%`, `fileper` and `nfile` (one \

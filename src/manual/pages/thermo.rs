@@ -55,7 +55,7 @@ pub(super) const THERMO_MODIFY: Entry = (
         syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore] [energy error|warn|ignore]",
         summary: "Sets how the step table looks and what it uses.",
         text: "- `norm`: energies per particle; without it yes in `units lj` and no elsewhere;\n\
-            - `flush yes`: every row reaches the log file at once;\n\
+            - `flush yes`: every row reaches the log file at once; without it rows that come faster than ten in a second wait for the next one;\n\
             - `line`: the layout of the row;\n\
             - `format line \"…\"` (one conversion per column), `format int %d`, `format float %g`, `format N %g` or `format \
             NAME %g` (one column; N counts from 1, from -1 backwards), `format none`. A column's own format wins over `int` and \

@@ -194,6 +194,9 @@ codes! {
     OUTSIDE = 208, "the hosting program failed",
         "A `fix external pf/callback` asks the program that hosts the run for forces: that program has set no function, or the function ended in an exception. In a terminal nobody hosts the run; in Python `lmp.set_fix_external_callback` sets the function.",
         "fix 2 all external pf/callback 1 1\nrun 1", "fix 2 all external pf/array 1\nrun 1";
+    INTERRUPTED = 209, "ended before it was done",
+        "A signal (Ctrl-C, SIGTERM) or the limit of `-timeout` came while a line was executed that takes long. The line is given up and no further one is executed; at the prompt the scene is as before the line. A run ends at a whole step instead, with a restart file where the deck has `restart`. `-timeout` gives lines behind its limit a tenth of it, two seconds at least and a minute at most.",
+        "", "";
     HALTED = 205, "halted",
         "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for. With `error soft` the run ends and the deck goes on.",
         "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";

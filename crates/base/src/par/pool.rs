@@ -65,7 +65,8 @@ pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         None => work(),
         Some(pool) => {
-            let mut work = Once::new(work);
+            let stop = crate::stop::present();
+            let mut work = Once::new(|| stop.heed(work));
             pool.install(&mut || work.run());
             work.out()
         }

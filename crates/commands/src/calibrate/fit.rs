@@ -12,6 +12,7 @@ use super::words::{Quantity, Target, Words};
 use nalgebra::{DMatrix, DVector};
 use perigrain_base::diag::{Code, Diagnostic, Result, Source, Span, fail};
 use perigrain_base::math::cformat::general;
+use perigrain_base::stop;
 use perigrain_bonded::network::Modes;
 use perigrain_lang::{Command, Word};
 use perigrain_styles::{ActCx, BondForce};
@@ -51,6 +52,7 @@ pub fn run(
         scene.network.bonds()
     ));
     loop {
+        stop::check()?;
         let now = tuned(style, words, &params)?;
         scene.restyle(now.as_ref());
         model.solve(&scene, words, cx.span)?;

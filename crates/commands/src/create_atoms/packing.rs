@@ -10,6 +10,7 @@ use nearby::Nearby;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::{Vec3, add, dot, scale, sub};
 use perigrain_base::par;
+use perigrain_base::stop;
 use room::Room;
 
 /// The part of its overlap that each of two equal spheres goes back by in a round, twice.
@@ -150,7 +151,7 @@ impl<'a> Bed<'a> {
         let mut tries = 1_000_000 + 10_000 * n;
         let mut placed: Vec<(Vec3, f64)> = Vec::with_capacity(n);
         while let Some(r) = radius.get(placed.len()) {
-            tries = tries.checked_sub(1)?;
+            tries = tries.checked_sub(1).filter(|tries| !stop::cuts_at(*tries))?;
             let x = std::array::from_fn(|d| room.lo[d] + stream.uniform() * (room.hi[d] - room.lo[d]));
             if room.contains(x) {
                 placed.push((x, *r));
@@ -198,7 +199,7 @@ impl<'a> Bed<'a> {
         let mut memory = 0.0;
         for k in 0..rounds {
             let (next, round) = self.round(memory);
-            if done(&round) {
+            if done(&round) || stop::cuts() {
                 return (k, round);
             }
             self.x = next;

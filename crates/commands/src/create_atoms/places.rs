@@ -7,6 +7,7 @@ use super::subset::Subset;
 use perigrain_base::diag::Result;
 use perigrain_base::math::body::Quat;
 use perigrain_base::math::rng::ParkMiller;
+use perigrain_base::stop;
 use perigrain_lang::ValueRef;
 use perigrain_styles::ActCx;
 use perigrain_world::{Domain, Region, World};
@@ -144,7 +145,10 @@ impl Place {
 fn tested(cx: &mut ActCx, m: &Maker, places: Vec<New>) -> Result<Vec<New>> {
     let Some(test) = m.test else { return Ok(places) };
     let mut kept = vec![];
-    for new in places {
+    for (k, new) in places.into_iter().enumerate() {
+        if stop::cuts_at(k) {
+            break;
+        }
         if test.holds(cx, new.x)? {
             kept.push(new);
         }
@@ -170,7 +174,12 @@ fn on_sites(world: &World, m: &Maker, region: Option<&Region>) -> Vec<New> {
     if (0..3).any(|d| first[d] > last[d]) {
         return places;
     }
+    let mut seen = 0;
     let _ = world.lattice.sites(first, last, |k, x| {
+        seen += 1;
+        if stop::cuts_at(seen) {
+            return ControlFlow::Break(());
+        }
         let inside = match tilted {
             true => within_fractions(domain, x),
             false => (0..3).all(|d| x[d] >= lo[d] && x[d] < hi[d]),
@@ -178,7 +187,7 @@ fn on_sites(world: &World, m: &Maker, region: Option<&Region>) -> Vec<New> {
         if inside && region.is_none_or(|r| r.contains(x)) {
             places.push(New::at(x, m.basis[k], None));
         }
-        ControlFlow::<()>::Continue(())
+        ControlFlow::Continue(())
     });
     places
 }
@@ -229,8 +238,13 @@ impl Random<'_> {
         // Molecules that must keep their distance are turned before they are looked at.
         let mut turns = m.mol.filter(|_| self.overlap > 0.0).map(|mol| (mol, mol.stream()));
         let (mut taken, mut parts) = (vec![], vec![]);
+        let mut tried = 0;
         for _ in 0..count {
             for _ in 0..self.tries {
+                tried += 1;
+                if self.overlap > 0.0 || tried % stop::MANY == 0 {
+                    stop::check()?;
+                }
                 let x = self.draw(&mut stream, m.domain.flat);
                 if !self.allows(cx, m, x)? {
                     continue;

@@ -2,6 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span, fail, unseen};
 use perigrain_base::gate;
+use perigrain_base::stop;
 use perigrain_lang::Word;
 use perigrain_out::binary;
 use perigrain_world::{Promise, World};
@@ -18,7 +19,7 @@ pub fn load_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = vec![];
     if path.extension().is_some_and(|e| e == "gz") {
         // A small file may be packed from a huge one.
-        let unpacked = flate2::read::MultiGzDecoder::new(file);
+        let unpacked = stop::Heeding(flate2::read::MultiGzDecoder::new(file));
         unpacked.take(u64::from(u32::MAX)).read_to_end(&mut bytes)?;
     } else {
         bytes.reserve_exact(file.metadata().map_or(0, |m| m.len() as usize).saturating_add(1));
@@ -169,6 +170,9 @@ pub struct Lines<'a> {
     at: usize,
 }
 
+/// Bytes between two looks at whether reading has to end.
+const BETWEEN_LOOKS: usize = 1 << 16;
+
 impl<'a> Lines<'a> {
     /// At the first line.
     pub fn new(text: &'a str) -> Self {
@@ -196,6 +200,10 @@ impl<'a> Lines<'a> {
         let whole = &rest[..end];
         let start = self.at;
         self.at += end + 1;
+        if start / BETWEEN_LOOKS != self.at / BETWEEN_LOOKS && stop::cuts() {
+            // As if the text ended here: what comes of it counts for nothing.
+            return None;
+        }
         let bytes = whole.as_bytes();
         let mark = (0..end).find(|&k| bytes[k] == b'#' && (k == 0 || bytes[k - 1].is_ascii_whitespace()));
         let (text, comment) = match mark {

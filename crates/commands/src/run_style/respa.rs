@@ -23,9 +23,14 @@ struct Said {
 /// Every mistake in the line.
 pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
     let count = a.integer_from(1, "the number of levels")? as usize;
-    let loops = (1..count)
-        .map(|k| a.integer_from(1, &format!("how many steps of level {k} fill one of level {}", k + 1)))
-        .collect::<Result<Vec<i64>>>()?;
+    let (mut loops, mut all) = (vec![], 1i64);
+    for k in 1..count {
+        let span = a.here();
+        let times = a.integer_from(1, &format!("how many steps of level {k} fill one of level {}", k + 1))?;
+        all = all.saturating_mul(times);
+        super::refuse_many(all, span)?;
+        loops.push(times);
+    }
     let mut said = Said::default();
     while let Some(word) = a.next() {
         match word.text.as_str() {

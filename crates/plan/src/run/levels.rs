@@ -9,10 +9,16 @@
 use super::path::{self, Path};
 use super::verlet::tick;
 use crate::{Phase, Solids, Stage, StepPlan, Tick};
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::stop;
 use perigrain_world::columns::{self, HEATFLOW};
 use perigrain_world::{Vectors, World};
+use std::cell::Cell;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a step may go on after a signal, to end as a whole one.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Levels of steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,9 +141,38 @@ fn first_forces(w: &World) -> &'static [&'static [Stage]] {
 /// # Errors
 /// The first op's that fails.
 pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels) -> Result<()> {
-    level(plan, w, t, (l, l.count() - 1), (false, &mut vec![]))?;
+    level(plan, w, t, (l, l.count() - 1), (false, &mut vec![]), &Waiting::default())?;
     join(w, l);
     Ok(())
+}
+
+/// A long step that something wants to end: it is made to its end where that is near.
+#[derive(Default)]
+struct Waiting {
+    since: Cell<Option<Instant>>,
+}
+
+impl Waiting {
+    /// # Errors
+    /// The wait is over, and this many short steps are made in this many.
+    fn check(&self, step: i64, made: i64, all: i64) -> Result<()> {
+        if !stop::present().asked() {
+            return Ok(());
+        }
+        let Some(since) = self.since.get() else {
+            self.since.set(Some(Instant::now()));
+            return Ok(());
+        };
+        if since.elapsed() < PATIENCE || !stop::cuts() {
+            return Ok(());
+        }
+        let text = format!(
+            "in the middle of step {step}, after {made} of the {all} short steps that fill a longer one"
+        );
+        let help =
+            "no restart file holds such a scene: go on from one that `restart N` has written at a whole step";
+        Err(Diagnostic::error(Code::INTERRUPTED, None, text).help(help).into())
+    }
 }
 
 /// One step of a level. Only the last of the steps in it have their sums asked for: those end where the step ends. Of the
@@ -148,6 +183,7 @@ fn level(
     t: &Tick,
     (l, k): (&Levels, usize),
     (more, spins): (bool, &mut Spins),
+    waiting: &Waiting,
 ) -> Result<()> {
     let mut here = l.at(t, k);
     let (first, last) = (here.phase.nested(), here.phase.outermost());
@@ -169,8 +205,9 @@ fn level(
             let lasting = Tick { dt: t.dt / m as f64, ..t.clone() };
             let passing = lasting.silent();
             for i in 1..=m {
+                waiting.check(t.step, i - 1, m)?;
                 let t = if i < m { &passing } else { &lasting };
-                level(plan, w, t, (l, below), (i < m, &mut *spins))?;
+                level(plan, w, t, (l, below), (i < m, &mut *spins), waiting)?;
             }
         }
     }

@@ -4,6 +4,7 @@ use super::guarded::{Guarded, Verdict};
 use crate::{Stage, StepPlan, Tick};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
+use perigrain_base::stop;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::named::Acting;
 use perigrain_world::{Halt, World};
@@ -148,24 +149,26 @@ pub(super) fn steps(
     step: impl Fn(&mut StepPlan, &mut World, &Tick, bool) -> Result<()> + Sync,
 ) -> Result<Outcome> {
     let (begin, cpu) = (Instant::now(), cpu_seconds());
-    let first = w.clock.step;
+    let (first, last) = (w.clock.step, w.clock.last);
+    let ramps_end_here = w.clock.stop == last;
     let mut guard = match plan.guard.take() {
         Some(guard) => Some(Guarded::new(guard, plan, w)?),
         None => None,
     };
     // All of it on one thread of the pool: to hand over at every step would take longer than many a step.
     let mut trial = par::Trial::begin();
-    let interrupted = par::inside(|| -> Result<bool> {
+    let ended = par::inside(|| -> Result<Option<Early>> {
+        let mut ended = None;
         while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
-            if plan.begun() {
-                // Half of this step is made.
-            } else if w.settings.stop.load(Ordering::Relaxed) {
-                plan.part(w, &tick(w, false))?;
-                return Ok(true);
-            } else if w.settings.ends_at(w.clock.step) {
-                w.clock.halt = Halt::All;
-                plan.part(w, &tick(w, false))?;
-                break;
+            // A step whose first half is made is made as it was begun.
+            if !plan.begun() {
+                ended = ended.or_else(|| Early::asked(w));
+                if ended.is_some() {
+                    w.clock.last = if w.clock.step == first { first } else { w.clock.step + 1 };
+                    if w.clock.step == first {
+                        break;
+                    }
+                }
             }
             let _names_are_known = Acting::op();
             let builds = w.rebuild.builds;
@@ -188,7 +191,7 @@ pub(super) fn steps(
                 }
             }
             let c = &w.clock;
-            let (done, total) = (c.step - first, c.last - first);
+            let (done, total) = (c.step - first, last - first);
             watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
             if looked {
                 watch.scene(w);
@@ -197,12 +200,41 @@ pub(super) fn steps(
                 trial.step(w.rebuild.builds != builds);
             }
         }
-        Ok(false)
+        Ok(ended)
     })?;
     drop(trial);
     plan.guard = guard.map(Guarded::into_guard);
     let steps = w.clock.step - first;
+    if ended.is_some() && ramps_end_here {
+        w.clock.stop = w.clock.step;
+    }
+    if ended == Some(Early::TimedOut) {
+        w.clock.halt = Halt::All;
+    }
+    let interrupted = ended == Some(Early::Interrupted);
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
+}
+
+/// Why a run ends before the last step that the deck asked for.
+///
+/// The step that comes then is made as the last one of a shorter run: its row, its sums and its files are those of a run
+/// that was asked to end there, and so is the scene it leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Early {
+    /// A signal, or a program around this one.
+    Interrupted,
+    /// The limit of time.
+    TimedOut,
+}
+
+impl Early {
+    /// Whether the run has to end, and why.
+    fn asked(w: &World) -> Option<Self> {
+        if w.settings.stop.load(Ordering::Relaxed) {
+            return Some(Self::Interrupted);
+        }
+        w.settings.ends_at(w.clock.step).then_some(Self::TimedOut)
+    }
 }
 
 /// Forces and output for each scene that `next` puts in; nothing moves. `next` says `false` when there are no more.
@@ -218,6 +250,10 @@ pub fn look(
     let (mut steps, mut interrupted) = (0, false);
     loop {
         interrupted |= w.settings.stop.load(Ordering::Relaxed);
+        if !interrupted {
+            // The limit of time.
+            stop::check()?;
+        }
         if interrupted || !next(w)? {
             break;
         }

@@ -1,6 +1,7 @@
 //! Diameters of spheres, all alike or drawn from a distribution.
 
 use perigrain_base::math::rng::ParkMiller;
+use perigrain_base::stop;
 use std::f64::consts::PI;
 
 /// Numbers of a normal distribution farther from its mean than so many deviations are drawn again.
@@ -43,7 +44,7 @@ impl Sizes {
             return vec![0.5 * d; (volume / self.mean_volume()).round() as usize];
         }
         let (mut radii, mut left) = (vec![], volume);
-        while left > 0.0 {
+        while left > 0.0 && !stop::cuts_at(radii.len()) {
             let d = self.draw(stream);
             let own = PI / 6.0 * d.powi(3);
             if left < 0.5 * own {

@@ -112,6 +112,8 @@ struct Search<'a> {
     evaluations: i64,
     alpha: f64,
     first: i64,
+    /// Iterations that the deck asked for.
+    asked: i64,
     /// The time step before FIRE changed it.
     dt: f64,
     interrupted: bool,
@@ -134,7 +136,7 @@ pub fn minimize(
     goal: Goal,
 ) -> Result<(Outcome, Stats)> {
     let per = if normalized { w.n().max(1) as f64 } else { 1.0 };
-    let (first, dt) = (w.clock.step, w.clock.dt);
+    let (first, last, dt) = (w.clock.step, w.clock.last, w.clock.dt);
     let farthest = farthest(w);
     let mut s = Search {
         plan,
@@ -148,6 +150,7 @@ pub fn minimize(
         evaluations: 0,
         alpha: 0.0,
         first,
+        asked: last - first,
         dt,
         interrupted: false,
         farthest,
@@ -167,6 +170,8 @@ pub fn minimize(
         s.last_output()?;
     }
     s.w.clock.dt = dt;
+    s.w.clock.stop = s.w.clock.last;
+    let stop = if s.interrupted && stop == Stop::Iterations { Stop::Ended } else { stop };
     let iterations = s.w.clock.step - first;
     let after = s.norms();
     let stats = Stats {
@@ -237,12 +242,14 @@ impl Search<'_> {
         if self.w.clock.step - self.first >= self.goal.iterations {
             return Some(Stop::Iterations);
         }
-        if self.w.settings.stop.load(Ordering::Relaxed) {
-            self.interrupted = true;
-            return Some(Stop::Ended);
-        }
         if self.w.settings.ends_at(self.w.clock.step) || self.w.clock.halt != perigrain_world::Halt::No {
             return Some(Stop::Ended);
+        }
+        if !self.interrupted && self.w.settings.stop.load(Ordering::Relaxed) {
+            // This iteration is the last one, as if no more had been asked for.
+            self.interrupted = true;
+            self.goal.iterations = self.w.clock.step - self.first + 1;
+            self.w.clock.last = self.w.clock.step + 1;
         }
         self.w.clock.step += 1;
         None
@@ -254,7 +261,7 @@ impl Search<'_> {
         self.plan.ask(&mut t);
         self.plan.run(self.w, &t, &[Stage::Output])?;
         let c = &self.w.clock;
-        let (done, total) = (c.step - self.first, c.last - self.first);
+        let (done, total) = (c.step - self.first, self.asked);
         self.watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
         if self.watch.looks(self.w) {
             self.watch.scene(self.w);
