@@ -195,11 +195,12 @@ fn program(folder: &Path, deck: &str, arguments: &[&str]) -> Child {
         .unwrap()
 }
 
-/// Waits until the log holds a text.
-fn await_in_log(folder: &Path, wanted: &str) {
+/// Waits until the log holds the row of a step.
+fn await_row(folder: &Path, step: &str) {
     let began = Instant::now();
-    while !fs::read_to_string(folder.join("log.lammps")).unwrap_or_default().contains(wanted) {
-        assert!(began.elapsed() < Duration::from_secs(60), "the log never held `{wanted}`");
+    let log = || fs::read_to_string(folder.join("log.lammps")).unwrap_or_default();
+    while !log().lines().any(|l| l.split_whitespace().next() == Some(step)) {
+        assert!(began.elapsed() < Duration::from_secs(60), "no row of step {step} in\n{}", log());
         std::thread::sleep(Duration::from_millis(10));
     }
 }
@@ -215,7 +216,7 @@ fn a_signal_or_a_limit_of_time_leaves_the_springs_of_pairs() {
         let child = program(folder, &deck, arguments);
         if arguments.len() == 2 {
             // Rows are in the log while the run goes on.
-            await_in_log(folder, "\n      5000 ");
+            await_row(folder, "5000");
             let killed = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
             assert!(killed.success());
         }
@@ -257,7 +258,7 @@ const ENDLESS: [(&str, &str); 6] = [
     (
         "create_atoms pack",
         "units lj\natom_style sphere\nregion w block 0 90 0 90 0 90\ncreate_box 1 w\n\
-        create_atoms 1 pack w diameter 1 fraction 0.64 seed 1\nprint never\n",
+        create_atoms 1 pack w 0.64 77 sizes mono 1 rounds 1000000000\nprint never\n",
     ),
     ("shell", "shell sleep 1000\nprint never\n"),
     (
