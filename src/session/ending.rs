@@ -9,7 +9,7 @@ use perigrain_lang::Line;
 use perigrain_out::log::Log;
 use perigrain_plan::run::verlet::Outcome;
 use perigrain_plan::{OpClass, StepPlan};
-use perigrain_world::memory;
+use perigrain_world::{Halt, memory};
 use std::time::Duration;
 
 /// Files that are named one by one; of more the number is told.
@@ -127,6 +127,27 @@ impl Session {
         let span = line.command.as_ref().map(|cmd| cmd.span).filter(|span| self.prompt != Some(span.file))?;
         let name = self.sources.get(span.file).map_or("", |source| &source.name);
         Some(format!("{name}:{}", self.sources.place(span).0))
+    }
+
+    /// Whether a limit of time has ended the last run.
+    pub(super) fn is_out_of_time(&self) -> bool {
+        self.world.clock.halt == Halt::All && self.world.settings.timed_out()
+    }
+
+    /// Leaves restart files of a run that ended early. What ops hold of the scene is given back to the world first, and particles
+    /// stand in the order of their creation, as behind a run.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub(super) fn save_early(&mut self, plan: &mut StepPlan) -> Result<()> {
+        plan.release(&mut self.world)?;
+        self.world.fall_back();
+        plan.part(&mut self.world)?;
+        let limit = self.options.limit.as_ref().filter(|_| self.is_out_of_time());
+        match limit.filter(|_| self.graph.restarts.names().is_empty()).cloned() {
+            Some(limit) => self.save_restart(&limit.restart),
+            None => Ok(()),
+        }
     }
 
     /// Says that a line was the last one because a signal asked for an end; a run says so itself. What the last run left is

@@ -98,14 +98,15 @@ impl Session {
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
         // Energies belong to the scene now; the next run computes forces anew, as velocities may have changed since.
         self.world.parts.changed &= outcome.is_err();
+        self.ran = false;
+        let saved = match &outcome {
+            Ok((_, stats)) if stats.stop != Stop::Iterations => self.save_early(&mut plan),
+            _ => Ok(()),
+        };
         let finished = plan.finish(&mut self.world);
         let (outcome, stats) = outcome.map_err(|e| e.at(span))?;
-        finished?;
-        self.ran = false;
+        saved.and(finished)?;
         self.interrupted |= outcome.interrupted;
-        if outcome.interrupted || stats.stop != Stop::Iterations {
-            plan.part(&mut self.world)?;
-        }
         self.say_end(&plan, &outcome, Some(&block(&stats)), self.timer.tables())?;
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;

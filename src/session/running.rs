@@ -344,25 +344,27 @@ impl Session {
         }
         // What is put back at the end of a run changes the scene again.
         self.world.parts.changed &= outcome.is_err();
+        self.ran |= outcome.is_ok();
+        // Before fixes put back what they have changed for the run: that is to go on.
+        let saved = match &outcome {
+            Ok((o, _)) if o.interrupted || self.is_out_of_time() => self.save_early(&mut plan),
+            _ => Ok(()),
+        };
         let finished = plan.finish(&mut self.world);
         self.world.fall_back();
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         let (outcome, used_up) = outcome.map_err(|e| e.at(span))?;
-        finished?;
-        self.ran = true;
+        saved.and(finished)?;
         let short = self.world.settings.run_style.short_steps();
         self.made = self.made.saturating_add(outcome.steps.saturating_mul(short));
         self.interrupted |= outcome.interrupted;
-        if outcome.interrupted || (self.world.clock.halt == Halt::All && self.world.settings.timed_out()) {
-            plan.part(&mut self.world).map_err(|e| e.at(span))?;
-        }
         if let Some(d) = used_up {
             return Err(d.at(span).into());
         }
         self.say_notes()?;
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
         self.say_deep(span)?;
-        if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {
+        if self.is_out_of_time() {
             self.say_timed_out()?;
         }
         if self.options.mode == Mode::Measure {

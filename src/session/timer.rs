@@ -43,17 +43,16 @@ impl Session {
         (settings.deadline, settings.limit_every) = (Some(self.born + limit.time), 1);
     }
 
-    /// Tells that a limit of time has ended a run, and leaves a restart file to go on from if the session was given the limit.
+    /// Tells that a limit of time has ended a run, and which files go on from there if the session was given the limit.
     ///
     /// # Errors
-    /// A file that cannot be written.
-    pub(super) fn say_timed_out(&mut self) -> Result<()> {
+    /// A log that cannot be written.
+    pub(super) fn say_timed_out(&self) -> Result<()> {
         let (step, log) = (self.world.clock.step, self.options.log.clone());
         log.line(&format!("Wall time limit reached at step {step}"))?;
-        let Some(limit) = self.options.limit.clone() else { return Ok(()) };
+        let Some(limit) = &self.options.limit else { return Ok(()) };
         let mut names = self.graph.restarts.names();
         if names.is_empty() {
-            self.save_restart(&limit.restart)?;
             names.push(limit.restart.replacen('*', &step.to_string(), 1));
         }
         log.line(&format!("  to go on from: {}", names.join(" or ")))
