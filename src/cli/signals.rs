@@ -26,7 +26,8 @@ pub fn listen(ask: impl Fn() + Send + 'static) {
 #[cfg(unix)]
 pub fn outlive_large_files() {
     // A handler, as commands that a deck starts would inherit a signal that is ignored. Without one all is as it was.
-    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
+    let came = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, came);
 }
 
 /// Nothing to outlive.
