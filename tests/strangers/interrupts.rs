@@ -133,12 +133,19 @@ fn the_file_of_an_interrupt_is_that_of_write_restart_in_every_family() {
     SCENES.iter().chain(&MORE).for_each(is_whole);
 }
 
+/// Beads whose bonds along edges and diagonals cannot all have the length they want.
+const FRUSTRATED: &str = "atom_style bond\nlattice sc 1.0\nregion world block -3 7 -3 7 -3 7\nregion f block 0 3.1 0 3.1 0 3.1\n\
+    create_box 1 world bond/types 1 extra/bond/per/atom 20 extra/special/per/atom 60\ncreate_atoms 1 region f\nmass 1 1\n\
+    pair_style zero 3\npair_coeff * *\nbond_style harmonic\nbond_coeff 1 50 1.0\ncreate_bonds many all all 1 0.5 1.5\n\
+    displace_atoms all random 0.2 0.2 0.2 4711\nfix 1 all nve\ntimestep 0.01\nthermo_style custom step pe press\n\
+    thermo_modify format float %24.17g\nthermo 3\n";
+
 #[test]
 fn a_minimization_that_is_interrupted_leaves_the_file_of_write_restart() {
     for style in ["cg", "sd", "fire", "quickmin"] {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path();
-        let make = format!("{}{}min_style {style}\n", scenes::PILE, scenes::PILE_AGAIN);
+        let make = format!("{FRUSTRATED}min_style {style}\n");
         let deck = format!("{make}restart 2 DIR/each.*.restart\nminimize 0 0 500 5000\n");
         let (left, said, interrupted) = work(folder, &deck, false, Some(4));
         let end = left.clock.step;
@@ -152,7 +159,7 @@ fn a_minimization_that_is_interrupted_leaves_the_file_of_write_restart() {
         // Files on the way hold the deck's time step, whatever the minimizer makes of it, and forces that the next run
         // computes anew as after a minimization that was made to its end.
         let saved = perigrain::out::restart::read(&folder.join("each.4.restart")).unwrap();
-        assert_eq!((saved.world.clock.dt, saved.ran, saved.standing), (0.001, false, false), "{style}");
+        assert_eq!((saved.world.clock.dt, saved.ran, saved.standing), (0.01, false, false), "{style}");
     }
 }
 
