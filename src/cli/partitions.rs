@@ -1,7 +1,7 @@
 //! `-partition`: the same deck worked off several times beside each other, each a process with its own log and screen.
 
 use super::args::{Deck, Options, Target, Usage};
-use super::{FAILED, INTERRUPTED, OK};
+use super::{FAILED, INTERRUPTED, OK, signals};
 use crate::sweep::starter::{self, Starter};
 use crate::sweep::worker::live_with;
 use perigrain_lang::{Partition, Turn};
@@ -9,8 +9,8 @@ use std::fs::File;
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What one of several processes is told about itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -118,8 +118,11 @@ pub fn work_off(o: &Options) -> Result<u8, Usage> {
 }
 
 fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
-    // Ctrl-C and requests to end reach the partitions, which end at whole steps; this process waits for them.
+    // Ctrl-C reaches the partitions too, and requests to end are passed on: they end at whole steps, and this process waits.
     let _ = ctrlc::set_handler(|| {});
+    let started: Arc<Mutex<Vec<u32>>> = Arc::default();
+    let known = started.clone();
+    signals::listen(move || signals::pass_on(&known.lock().unwrap_or_else(PoisonError::into_inner)));
     File::create(turns)?;
     let mut log = match &o.log {
         Target::None => None,
@@ -134,9 +137,10 @@ fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
     };
     say(format!("Running on {} partitions of processors\n", o.partition.len()))?;
     let children =
-        (0..o.partition.len()).map(|number| start(number, turns)).collect::<std::io::Result<Vec<_>>>();
+        (0..o.partition.len()).map(|number| start(number, turns)).collect::<std::io::Result<Vec<_>>>()?;
+    *started.lock().unwrap_or_else(PoisonError::into_inner) = children.iter().map(Child::id).collect();
     let mut worst = OK;
-    for (number, mut child) in children?.into_iter().enumerate() {
+    for (number, mut child) in children.into_iter().enumerate() {
         let code = child.wait()?.code().map_or(FAILED, |code| code.clamp(0, 255) as u8);
         if code != OK {
             let how = if code == INTERRUPTED { "was interrupted" } else { "failed" };

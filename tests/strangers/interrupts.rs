@@ -202,10 +202,10 @@ fn program(folder: &Path, deck: &str, arguments: &[&str]) -> Child {
         .unwrap()
 }
 
-/// Waits until the log holds the row of a step.
-fn await_row(folder: &Path, step: &str) {
+/// Waits until a log holds the row of a step.
+fn await_row(folder: &Path, log: &str, step: &str) {
     let began = Instant::now();
-    let log = || fs::read_to_string(folder.join("log.lammps")).unwrap_or_default();
+    let log = || fs::read_to_string(folder.join(log)).unwrap_or_default();
     while !log().lines().any(|l| l.split_whitespace().next() == Some(step)) {
         assert!(began.elapsed() < Duration::from_secs(60), "no row of step {step} in\n{}", log());
         std::thread::sleep(Duration::from_millis(10));
@@ -223,9 +223,8 @@ fn a_signal_or_a_limit_of_time_leaves_the_springs_of_pairs() {
         let child = program(folder, &deck, arguments);
         if arguments.len() == 2 {
             // Rows are in the log while the run goes on.
-            await_row(folder, "5000");
-            let killed = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
-            assert!(killed.success());
+            await_row(folder, "log.lammps", "5000");
+            terminate(&child);
         }
         let output = child.wait_with_output().unwrap();
         assert_eq!(
@@ -245,6 +244,35 @@ fn a_signal_or_a_limit_of_time_leaves_the_springs_of_pairs() {
         let file = |name: &str| fs::read(folder.join(name)).unwrap();
         assert!(file(&cut) == file(written), "{arguments:?}: other files at step {end}");
     }
+}
+
+/// Asks a process to end, as `kill` does.
+#[cfg(unix)]
+fn terminate(child: &Child) {
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+}
+
+#[cfg(unix)]
+#[test]
+fn partitions_end_at_whole_steps_when_the_program_around_them_is_asked_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let deck = format!(
+        "{STICK}{STICK_AGAIN}thermo 1000\nvariable w uloop 2\n\
+        restart 1000000000 r$w.*.restart\nrun 4000000000\n"
+    );
+    let child = program(folder, &deck, &["-partition", "2x1"]);
+    for log in ["log.lammps.0", "log.lammps.1"] {
+        await_row(folder, log, "5000");
+    }
+    terminate(&child);
+    // As a queue does that reaches some processes twice: it is one request.
+    terminate(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output));
+    let left = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    let left: Vec<String> = left.filter(|n| n.ends_with(".restart")).collect();
+    assert_eq!(left.len(), 2, "{left:?}\n{}", text(&output));
 }
 
 /// Lines that would take days, and the word that the message about them must hold.

@@ -84,7 +84,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
     wrong, 130 ended by Ctrl-C or a signal. The first Ctrl-C (and SIGTERM, as queues send it, or SIGHUP of a closed terminal, unless \
     `nohup` has it ignored, or SIGXCPU behind `ulimit -t`) ends a run at a whole step with all files complete and a last file of `restart`, and any other \
-    line that takes long within half a second, as not done; a second one ends the program at once. A file that outgrows `ulimit -f` is an error, as on a full disk.\n\n\
+    line that takes long within half a second, as not done; a second one (a second later, if it is no Ctrl-C) ends the program at once. With `-partition` it reaches all of them. A file that outgrows `ulimit -f` is an error, as on a full disk.\n\n\
     On a terminal few words are said: a line for each command that makes something, how much memory the particles are about to take, the step table as far as whole columns fit, and \
     behind a run three lines: time and speed; where results are; what would make it faster. LAMMPS' blocks stand in the log, in pipes and with `-screen full`. A live line shows \
     how many steps of all the deck's runs are made (of the present run where only a run can tell), speed and time left as the runs so far teach them, step, time and thermo \
