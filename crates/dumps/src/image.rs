@@ -164,7 +164,12 @@ impl Declared {
             caption: &caption,
         };
         let path = shot.state.target.pattern.at(shot.step);
-        let file = render(&scene, &view, &self.options.look).file(&path.to_string_lossy());
+        let image = render(&scene, &view, &self.options.look);
+        if image.pixels.is_empty() {
+            // Given up: the run ends, and its files with it.
+            return Ok(());
+        }
+        let file = image.file(&path.to_string_lossy());
         perigrain_out::file::replace(&path, |to| to.write_all(&file?))
     }
 

@@ -81,10 +81,13 @@ pub struct Image {
     pub pixels: Vec<[u8; 3]>,
 }
 
-/// Draws a scene. Same bits for any number of threads.
+/// Draws a scene. Same bits for any number of threads. A picture without pixels where something wants the present work to end.
 pub fn render(scene: &Scene<'_>, view: &View, look: &Look) -> Image {
     let frame = Frame::new(scene, look);
     let raster = Raster::new(scene, view, &frame);
+    if raster.cut {
+        return Image { width: 0, height: 0, pixels: vec![] };
+    }
     let mut image = shade::shade(scene, &raster, look, &frame);
     overlay::lines(&mut image, scene.lines, view, &raster, look, &frame);
     overlay::words(&mut image, scene, look);

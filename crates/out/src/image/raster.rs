@@ -1,11 +1,12 @@
 //! Which sphere is seen in every sample, and how near: a depth buffer filled strip by strip.
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::camera::Projection;
 use super::{Frame, Scene, View};
 use crate::make;
-use perigrain_base::par;
+use perigrain_base::{par, stop};
 
 /// Sample rows per strip and columns per tile.
 const TILE: usize = 64;
@@ -33,6 +34,8 @@ pub(super) struct Raster {
     width: usize,
     height: usize,
     strips: Vec<Strip>,
+    /// Something wants the present work to end, and not all strips are drawn.
+    pub(super) cut: bool,
 }
 
 struct Strip {
@@ -47,8 +50,15 @@ impl Raster {
         let discs = project(scene, &projection);
         let (width, height) = (frame.width, frame.height);
         let bins = Bins::new(&discs, width, height);
-        let strips = make(height.div_ceil(TILE), |row| bins.strip(&discs, row, width, height));
-        Self { discs, projection, width, height, strips }
+        let (stop, cut) = (stop::present(), AtomicBool::new(false));
+        let strips = make(height.div_ceil(TILE), |row| {
+            if stop.asked() {
+                cut.store(true, Ordering::Relaxed);
+                return Strip { depth: vec![], seen: vec![] };
+            }
+            bins.strip(&discs, row, width, height)
+        });
+        Self { discs, projection, width, height, strips, cut: cut.into_inner() }
     }
 
     /// Depth of a sample, far behind where nothing is seen.
