@@ -275,7 +275,7 @@ fn partitions_end_at_whole_steps_when_the_program_around_them_is_asked_to() {
     assert_eq!(left.len(), 2, "{left:?}\n{}", text(&output));
 }
 
-/// Lines that would take days, and the word that the message about them must hold.
+/// Decks with a line that would take days, or a loop without an end, by name.
 const ENDLESS: [(&str, &str); 7] = [
     (
         "calibrate ste",
@@ -301,6 +301,11 @@ const ENDLESS: [(&str, &str); 7] = [
         "units lj\natom_style sphere\nregion w block 0 12 0 12 0 8\ncreate_box 1 w\ncreate_atoms 1 single 4 4 4\n\
         pair_style gran/hooke 1000 NULL 5 NULL 0.5 1\npair_coeff * *\nfix 1 all nve/sphere\ntimestep 1e-9\n\
         run_style respa 2 1000000\nrun 1000\nprint never\n",
+    ),
+    (
+        "pictures",
+        "units lj\nregion w block 0 24 0 24 0 24\ncreate_box 1 w\nlattice sc 1\ncreate_atoms 1 box\nmass 1 1\n\
+        dump p all image 1 DIR/p.*.png type 12 size 4000 3000\npair_style none\nfix 1 all nve\nrun 1000\nprint never\n",
     ),
     (
         "a loop around clear",
