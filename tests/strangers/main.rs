@@ -54,3 +54,27 @@ fn numbers(text: &str, name: &str) -> Vec<f64> {
     let line = line.unwrap_or_else(|| panic!("no line begins with {name}:\n{text}"));
     line.split_whitespace().skip(1).filter_map(|w| w.parse().ok()).collect()
 }
+
+/// The processor's time in the program's own code for a deck of `decks/` [s]: unlike the clock's it does not count what runs beside it.
+///
+/// # Panics
+///
+/// Panics where the run fails.
+#[cfg(unix)]
+fn processor(deck: &str, arguments: &[&str]) -> f64 {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new("sh")
+        .args(["-c", "\"$0\" \"$@\" > said 2>&1 || exit 1; times", env!("CARGO_BIN_EXE_perigrain"), "-in"])
+        .arg(decks().join(deck))
+        .args(["-log", "none"])
+        .args(arguments)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", std::fs::read_to_string(folder.path().join("said")).unwrap());
+    // The second line is that of the shell's children: minutes and seconds in the program, then in the system.
+    let said = String::from_utf8(output.stdout).unwrap();
+    let time = said.lines().nth(1).unwrap().split_whitespace().next().unwrap();
+    let (minutes, seconds) = time.trim_end_matches('s').split_once('m').unwrap();
+    60.0 * minutes.parse::<f64>().unwrap() + seconds.parse::<f64>().unwrap()
+}

@@ -95,11 +95,11 @@ fn sheet(a: &mut Args, cx: &BuildCx) -> Result<Sheet> {
             _ => return Err(a.unknown(word, &["scale", "shift", "units"])),
         }
     }
-    let Some(surface) = triangles::read(file, cx)? else { return Ok(Sheet::from(vec![])) };
+    let Some(surface) = triangles::read_faces(file, cx)? else { return Ok(Sheet::from(vec![])) };
     let mut placed = surface.triangles.clone();
     placing.apply(&mut placed, scales(cx.world, lattice));
     Sheet::new(placed).map_err(|fault| {
-        let text = format!("`{}` is no surface: {}", file.text, fault.text(&surface.triangles));
+        let text = format!("`{}` is no surface: {}", file.text, fault.text(&surface));
         Diagnostic::error(Code::BAD_VALUE, file.span, text).help(fault.help()).into()
     })
 }

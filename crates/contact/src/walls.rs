@@ -8,7 +8,7 @@ use super::{Advance, Geometry, Granular, Motion, Wrench};
 use perigrain_base::math::vec3::{Vec3, add, cross, sub};
 use perigrain_base::par;
 use perigrain_world::contacts::Contacts;
-pub use perigrain_world::region::Near;
+pub use perigrain_world::region::{FacetNear, Near};
 pub use shapes::{Planes, Tube};
 
 /// Something spheres lean on.
@@ -19,6 +19,23 @@ pub trait Wall: Sync {
 
     /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
+
+    /// Adds the numbers of the wall's pieces nearer than `reach` to `x` to `out`; `false` where it is not made of pieces.
+    fn pieces(&self, _x: Vec3, _reach: f64, _out: &mut Vec<u32>) -> bool {
+        false
+    }
+
+    /// What [`Wall::near`] finds, where no other pieces than these are so near. `spare` is room.
+    fn near_pieces(
+        &self,
+        _pieces: &[u32],
+        x: Vec3,
+        reach: f64,
+        _spare: &mut Vec<FacetNear>,
+        out: &mut Vec<Near>,
+    ) {
+        self.near(x, reach, out);
+    }
 
     /// The wall as planes, if it is nothing else: to look for those near them takes less than to ask for each sphere.
     fn planes(&self) -> Option<&Planes> {
@@ -67,6 +84,14 @@ pub struct Touch {
     pub near: Near,
 }
 
+/// A particle that may come near a wall.
+#[derive(Clone, Copy, Debug)]
+struct Listed {
+    grain: u32,
+    /// Which of the listed pieces it may come near; none where the wall is not made of pieces.
+    pieces: [u32; 2],
+}
+
 /// Spheres that touch a wall.
 struct Touches<'a>(&'a [Touch]);
 
@@ -90,7 +115,9 @@ impl Met for Touches<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct WallSweep {
     /// Particles that may come near the wall, by their tags.
-    list: Vec<u32>,
+    list: Vec<Listed>,
+    /// Pieces of the wall that they may come near, particle by particle.
+    pieces: Vec<u32>,
     touching: Vec<Touch>,
     keys: Vec<[u32; 2]>,
     /// Where and how they touch.
@@ -129,18 +156,26 @@ impl WallSweep {
         skin: f64,
     ) {
         let some = |range: std::ops::Range<usize>| {
-            let (mut list, mut spare) = (vec![], vec![]);
+            let (mut list, mut pieces, mut spare) = (vec![], vec![], vec![]);
             let rows =
                 grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]).zip(&mask[range.clone()]);
             for (((x, radius), mask), i) in rows.zip(range.start as u32..) {
-                if mask & group != 0 && wall.close(*x, radius + law.gap(*radius) + skin, &mut spare) {
-                    list.push(i);
+                if mask & group == 0 {
+                    continue;
+                }
+                let (from, reach) = (pieces.len() as u32, radius + law.gap(*radius) + skin);
+                let near = match wall.pieces(*x, reach, &mut pieces) {
+                    true => pieces.len() as u32 > from,
+                    false => wall.close(*x, reach, &mut spare),
+                };
+                if near {
+                    list.push(Listed { grain: i, pieces: [from, pieces.len() as u32] });
                 }
             }
-            list
+            (list, pieces)
         };
-        self.list = par::reduce(grains.x.len(), some, join).unwrap_or_default();
-        self.list.sort_unstable_by_key(|i| grains.tag[*i as usize]);
+        (self.list, self.pieces) = par::reduce(grains.x.len(), some, listed_both).unwrap_or_default();
+        self.list.sort_unstable_by_key(|l| grains.tag[l.grain as usize]);
     }
 
     /// Evaluates the contacts among the listed particles; `memory` follows: contacts that ended are forgotten.
@@ -197,14 +232,25 @@ impl WallSweep {
     }
 
     fn find<W: Wall + ?Sized>(&mut self, wall: &W, grains: &Spheres, law: &Granular, memory: &Contacts) {
-        let list = &self.list[..];
+        let (list, all) = (&self.list[..], &self.pieces[..]);
         let find = |range: std::ops::Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
-            for &grain in &list[range] {
+            let mut spare = vec![];
+            for &Listed { grain, pieces: [from, to] } in &list[range] {
                 let i = grain as usize;
                 let radius = grains.radius[i];
                 near.clear();
                 // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
-                wall.near(grains.x[i], radius + 2.0 * law.gap(radius), near);
+                let reach = radius + 2.0 * law.gap(radius);
+                match from < to {
+                    true => wall.near_pieces(
+                        &all[from as usize..to as usize],
+                        grains.x[i],
+                        reach,
+                        &mut spare,
+                        near,
+                    ),
+                    false => wall.near(grains.x[i], reach, near),
+                }
                 if near.is_empty() {
                     continue;
                 }
@@ -311,7 +357,7 @@ impl WallSweep {
     /// How far the listed particles may go before one of them touches the wall [length], `most` at most.
     pub fn room(&mut self, wall: &dyn Wall, grains: &Spheres, law: &Granular, most: f64) -> f64 {
         let (mut room, near) = (most, &mut self.near);
-        for &grain in &self.list {
+        for &Listed { grain, .. } in &self.list {
             let (x, radius) = (grains.x[grain as usize], grains.radius[grain as usize]);
             let reach = radius + 2.0 * law.gap(radius);
             near.clear();
@@ -333,6 +379,13 @@ fn swap(memory: &mut Contacts, at: usize) {
     let width = memory.width;
     let (first, second) = memory.history[at * width..][..2 * width].split_at_mut(width);
     first.swap_with_slice(second);
+}
+
+/// Particles and pieces of two parts of a list, one behind the other.
+fn listed_both(a: (Vec<Listed>, Vec<u32>), b: (Vec<Listed>, Vec<u32>)) -> (Vec<Listed>, Vec<u32>) {
+    let before = a.1.len() as u32;
+    let shifted = b.0.into_iter().map(|l| Listed { pieces: l.pieces.map(|k| k + before), ..l });
+    (join(a.0, shifted.collect()), join(a.1, b.1))
 }
 
 fn join<T>(mut a: Vec<T>, mut b: Vec<T>) -> Vec<T> {

@@ -110,18 +110,27 @@ impl Fix for Declared {
             w.memo.insert(last, vec![t.step as f64]);
             let row: Vec<f64> = readings.iter().map(|r| r.get(w)).collect();
             let list = w.memo.get_or(list, Vec::new);
-            list.extend(row);
-            if let Some(most) = most
-                && list.len() > most * cols
-            {
-                list.drain(..cols);
-            }
-            let list = list.clone();
+            let before = list.len();
+            let grow = |list: &mut Vec<f64>| {
+                list.extend(&row);
+                if let Some(most) = most
+                    && list.len() > most * cols
+                {
+                    list.drain(..cols);
+                }
+            };
+            grow(list);
             let out = w.slots.get_mut(slot);
             out.step = Some(t.step);
-            match cols {
-                1 => out.vector = list,
-                _ => (out.array, out.array_cols) = (list, cols),
+            let shown = if cols == 1 { &mut out.vector } else { &mut out.array };
+            // What is shown grows with what is kept: to copy all of it each time makes long runs quadratic.
+            if shown.len() == before {
+                grow(shown);
+            } else {
+                shown.clone_from(list);
+            }
+            if cols > 1 {
+                out.array_cols = cols;
             }
             Ok(())
         });
@@ -163,6 +172,12 @@ mod tests {
                 b.stage(&mut ops, Stage::EndOfStep).unwrap();
             }
             assert_eq!(b.slot_of("f_f").vector, wanted);
+            // A slot that was emptied is whole again after the next step.
+            let slot = b.world.slots.id("f_f");
+            b.world.slots.get_mut(slot).empty();
+            b.world.clock.step = 3;
+            b.stage(&mut ops, Stage::EndOfStep).unwrap();
+            assert_eq!(b.slot_of("f_f").vector, vec![7.0; if wanted.len() == 3 { 4 } else { 2 }]);
         }
         let fix = b.fix(&VectorFix, "1 v_e v_g").unwrap();
         fix.declare(&mut b.world).unwrap();

@@ -1,6 +1,7 @@
 //! Whether triangles are the surface of a body: closed, two-sided, and nowhere through itself.
 
 use super::exact::{side2, side3};
+use super::read::Surface;
 use super::solid::inside;
 use super::tree::Tree;
 use super::{Triangle, area, bounds, seen_along, weld, widest};
@@ -29,16 +30,17 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// The sentence about it, with places as they stand in the file.
-    pub fn text(&self, triangles: &[Triangle]) -> String {
+    /// The sentence about it, with places and numbers as they stand in the file.
+    pub fn text(&self, surface: &Surface) -> String {
+        let triangles = &surface.triangles;
         let point = |p: &Vec3| format!("({})", p.map(|x| general(x, 6)).join(" "));
         let corner = |k: usize, c: usize| triangles.get(k).map_or(String::new(), |t| point(&t[c % 3]));
         let edge = |[k, c]: [usize; 2]| {
-            format!("from {} to {} at triangle {}", corner(k, c), corner(k, c + 1), k + 1)
+            format!("from {} to {} at triangle {}", corner(k, c), corner(k, c + 1), surface.number(k))
         };
         match *self {
             Fault::Empty => "it holds no triangles".into(),
-            Fault::Flat(k) => format!("triangle {} has no area", k + 1),
+            Fault::Flat(k) => format!("triangle {} has no area", surface.number(k)),
             Fault::Open(1, at) => {
                 format!("it is not closed: one edge borders one triangle only, {}", edge(at))
             }
@@ -56,8 +58,8 @@ impl Fault {
                 let near = corner(a, 0);
                 format!(
                     "{count}{pairs} of its triangles cross or touch where they share no edge, {first}{} and {} near {near}",
-                    a + 1,
-                    b + 1
+                    surface.number(a),
+                    surface.number(b)
                 )
             }
         }

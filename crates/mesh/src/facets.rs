@@ -1,8 +1,9 @@
 //! Walls of triangles: which places a sphere touches, edges and corners counted once.
 
-use super::check::{edges, flat};
-use super::{Triangle, bounds, weld};
-use perigrain_base::math::forest::{find, join};
+use super::check::flat;
+use super::seams::Seams;
+use super::tree::Tree;
+use super::{Triangle, weld};
 use perigrain_base::math::triangle::{Feature, nearest};
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 
@@ -15,38 +16,34 @@ pub struct Near {
     pub normal: Vec3,
     /// How far the centre is from that point [length].
     pub distance: f64,
+    /// The piece of the triangle that is nearest.
+    feature: Feature,
+    /// A neighbour is nearer, or stands for both.
+    hidden: bool,
 }
 
-/// Neighbours whose normals differ by less than this (30°) belong to one smooth patch.
-const SMOOTH: f64 = 0.866_025_403_784_438_6;
 /// Of contacts with one patch whose normals differ by less than this (45°) the nearest one stands for all.
 const ALIKE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Distances that differ by less, relative to themselves, belong to one shared edge or corner.
 const SAME: f64 = 1e-10;
-/// Cells along an axis at most.
-const CELLS: f64 = 64.0;
+/// Rounding's share of a reach, so that boxes miss nothing.
+const SLACK: f64 = 1e-9;
 
 /// A surface of triangles at rest.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
     triangles: Vec<Triangle>,
+    /// Unit vectors across the triangles.
+    normals: Vec<Vec3>,
     /// Corners by number: those at the same place are one.
     corners: Vec<[u32; 3]>,
     /// The smooth patch of each triangle.
     patch: Vec<u32>,
-    grid: Grid,
-    /// Edges that border one triangle only.
+    tree: Tree,
+    /// Places nearer to each other than this are one [length].
+    miss: f64,
+    /// Edges, or parts of edges, that border one triangle only.
     pub open_edges: usize,
-}
-
-/// Which triangles pass through which cell.
-#[derive(Clone, Debug, Default)]
-struct Grid {
-    lo: Vec3,
-    size: f64,
-    count: [usize; 3],
-    start: Vec<u32>,
-    members: Vec<u32>,
 }
 
 impl Facets {
@@ -59,23 +56,10 @@ impl Facets {
             return Err(bad);
         }
         let corners = weld(&triangles);
-        let edges = edges(&corners);
-        let mut patch: Vec<u32> = (0..triangles.len() as u32).collect();
         let normals: Vec<Vec3> = triangles.iter().map(normal).collect();
-        let mut open_edges = 0;
-        for edge in edges.chunk_by(|a, b| a.0 == b.0) {
-            open_edges += usize::from(edge.len() == 1);
-            for pair in edge.windows(2) {
-                let [a, b] = [pair[0].1 / 3, pair[1].1 / 3];
-                // The order of corners, and so the sign of normals, need not be the same everywhere.
-                if dot(normals[a], normals[b]).abs() > SMOOTH {
-                    join(&mut patch, a as u32, b as u32);
-                }
-            }
-        }
-        let patch = (0..patch.len() as u32).map(|k| find(&mut patch, k)).collect();
-        let grid = Grid::new(&triangles);
-        Ok(Self { triangles, corners, patch, grid, open_edges })
+        let Seams { patch, open_edges, miss } = Seams::new(&triangles, &corners, &normals);
+        let tree = Tree::new(&triangles);
+        Ok(Self { triangles, normals, corners, patch, tree, miss, open_edges })
     }
 
     /// The triangles.
@@ -96,129 +80,149 @@ impl Facets {
 
     /// Whether some triangle is nearer than `reach`.
     pub fn close(&self, x: Vec3, reach: f64) -> bool {
-        let near = |k: &u32| {
-            let d = sub(x, nearest(x, &self.triangles[*k as usize]).0);
-            dot(d, d) < reach * reach
-        };
-        self.grid.cells(x, reach).any(|members| members.iter().any(&near))
+        let mut found = false;
+        self.visit(x, reach, |k| {
+            found = self.reaches(k, x, reach);
+            !found
+        });
+        found
+    }
+
+    /// The numbers of the triangles nearer than `reach`, in their order.
+    pub fn around(&self, x: Vec3, reach: f64, out: &mut Vec<u32>) {
+        let from = out.len();
+        self.visit(x, reach, |k| {
+            if self.reaches(k, x, reach) {
+                out.push(k);
+            }
+            true
+        });
+        out[from..].sort_unstable();
     }
 
     /// The places nearer than `reach`: one for each face, edge or corner that is nearest in its surroundings, and of
     /// those in one smooth patch that look alike the nearest.
     pub fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
-        let mut members: Vec<u32> = self.grid.cells(x, reach).flatten().copied().collect();
-        members.sort_unstable();
-        members.dedup();
-        let mut found: Vec<(u32, Feature, Vec3, f64)> = vec![];
-        for k in members {
-            let triangle = &self.triangles[k as usize];
-            let (point, feature) = nearest(x, triangle);
-            // Of a face the height above it: exactly along its normal wherever the foot lies.
-            let apart = match feature {
-                Feature::Face => {
-                    let n = normal(triangle);
-                    scale(dot(sub(x, triangle[0]), n), n)
-                }
-                _ => sub(x, point),
-            };
-            let distance = length(apart);
-            if distance < reach {
-                found.push((k, feature, apart, distance));
+        let mut members = vec![];
+        self.around(x, reach, &mut members);
+        self.near_among(&members, x, reach, out);
+    }
+
+    /// The places nearer than `reach`, as [`Facets::near`] finds them, where `members` has all triangles so near, in their order.
+    pub fn near_among(&self, members: &[u32], x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let from = out.len();
+        for &k in members {
+            if let Some(near) = self.place(k, x, reach) {
+                out.push(near);
             }
         }
-        let from = out.len();
-        for (k, feature, apart, distance) in &found {
-            let shared: &[usize] = match feature {
-                Feature::Face => &[],
-                Feature::Edge(e) => &[[0, 1], [1, 2], [2, 0]][usize::from(*e)],
-                Feature::Corner(c) => &[[0], [1], [2]][usize::from(*c)],
-            };
-            let has_all = |other: u32| {
-                shared.iter().all(|s| self.corners[other as usize].contains(&self.corners[*k as usize][*s]))
-            };
-            let hidden = !shared.is_empty()
-                && found.iter().any(|(other, _, _, d)| {
-                    let tie = (d - distance).abs() <= SAME * distance;
-                    other != k && has_all(*other) && if tie { other < k } else { d < distance }
-                });
-            if hidden {
+        if out.len() > from + 1 {
+            self.hide(x, &mut out[from..]);
+        }
+        let mut kept = from;
+        for k in from..out.len() {
+            let mut near = out[k];
+            if near.hidden {
                 continue;
             }
-            let normal = match *distance > 0.0 {
-                true => scale(1.0 / distance, *apart),
-                false => normal(&self.triangles[*k as usize]),
+            near.normal = match near.distance > 0.0 {
+                true => scale(1.0 / near.distance, near.normal),
+                false => self.normals[near.part as usize],
             };
-            let near = Near { part: *k, normal, distance: *distance };
-            self.merge(near, from, out);
-        }
-    }
-
-    /// Adds a contact, or lets it stand for one that looks alike.
-    fn merge(&self, near: Near, from: usize, out: &mut Vec<Near>) {
-        let alike = |n: &Near| self.passes(n.part, near.part) && dot(n.normal, near.normal) > ALIKE;
-        match out[from..].iter_mut().find(|n| alike(n)) {
-            Some(n) if near.distance < n.distance => *n = near,
-            Some(_) => {}
-            None => out.push(near),
-        }
-    }
-}
-
-impl Grid {
-    fn new(triangles: &[Triangle]) -> Self {
-        let (lo, hi) = bounds(triangles.as_flattened());
-        if triangles.is_empty() {
-            return Self::default();
-        }
-        let extent = (0..3).map(|d| hi[d] - lo[d]).fold(0.0, f64::max);
-        let mean = triangles.iter().map(longest).sum::<f64>() / triangles.len() as f64;
-        let size = mean.max(extent / CELLS);
-        let count = [0, 1, 2].map(|d| ((hi[d] - lo[d]) / size) as usize + 1);
-        let mut grid = Self { lo, size, count, start: vec![], members: vec![] };
-        let mut lists: Vec<Vec<u32>> = vec![vec![]; count.iter().product()];
-        for (k, t) in triangles.iter().enumerate() {
-            let (low, high) = bounds(t);
-            if let Some((a, b)) = grid.range(low, high) {
-                grid.each(a, b).for_each(|c| lists[c].push(k as u32));
+            let alike = |n: &&mut Near| self.passes(n.part, near.part) && dot(n.normal, near.normal) > ALIKE;
+            match out[from..kept].iter_mut().find(alike) {
+                Some(n) if near.distance < n.distance => *n = near,
+                Some(_) => {}
+                None => {
+                    out[kept] = near;
+                    kept += 1;
+                }
             }
         }
-        grid.start.push(0);
-        for list in lists {
-            grid.members.extend(list);
-            grid.start.push(grid.members.len() as u32);
-        }
-        grid
+        out.truncate(kept);
     }
 
-    /// The cells that hold some of a box, which is widened by rounding's share; none if it lies outside.
-    fn range(&self, low: Vec3, high: Vec3) -> Option<([usize; 3], [usize; 3])> {
-        let (mut a, mut b) = ([0; 3], [0; 3]);
-        for d in 0..3 {
-            let slack = 1e-9;
-            let from = ((low[d] - self.lo[d]) / self.size - slack).floor();
-            let to = ((high[d] - self.lo[d]) / self.size + slack).floor();
-            let last = self.count[d] as f64 - 1.0;
-            if !(to >= 0.0 && from <= last) {
-                return None;
+    /// Calls `visit` for the triangles whose boxes may be so near, until it says stop.
+    fn visit(&self, x: Vec3, reach: f64, visit: impl FnMut(u32) -> bool) {
+        let wide = |d: usize| reach + SLACK * (reach + x[d].abs());
+        self.tree.meet([0, 1, 2].map(|d| x[d] - wide(d)), [0, 1, 2].map(|d| x[d] + wide(d)), visit);
+    }
+
+    /// The height of a place above the plane of triangle `k`, along its normal.
+    #[inline]
+    fn height(&self, k: usize, x: Vec3) -> f64 {
+        dot(sub(x, self.triangles[k][0]), self.normals[k])
+    }
+
+    /// Whether triangle `k` is nearer than `reach`.
+    fn reaches(&self, k: u32, x: Vec3, reach: f64) -> bool {
+        let k = k as usize;
+        if self.height(k, x).abs() >= reach {
+            return false;
+        }
+        let d = sub(x, nearest(x, &self.triangles[k]).0);
+        dot(d, d) < reach * reach
+    }
+
+    /// The nearest place of triangle `k`, with the way from there in place of the normal; nothing where it is not nearer than `reach`.
+    #[inline]
+    fn place(&self, k: u32, x: Vec3, reach: f64) -> Option<Near> {
+        let at = k as usize;
+        // Most of those that were near a while ago end here.
+        let height = self.height(at, x);
+        if height.abs() >= reach {
+            return None;
+        }
+        let (point, feature) = nearest(x, &self.triangles[at]);
+        // Of a face the height above it: exactly along its normal wherever the foot lies.
+        let apart = match feature {
+            Feature::Face => scale(height, self.normals[at]),
+            _ => sub(x, point),
+        };
+        let distance = length(apart);
+        (distance < reach).then_some(Near { part: k, normal: apart, distance, feature, hidden: false })
+    }
+
+    /// Marks places that others stand for: of a common edge or corner, and where triangles lie on each other at all.
+    fn hide(&self, x: Vec3, found: &mut [Near]) {
+        let mut seen = 0;
+        for k in 0..found.len() {
+            found[k].hidden = found.iter().any(|other| self.shares(&found[k], other));
+            seen += usize::from(!found[k].hidden);
+        }
+        // Corners that lie on an edge, that miss each other a little, and faces that lie on faces have no common numbers.
+        if seen > 1 {
+            for k in 0..found.len() {
+                found[k].hidden |= found.iter().any(|other| self.lies_on(x, &found[k], other));
             }
-            (a[d], b[d]) = (from.max(0.0) as usize, to.min(last) as usize);
         }
-        Some((a, b))
     }
 
-    fn each(&self, a: [usize; 3], b: [usize; 3]) -> impl Iterator<Item = usize> + use<> {
-        let count = self.count;
-        (a[0]..=b[0]).flat_map(move |i| {
-            (a[1]..=b[1]).flat_map(move |j| (a[2]..=b[2]).map(move |k| (i * count[1] + j) * count[2] + k))
-        })
+    /// Whether `near` is an edge or corner that belongs to `other`'s triangle, too, which is nearer or stands for both.
+    fn shares(&self, near: &Near, other: &Near) -> bool {
+        let shared: &[usize] = match near.feature {
+            Feature::Face => return false,
+            Feature::Edge(e) => &[[0, 1], [1, 2], [2, 0]][usize::from(e)],
+            Feature::Corner(c) => &[[0], [1], [2]][usize::from(c)],
+        };
+        let tie = (other.distance - near.distance).abs() <= SAME * near.distance;
+        if other.part == near.part
+            || !(if tie { other.part < near.part } else { other.distance < near.distance })
+        {
+            return false;
+        }
+        let [own, theirs] = [near, other].map(|n| &self.corners[n.part as usize]);
+        shared.iter().all(|s| theirs.contains(&own[*s]))
     }
 
-    /// The triangles of the cells around a place.
-    fn cells(&self, x: Vec3, reach: f64) -> impl Iterator<Item = &[u32]> {
-        let range =
-            if self.start.is_empty() { None } else { self.range(x.map(|a| a - reach), x.map(|a| a + reach)) };
-        let cells = range.into_iter().flat_map(|(a, b)| self.each(a, b));
-        cells.map(|c| &self.members[self.start[c] as usize..self.start[c + 1] as usize])
+    /// Whether the place of `near` lies on `other`'s triangle, which is nearer, or has the smaller number.
+    fn lies_on(&self, x: Vec3, near: &Near, other: &Near) -> bool {
+        if near.hidden || (other.distance, other.part) >= (near.distance, near.part) {
+            return false;
+        }
+        let point = sub(x, near.normal);
+        let apart = sub(point, nearest(point, &self.triangles[other.part as usize]).0);
+        dot(apart, apart) <= self.miss * self.miss
     }
 }
 
@@ -231,10 +235,6 @@ fn normal([a, b, c]: &Triangle) -> Vec3 {
 /// The area of a triangle.
 pub fn area([a, b, c]: &Triangle) -> f64 {
     0.5 * length(cross(sub(*b, *a), sub(*c, *a)))
-}
-
-fn longest(t: &Triangle) -> f64 {
-    (0..3).map(|k| length(sub(t[k], t[(k + 1) % 3]))).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -292,6 +292,64 @@ mod tests {
         let [a, b] = [[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
         let m = Facets::new(vec![[a, b, [4.0, 2.0, 0.4]], [a, b, [-4.0, 2.0, 0.4]]]).unwrap();
         assert_eq!(seen(&m, [0.01, 2.0, 0.9]).len(), 1);
+    }
+
+    /// The floor from -2 to 2, its left half of two triangles and its right half of fourteen with other corners, `gap` apart.
+    fn patched(gap: f64) -> Facets {
+        let [a, b, c, d] = [[-2.0, -2.0, 0.0], [0.0, -2.0, 0.0], [0.0, 2.0, 0.0], [-2.0, 2.0, 0.0]];
+        let mut floor = vec![[a, b, c], [a, c, d]];
+        for k in 0..7 {
+            let [lo, hi] = [k, k + 1].map(|k| -2.0 + 4.0 * f64::from(k) / 7.0);
+            let [a, b, c, d] = [[gap, lo, 0.0], [2.0, lo, 0.0], [2.0, hi, 0.0], [gap, hi, 0.0]];
+            floor.extend([[a, b, c], [a, c, d]]);
+        }
+        Facets::new(floor).unwrap()
+    }
+
+    #[test]
+    fn corners_on_edges_and_small_gaps_are_no_seams() {
+        for gap in [0.0, 1e-9, -1e-9] {
+            let m = patched(gap);
+            // On the seam, beside it, on a corner of one side; and all around.
+            for y in [0.0, 0.1, 2.0 / 7.0, 6.0 / 7.0] {
+                for x in [0.0, 0.5 * gap, gap, 1e-12, -1e-5, 1e-5, -0.3, 0.3] {
+                    let seen = seen(&m, [x, y, 0.9]);
+                    assert!(seen.len() == 1 && (seen[0].1 - 0.9).abs() < 1e-15, "{gap} {x} {y}: {seen:?}");
+                    assert!((seen[0].0[2] - 1.0).abs() < 1e-15, "{seen:?}");
+                }
+            }
+            // Springs pass across it, and its rim alone is open: 2 + 1 sides on the left, 2 + 7 on the right.
+            assert!(m.passes(0, 4) && m.open_edges == 12, "{}", m.open_edges);
+        }
+        // A gap through which something can fall is one.
+        let m = patched(1e-3);
+        assert!(!m.passes(0, 4) && m.open_edges == 20, "{}", m.open_edges);
+    }
+
+    #[test]
+    fn faces_that_lie_on_each_other_count_once() {
+        // Two squares of one plane that overlap and share no corner.
+        let square = |x: f64| {
+            let [a, b, c, d] = [[x, 0.0, 0.0], [x + 2.0, 0.0, 0.0], [x + 2.0, 2.0, 0.0], [x, 2.0, 0.0]];
+            [[a, b, c], [a, c, d]]
+        };
+        let m = Facets::new([square(0.0), square(0.7)].concat()).unwrap();
+        for x in [0.5, 0.69, 0.71, 1.3, 1.99, 2.01, 2.5] {
+            assert_eq!(seen(&m, [x, 0.9, 0.9]), [([0.0, 0.0, 1.0], 0.9)], "{x}");
+        }
+    }
+
+    #[test]
+    fn a_fin_on_a_plate_makes_a_corner() {
+        // It stands on the inside of the plate's faces and shares no corner with them.
+        let [a, b, c, d] = [[-2.0, -2.0, 0.0], [2.0, -2.0, 0.0], [2.0, 2.0, 0.0], [-2.0, 2.0, 0.0]];
+        let [e, f, g, h] = [[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [0.5, 1.0, 1.0], [0.5, -1.0, 1.0]];
+        let m = Facets::new(vec![[a, b, c], [a, c, d], [e, f, g], [e, g, h]]).unwrap();
+        assert_eq!(seen(&m, [0.2, 0.1, 0.4]).len(), 2);
+        assert_eq!(seen(&m, [1.2, 0.1, 0.4]).len(), 2);
+        // Beyond its end the plate alone.
+        assert_eq!(seen(&m, [0.5, 1.2, 0.1]).len(), 2);
+        assert_eq!(seen(&m, [0.5, 1.2, -0.1]).len(), 1);
     }
 
     #[test]

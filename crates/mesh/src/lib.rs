@@ -12,6 +12,7 @@ mod facets;
 mod obj;
 mod ply;
 mod read;
+mod seams;
 #[cfg(test)]
 mod shapes;
 mod sheet;

@@ -1,5 +1,6 @@
 //! Which kind of file a surface stands in, and its triangles.
 
+use super::check::flat;
 use super::{Triangle, obj, ply, stl, vtp};
 
 /// A kind of file.
@@ -36,6 +37,24 @@ pub struct Surface {
     pub format: Format,
     /// The triangles in the order of the file; polygons are cut into fans.
     pub triangles: Vec<Triangle>,
+    /// Numbers, from 0, of those that were left out.
+    pub left_out: Vec<usize>,
+    /// Lines of comments in a format that has none.
+    pub comments: usize,
+}
+
+impl Surface {
+    /// Leaves out triangles without area, which nothing can lean on and which enclose nothing.
+    pub fn leave_out_flat(&mut self) {
+        let flat = |t: &Triangle| flat(std::slice::from_ref(t)).is_some();
+        self.left_out = (0..self.triangles.len()).filter(|k| flat(&self.triangles[*k])).collect();
+        self.triangles.retain(|t| !flat(t));
+    }
+
+    /// The number in the file, from 1, of triangle `k`, from 0.
+    pub fn number(&self, k: usize) -> usize {
+        self.left_out.iter().fold(k, |k, out| k + usize::from(*out <= k)) + 1
+    }
 }
 
 /// Why a file cannot be read.
@@ -61,6 +80,7 @@ impl Unreadable {
 pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Unreadable> {
     let start = bytes.trim_ascii_start();
     let ends = |end: &str| file.len() >= end.len() && file.to_ascii_lowercase().ends_with(end);
+    let mut comments = 0;
     let (format, found) = if bytes.starts_with(b"ply") || ends(".ply") {
         (Format::Ply, ply::read(bytes).map(|t| (String::new(), t)))
     } else if start.starts_with(b"<") || ends(".vtp") {
@@ -69,14 +89,20 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Unreadable> {
         (Format::Obj, obj::read(bytes))
     } else {
         let binary = stl::is_binary(bytes);
-        (Format::Stl(binary), stl::read(bytes))
+        (
+            Format::Stl(binary),
+            stl::read(bytes).map(|read| {
+                comments = read.comments;
+                (read.name, read.triangles)
+            }),
+        )
     };
     let (name, triangles) = found.map_err(|what| Unreadable { format, what })?;
     if let Some(bad) = triangles.iter().position(|t| !t.as_flattened().iter().all(|x| x.is_finite())) {
         let what = format!("triangle {} has a coordinate that is no finite number", bad + 1);
         return Err(Unreadable { format, what });
     }
-    Ok(Surface { name, format, triangles })
+    Ok(Surface { name, format, triangles, left_out: vec![], comments })
 }
 
 /// Cuts a polygon into triangles around its first corner; nothing comes of less than three corners.

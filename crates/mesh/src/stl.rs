@@ -1,15 +1,27 @@
 //! STL files, text and binary.
 
 use super::Triangle;
+use std::borrow::Cow;
 
-type Found = Result<(String, Vec<Triangle>), String>;
+/// What a file holds.
+#[derive(Debug, Default, PartialEq)]
+pub struct Read {
+    /// The object's name, that of the first one of several.
+    pub name: String,
+    /// All triangles.
+    pub triangles: Vec<Triangle>,
+    /// Lines of comments, which the format does not have.
+    pub comments: usize,
+}
 
-/// Reads an STL file of either kind; the object's name and its triangles.
+type Found = Result<Read, String>;
+
+/// Reads an STL file of either kind.
 pub fn read(bytes: &[u8]) -> Found {
     if is_binary(bytes) {
         let header = String::from_utf8_lossy(&bytes[..80]);
         let name = header.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string();
-        return Ok((name, binary(&bytes[84..])));
+        return Ok(Read { name, triangles: binary(&bytes[84..]), comments: 0 });
     }
     let announced = announced(bytes).map_or(String::new(), |count| {
         let wanted = 84 + 50 * u64::from(count);
@@ -18,11 +30,16 @@ pub fn read(bytes: &[u8]) -> Found {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return Err(format!("it is neither a text nor a whole binary STL file{announced}"));
     };
-    if !text.lines().next().unwrap_or("").trim().starts_with("solid") {
+    let mut text = Cow::Borrowed(text.trim_start_matches('\u{feff}'));
+    if text.contains("SOLID") || text.contains("FACET") {
+        text = text.to_ascii_lowercase().into();
+    }
+    let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+    if !first.unwrap_or("").starts_with("solid") {
         let text = "its first line does not begin with `solid`, and it is no whole binary STL file";
         return Err(format!("{text}{announced}"));
     }
-    ascii(text)
+    ascii(&text)
 }
 
 /// The number of triangles that a binary file announces.
@@ -45,14 +62,16 @@ fn binary(records: &[u8]) -> Vec<Triangle> {
     records.chunks_exact(50).map(|r| [0, 1, 2].map(|p| corner(r, p))).collect()
 }
 
-/// All the solids of a text; the name of the first one.
+/// All the solids of a text.
 fn ascii(text: &str) -> Found {
     let (mut triangles, mut corners, mut name, mut open) = (vec![], vec![], None, false);
+    let mut comments = 0;
     for (n, line) in text.lines().enumerate() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let wrong = |what: &str| Err(format!("line {}: {what}", n + 1));
         match words.as_slice() {
             [] => {}
+            [word, ..] if word.starts_with('#') => comments += 1,
             ["solid", rest @ ..] if !open => {
                 name.get_or_insert_with(|| rest.join(" "));
                 open = true;
@@ -80,7 +99,7 @@ fn ascii(text: &str) -> Found {
     if open {
         return Err("it ends without `endsolid`".into());
     }
-    Ok((name.unwrap_or_default(), triangles))
+    Ok(Read { name: name.unwrap_or_default(), triangles, comments })
 }
 
 #[cfg(test)]
@@ -104,11 +123,23 @@ mod tests {
     #[test]
     fn both_kinds_of_files_are_read() {
         let corners = vec![[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]];
-        assert_eq!(read(TEXT.as_bytes()), Ok(("one".into(), corners.clone())));
-        assert_eq!(read(&packed()), Ok(("solid in binary".into(), corners.clone())));
+        let named = |name: &str, triangles: &[Triangle]| {
+            Ok(Read { name: name.into(), triangles: triangles.to_vec(), comments: 0 })
+        };
+        assert_eq!(read(TEXT.as_bytes()), named("one", &corners));
+        assert_eq!(read(&packed()), named("solid in binary", &corners));
         // A file of two solids is both of them.
-        let both = read(format!("{TEXT}\n{}", TEXT.replace("one", "two")).as_bytes()).unwrap();
-        assert_eq!(both, ("one".into(), [corners.clone(), corners].concat()));
+        let both = read(format!("{TEXT}\n{}", TEXT.replace("one", "two")).as_bytes());
+        assert_eq!(both, named("one", &[&corners[..], &corners].concat()));
+    }
+
+    #[test]
+    fn comments_capitals_and_a_byte_order_mark_are_taken() {
+        let plain = read(TEXT.as_bytes()).unwrap();
+        let commented = format!("# by hand\n#\n{}# end\n", TEXT.replace("endloop", "# three\nendloop"));
+        assert_eq!(read(commented.as_bytes()), Ok(Read { comments: 4, ..read(TEXT.as_bytes()).unwrap() }));
+        let marked = format!("\u{feff}\n {}", TEXT.to_ascii_uppercase());
+        assert_eq!(read(marked.as_bytes()), Ok(Read { name: "one".into(), ..plain }));
     }
 
     #[test]

@@ -108,6 +108,25 @@ fn wrong_orders_are_turned_and_holes_are_holes() {
     assert!((cube.volume() - 1.0).abs() < 12.0 * f64::EPSILON && cube.turned() == 12);
 }
 
+/// A surface as a file has it.
+fn surface(triangles: Vec<Triangle>) -> Surface {
+    Surface { name: String::new(), format: Format::Obj, triangles, left_out: vec![], comments: 0 }
+}
+
+#[test]
+fn triangles_without_area_are_left_out_and_numbers_are_the_file_s() {
+    let cube = block([0.0; 3], [1.0; 3]);
+    let flat = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
+    let mut all = cube.clone();
+    [12, 4, 0].into_iter().for_each(|k| all.insert(k, flat));
+    let mut read = surface(all);
+    read.leave_out_flat();
+    assert_eq!((&read.triangles, &read.left_out[..]), (&cube, &[0, 5, 14][..]));
+    assert_eq!([0, 3, 4, 11].map(|k| read.number(k)), [2, 5, 7, 14]);
+    assert!(Fault::Open(1, [4, 0]).text(&read).ends_with("at triangle 7"));
+    assert_eq!(Solid::new(read.triangles), Solid::new(cube));
+}
+
 #[test]
 fn what_is_no_body_is_named() {
     let cube = block([0.0; 3], [1.0; 3]);
@@ -118,7 +137,7 @@ fn what_is_no_body_is_named() {
     // Without the second half of the lid three edges are left alone, the first of them at the other half's third side.
     assert_eq!(fault(open.clone()), Fault::Open(3, [2, 2]));
     assert_eq!(
-        Fault::Open(3, [2, 2]).text(&open),
+        Fault::Open(3, [2, 2]).text(&surface(open.clone())),
         "it is not closed: 3 edges border one triangle only, the first from (1 1 1) to (0 0 1) at triangle 3"
     );
     assert_eq!(fault([open, vec![lid, lid, lid]].concat()), Fault::Crowded(3, [2, 2]));
@@ -261,7 +280,7 @@ proptest! {
         if let Ok(surface) = read(&name, &bytes) {
             let _ = Sheet::from(surface.triangles.clone()).cuts([0.1; 3], [0.9; 3]);
             if let Err(fault) = Solid::new(surface.triangles.clone()) {
-                prop_assert!(!fault.text(&surface.triangles).is_empty());
+                prop_assert!(!fault.text(&surface).is_empty());
             }
         }
     }

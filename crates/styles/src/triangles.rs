@@ -1,7 +1,7 @@
 //! Surfaces of triangles that a deck names: the file, and the words that put it in its place.
 
 use crate::BuildCx;
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::gate;
 use perigrain_lang::{Args, Word};
 use perigrain_mesh::{Surface, Triangle};
@@ -46,6 +46,27 @@ impl Placing {
     }
 }
 
+/// Reads the surface in a file without its triangles that have no area; nothing where [`read`] gives nothing.
+///
+/// # Errors
+/// As [`read`], and a file without any other triangle.
+pub fn read_faces(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
+    let Some(mut surface) = read(file, cx)? else { return Ok(None) };
+    surface.leave_out_flat();
+    let Some(first) = surface.left_out.first() else { return Ok(Some(surface)) };
+    let text = match surface.left_out.len() {
+        1 => format!("triangle {} of `{}` has no area", first + 1, file.text),
+        n => format!("{n} triangles of `{}` have no area, the first is {}", file.text, first + 1),
+    };
+    if surface.triangles.is_empty() {
+        let d = Diagnostic::error(Code::BAD_VALUE, file.span, format!("{text}, and there are no others"));
+        return Err(d.into());
+    }
+    let note = Diagnostic::warning(Code::SUSPICIOUS, file.span, text + ": left out");
+    cx.note(note.help("where corners of neighbours lie on its long side, nothing is missing without it"));
+    Ok(Some(surface))
+}
+
 /// Reads the surface in a file; nothing where a line above may write it, and it is not there yet (`perigrain check`).
 ///
 /// # Errors
@@ -64,6 +85,15 @@ pub fn read(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
         Ok(surface) if surface.triangles.is_empty() => {
             fail(Code::BAD_VALUE, file.span, format!("`{}` holds no triangles", file.text))
         }
-        Ok(surface) => Ok(Some(surface)),
+        Ok(surface) => {
+            if surface.comments > 0 {
+                let text = format!(
+                    "`{}` has {} lines that begin with `#`, which STL does not know: they are taken for comments",
+                    file.text, surface.comments
+                );
+                cx.note(Diagnostic::note(Code::SUSPICIOUS, file.span, text));
+            }
+            Ok(Some(surface))
+        }
     }
 }

@@ -26,6 +26,7 @@ pub mod memory;
 pub mod minimizer;
 pub mod named;
 pub mod order;
+pub mod outline;
 pub mod outside;
 pub mod particles;
 pub mod potentials;
@@ -66,6 +67,7 @@ pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
 pub use named::{Constant, Key, Named, Numbers, Vectors};
+pub use outline::Outline;
 pub use outside::Outside;
 pub use particles::Particles;
 pub use promises::{Promise, Promises};
@@ -174,6 +176,8 @@ pub struct Parts {
     pub pair_touches: Option<Named<contacts::PairTouches>>,
     /// All energy of a scene of grains as the run began, where nothing does work on it.
     pub budget: Option<f64>,
+    /// What walls look like, by the fix's ID.
+    pub outlines: Named<Outline>,
     /// The last look at the step that contacts stand.
     pub pressed: Option<contacts::Pressed>,
     /// Every fix freeze in force by its ID, and its group: contact laws take these grains for infinitely heavy.

@@ -2,10 +2,12 @@
 
 mod faces;
 mod motion;
+mod outline;
 mod shape;
 mod surface;
 
 pub use motion::{Motion, Turn, Variable, turned};
+pub use perigrain_mesh::Near as FacetNear;
 pub use shape::{Shape, across};
 pub use surface::{Look, Near};
 

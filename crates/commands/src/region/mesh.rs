@@ -10,11 +10,11 @@ use perigrain_styles::triangles::{self, Placing};
 /// Takes the name of a file and reads the body in it; what is said about it.
 pub fn read(a: &mut Args, cx: &BuildCx, placing: Placing, unit: [f64; 3]) -> Result<(Solid, Vec<String>)> {
     let file = a.expect("the name of a file of triangles")?;
-    let Some(surface) = triangles::read(file, cx)? else { return Ok((Solid::default(), vec![])) };
+    let Some(surface) = triangles::read_faces(file, cx)? else { return Ok((Solid::default(), vec![])) };
     let mut placed = surface.triangles.clone();
     placing.apply(&mut placed, unit);
     let solid = Solid::new(placed).map_err(|fault| {
-        let text = format!("`{}` is no surface of a body: {}", file.text, fault.text(&surface.triangles));
+        let text = format!("`{}` is no surface of a body: {}", file.text, fault.text(&surface));
         Diagnostic::error(Code::BAD_VALUE, file.span, text).help(fault.help())
     })?;
     let place = |x: [f64; 3]| x.map(|x| general(x, 6)).join(" ");

@@ -10,7 +10,8 @@ use perigrain_lang::Args;
 use perigrain_plan::Tick;
 use perigrain_styles::common::{axis, number_or_null};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::{Face, Numbers, World};
+use perigrain_world::region::{INFINITE, Region, Shape};
+use perigrain_world::{Face, Key, Numbers, Outline, World};
 use std::f64::consts::PI;
 
 /// The style.
@@ -188,11 +189,37 @@ impl Form for Flat {
         Elapsed::load(w, key).store(w, key);
     }
 
+    fn outline(&self) -> Outline {
+        let place = self.place;
+        Outline::new(move |w| {
+            let Some(bounds) = w.domain.as_ref().map(perigrain_world::Domain::bounds) else { return vec![] };
+            let mut found = vec![];
+            let mut add = |shape, open| {
+                found.extend(Region { open, ..Region::inside(shape) }.outline(bounds));
+            };
+            match place {
+                Place::Planes(axis, lo, hi) => {
+                    let mut normal = [0.0; 3];
+                    normal[axis] = 1.0;
+                    for at in [lo, hi].into_iter().flatten() {
+                        add(Shape::Plane { point: normal.map(|n| n * at), normal }, 0);
+                    }
+                }
+                Place::Tube(radius) => {
+                    let (lo, hi) = (-INFINITE, INFINITE);
+                    add(Shape::Cylinder { axis: 2, center: [0.0; 2], radius, lo, hi }, 0);
+                }
+            }
+            found
+        })
+    }
+
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
         self.tell_beyond(fix, cx)?;
         Ok(Box::new(Running {
             form: *self,
             key: fix.key(Self::STYLE),
+            outline: Key::new(&fix.id),
             offset: 0.0,
             velocity: [0.0; 3],
             spin: 0.0,
@@ -223,6 +250,7 @@ impl Flat {
 struct Running {
     form: Flat,
     key: Numbers,
+    outline: Key<Outline>,
     /// How far it has moved along its motion's axis.
     offset: f64,
     velocity: [f64; 3],
@@ -244,6 +272,9 @@ impl Surface for Running {
             (Motion::Wiggle(axis, amplitude, omega), _) => {
                 self.offset = amplitude - amplitude * (omega * time).cos();
                 self.velocity[axis] = amplitude * omega * (omega * time).sin();
+                if let Some(outline) = w.parts.outlines.get_mut(self.outline) {
+                    outline.pose.shift[axis] = self.offset;
+                }
             }
             (Motion::Shear(axis @ (0 | 1), speed), Place::Tube(_)) => {
                 self.spin = speed;

@@ -15,7 +15,7 @@ use perigrain_mesh::Facets;
 use perigrain_plan::Tick;
 use perigrain_styles::triangles::{self, Placing};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::{Numbers, World};
+use perigrain_world::{Key, Numbers, Outline, World};
 use std::sync::Arc;
 
 /// The style.
@@ -40,8 +40,9 @@ impl Style for WallMesh {
                 within 45°) the nearest one counts, and the springs of friction pass from triangle to triangle. So a plane \
                 cut into triangles is a plane: a ball that rolls across feels no kick.\n\n\
                 FILE is STL (text or binary), OBJ, PLY or VTP, as for `region mesh`. Its numbers are multiplied by `scale`, then shifted, into box units; corners are shared where their \
-                numbers are the same. A triangle without area is refused; edges that border one triangle only (holes, or \
-                the rim of a plate) are told of.\n\n\
+                numbers are the same. Corners on the edge of another triangle, corners that miss each other by less than a \
+                millionth of the mesh and faces that lie on each other make no seams either. Triangles without area are left out with a warning; edges \
+                that border one triangle only (holes, or the rim of a plate) are counted in another one.\n\n\
                 `move`: with t the time since the fix was declared, `linear` is a shift V t, `wiggle` A sin ω t with \
                 ω = 2π/period, `rotate` a turn about the axis R through P, right-handed, one in a period; `variable` shifts \
                 by equal-style variables, and the wall has the velocity of the change since the step before.\n\n\
@@ -88,19 +89,22 @@ impl FixStyle for WallMesh {
             common.center = point;
         }
         words::check_heat(&common)?;
-        let mesh = surface(file, placing, cx)?;
-        Ok(Box::new(Declared { common, form: Triangles { mesh: Arc::new(mesh), motion } }))
+        let (mesh, numbers) = surface(file, placing, cx)?;
+        Ok(Box::new(Declared {
+            common,
+            form: Triangles { mesh: Arc::new(mesh), numbers: numbers.into(), motion },
+        }))
     }
 }
 
-/// Reads the file's triangles into their place.
-fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<Facets> {
-    let Some(mut read) = triangles::read(file, cx)? else { return Ok(Facets::default()) };
+/// Reads the file's triangles into their place; with their numbers in the file.
+fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<(Facets, Vec<u32>)> {
+    let Some(mut read) = triangles::read_faces(file, cx)? else { return Ok((Facets::default(), vec![])) };
     placing.apply(&mut read.triangles, [1.0; 3]);
+    let numbers = (0..read.triangles.len()).map(|k| read.number(k) as u32).collect();
     let mesh = Facets::new(read.triangles).map_err(|bad| {
-        let text = format!("triangle {} of `{}` has no area", bad + 1, file.text);
+        let text = format!("triangle {} of `{}` is too small for its place", bad + 1, file.text);
         Diagnostic::error(Code::BAD_VALUE, file.span, text)
-            .help("let the program that made the mesh repair it: merge corners and drop degenerate facets")
     })?;
     if mesh.open_edges > 0 {
         let text = format!(
@@ -110,12 +114,14 @@ fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<Facets> {
         let note = Diagnostic::warning(Code::SUSPICIOUS, file.span, text);
         cx.note(note.help("the rim of a plate or pipe is as meant; a hole lets grains through"));
     }
-    Ok(mesh)
+    Ok((mesh, numbers))
 }
 
 #[derive(Clone)]
 struct Triangles {
     mesh: Arc<Facets>,
+    /// Their numbers in the file, from 1.
+    numbers: Arc<[u32]>,
     motion: Motion,
 }
 
@@ -135,11 +141,16 @@ impl Form for Triangles {
         w.memo.insert(moving::place_key(key), vec![]);
     }
 
+    fn outline(&self) -> Outline {
+        let mesh = self.mesh.clone();
+        Outline::new(move |_| mesh.triangles().to_vec())
+    }
+
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
         let key = fix.key(Self::STYLE);
-        let running = Running::new(self.mesh.clone(), &self.motion, key, cx)?;
+        let running = Running::new(self.mesh.clone(), &self.motion, (key, Key::new(&fix.id)), cx)?;
         let areas = self.mesh.triangles().iter().map(perigrain_mesh::area).collect();
-        Ok(Box::new(Tracked { running, work: work_key(key), areas }))
+        Ok(Box::new(Tracked { running, work: work_key(key), areas, numbers: self.numbers.clone() }))
     }
 }
 
@@ -148,6 +159,7 @@ struct Tracked {
     running: Running,
     work: Numbers,
     areas: Vec<f64>,
+    numbers: Arc<[u32]>,
 }
 
 impl Surface for Tracked {
@@ -176,7 +188,7 @@ impl Surface for Tracked {
             }
         }
         for (k, row) in rows.iter_mut().enumerate() {
-            (row[0], row[4], row[5]) = (k as f64 + 1.0, work[k], work[k] / self.areas[k]);
+            (row[0], row[4], row[5]) = (f64::from(self.numbers[k]), work[k], work[k] / self.areas[k]);
         }
         w.memo.insert(self.work, work);
         rows.into_iter().flatten().collect()

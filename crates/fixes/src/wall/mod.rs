@@ -18,7 +18,7 @@ use perigrain_plan::{Op, Tick};
 use perigrain_styles::pair::Deck;
 use perigrain_styles::{BuildCx, SealCx, Shape};
 use perigrain_world::contacts::Contacts;
-use perigrain_world::{GroupId, Key, Numbers, World};
+use perigrain_world::{GroupId, Key, Numbers, Outline, World};
 use words::Material;
 
 /// A wall of some form during a run.
@@ -55,6 +55,9 @@ trait Form: Clone + Send + 'static {
 
     /// Captures what it must know of the moment it is declared, under `key`.
     fn declare(&self, w: &mut World, key: Numbers);
+
+    /// What it looks like.
+    fn outline(&self) -> Outline;
 }
 
 /// What all walls have.
@@ -99,6 +102,7 @@ impl<F: Form> Fix for Declared<F> {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         self.form.declare(w, self.common.key(F::STYLE));
+        w.parts.outlines.insert(Key::new(&self.common.id), self.form.outline());
         Ok(())
     }
 
@@ -110,6 +114,7 @@ impl<F: Form> Fix for Declared<F> {
         w.wall_contacts.remove(contacts);
         w.wall_contacts.remove(plastic::key(&self.common.id));
         w.parts.wall_springs.lists.remove(contacts.of());
+        w.parts.outlines.remove(contacts.of());
         if let Some(all) = &mut w.parts.wall_touches {
             all.remove(contacts.of());
         }

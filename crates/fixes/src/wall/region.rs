@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Tick;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{Look, Shape};
-use perigrain_world::{Key, Numbers, Region, World};
+use perigrain_world::{Key, Numbers, Outline, Region, World};
 
 /// The style.
 pub struct WallGranRegion;
@@ -85,6 +85,14 @@ impl Form for Shaped {
     fn declare(&self, w: &mut World, key: Numbers) {
         // No step and no pose: the wall has no velocity in its first step.
         w.memo.insert(key, vec![]);
+    }
+
+    fn outline(&self) -> Outline {
+        let name: Key<Region> = Key::new(&self.region);
+        Outline::new(move |w| match (w.regions.get(name), &*w.domain) {
+            (Some(region), Some(d)) => region.outline(d.bounds()),
+            _ => vec![],
+        })
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {

@@ -4,14 +4,15 @@ use crate::elapsed::Elapsed;
 use crate::lineforce::direction;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{Vec3, add, cross, length, scale, sub};
-use perigrain_contact::walls::{Near, Wall};
+use perigrain_contact::walls::{FacetNear, Near, Wall};
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_mesh::Facets;
 use perigrain_plan::{Stage, Tick, When};
 use perigrain_styles::common::param_or_null;
 use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_world::outline::Pose;
 use perigrain_world::region::turned;
-use perigrain_world::{Numbers, World};
+use perigrain_world::{Key, Numbers, Outline, World};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -94,6 +95,8 @@ pub struct Running {
     readings: [Option<Reading>; 3],
     key: Numbers,
     place: Numbers,
+    /// What it looks like, for pictures.
+    outline: Key<Outline>,
     shift: Vec3,
     angle: f64,
     velocity: Vec3,
@@ -102,11 +105,16 @@ pub struct Running {
 }
 
 impl Running {
-    /// At rest in its first place.
+    /// At rest in its first place; with the keys of its state and of what it looks like.
     ///
     /// # Errors
     /// Variables that are gone.
-    pub fn new(mesh: Arc<Facets>, motion: &Motion, key: Numbers, cx: &mut dyn SealCx) -> Result<Self> {
+    pub fn new(
+        mesh: Arc<Facets>,
+        motion: &Motion,
+        (key, outline): (Numbers, Key<Outline>),
+        cx: &mut dyn SealCx,
+    ) -> Result<Self> {
         let mut readings = [None; 3];
         if let Motion::Variable(names) = motion {
             for (reading, name) in readings.iter_mut().zip(names) {
@@ -126,6 +134,7 @@ impl Running {
             readings,
             key,
             place: place_key(key),
+            outline,
             shift: [0.0; 3],
             angle: 0.0,
             velocity: [0.0; 3],
@@ -157,6 +166,9 @@ impl Running {
             Motion::Rotate(_, _, omega) => self.angle = omega * time,
             Motion::Variable(_) => self.follow(w, t)?,
         }
+        if let Some(outline) = w.parts.outlines.get_mut(self.outline) {
+            outline.pose = self.pose();
+        }
         Ok(length(sub(self.shift, before.0)) + self.arm * (self.angle - before.1).abs())
     }
 
@@ -178,6 +190,15 @@ impl Running {
         Ok(())
     }
 
+    /// How it has moved.
+    fn pose(&self) -> Pose {
+        let turn = match &self.motion {
+            Motion::Rotate(point, axis, _) => Some((*point, *axis, self.angle)),
+            _ => None,
+        };
+        Pose { turn, shift: self.shift }
+    }
+
     /// A place as seen from the mesh.
     fn undo(&self, x: Vec3) -> Vec3 {
         let x = sub(x, self.shift);
@@ -197,9 +218,28 @@ impl Wall for Placed<'_> {
     }
 
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
-        let (me, mut found) = (self.0, vec![]);
-        me.mesh.near(me.undo(x), reach, &mut found);
-        for perigrain_mesh::Near { part, normal, distance } in found {
+        let mut pieces = vec![];
+        self.0.mesh.around(self.0.undo(x), reach, &mut pieces);
+        self.near_pieces(&pieces, x, reach, &mut vec![], out);
+    }
+
+    fn pieces(&self, x: Vec3, reach: f64, out: &mut Vec<u32>) -> bool {
+        self.0.mesh.around(self.0.undo(x), reach, out);
+        true
+    }
+
+    fn near_pieces(
+        &self,
+        pieces: &[u32],
+        x: Vec3,
+        reach: f64,
+        spare: &mut Vec<FacetNear>,
+        out: &mut Vec<Near>,
+    ) {
+        let me = self.0;
+        spare.clear();
+        me.mesh.near_among(pieces, me.undo(x), reach, spare);
+        for &FacetNear { part, normal, distance, .. } in &*spare {
             let mut near = Near { part, normal, distance, radius: 0.0, velocity: me.velocity };
             if let Motion::Rotate(point, axis, omega) = &me.motion {
                 near.normal = turned(near.normal, [0.0; 3], *axis, me.angle.into());
