@@ -50,7 +50,8 @@ fn a_run_leaves_a_page_of_all_that_it_was() {
     let page = fs::read_to_string(home.join("run.html")).unwrap();
     for part in [
         "<title>in.fall</title>",
-        "worked off to its end",
+        "<p class=\"verdict passed\">finished</p>",
+        "\"units\":[\"m\",\"s\",\"m/s\"]",
         "<dt>particles</dt><dd>2</dd>",
         "<dt>steps</dt><dd>100</dd>",
         "a&lt;b",
@@ -165,7 +166,7 @@ fn a_page_is_made_from_a_log_and_a_dump() {
     let page = fs::read_to_string(home.join("run.html")).unwrap();
     for part in [
         "<title>log.lammps</title>",
-        "worked off to its end",
+        "<p class=\"verdict passed\">finished</p>",
         "<dt>particles</dt><dd>2</dd>",
         "\"steps\":[0,10,20,30,40,50,60,70,80,90,100]",
         "{\"name\":\"speed\",",

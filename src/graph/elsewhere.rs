@@ -38,7 +38,6 @@ pub const STYLES: &[(&str, &str)] = &[
     ("compute", "heat/flux"),
     ("compute", "rattlers/atom"),
     ("compute", "voronoi/atom"),
-    ("dump", "movie"),
     ("dump", "dcd"),
     ("dump", "xtc"),
     ("dump", "netcdf"),

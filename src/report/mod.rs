@@ -16,7 +16,7 @@ use perigrain_out::rows::Tables;
 /// How a run came to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// The deck was worked off.
+    /// The deck was finished.
     Well,
     /// It was ended from outside, at a whole step.
     Interrupted,

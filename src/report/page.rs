@@ -96,7 +96,7 @@ fn data(curves: &Curves, film: &Packed, live: bool) -> String {
 fn head(report: &Report, sections: &[(&str, &str, String)]) -> String {
     let mut out = format!("<header>\n<h1>{}</h1>\n", escaped(&report.title));
     let (class, verdict) = match &report.ended {
-        Ended::Well => ("passed", "worked off to its end"),
+        Ended::Well => ("passed", "finished"),
         Ended::Interrupted => ("known", "interrupted at a whole step"),
         Ended::Failed(_) => ("failed", "ended with an error"),
         Ended::Unknown => ("", ""),

@@ -15,6 +15,7 @@ use perigrain_lang::{Args, ValueRef};
 use perigrain_out::dump::{Data, Target, sort_rows};
 use perigrain_out::file::{Pattern, trouble};
 use perigrain_out::image::View;
+use perigrain_out::movie::Movie;
 use perigrain_out::vtu::Series;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
@@ -37,6 +38,8 @@ pub struct State {
     pub series: Option<Series>,
     /// The view that an `image` dump keeps.
     pub view: Option<View>,
+    /// What a `movie` dump has made so far.
+    pub movie: Option<Movie>,
     /// The next time to write at, for `every/time`.
     next_time: Option<f64>,
     /// Files of single snapshots that still exist, for `maxfiles`.
@@ -150,6 +153,7 @@ impl Base {
             last: None,
             series: None,
             view: None,
+            movie: None,
             next_time: None,
             kept: VecDeque::new(),
         };

@@ -5,13 +5,14 @@ use super::base::{Base, Shot, unknown};
 use super::picture::{self, Options};
 use super::{Dump, DumpStyle};
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_lang::Args;
 use perigrain_lang::args::{blame, parse_number};
+use perigrain_lang::{Args, Word};
 use perigrain_out::dump::Data;
-use perigrain_out::image::{Colour, ENDINGS, Legend, Scene, by_kind, render};
+use perigrain_out::image::{Colour, ENDINGS, Legend, ScaleBar, Scene, by_kind, edges, render};
+use perigrain_out::movie::{Movie, Pace};
 use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::World;
+use perigrain_world::{World, outline};
 
 /// The style.
 pub struct Image;
@@ -38,12 +39,13 @@ const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diame
     Keywords, here and in `dump_modify`:\n\n\
     * `size W H` pixels (1280 960), `view theta phi` degrees from the z axis and around it (60 30), `up x y z`, `zoom f`, \
       `perspective degrees` (0: orthographic), `center s x y z` as fractions of the box, `frame first|each|box`: what the \
-      picture shows when no centre is given: what was drawn first (kept), what is drawn each time, or the box;\n\
+      picture shows when no centre is given: what was drawn first (kept; the box if that was nothing), what is drawn each time, or the box;\n\
     * `map NAME` (damage viridis plasma inferno coolwarm grey), `range lo hi` (numbers, `min`, `max`), \
       `acolor TYPE COLOUR` (a fixed colour for a type, also beside values), `adiam d` (here) or `adiam TYPE d` (in \
       `dump_modify`), colours by name or `\"#rrggbb\"` (in quotes: `#` starts a comment);\n\
     * `legend yes|no|text`, `title text` (in quotes, or with `_` for blanks where variables are to be put in), \
-      `time yes|no` (the line below the picture), `box yes|no d`, \
+      `time yes|no` and `scalebar yes|no` (the line below the picture), `box yes|no d`, `walls yes|no` (walls of grains, through which \
+      one sees), \
       `backcolor C`, `backcolor2 C`, `boxcolor C` (lines and text), `shiny 0…1`, `ssao yes|no seed 0…1` (shade in gaps), \
       `depthcue yes|no 0…1`, `fsaa yes|no`, `atom yes`.\n\n\
     `dump_modify … region ID` cuts, `thresh` hides, as for `dump custom`. The ending of the name says what is written: `.png`, `.jpg` or \
@@ -54,6 +56,16 @@ impl DumpStyle for Image {
         let endings: Vec<&str> = ENDINGS.iter().map(|(ending, _)| *ending).collect();
         let base = Base::new("image", args, cx, &endings)?;
         base.needs_star(args, cx)?;
+        Ok(Box::new(Declared::read(base, None, args, cx)?))
+    }
+}
+
+impl Declared {
+    /// Reads the words behind the name of the file.
+    ///
+    /// # Errors
+    /// Every mistake in them.
+    pub fn read(base: Base, pace: Option<Pace>, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the colour: `type` or an attribute")?;
         let colour = match word.text.as_str() {
             "element" => return Err(blame(word, Code::NOT_SUPPORTED, "colours by element").into()),
@@ -69,24 +81,35 @@ impl DumpStyle for Image {
             }
             _ => Size::Attribute(attribute(word, cx)?),
         };
-        let mut dump = Declared { base, colour, size, options: Options::default() };
+        let mut dump = Declared { base, colour, size, options: Options::default(), pace };
         while let Some(word) = args.peek().filter(|w| w.text != "modify") {
             args.next();
-            if !dump.options.read(word, args, cx, false)? {
+            if !dump.paces(word, args)? && !dump.options.read(word, args, cx, false)? {
                 return Err(args.unknown(word, picture::KEYWORDS));
             }
         }
-        Ok(Box::new(dump))
+        Ok(dump)
+    }
+
+    /// Reads a keyword that movies alone have.
+    fn paces(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
+        let Some(pace) = &mut self.pace else { return Ok(false) };
+        match word.text.as_str() {
+            "framerate" => pace.rate = args.positive("the number of pictures a second")?,
+            "bitrate" => pace.bits = args.integer_from(1, "kilobits a second")?,
+            _ => return Ok(false),
+        }
+        Ok(true)
     }
 }
 
-fn positive(d: f64, word: &perigrain_lang::Word) -> Result<f64> {
+fn positive(d: f64, word: &Word) -> Result<f64> {
     if d > 0.0 { Ok(d) } else { fail(Code::BAD_VALUE, word.span, "a diameter must be greater than zero") }
 }
 
-/// The diameter of a sphere. Cubes of a body, and spheres as wide as their cube, are drawn as wide as their diagonal, so
+/// The diameter of a sphere in pictures. Cubes of a body, and spheres as wide as their cube, are drawn as wide as their diagonal, so
 /// that no light falls through the body.
-fn auto_diameter(w: &World, i: usize) -> f64 {
+pub fn auto_diameter(w: &World, i: usize) -> f64 {
     const OVERLAP: f64 = std::f64::consts::SQRT_2;
     let p = &w.particles;
     let edge = if p.style.peri { p.volume[i].cbrt() } else { 0.0 };
@@ -107,12 +130,15 @@ enum Size {
     Attribute(Attribute),
 }
 
+/// A dump of pictures, file by file or as a movie.
 #[derive(Clone, Debug)]
-struct Declared {
+pub struct Declared {
     base: Base,
     colour: Attribute,
     size: Size,
     options: Options,
+    /// How a movie is played; nothing where each picture is a file.
+    pace: Option<Pace>,
 }
 
 impl Dump for Declared {
@@ -127,7 +153,10 @@ impl Dump for Declared {
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         while let Some(word) = args.next() {
-            if !self.base.modify(word, args, cx)? && !self.options.read(word, args, cx, true)? {
+            let known = self.paces(word, args)?
+                || self.base.modify(word, args, cx)?
+                || self.options.read(word, args, cx, true)?;
+            if !known {
                 return Err(unknown(word, args, picture::KEYWORDS));
             }
             if picture::MOVES.contains(&word.text.as_str()) {
@@ -139,6 +168,10 @@ impl Dump for Declared {
 
     fn every(&self) -> Option<i64> {
         self.base.every()
+    }
+
+    fn growing(&self) -> bool {
+        self.pace.is_some() && self.base.growing()
     }
 }
 
@@ -152,13 +185,18 @@ impl Declared {
         let (colours, legend) = self.paint(w, &rows, &shot.data[0]);
         let spheres = || positions.iter().copied().zip(radii.iter().copied());
         let view = self.options.view(domain, spheres, &mut shot.state.view);
-        let lines = if self.options.box_edges { picture::edges(domain) } else { vec![] };
+        let mut lines = if self.options.box_edges { picture::edges(domain) } else { vec![] };
+        let walls = if self.options.walls { outline::walls(w) } else { vec![] };
+        lines.extend(edges(&walls));
+        let bar = self.options.scale_bar.then(|| ScaleBar { units: w.settings.units.lengths() });
         let caption = if self.options.time { picture::time_line(w) } else { String::new() };
         let scene = Scene {
             positions: &positions,
             radii: &radii,
             colours: &colours,
             lines: &lines,
+            walls: &walls,
+            scale: bar.as_ref(),
             legend: legend.as_ref(),
             title: &self.options.title,
             caption: &caption,
@@ -168,6 +206,9 @@ impl Declared {
         if image.pixels.is_empty() {
             // Given up: the run ends, and its files with it.
             return Ok(());
+        }
+        if let Some(pace) = self.pace {
+            return shot.state.movie.get_or_insert_with(|| Movie::new(path, pace)).add(&image);
         }
         let file = image.file(&path.to_string_lossy());
         perigrain_out::file::replace(&path, |to| to.write_all(&file?))

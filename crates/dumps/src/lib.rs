@@ -8,11 +8,13 @@ mod base;
 mod forms;
 mod image;
 mod local;
+mod movie;
 mod packed;
 mod picture;
 mod text;
 mod vtk;
 
+pub use image::auto_diameter;
 pub use perigrain_styles::dump::{Dump, DumpStyle};
 
 /// Every dump style.
@@ -27,6 +29,7 @@ pub const DUMPS: &[&dyn DumpStyle] = &[
     &image::Image,
     &local::Local,
     &packed::LOCAL,
+    &movie::Movie,
     &vtk::Vtk,
     &forms::Xyz,
     &packed::XYZ,

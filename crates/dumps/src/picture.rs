@@ -28,6 +28,7 @@ pub const KEYWORDS: &[&str] = &[
     "map",
     "perspective",
     "range",
+    "scalebar",
     "shiny",
     "size",
     "ssao",
@@ -35,6 +36,7 @@ pub const KEYWORDS: &[&str] = &[
     "title",
     "up",
     "view",
+    "walls",
     "zoom",
 ];
 
@@ -49,7 +51,6 @@ const ELSEWHERE: &[&str] = &[
     "autobond",
     "bdiam",
     "bcolor",
-    "bitrate",
     "body",
     "bond",
     "color",
@@ -57,7 +58,6 @@ const ELSEWHERE: &[&str] = &[
     "ellipsoid",
     "element",
     "fix",
-    "framerate",
     "gamma",
     "gmap",
     "grid",
@@ -107,6 +107,10 @@ pub struct Options {
     pub time: bool,
     /// Whether the box is drawn.
     pub box_edges: bool,
+    /// Whether walls are drawn.
+    pub walls: bool,
+    /// Whether a length stands below.
+    pub scale_bar: bool,
     camera: Camera,
     /// Centre as fractions of the box, moving with it or not.
     centre: Option<[f64; 3]>,
@@ -127,6 +131,8 @@ impl Default for Options {
             title: String::new(),
             time: true,
             box_edges: false,
+            walls: true,
+            scale_bar: true,
             camera: Camera::default(),
             centre: None,
             framing: Framing::First,
@@ -135,8 +141,9 @@ impl Default for Options {
     }
 }
 
-/// What a pixel takes until it is in its file: depth, what is seen there, colour, and the packed bytes.
-const BYTES_PER_PIXEL: f64 = 20.0;
+/// What a pixel takes until it is in its file: depths and what is seen there of four samples, depths for the shade, colour, and
+/// the packed bytes.
+const BYTES_PER_PIXEL: f64 = 46.0;
 
 /// The longest side of a picture: above it neither viewers nor memory last.
 const LONGEST: i64 = 16384;
@@ -210,6 +217,8 @@ impl Options {
             },
             "title" => self.title = spoken(args.expect("the title")?),
             "time" => self.time = args.flag("time")?,
+            "walls" => self.walls = args.flag("walls")?,
+            "scalebar" => self.scale_bar = args.flag("scalebar")?,
             "box" => {
                 self.box_edges = args.flag("box")?;
                 args.non_negative("the width of the box lines")?;
@@ -277,7 +286,7 @@ impl Options {
         if range[0] == range[1] { [range[0], range[0] + 1.0] } else { range }
     }
 
-    /// The view of this snapshot; `kept` holds the first one's.
+    /// The view of this snapshot; `kept` holds the first one's, which shows the box where there is nothing yet.
     pub fn view<I>(&self, domain: &Domain, spheres: impl Fn() -> I, kept: &mut Option<View>) -> View
     where
         I: Iterator<Item = ([f64; 3], f64)>,
@@ -290,7 +299,10 @@ impl Options {
         match framing {
             Framing::Each => camera.frame(spheres()),
             Framing::Box => camera.frame_box(bounds),
-            Framing::First => *kept.get_or_insert_with(|| camera.frame(spheres())),
+            Framing::First => *kept.get_or_insert_with(|| match spheres().next() {
+                Some(_) => camera.frame(spheres()),
+                None => camera.frame_box(bounds),
+            }),
         }
     }
 }
@@ -311,8 +323,8 @@ pub fn edges(d: &Domain) -> Vec<[[f64; 3]; 2]> {
 
 /// The line below a picture: the time with a handy prefix.
 pub fn time_line(w: &World) -> String {
-    let time = w.clock.time();
-    match w.settings.units.name() {
+    let (time, units) = (w.clock.time(), w.settings.units);
+    match units.name() {
         "si" | "cgs" => {
             let (value, unit) = match time.abs() {
                 0.0 => (0.0, "s"),
@@ -323,11 +335,7 @@ pub fn time_line(w: &World) -> String {
             };
             format!("t = {} {unit}", general(value, 4))
         }
-        "micro" => format!("t = {} µs", general(time, 4)),
-        "nano" => format!("t = {} ns", general(time, 4)),
-        "metal" => format!("t = {} ps", general(time, 4)),
-        "real" | "electron" => format!("t = {} fs", general(time, 4)),
-        _ => format!("t = {}", general(time, 4)),
+        _ => format!("t = {} {}", general(time, 4), units.symbols()[1]).trim_end().to_string(),
     }
 }
 

@@ -14,6 +14,7 @@ pub mod forms;
 mod gzip;
 pub mod image;
 pub mod log;
+pub mod movie;
 pub mod restart;
 pub mod rows;
 pub mod sheet;

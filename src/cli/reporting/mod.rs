@@ -124,7 +124,7 @@ fn of_run(told: Told, wall: Duration, since: SystemTime) -> Report {
     r.gallery = report::gathered(s.spent().pictures.iter().map(String::as_str), since);
     let (number, took) = (told.film.seen, told.film.took().as_secs_f64());
     r.facts.push(("snapshots".into(), format!("{number} in {}", span(took))));
-    let last = taken(&s.world, told.film.grid());
+    let last = taken(&s.world, told.film.last());
     r.film = told.film.finish(last);
     r.film.retain(|frame| !frame.is_empty());
     r

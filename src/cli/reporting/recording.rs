@@ -73,7 +73,7 @@ impl Watch for Recorder {
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
         // A minimization ends when it has found something.
         film.expect(if w.clock.minimizing { 0 } else { w.clock.last - w.clock.first });
-        if film.grid().is_none() {
+        if film.last().is_none() {
             let frame = taken(w, None);
             film.take(0, frame);
         }
@@ -102,7 +102,7 @@ impl Watch for Recorder {
         }
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
         let begin = Instant::now();
-        let frame = taken(w, film.grid());
+        let frame = taken(w, film.last());
         film.take(self.before + self.made, frame);
         film.spend(begin.elapsed(), self.born.elapsed());
         self.every = film.every();

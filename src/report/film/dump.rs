@@ -1,7 +1,7 @@
 //! Snapshots of text dumps, as LAMMPS and perigrain write them.
 
 use super::taken::{order, span};
-use super::{Column, Film, Frame, Grid};
+use super::{Cell, Column, Film, Frame, Grid};
 use perigrain_base::diag::{Diagnostics, Result, Source};
 use perigrain_commands::data::dump::{Snapshot, next};
 use perigrain_commands::data::text::{Lines, load, number};
@@ -27,7 +27,7 @@ pub fn add(path: &Path, film: &mut Film) -> Result<Option<(Arc<Source>, Diagnost
                     film.seen += 1;
                     continue;
                 }
-                match frame(&snapshot, film.grid()) {
+                match frame(&snapshot, film.last().map(|frame| frame.grid)) {
                     Ok(frame) => film.take(at, frame),
                     Err(e) => outcome = Err(e),
                 }
@@ -102,5 +102,15 @@ fn frame(s: &Snapshot, before: Option<Grid>) -> Result<Frame> {
         let speed = |k: usize| [x, y, z].iter().map(|c| columns[*c][at(k)].powi(2)).sum::<f64>().sqrt();
         out.push(Column::of("speed", &(0..n).map(speed).collect::<Vec<_>>()));
     }
-    Ok(Frame { step: s.step, time: None, bounds: s.around(), span, grid, x, columns: out })
+    Ok(Frame {
+        step: s.step,
+        time: None,
+        cell: Cell::of(&s.domain()),
+        units: [""; 3],
+        walls: [].into(),
+        span,
+        grid,
+        x,
+        columns: out,
+    })
 }

@@ -9,6 +9,8 @@ pub use grid::Grid;
 pub use packed::{Packed, packed, packed_one};
 pub use taken::taken;
 
+use perigrain_world::Domain;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// About so many snapshots a page shows.
@@ -29,8 +31,12 @@ pub struct Frame {
     pub step: i64,
     /// The time, if it is known.
     pub time: Option<f64>,
-    /// Lower and upper corner of the box.
-    pub bounds: [[f64; 3]; 2],
+    /// The box.
+    pub cell: Cell,
+    /// What units of length, time and velocity are called; empty where that is not known.
+    pub units: [&'static str; 3],
+    /// Triangles of walls.
+    pub walls: Arc<[Triangle]>,
     /// Lower and upper corner of what the particles take.
     pub span: [[f64; 3]; 2],
     /// What positions are counted in.
@@ -39,6 +45,37 @@ pub struct Frame {
     pub x: [Vec<u16>; 3],
     /// What else is known.
     pub columns: Vec<Column>,
+}
+
+/// Three corners.
+pub type Triangle = [[f64; 3]; 3];
+
+/// A box, upright or leaning.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cell {
+    /// Its lower corner.
+    pub origin: [f64; 3],
+    /// Its three edges from there.
+    pub edges: [[f64; 3]; 3],
+}
+
+impl Cell {
+    /// That of a scene.
+    pub fn of(d: &Domain) -> Self {
+        let corners = d.corners();
+        let edge = |k: usize| [0, 1, 2].map(|d| corners[k][d] - corners[0][d]);
+        Self { origin: corners[0], edges: [edge(1), edge(2), edge(4)] }
+    }
+
+    /// An upright box.
+    pub fn upright([lo, hi]: [[f64; 3]; 2]) -> Self {
+        let edge = |d: usize| {
+            let mut edge = [0.0; 3];
+            edge[d] = hi[d] - lo[d];
+            edge
+        };
+        Self { origin: lo, edges: [edge(0), edge(1), edge(2)] }
+    }
 }
 
 /// A number of each particle.
@@ -127,7 +164,9 @@ impl Frame {
     }
 
     fn bytes(&self) -> usize {
-        6 * self.len() + self.columns.iter().map(Column::bytes).sum::<usize>()
+        // Walls at rest are one for all.
+        let walls = if Arc::strong_count(&self.walls) > 1 { 0 } else { 72 * self.walls.len() };
+        6 * self.len() + self.columns.iter().map(Column::bytes).sum::<usize>() + walls
     }
 }
 
@@ -167,9 +206,9 @@ impl Film {
         }
     }
 
-    /// The grid of the last snapshot, to which the next one keeps if it can.
-    pub fn grid(&self) -> Option<Grid> {
-        self.frames.last().map(|(_, frame)| frame.grid)
+    /// The last snapshot, to whose grid the next one keeps if it can.
+    pub fn last(&self) -> Option<&Frame> {
+        self.frames.last().map(|(_, frame)| frame)
     }
 
     /// Takes the snapshot after so many steps of all runs. Where they become too many, every other one goes.

@@ -127,6 +127,16 @@ fn words(out: &mut Vec<u8>, now: &[u16], was: Option<&[u16]>) {
     out.extend((0..now.len()).map(|k| (change(k) >> 8) as u8));
 }
 
+/// The walls of a snapshot where they are others than those of the one before: how many triangles, and their corners as packed text.
+fn walls(frame: &Frame, before: Option<&Frame>) -> String {
+    if before.is_some_and(|b| b.walls == frame.walls) {
+        return "null".into();
+    }
+    let bytes: Vec<u8> =
+        frame.walls.as_flattened().as_flattened().iter().flat_map(|x| (*x as f32).to_le_bytes()).collect();
+    quoted(&perigrain_base::base64::encode(&bytes))
+}
+
 /// What is known of a snapshot besides its numbers.
 fn head(frames: &[&Frame], k: usize) -> String {
     let frame = frames[k];
@@ -134,15 +144,17 @@ fn head(frames: &[&Frame], k: usize) -> String {
     let three = |v: [f64; 3]| format!("[{}]", v.map(number).join(","));
     let columns: Vec<String> = frame.columns.iter().map(of_column).collect();
     format!(
-        "{{\"step\":{},\"time\":{},\"n\":{},\"follows\":{},\"origin\":{},\"cell\":{},\"lo\":{},\"hi\":{},\"least\":{},\"most\":{},\"columns\":[{}]}}",
+        "{{\"step\":{},\"time\":{},\"n\":{},\"follows\":{},\"origin\":{},\"cell\":{},\"corner\":{},\"edges\":[{}],\"units\":[{}],\"walls\":{},\"least\":{},\"most\":{},\"columns\":[{}]}}",
         frame.step,
         frame.time.map_or("null".into(), number),
         frame.len(),
         before.is_some_and(|b| follows(frame, b)),
         three(frame.grid.origin),
         three(frame.grid.cell),
-        three(frame.bounds[0]),
-        three(frame.bounds[1]),
+        three(frame.cell.origin),
+        frame.cell.edges.map(three).join(","),
+        frame.units.map(quoted).join(","),
+        walls(frame, before),
         three(frame.span[0]),
         three(frame.span[1]),
         columns.join(",")
@@ -161,7 +173,7 @@ fn of_column(c: &Column) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::film::Grid;
+    use crate::report::film::{Cell, Grid};
     use flate2::write::ZlibDecoder;
 
     /// A snapshot read back from its bytes, by what is known of it and the one before: what the page's script does.
@@ -208,7 +220,9 @@ mod tests {
         Frame {
             step,
             time: None,
-            bounds: [[0.0; 3], [1.0; 3]],
+            cell: Cell::upright([[0.0; 3], [1.0; 3]]),
+            units: ["m", "s", "m/s"],
+            walls: [[[0.0; 3], [1.0; 3], [0.0, 0.0, 1.0]]].into(),
             span: [[0.0; 3], [1.0; 3]],
             grid: Grid { origin: [0.0; 3], cell: [1.0; 3] },
             x: [list.clone(), moved, list],
@@ -222,6 +236,10 @@ mod tests {
         let packed = packed(&frames);
         assert_eq!((packed.frames.len(), packed.thinned()), (3, None));
         assert_eq!(packed.json.matches("\"follows\":true").count(), 2);
+        // Walls that rest are there once: three corners of four bytes, 48 characters.
+        assert_eq!(packed.json.matches("\"walls\":null").count(), 2);
+        let text = packed.json.split("\"walls\":\"").nth(1).unwrap().split('"').next().unwrap();
+        assert_eq!(text.len(), 48);
         let mut before: Option<Frame> = None;
         for (text, like) in packed.frames.iter().zip(&frames) {
             let back =

@@ -1,18 +1,22 @@
 //! A snapshot of the scene as it is: read only, so that the run does not notice.
 
-use super::{Column, Frame, Grid};
-use perigrain_world::World;
+use super::{Cell, Column, Frame, Grid, Triangle};
+use perigrain_dumps::auto_diameter;
 use perigrain_world::index::Index;
-use std::f64::consts::PI;
+use perigrain_world::{World, outline};
+use std::sync::Arc;
 
-/// The scene now, in the order of ids. It keeps to the grid of the snapshot before if that serves.
-pub fn taken(w: &World, before: Option<Grid>) -> Frame {
+/// Walls of more triangles are left out.
+const WALLS: usize = 20_000;
+
+/// The scene now, in the order of ids. It keeps to the grid of the snapshot before if that serves, and shares its walls if they rest.
+pub fn taken(w: &World, before: Option<&Frame>) -> Frame {
     let p = &w.particles;
     let order = order(&p.tag);
     let place = |k: usize| order.as_ref().map_or(k, |order| order[k] as usize);
     let n = p.len();
     let span = span((0..n).map(|k| p.x[k]));
-    let grid = Grid::over(span, before);
+    let grid = Grid::over(span, before.map(|b| b.grid));
     let mut x: [Vec<u16>; 3] = std::array::from_fn(|_| Vec::with_capacity(n));
     for k in 0..n {
         let at = p.x[place(k)];
@@ -21,11 +25,19 @@ pub fn taken(w: &World, before: Option<Grid>) -> Frame {
         }
     }
     let columns = columns(w, |value| (0..n).map(|k| value(place(k))).collect());
-    let bounds = w.domain.as_ref().map_or(span, |d| {
-        let faces = d.bounds();
-        [0, 1].map(|side| faces.map(|face| face[side]))
-    });
-    Frame { step: w.clock.step, time: Some(w.clock.time()), bounds, span, grid, x, columns }
+    let cell = w.domain.as_ref().map_or(Cell::upright(span), Cell::of);
+    let (units, walls) = (w.settings.units.symbols(), walls(w, before));
+    Frame { step: w.clock.step, time: Some(w.clock.time()), cell, units, walls, span, grid, x, columns }
+}
+
+/// The walls now.
+fn walls(w: &World, before: Option<&Frame>) -> Arc<[Triangle]> {
+    let now = outline::walls(w);
+    let shown = if now.len() > WALLS { &[] } else { &now[..] };
+    match before {
+        Some(b) if *b.walls == *shown => b.walls.clone(),
+        _ => shown.into(),
+    }
 }
 
 /// What is known of each particle besides its place.
@@ -33,11 +45,9 @@ fn columns(w: &World, list: impl Fn(&dyn Fn(usize) -> f64) -> Vec<f64>) -> Vec<C
     let p = &w.particles;
     let mut out = vec![Column::of("type", &list(&|i| f64::from(p.kind[i])))];
     let volumes = w.volumes();
-    if p.radius.len() == p.len() {
-        out.push(Column::of("radius", &list(&|i| p.radius[i])));
-    } else if volumes.len() == p.len() {
-        // Of the sphere that has this volume.
-        out.push(Column::of("radius", &list(&|i| (0.75 / PI * volumes[i].abs()).cbrt())));
+    if p.style.sphere || p.style.peri {
+        // As in pictures: no light falls through a body.
+        out.push(Column::of("radius", &list(&|i| 0.5 * auto_diameter(w, i))));
     }
     out.push(Column::of("speed", &list(&|i| p.v[i].iter().map(|v| v * v).sum::<f64>().sqrt())));
     if let Some(families) = w.families.as_ref().filter(|_| volumes.len() == p.len()) {

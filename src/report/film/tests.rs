@@ -5,7 +5,17 @@ use super::*;
 fn frame(step: i64, n: usize) -> Frame {
     let grid = Grid::over([[0.0; 3], [1.0; 3]], None);
     let x = std::array::from_fn(|_| vec![7; n]);
-    Frame { step, time: Some(0.0), bounds: [[0.0; 3]; 2], span: [[0.0; 3]; 2], grid, x, columns: vec![] }
+    Frame {
+        step,
+        time: Some(0.0),
+        cell: Cell::default(),
+        units: [""; 3],
+        walls: [].into(),
+        span: [[0.0; 3]; 2],
+        grid,
+        x,
+        columns: vec![],
+    }
 }
 
 /// Runs of so many steps one after the other, as the loop over steps goes about it.

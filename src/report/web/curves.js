@@ -44,6 +44,10 @@ const report = (() => {
     return { list, same: shown.filter(still) };
   };
 
+  const titled = name => {
+    const [first] = (report.data.film || { frames: [] }).frames;
+    return name === "time" && first && first.units[1] ? `time [${first.units[1]}]` : name;
+  };
   const ticks = (_, values) => values.map(v => (v === null ? "" : number(v)));
   const chart = (figure, group, name, x) => {
     const ink = css("--ink"), line = css("--line");
@@ -67,7 +71,7 @@ const report = (() => {
     });
     const options = {
       width: figure.clientWidth - 20, height: 210,
-      series: [{ label: name, value: (_, v) => number(v) }, ...series],
+      series: [{ label: titled(name), value: (_, v) => number(v) }, ...series],
       axes: [{ ...axis, space: 60 }, { ...axis, size: 66 }],
       scales: { x: { time: false } },
       cursor: { sync: { key: "rows" }, drag: { x: true, y: false } },

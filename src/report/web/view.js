@@ -20,6 +20,19 @@
     for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
     return bytes;
   };
+  // Triangles, and the normal of each at all of its corners.
+  const wallsOf = text => {
+    const corners = new Float32Array(bytesOf(text).buffer), out = new Float32Array(2 * corners.length);
+    for (let t = 0; t < corners.length; t += 9) {
+      const [u, v] = [3, 6].map(k => [0, 1, 2].map(d => corners[t + k + d] - corners[t + d]));
+      const n = [0, 1, 2].map(d => u[(d + 1) % 3] * v[(d + 2) % 3] - u[(d + 2) % 3] * v[(d + 1) % 3]), size = Math.hypot(...n) || 1;
+      for (let c = 0; c < 3; c++) for (let d = 0; d < 3; d++) {
+        out[2 * t + 6 * c + d] = corners[t + 3 * c + d];
+        out[2 * t + 6 * c + 3 + d] = n[d] / size;
+      }
+    }
+    return out;
+  };
   // Low bytes of all numbers, then high bytes; of a frame that follows another, what is to be added to that one.
   const unpack = (meta, bytes, before) => {
     const n = meta.n, last = meta.follows ? before : null;
@@ -42,7 +55,7 @@
       return c.bits === 0 ? null : c.bits === 8 ? single(was) : words(was);
     });
     if (at !== bytes.length) throw new Error(`frame of ${bytes.length} bytes in place of ${at}`);
-    return { meta, x, columns };
+    return { meta, x, columns, walls: meta.walls === null ? before ? before.walls : null : wallsOf(meta.walls) };
   };
 
   // ------------------------------------------------------------------ graphics
@@ -113,6 +126,28 @@
     void main() { gl_Position = proj * vec4(turn * corner - eye, 1.0); }`,
     "uniform vec3 ink; out vec4 colour; void main() { colour = vec4(ink, 1.0); }");
 
+  // Walls as glass: more of it where one looks along it.
+  const glass = compile(`
+    in vec3 corner, normal; uniform vec3 eye, middle; uniform float scale; uniform mat3 turn; uniform mat4 proj;
+    out vec3 across, there;
+    void main() {
+      there = turn * ((corner - middle) * scale) - eye;
+      across = turn * normal;
+      gl_Position = proj * vec4(there, 1.0);
+    }`, `
+    in vec3 across, there; uniform vec3 ink; out vec4 colour;
+    void main() {
+      float facing = abs(dot(normalize(across), normalize(there)));
+      colour = vec4(ink, 0.13 + 0.22 * (1.0 - facing));
+    }`);
+  const panes = gl.createVertexArray(), paneData = gl.createBuffer();
+  gl.bindVertexArray(panes);
+  gl.bindBuffer(gl.ARRAY_BUFFER, paneData);
+  ["corner", "normal"].forEach((name, k) => {
+    gl.enableVertexAttribArray(glass.attribute(name));
+    gl.vertexAttribPointer(glass.attribute(name), 3, gl.FLOAT, false, 24, 12 * k);
+  });
+
   const cloud = gl.createVertexArray();
   const buffers = Object.fromEntries(["px", "py", "pz", "size", "value"].map(n => [n, gl.createBuffer()]));
   const fed = {};
@@ -169,6 +204,7 @@
 
   // ------------------------------------------------------------------ what is looked at
   const view = { yaw: -0.5, pitch: 1.2, distance: 4, pan: [0, 0], middle: [0, 0, 0], scale: 1, reach: 2 };
+  let pane = null;
   let shown = -1, playing = 0, asked = false, rough = false, touched = false;
   const spread = f => [0, 1, 2].map(d => f.meta.most[d] - f.meta.least[d]);
   const fit = () => {
@@ -215,14 +251,16 @@
 
   // ------------------------------------------------------------------ controls
   const colour = $("colour"), map = $("map"), from = $("from"), to = $("to"), only = $("only"), cut = $("cut"), where = $("where"), flip = $("flip");
-  const grow = $("grow"), box = $("box"), slider = $("frame"), now = $("now"), play = $("play"), legend = $("legend");
+  const grow = $("grow"), box = $("box"), walls = $("walls"), slider = $("frame"), now = $("now"), play = $("play"), legend = $("legend");
   map.replaceChildren(...Object.keys(MAPS).map(name => new Option(name)));
   const column = f => f.meta.columns.findIndex(c => c.name === colour.value);
   const sizeOf = f => {
     const at = f.meta.columns.findIndex(c => c.name === "radius");
     if (at >= 0) return { ...f.meta.columns[at], list: f.columns[at] };
     const n = Math.max(1, f.meta.n), volume = spread(f).reduce((v, s) => v * Math.max(s, 1e-3 * Math.max(...spread(f), 1e-300)), 1);
-    const guess = 0.5 * Math.cbrt(volume / n);
+    // Of a solid so wide that no light falls through.
+    const solid = f.meta.columns.some(c => /dmg|damage/.test(c.name)) ? Math.SQRT2 : 1;
+    const guess = 0.5 * solid * Math.cbrt(volume / n);
     return { lo: guess, hi: guess, least: guess, most: guess, list: null };
   };
   // The range over all frames, so that a colour keeps its meaning.
@@ -235,16 +273,28 @@
     const known = extent(colour.value);
     return [from, to].map((input, k) => (input.value === "" || Number.isNaN(input.valueAsNumber) ? known[k] : input.valueAsNumber));
   };
+  // A column with its unit, where that is known.
+  const units = () => (frames.find(Boolean) || { meta: { units: ["", "", ""] } }).meta.units;
+  const titled = name => {
+    const unit = { radius: 0, speed: 2, vx: 2, vy: 2, vz: 2 }[name];
+    return unit === undefined || !units()[unit] ? name : `${name} [${units()[unit]}]`;
+  };
   const names = () => {
     const was = colour.value, known = [];
     frames.filter(Boolean).forEach(f => f.meta.columns.forEach(c => known.includes(c.name) || known.push(c.name)));
     if (known.join() === [...colour.options].map(o => o.value).join()) return;
     colour.replaceChildren(...known.map(name => new Option(name)));
-    const [, most] = extent("damage"), [, quick] = extent("speed");
-    const first = known.includes("damage") && most > 0 ? "damage" : known.includes("speed") && quick > 0 ? "speed" : "type";
-    colour.value = touched && known.includes(was) ? was : known.includes(first) ? first : known[0] || "";
-    if (!touched) map.value = colour.value === "damage" ? "damage" : "viridis";
+    colour.value = touched && known.includes(was) ? was : known[0] || "";
+    choose();
     coloured();
+  };
+  // Damage for solids, speed for grains, until another colour is chosen: which of them changes, later snapshots show.
+  const choose = () => {
+    if (touched) return;
+    const known = [...colour.options].map(o => o.value), changes = name => known.includes(name) && extent(name)[1] > 0;
+    const first = ["damage", "speed"].find(changes) || (known.includes("damage") ? "damage" : "type");
+    if (known.includes(first)) colour.value = first;
+    map.value = colour.value === "damage" ? "damage" : "viridis";
   };
   const coloured = () => {
     const kinds = isKind(), list = kinds ? KINDS : MAPS[map.value];
@@ -257,7 +307,7 @@
       if (style) e.style.background = style;
       parts.push(e);
     };
-    add("b", colour.value);
+    add("b", titled(colour.value));
     if (kinds) {
       for (let k = Math.max(1, lo); k <= Math.min(hi, lo + 11); k++) {
         add("i", "", "#" + KINDS[(k - 1) % 10]);
@@ -287,7 +337,7 @@
     load(frames[k]);
     const { step, time, n } = frames[k].meta;
     slider.value = k;
-    const text = `step ${step}${time === null ? "" : `, time ${number(time)}`}, ${n} particles`;
+    const text = `step ${step}${time === null ? "" : `, time ${number(time)} ${units()[1]}`.trimEnd()}, ${n} particles`;
     now.textContent = text;
     slider.setAttribute("aria-valuetext", text);
     if (report.mark) report.mark({ step, time: time === null ? undefined : time });
@@ -318,14 +368,11 @@
     const eye = [view.pan[0], view.pan[1], view.distance];
     const place = (p, d) => (p - view.middle[d]) * view.scale;
     if (box.checked) {
-      const [lo, hi] = [f.meta.lo, f.meta.hi].map(p => p.map(place)), list = [];
-      for (let d = 0; d < 3; d++) for (let k = 0; k < 4; k++) {
-        const [a, b] = [(d + 1) % 3, (d + 2) % 3];
-        for (const end of [lo, hi]) {
-          const p = [];
-          p[d] = end[d]; p[a] = (k & 1 ? hi : lo)[a]; p[b] = (k & 2 ? hi : lo)[b];
-          list.push(...p);
-        }
+      const list = [], { corner, edges: along } = f.meta;
+      for (let d = 0; d < 3; d++) for (let k = 0; k < 4; k++) for (let end = 0; end < 2; end++) {
+        const part = [];
+        part[d] = end; part[(d + 1) % 3] = k & 1; part[(d + 2) % 3] = k >> 1;
+        list.push(...corner.map((c, i) => c + part.reduce((sum, p, e) => sum + p * along[e][i], 0)).map(place));
       }
       gl.useProgram(lines.program);
       gl.bindVertexArray(edges);
@@ -363,6 +410,24 @@
     gl.uniform4fv(spheres.at.cut, plane);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     if (f.meta.n > 0) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, Math.ceil(f.meta.n / every));
+    if (f.walls && f.walls.length && walls.checked) {
+      gl.useProgram(glass.program);
+      gl.bindVertexArray(panes);
+      gl.bindBuffer(gl.ARRAY_BUFFER, paneData);
+      if (pane !== f.walls) gl.bufferData(gl.ARRAY_BUFFER, pane = f.walls, gl.STATIC_DRAW);
+      gl.uniform3fv(glass.at.eye, eye);
+      gl.uniform3fv(glass.at.middle, view.middle);
+      gl.uniform1f(glass.at.scale, view.scale);
+      gl.uniformMatrix3fv(glass.at.turn, false, turn);
+      gl.uniformMatrix4fv(glass.at.proj, false, proj);
+      gl.uniform3fv(glass.at.ink, dark.matches ? [0.55, 0.68, 0.78] : [0.37, 0.49, 0.58]);
+      gl.enable(gl.BLEND);
+      gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+      gl.depthMask(false);
+      gl.drawArrays(gl.TRIANGLES, 0, f.walls.length / 6);
+      gl.depthMask(true);
+      gl.disable(gl.BLEND);
+    }
     rows[0].forEach((right, d) => {
       const [dx, dy] = [26 * right, -26 * rows[1][d]], line = $(`axis-${d}`), text = $(`name-${d}`);
       line.setAttribute("x2", dx);
@@ -478,7 +543,7 @@
   });
   map.addEventListener("change", () => { touched = true; coloured(); });
   [from, to].forEach(input => input.addEventListener("input", coloured));
-  [only, where, flip, grow, box].forEach(input => input.addEventListener("input", request));
+  [only, where, flip, grow, box, walls].forEach(input => input.addEventListener("input", request));
   cut.addEventListener("change", () => { where.disabled = flip.disabled = cut.value === "nothing"; request(); });
   $("reset").addEventListener("click", home);
   $("save").addEventListener("click", () => {
@@ -502,15 +567,18 @@
     slider.disabled = frames.length < 2;
     if (begins) {
       fit();
-      box.checked = spread(f).every((s, d) => f.meta.hi[d] - f.meta.lo[d] < 3 * Math.max(s, 0.3 * Math.max(...spread(f))));
+      const long = d => f.meta.edges.reduce((sum, edge) => sum + Math.abs(edge[d]), 0);
+      box.checked = spread(f).every((s, d) => long(d) < 3 * Math.max(s, 0.3 * Math.max(...spread(f))));
       names();
       home();
     }
+    if (f.walls && f.walls.length) $("walled").hidden = false;
     if (shown < 0) show(k);
   };
   const settled = () => {
     reach();
     names();
+    choose();
     coloured();
   };
   const read = async () => {

@@ -63,6 +63,33 @@ impl UnitSystem {
         NAMES[self as usize]
     }
 
+    /// What one unit of length, of time and of velocity is called, as LAMMPS' manual has it; nothing for reduced ones.
+    pub fn symbols(self) -> [&'static str; 3] {
+        match self {
+            Self::Lj => ["", "", ""],
+            Self::Real => ["Å", "fs", "Å/fs"],
+            Self::Metal => ["Å", "ps", "Å/ps"],
+            Self::Si => ["m", "s", "m/s"],
+            Self::Cgs => ["cm", "s", "cm/s"],
+            Self::Electron => ["Bohr", "fs", "Bohr/atu"],
+            Self::Micro => ["µm", "µs", "µm/µs"],
+            Self::Nano => ["nm", "ns", "nm/ns"],
+        }
+    }
+
+    /// Names of lengths from small to large, each with the power of ten of units that it is.
+    pub fn lengths(self) -> &'static [(i32, &'static str)] {
+        match self {
+            Self::Lj => &[],
+            Self::Real | Self::Metal => &[(0, "Å"), (1, "nm"), (4, "µm"), (7, "mm")],
+            Self::Si => &[(-9, "nm"), (-6, "µm"), (-3, "mm"), (0, "m"), (3, "km")],
+            Self::Cgs => &[(-7, "nm"), (-4, "µm"), (-1, "mm"), (0, "cm"), (2, "m")],
+            Self::Electron => &[(0, "Bohr")],
+            Self::Micro => &[(-3, "nm"), (0, "µm"), (3, "mm"), (6, "m")],
+            Self::Nano => &[(0, "nm"), (3, "µm"), (6, "mm"), (9, "m")],
+        }
+    }
+
     /// Whether `lattice` takes a reduced density, and energies are printed per particle.
     pub fn is_reduced(self) -> bool {
         self == Self::Lj

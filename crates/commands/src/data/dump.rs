@@ -116,18 +116,13 @@ fn edge(lines: &mut Lines, leans: bool) -> Result<[f64; 3]> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// The corners of the upright box around the box.
-    pub fn around(&self) -> [[f64; 3]; 2] {
-        let faces = self.domain().bounds();
-        [0, 1].map(|side| faces.map(|face| face[side]))
-    }
-
     /// The place at these fractions of the box's edges.
     pub fn at(&self, f: [f64; 3]) -> [f64; 3] {
         self.domain().at(f)
     }
 
-    fn domain(&self) -> Domain {
+    /// The box.
+    pub fn domain(&self) -> Domain {
         boxed(self.lo, self.hi, self.tilt)
     }
 

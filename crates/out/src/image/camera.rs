@@ -132,6 +132,16 @@ impl Projection {
         p.iter().all(|c| c.is_finite()).then_some((p, (self.scale * toward) as f32, scale as f32))
     }
 
+    /// Pixels per length, where it is the same all over the picture.
+    pub(super) fn scale(&self) -> Option<f64> {
+        (self.view.distance.is_infinite() && self.scale.is_finite() && self.scale > 0.0).then_some(self.scale)
+    }
+
+    /// How a direction of the scene points towards the viewer, from -1 to 1.
+    pub(super) fn facing(&self, normal: [f64; 3]) -> f64 {
+        dot(normal, self.view.toward)
+    }
+
     /// Depth of the scene in pixels.
     pub(super) fn depth(&self) -> f32 {
         (self.view.depth * self.scale) as f32

@@ -1,5 +1,7 @@
 //! Colours, named colours and colour maps.
 
+use std::sync::OnceLock;
+
 /// A colour in linear light, so that shading and averaging are right; shown as sRGB.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Colour(pub [f32; 3]);
@@ -12,7 +14,8 @@ impl Colour {
 
     /// From sRGB bytes.
     pub fn from_bytes(bytes: [u8; 3]) -> Self {
-        Self(bytes.map(|b| to_linear(f32::from(b) / 255.0)))
+        let linear = &tables().0;
+        Self(bytes.map(|b| linear[usize::from(b)]))
     }
 
     /// From sRGB fractions.
@@ -22,7 +25,8 @@ impl Colour {
 
     /// As sRGB bytes.
     pub fn bytes(self) -> [u8; 3] {
-        self.0.map(|c| (to_srgb(c.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8)
+        let bytes = &tables().1;
+        self.0.map(|c| bytes[(c.clamp(0.0, 1.0) * FINE + 0.5) as usize])
     }
 
     /// A mixture: 0 is this colour, 1 the other.
@@ -37,6 +41,19 @@ fn to_linear(c: f32) -> f32 {
 
 fn to_srgb(c: f32) -> f32 {
     if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Steps of linear light that have a byte each: twenty for the darkest byte.
+const FINE: f32 = 65_535.0;
+
+/// Linear light of each byte, and the byte of each step of linear light: powers took a third of a picture's time.
+fn tables() -> &'static ([f32; 256], Vec<u8>) {
+    static TABLES: OnceLock<([f32; 256], Vec<u8>)> = OnceLock::new();
+    TABLES.get_or_init(|| {
+        let linear = std::array::from_fn(|b| to_linear(b as f32 / 255.0));
+        let byte = |step: u16| (to_srgb(f32::from(step) / FINE) * 255.0 + 0.5) as u8;
+        (linear, (0..=u16::MAX).map(byte).collect())
+    })
 }
 
 /// A colour map: equally spaced colours, interpolated in sRGB.

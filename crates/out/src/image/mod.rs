@@ -3,15 +3,20 @@
 mod camera;
 mod colour;
 mod drawing;
+mod gaps;
 mod glyphs;
 mod overlay;
 mod raster;
+mod scale_bar;
 mod shade;
 mod text;
+mod walls;
 
 pub use camera::{Camera, View};
 pub use colour::{Colour, MAPS, Map, by_kind, colour_by_name, colour_names};
 pub use overlay::{Legend, ticks};
+pub use scale_bar::ScaleBar;
+pub use walls::edges;
 
 use raster::Raster;
 
@@ -62,6 +67,10 @@ pub struct Scene<'a> {
     pub colours: &'a [Colour],
     /// Straight lines, such as the edges of the box.
     pub lines: &'a [[[f64; 3]; 2]],
+    /// Triangles of walls, through which one sees.
+    pub walls: &'a [[[f64; 3]; 3]],
+    /// The length that stands at the bottom right.
+    pub scale: Option<&'a ScaleBar>,
     /// The scale beside the picture.
     pub legend: Option<&'a Legend>,
     /// A line of text at the top left.
@@ -89,8 +98,12 @@ pub fn render(scene: &Scene<'_>, view: &View, look: &Look) -> Image {
         return Image { width: 0, height: 0, pixels: vec![] };
     }
     let mut image = shade::shade(scene, &raster, look, &frame);
-    overlay::lines(&mut image, scene.lines, view, &raster, look, &frame);
+    walls::draw(&mut image, scene.walls, &raster, look, &frame);
+    overlay::lines(&mut image, scene.lines, &raster, look, &frame);
     overlay::words(&mut image, scene, look);
+    if let Some(bar) = scene.scale {
+        bar.draw(&mut image, &raster.projection, look, &frame);
+    }
     image
 }
 
@@ -111,7 +124,8 @@ impl Frame {
         let n = look.samples.max(1);
         let legend = scene.legend.map_or(0, |l| l.width(look)) * n;
         let top = if scene.title.is_empty() { 0 } else { overlay::line_height(look) * n };
-        let bottom = if scene.caption.is_empty() { 0 } else { overlay::line_height(look) * n };
+        let below = !scene.caption.is_empty() || scene.scale.is_some();
+        let bottom = if below { overlay::line_height(look) * n } else { 0 };
         let (width, height) = (look.width * n, look.height * n);
         let room =
             [width.saturating_sub(legend).max(1) as f32, (height.saturating_sub(top + bottom)).max(1) as f32];
@@ -171,7 +185,7 @@ impl Image {
     }
 
     /// The picture as a binary PPM file.
-    fn ppm(&self) -> Vec<u8> {
+    pub fn ppm(&self) -> Vec<u8> {
         let head = format!("P6\n{} {}\n255\n", self.width, self.height);
         [head.as_bytes(), self.pixels.as_flattened()].concat()
     }

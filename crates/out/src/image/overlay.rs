@@ -1,7 +1,7 @@
 //! What is drawn over the spheres: box edges, legend, title and caption.
 
 use super::raster::Raster;
-use super::{Colour, Frame, Image, Look, Map, Scene, View, text};
+use super::{Colour, Frame, Image, Look, Map, Scene, text};
 use perigrain_base::math::cformat::general;
 
 /// The scale beside a picture.
@@ -69,7 +69,7 @@ pub fn ticks(range: [f64; 2]) -> (Vec<f64>, Vec<String>) {
 }
 
 /// Height of text in pixels.
-fn text_size(look: &Look) -> f32 {
+pub(super) fn text_size(look: &Look) -> f32 {
     (0.019 * look.height as f32).clamp(9.0, 40.0).round()
 }
 
@@ -141,7 +141,7 @@ fn draw_scale(image: &mut Image, map: &Map, range: [f64; 2], place: [f32; 3], lo
 }
 
 /// Lets the background through a rectangle, so that words can be read over spheres.
-fn panel(image: &mut Image, look: &Look, x: [f32; 2], y: [f32; 2]) {
+pub(super) fn panel(image: &mut Image, look: &Look, x: [f32; 2], y: [f32; 2]) {
     for row in y[0].max(0.0) as i64..y[1] as i64 {
         let ground = look.background[0].mix(look.background[1], row as f32 / look.height as f32);
         for column in x[0].max(0.0) as i64..x[1] as i64 {
@@ -158,15 +158,8 @@ fn swatch(image: &mut Image, x: [f32; 2], y: [f32; 2], colour: Colour, ink: Colo
 }
 
 /// Straight lines that spheres in front of them hide.
-pub(super) fn lines(
-    image: &mut Image,
-    lines: &[[[f64; 3]; 2]],
-    view: &View,
-    raster: &Raster,
-    look: &Look,
-    frame: &Frame,
-) {
-    let projection = super::camera::Projection::new(view, frame.centre, frame.room);
+pub(super) fn lines(image: &mut Image, lines: &[[[f64; 3]; 2]], raster: &Raster, look: &Look, frame: &Frame) {
+    let projection = &raster.projection;
     let n = look.samples.max(1) as f32;
     let half = (0.0007 * look.height as f32).max(0.7);
     for [a, b] in lines {

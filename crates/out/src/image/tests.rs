@@ -3,7 +3,17 @@
 use super::*;
 
 fn scene<'a>(x: &'a [[f64; 3]], r: &'a [f64], c: &'a [Colour]) -> Scene<'a> {
-    Scene { positions: x, radii: r, colours: c, lines: &[], legend: None, title: "", caption: "" }
+    Scene {
+        positions: x,
+        radii: r,
+        colours: c,
+        lines: &[],
+        walls: &[],
+        scale: None,
+        legend: None,
+        title: "",
+        caption: "",
+    }
 }
 
 fn pixel(image: &Image, x: usize, y: usize) -> [u8; 3] {
@@ -51,6 +61,69 @@ fn thread_count_does_not_show() {
     let three = draw();
     perigrain_base::par::set_threads(1);
     assert!(one == three);
+}
+
+#[test]
+fn what_large_spheres_hide_is_not_drawn_and_nothing_else_is_missing() {
+    // A body of cubes a hundredth as wide as their spheres: which one is seen at each sample, by asking all of them.
+    let x: Vec<[f64; 3]> =
+        (0..600).map(|i| [i % 10, i / 10 % 10, i / 100].map(|c| 0.01 * f64::from(c))).collect();
+    let r: Vec<f64> = (0..600).map(|i| 0.5 + 1e-4 * f64::from(i % 7)).collect();
+    let c: Vec<Colour> = (0..600).map(|i| by_kind(i % 8)).collect();
+    let scene = scene(&x, &r, &c);
+    for camera in [Camera::default(), Camera { perspective: 40.0, ..Camera::default() }] {
+        let view = camera.frame(x.iter().copied().zip(r.iter().copied()));
+        let frame = Frame::new(&scene, &look(150, 100));
+        let raster = Raster::new(&scene, &view, &frame);
+        for y in 0..200 {
+            for px in 0..300 {
+                let depth = raster.discs.iter().map(|d| d.depth(px as f32 + 0.5, y as f32 + 0.5));
+                let most = depth.fold(f32::NEG_INFINITY, f32::max);
+                // Another order of the same operations rounds depths of some hundred pixels otherwise.
+                let seen = raster.depth(px, y);
+                assert!(seen == most || (seen - most).abs() < 2e-4, "{px} {y}: {seen} {most}");
+            }
+        }
+    }
+}
+
+#[test]
+fn walls_are_seen_through_before_and_behind_a_sphere() {
+    let (x, r, c) = ([[0.0; 3]], [1.0], [Colour::hex(0xd0d0d0)]);
+    let wall = |z: f64| [[-3.0, -3.0, z], [3.0, -3.0, z], [0.0, 6.0, z]];
+    let camera = Camera { theta: 0.0, phi: 0.0, ..Camera::default() };
+    let view = camera.frame(x.iter().copied().zip(r));
+    let of = |walls: &[[[f64; 3]; 3]]| render(&Scene { walls, ..scene(&x, &r, &c) }, &view, &look(80, 60));
+    let [bare, front, behind, both] =
+        [&[][..], &[wall(2.0)], &[wall(-2.0)], &[wall(2.0), wall(-2.0)]].map(of);
+    let (sphere, beside) = (|i: &Image| pixel(i, 40, 30), |i: &Image| pixel(i, 8, 30));
+    assert!(sphere(&front)[0] < sphere(&bare)[0] && sphere(&behind) == sphere(&bare));
+    assert!(beside(&front) == beside(&behind) && beside(&front)[0] < beside(&bare)[0]);
+    assert!(beside(&both)[0] < beside(&front)[0] && sphere(&both) == sphere(&front));
+    // More than half of the light comes through one.
+    assert!(u32::from(beside(&front)[0]) > u32::from(beside(&bare)[0]) / 2);
+}
+
+#[test]
+fn a_scale_bar_is_as_long_as_it_says() {
+    let (x, r, c) = ([[0.0; 3]], [1.0], [Colour::hex(0xd0d0d0)]);
+    let view = Camera::default().frame(x.iter().copied().zip(r));
+    let bar = ScaleBar { units: &[] };
+    let bare = Look { background: [Colour::hex(0xffffff); 2], ..look(400, 300) };
+    let image = render(&Scene { scale: Some(&bar), ..scene(&x, &r, &c) }, &view, &bare);
+    // The sphere's 2.12 fit into 300 pixels less the line of 23 (2.6 × 9): 130.66 to a length, of which a fifth of 400 is 0.61: 0.5.
+    let row = 300 - 18 + 4;
+    let dark: Vec<usize> = (200..400).filter(|k| pixel(&image, *k, row)[0] < 120).collect();
+    let run = dark
+        .iter()
+        .scan(dark[0], |last, k| {
+            (k - *last <= 1).then(|| {
+                *last = *k;
+                *k
+            })
+        })
+        .count();
+    assert!((63..=69).contains(&run), "{run}: {dark:?}");
 }
 
 #[test]
