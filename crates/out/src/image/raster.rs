@@ -60,13 +60,12 @@ impl Raster {
         let (width, height) = (frame.width, frame.height);
         let bins = Bins::new(&discs, width, height);
         let (stop, cut) = (stop::present(), AtomicBool::new(false));
-        let strips = make(height.div_ceil(TILE), |row| {
-            if stop.asked() {
-                cut.store(true, Ordering::Relaxed);
-                return Strip { depth: vec![], seen: vec![] };
-            }
-            bins.strip(&discs, row, width, height)
-        });
+        let ends = || {
+            let asked = stop.asked();
+            cut.fetch_or(asked, Ordering::Relaxed);
+            asked
+        };
+        let strips = make(height.div_ceil(TILE), |row| bins.strip(&discs, row, width, height, &ends));
         Self { discs, projection, width, height, strips, cut: cut.into_inner() }
     }
 
@@ -150,13 +149,20 @@ impl Bins {
         Self { columns, start, members, large }
     }
 
-    /// Draws one row of tiles.
-    fn strip(&self, discs: &[Disc], row: usize, width: usize, height: usize) -> Strip {
+    /// Draws one row of tiles, or some of them, where the work `ends`.
+    fn strip(
+        &self,
+        discs: &[Disc],
+        row: usize,
+        width: usize,
+        height: usize,
+        ends: impl Fn() -> bool,
+    ) -> Strip {
         let rows = TILE.min(height - row * TILE);
         let mut strip =
             Strip { depth: vec![f32::NEG_INFINITY; rows * width], seen: vec![NOTHING; rows * width] };
         let mut order: Vec<u64> = vec![];
-        for column in 0..self.columns {
+        for column in (0..self.columns).take_while(|_| !ends()) {
             let tile = row * self.columns + column;
             let members = &self.members[self.start[tile] as usize..self.start[tile + 1] as usize];
             let x = [column * TILE, ((column + 1) * TILE).min(width)];
