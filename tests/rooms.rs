@@ -250,6 +250,7 @@ const OPENERS: &[(&str, &str)] = &[
     ("crates/out/src/file.rs", "what the gate has let pass"),
     ("crates/out/src/gzip.rs", "what the gate has let pass"),
     ("crates/out/src/sheet.rs", "what the gate has let pass"),
+    ("crates/out/src/movie.rs", "ffmpeg, which is not started under -safe"),
     ("crates/fixes/src/halt.rs", "what the gate has let pass"),
     ("src/session/shell.rs", "refused as a whole under -safe"),
     ("crates/base/src/memory.rs", "memory of the machine"),
