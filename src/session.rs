@@ -46,16 +46,17 @@ use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
 pub use ahead::{Ahead, steps_ahead};
 pub use commands::OWN;
-pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
+pub use embed::{Column, Columns, Global, Newcomers, Order, Rows, Told};
 pub use files::folder_of;
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
 pub use options::{Mode, Options};
 pub use overlay::{Overlay, absolute};
 use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fail};
+use perigrain_base::letters;
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_commands::COMMANDS;
-use perigrain_lang::{Command, Flow, Line, Script, Vars};
+use perigrain_lang::{Command, Flow, Line, Script, Vars, plain_value};
 use perigrain_out::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
@@ -120,6 +121,8 @@ pub struct Session {
     born: std::time::Instant,
     /// The pair style was refused (`check` mode): that there is none is no news.
     pairless: bool,
+    /// A fix was refused (`check` mode): that nothing moves is no news.
+    fixless: bool,
     /// Texts looked at for definitions of variables, and the names found.
     later: (usize, Arc<std::collections::BTreeSet<String>>),
     /// The variable table's names as the graph knows them.
@@ -183,6 +186,7 @@ impl Session {
             swept: None,
             born: std::time::Instant::now(),
             pairless: false,
+            fixless: false,
             later: Default::default(),
             seen_names: 0,
             plans: Default::default(),
@@ -194,6 +198,8 @@ impl Session {
         };
         s.vars.set_partition(s.options.partition.clone());
         for (name, values) in s.options.vars.clone() {
+            let (values, odd): (Vec<_>, Vec<_>) = values.iter().map(|v| plain_value(v)).unzip();
+            s.notes.0.extend(letters::note_of_value(&format!("-var {name}"), &odd.concat()));
             s.vars.set_index(&name, &values)?;
         }
         s.reset_world();
@@ -256,10 +262,12 @@ impl Session {
     /// The first line that is refused or fails; in check mode all problems of the whole deck.
     pub fn run_text(&mut self, name: &str, text: &str) -> Result<Ending> {
         let file = self.sources.add(name, text);
+        self.note_letters(file.0 as usize);
         let script = Script::new(file);
         let mut script = if self.planning() { script.first_branches() } else { script };
         let outcome = self.work_off(&mut script);
         self.doubt(&script);
+        self.notes.0.extend(files::left_loops(&script));
         if self.planning() {
             let text = self.plans.text(&self.sources);
             self.told_to.line_or(&text, Some(&text))?;
@@ -382,6 +390,7 @@ impl Session {
             return self.cut_short(&stop, line, cmd.span, &Diagnostics::default()).map(|()| None);
         }
         let outcome = stop.heed(|| self.within_limits(cmd).and_then(|()| self.command(script, cmd)));
+        self.fixless |= outcome.is_err() && cmd.name.text == "fix";
         self.say_notes()?;
         if stop.has_cut() {
             let told = outcome.err().unwrap_or_default();
@@ -393,6 +402,7 @@ impl Session {
 
     /// Warnings go to screen and log as they come.
     fn say_notes(&mut self) -> Result<()> {
+        self.notes.0.extend(self.world.read_files.take_notes());
         if self.checking() {
             return Ok(());
         }

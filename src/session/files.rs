@@ -19,7 +19,12 @@ pub(super) struct RealFiles<'a> {
     pub read: ReadFiles,
     /// Whether the deck is only looked at.
     pub looking: bool,
+    /// How many lines have been looked at, each turn of a loop counted, and since when.
+    pub looked: (u64, std::time::Instant),
 }
+
+/// How many lines of a deck are looked at before loops are left, and for how long.
+const LOOKED: (u64, std::time::Duration) = (50_000, std::time::Duration::from_secs(10));
 
 impl Files for RealFiles<'_> {
     fn read(&self, path: &str) -> std::io::Result<String> {
@@ -38,6 +43,10 @@ impl Files for RealFiles<'_> {
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
+    fn read_data(&self, path: &str) -> std::io::Result<String> {
+        self.read(path).map(|text| self.read.plain(path, text))
+    }
+
     fn comes_later(&self, path: &str) -> bool {
         self.looking && self.promised.may_come(path)
     }
@@ -45,6 +54,22 @@ impl Files for RealFiles<'_> {
     fn only_looks(&self) -> bool {
         self.looking
     }
+
+    fn has_looked_long(&self) -> bool {
+        let (lines, since) = self.looked;
+        lines > LOOKED.0 || since.elapsed() > LOOKED.1
+    }
+}
+
+/// What is said of loops that were left before their end where a deck was only looked at.
+pub(super) fn left_loops(script: &perigrain_lang::Script) -> Vec<Diagnostic> {
+    let note = |(span, turns): (perigrain_base::diag::Span, u64)| {
+        let text = format!(
+            "the end of this loop is not in sight after {turns} turns: later ones were not looked at"
+        );
+        Diagnostic::note(Code::LONG_LOOP, span, text)
+    };
+    script.left_loops().map(note).collect()
 }
 
 /// What is said of a log file that another run is writing.

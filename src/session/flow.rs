@@ -4,8 +4,9 @@ use super::files::RealFiles;
 use super::{Session, commands};
 use crate::graph::env::DeckEnv;
 use crate::graph::{Node, Role};
-use perigrain_base::diag::Result;
-use perigrain_lang::{Command, Flow, Script};
+use perigrain_base::diag::{FileId, Result};
+use perigrain_base::letters;
+use perigrain_lang::{Command, Flow, Script, odd_letters};
 use perigrain_styles::{Use, UseKind};
 
 /// Commands after which particles and everything that goes with them are as before.
@@ -19,9 +20,14 @@ impl Session {
         let promised = self.world.parts.promised.clone();
         let (folder, read) = (&self.options.folder, self.world.read_files.clone());
         let overlay = &self.options.overlay;
-        let files = RealFiles { promised, folder, overlay, read, looking: self.looking() };
+        // A plan makes the particles of the first run, which may take long by itself.
+        let since = if self.checking() { self.born } else { std::time::Instant::now() };
+        let looked = (self.turns, since);
+        let files = RealFiles { promised, folder, overlay, read, looking: self.looking(), looked };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
+        let known = self.sources.count();
         let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files)?;
+        self.note_letters(known);
         if flow == Flow::NotMine {
             return Ok(flow);
         }
@@ -48,6 +54,15 @@ impl Session {
         let provides = named.filter(|_| !deleted);
         self.record_once(cmd, if defines { Role::Declare } else { Role::Act }, provides);
         Ok(flow)
+    }
+
+    /// Notes what characters of texts taken in since there were `known` of them are read as others.
+    pub(super) fn note_letters(&mut self, known: usize) {
+        for k in known..self.sources.count() {
+            let file = FileId(k as u32);
+            let text = self.sources.get(file).map_or("", |source| &source.text);
+            self.notes.0.extend(letters::note(&odd_letters(text, file)));
+        }
     }
 
     /// Records a line that loops may repeat a million times: what it names is found from its words, if they have changed.

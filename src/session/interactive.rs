@@ -86,6 +86,7 @@ impl Session {
         (self.interrupted, self.quit) = (false, None);
         self.stop_flag().store(false, Ordering::Relaxed);
         let file = self.sources.add(name, text);
+        self.note_letters(file.0 as usize);
         let mut script = self.typed.take().map_or_else(|| Script::new(file), |before| before.then(file));
         self.prompt = typed.then_some(file);
         let outcome = self.work_off(&mut script);
@@ -140,6 +141,7 @@ impl Session {
             blind: _,
             born: _,
             pairless: _,
+            fixless: _,
             later: _,
             seen_names: _,
             plans: _,
@@ -241,8 +243,9 @@ impl Session {
     /// # Errors
     /// A formula that cannot be read or evaluated now.
     pub fn per_particle(&mut self, formula: &str) -> Result<Vec<f64>> {
-        let file = self.sources.add("formula", formula);
-        let expr = Expr::parse(formula, Span::new(file, 0, formula.len()))?;
+        let (formula, _) = perigrain_lang::plain_value(formula);
+        let file = self.sources.add("formula", formula.as_str());
+        let expr = Expr::parse(&formula, Span::new(file, 0, formula.len()))?;
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         Ok(expr.per_particle(&self.vars, &mut env)?.unwrap_or_default())
     }

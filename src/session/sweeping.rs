@@ -98,6 +98,7 @@ impl Session {
             }
         };
         self.world.read_files.note(&path);
+        let text = self.world.read_files.plain(&file.text, text);
         let source = perigrain_base::diag::Source { name: file.text.clone(), text };
         let source = std::sync::Arc::new(source);
         Axis::table(&source.text, perigrain_base::diag::FileId::BROUGHT).map_err(|e| e.within(&source))

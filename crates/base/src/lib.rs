@@ -9,6 +9,7 @@
 pub mod base64;
 pub mod diag;
 pub mod gate;
+pub mod letters;
 pub mod math;
 pub mod memory;
 pub mod par;

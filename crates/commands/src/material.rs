@@ -124,7 +124,7 @@ fn from_file(name: &Word, cx: &BuildCx) -> Result<Material> {
             .help("use `units si`, `cgs`, `micro` or `nano`, or give the numbers in the line")
             .into());
     };
-    let found = potentials::find(&name.text, Some(&cx.world.folder)).map_err(|e| {
+    let mut found = potentials::find(&name.text, Some(&cx.world.folder)).map_err(|e| {
         let d = Diagnostic::error(
             perigrain_base::gate::code(&e),
             name.span,
@@ -139,6 +139,7 @@ fn from_file(name: &Word, cx: &BuildCx) -> Result<Material> {
     })?;
     if !found.embedded() {
         cx.world.read_files.note(std::path::Path::new(&found.place));
+        found.text = cx.world.read_files.plain(&found.place, found.text);
     }
     let material =
         Material::parse(&found.text, FileId::default()).map_err(|d| retell(d, &found, name.span))?;

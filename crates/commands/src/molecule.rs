@@ -4,7 +4,7 @@ mod file;
 
 use super::data::text::find;
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, not_here};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
@@ -116,7 +116,9 @@ impl Act for Reading {
         let mut list = vec![];
         for asked in &self.files {
             let text = find(cx.world, &asked.file, "molecule file")?;
-            let (mut t, skipped) = file::read(&text.text).map_err(|e| e.within(&text))?;
+            let mut notes = Diagnostics::default();
+            let (mut t, skipped) = file::read(&text.text, &mut notes).map_err(|e| e.within(&text))?;
+            notes.within(&text).0.into_iter().for_each(|note| cx.note(note));
             change(&mut t, asked)?;
             if skipped {
                 let note = "without effect: which pairs count as bonded follows from the bonds, not from Special Bonds";

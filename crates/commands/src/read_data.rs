@@ -180,6 +180,7 @@ impl Act for Reading {
         };
         let outcome = body::read(&text.text, &how).and_then(|data| self.place(cx, data, &text.text));
         let mut data = outcome.map_err(|e| e.within(&text))?;
+        std::mem::take(&mut data.notes).within(&text).0.into_iter().for_each(|note| cx.note(note));
         self.enter(cx, &mut data)?;
         self.miss_sections(cx, &data);
         let coeffs = std::mem::take(&mut data.coeffs);

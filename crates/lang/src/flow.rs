@@ -20,12 +20,20 @@ const CHECKED_TURNS: u64 = 10_000;
 pub trait Files {
     /// The whole text of a file.
     fn read(&self, path: &str) -> std::io::Result<String>;
+    /// The whole text of a file of data, in which characters that look like blanks are blanks.
+    fn read_data(&self, path: &str) -> std::io::Result<String> {
+        self.read(path)
+    }
     /// Whether an earlier line of the deck may have written this file (where a deck is only looked at, nothing is written).
     fn comes_later(&self, _path: &str) -> bool {
         false
     }
     /// Whether the deck is only looked at, so that long loops need not be followed to their end.
     fn only_looks(&self) -> bool {
+        false
+    }
+    /// Whether so much has been looked at that no loop is followed any more.
+    fn has_looked_long(&self) -> bool {
         false
     }
 }
@@ -174,7 +182,8 @@ impl Script {
         let Some(turns) = self.progress.turn(place, vars.fingerprint() ^ self.position()) else {
             return stuck(command, target);
         };
-        if turns > CHECKED_TURNS && files.only_looks() {
+        if files.only_looks() && (turns > CHECKED_TURNS || files.has_looked_long()) {
+            self.left_loops.insert(command.span, turns);
             self.pass_over((file, at), vars);
             return Ok(());
         }

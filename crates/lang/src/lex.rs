@@ -9,6 +9,7 @@ use nom::combinator::opt;
 use nom::sequence::{delimited, terminated};
 use nom::{IResult, Parser, branch::alt};
 use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Span, fail};
+use perigrain_base::letters;
 
 /// What the end of a physical line finds open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +105,35 @@ fn scan(text: &str, base: usize, mut mode: Mode) -> Mode {
     }
 }
 
+/// The bytes of a physical line at which stands what is read as something else, with that.
+///
+/// In quotes only blanks count, and the quote that closes one of its kind.
+fn odd(line: &str, mut mode: Mode) -> Vec<(usize, &'static str)> {
+    let (mut found, mut rest, mut curly) = (vec![], line, false);
+    while let Some(c) = rest.chars().next().filter(|_| !matches!(mode, Mode::Comment(_))) {
+        let at = place(line, rest);
+        let new = letters::plain(c).filter(|new| match mode {
+            Mode::Quote(q, _) => *new == " " || curly && *new == q.mark(),
+            _ => true,
+        });
+        let Some(new) = new else {
+            let Ok((after, next)) = advance(rest, at, mode) else { break };
+            if next != mode {
+                curly = false;
+            }
+            (rest, mode) = (after, next);
+            continue;
+        };
+        found.push((at, new));
+        if let Ok((_, next)) = advance(new, at, mode) {
+            curly = matches!(next, Mode::Quote(..)) && (curly || next != mode);
+            mode = next;
+        }
+        rest = &rest[c.len_utf8()..];
+    }
+    found
+}
+
 /// Reads the logical line that starts at byte `start` of `source`; `None` at its end.
 pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option<Logical>> {
     let Some(mut rest) = source.get(start..).filter(|r| !r.is_empty()) else { return Ok(None) };
@@ -112,14 +142,19 @@ pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option
     while let Ok((after, line)) = physical(rest) {
         let at = place(source, rest);
         let body = line.strip_suffix('\r').unwrap_or(line);
-        mode = scan(body, text.text.len(), mode);
+        let before = text.text.len();
+        let odd = if body.is_ascii() { vec![] } else { odd(body, mode) };
+        text.push_line(body, file, at, &odd);
+        mode = scan(&text.text[before..], before, mode);
         rest = after;
-        let joined = body.trim_end().strip_suffix('&');
+        let joined = text.text[before..].trim_end().strip_suffix('&').map(str::len);
         if joined.is_none() && matches!(mode, Mode::Quote(Quote::Triple, _)) && !rest.is_empty() {
-            text.push_literal(&source[at..place(source, rest)], file, at);
+            text.push_literal(&source[at + body.len()..place(source, rest)], file, at + body.len());
             continue;
         }
-        text.push_literal(joined.unwrap_or(body), file, at);
+        if let Some(length) = joined {
+            text.truncate(before + length);
+        }
         if joined.is_none() || rest.is_empty() {
             break;
         }
@@ -127,8 +162,34 @@ pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option
     if let Mode::Quote(q, at) = mode {
         return Err(unclosed(q, text.span(at..at + q.mark().len())).into());
     }
-    let code = if let Mode::Comment(at) = mode { at } else { text.text.len() };
+    let code = if let Mode::Comment(at) = mode { at.min(text.text.len()) } else { text.text.len() };
     Ok(Some(Logical { text, code, next: place(source, rest) }))
+}
+
+/// The characters of a deck that are read as others, with their places.
+pub fn odd_letters(source: &str, file: FileId) -> Vec<(char, Span)> {
+    let (mut at, mut found) = (0, vec![]);
+    while !source.is_ascii() && at < source.len() {
+        match logical(source, file, at) {
+            Ok(Some(line)) => {
+                let letter = |s: Span| Some((source.get(s.start as usize..)?.chars().next()?, s));
+                found.extend(line.text.replaced(line.code).filter_map(letter));
+                at = line.next;
+            }
+            Ok(None) => break,
+            // A line that cannot be read is refused; what stands behind it is looked at nonetheless.
+            Err(_) => at += source[at..].find('\n').map_or(source.len() - at, |k| k + 1),
+        }
+    }
+    found
+}
+
+/// A value that is given outside of a deck, with what its odd characters are read as, and those.
+pub fn plain_value(text: &str) -> (String, Vec<char>) {
+    let odd = odd(text, Mode::Plain);
+    let mut value = Mapped::default();
+    value.push_line(text, FileId::default(), 0, &odd);
+    (value.text, odd.iter().filter_map(|(at, _)| text[*at..].chars().next()).collect())
 }
 
 /// Whether a text typed so far ends inside a logical line: `&` at its end, or `"""` still open.

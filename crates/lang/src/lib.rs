@@ -31,7 +31,7 @@ pub use args::{Args, blame};
 pub use command::{Command, Line, Word};
 pub use expr::{Dep, Expr};
 pub use flow::{Files, Flow};
-pub use lex::is_unfinished;
+pub use lex::{is_unfinished, odd_letters, plain_value};
 pub use number::{printf, value_text};
 pub use raw::{RawLine, raw_lines, raw_words};
 pub use reference::{Param, RefKind, ValueRef};

@@ -7,7 +7,7 @@ use super::substitute::{expand, outside_quotes};
 use super::text::Mapped;
 use super::value::Env;
 use super::vars::Vars;
-use perigrain_base::diag::{FileId, Result, Sources};
+use perigrain_base::diag::{FileId, Result, Sources, Span};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -80,6 +80,8 @@ pub struct Script {
     pub(super) awaited: BTreeMap<(FileId, usize), u64>,
     /// Whether loops get anywhere.
     pub(super) progress: Progress,
+    /// The jumps of loops that were left before their end, with the number of turns that were followed.
+    pub(super) left_loops: BTreeMap<Span, u64>,
     raw: Arc<str>,
     known: BTreeMap<FileId, Known>,
 }
@@ -123,6 +125,7 @@ impl Script {
             passed: BTreeMap::new(),
             awaited: BTreeMap::new(),
             progress: Progress::default(),
+            left_loops: BTreeMap::new(),
             raw: "".into(),
             known: BTreeMap::new(),
         }
@@ -149,6 +152,11 @@ impl Script {
     /// Whether a jump has been passed over that a run may make, so that lines may come more often than they did here.
     pub fn is_cut_short(&self) -> bool {
         self.cut_short
+    }
+
+    /// The jumps of loops that were left before their end where a deck is only looked at, with the number of turns followed.
+    pub fn left_loops(&self) -> impl Iterator<Item = (Span, u64)> {
+        self.left_loops.iter().map(|(span, turns)| (*span, *turns))
     }
 
     /// Whether the command at hand stands in a branch that is left aside: see [`Script::first_branches`].

@@ -49,6 +49,32 @@ impl Mapped {
         self.text.push_str(text);
     }
 
+    /// Appends a line of the deck that starts at byte `at` of `file`, with what its odd characters are read as.
+    pub fn push_line(&mut self, line: &str, file: FileId, at: usize, odd: &[(usize, &'static str)]) {
+        let mut done = 0;
+        for (k, plain) in odd {
+            let end = k + line[*k..].chars().next().map_or(0, char::len_utf8);
+            if *k > done {
+                self.push_literal(&line[done..*k], file, at + done);
+            }
+            self.push_value(plain, Span::new(file, at + k, at + end), None, false);
+            done = end;
+        }
+        self.push_literal(&line[done..], file, at + done);
+    }
+
+    /// Drops all but the first `length` bytes.
+    pub fn truncate(&mut self, length: usize) {
+        self.text.truncate(length);
+        let kept = self.parts.partition_point(|p| p.start < length).max(1);
+        self.parts.truncate(kept);
+    }
+
+    /// The places of what stands in the place of something else.
+    pub fn replaced(&self, before: usize) -> impl Iterator<Item = Span> {
+        self.parts.iter().filter(move |p| !p.literal && p.start < before).map(|p| p.span)
+    }
+
     /// Appends a value that replaces what stands at `span`.
     pub fn push_value(&mut self, text: &str, span: Span, origin: Option<Span>, unknown: bool) {
         self.parts.push(Part { start: self.text.len(), span, origin, literal: false, unknown });

@@ -73,7 +73,7 @@ pub fn read_faces(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
 /// Files that cannot be read, are broken, or hold no triangles.
 pub fn read(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
     let bytes = match gate::read(cx.world.to_read(&file.text)) {
-        Ok(bytes) => bytes,
+        Ok(bytes) => cx.world.read_files.plain_bytes(&file.text, bytes),
         Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(None),
         Err(e) => {
             let text = format!("the file `{}` cannot be read: {e}", file.text);

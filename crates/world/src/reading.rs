@@ -1,25 +1,63 @@
 //! Files that a deck reads: where they are looked for, and which ones were read.
 
 use super::World;
+use perigrain_base::diag::Diagnostic;
+use perigrain_base::letters;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The files that were read so far; copies take note of the same.
+/// The files that were read so far, and notes about what stands in them; copies take note of the same.
 #[derive(Clone, Debug, Default)]
-pub struct ReadFiles(Arc<Mutex<BTreeSet<PathBuf>>>);
+pub struct ReadFiles(Arc<Found>);
+
+#[derive(Debug, Default)]
+struct Found {
+    paths: Mutex<BTreeSet<PathBuf>>,
+    notes: Mutex<Vec<Diagnostic>>,
+    /// Whether there are notes: it is asked for behind each line of a deck.
+    noted: AtomicBool,
+}
 
 impl ReadFiles {
     /// Takes note of one.
     pub fn note(&self, path: &Path) {
         if let Ok(whole) = std::path::absolute(path) {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(whole);
+            self.0.paths.lock().unwrap_or_else(PoisonError::into_inner).insert(whole);
         }
     }
 
     /// All of them, as absolute paths in their order.
     pub fn all(&self) -> Vec<PathBuf> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+        self.0.paths.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+
+    /// The text of a file of data with blanks and signs in the place of what looks like them, which a note names.
+    pub fn plain(&self, name: &str, text: String) -> String {
+        let (text, found) = letters::plain_data(text);
+        if let Some(note) = letters::note_of_file(name, &text, &found) {
+            self.0.notes.lock().unwrap_or_else(PoisonError::into_inner).push(note);
+            self.0.noted.store(true, Ordering::Relaxed);
+        }
+        text
+    }
+
+    /// The same of bytes that may be no text.
+    pub fn plain_bytes(&self, name: &str, bytes: Vec<u8>) -> Vec<u8> {
+        match String::from_utf8(bytes) {
+            Ok(text) => self.plain(name, text).into_bytes(),
+            Err(e) => e.into_bytes(),
+        }
+    }
+
+    /// The notes since they were asked for last.
+    pub fn take_notes(&self) -> Vec<Diagnostic> {
+        if !self.0.noted.load(Ordering::Relaxed) {
+            return vec![];
+        }
+        self.0.noted.store(false, Ordering::Relaxed);
+        std::mem::take(&mut self.0.notes.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 

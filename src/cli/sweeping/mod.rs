@@ -14,6 +14,7 @@ use crate::sweep::starter::Starter;
 use crate::sweep::{self, Job, Results, Settings, Standing, Sweep, table};
 use args::{List, Request};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail};
+use perigrain_base::letters;
 use perigrain_out::log::Log;
 use show::Show;
 use std::io::IsTerminal;
@@ -100,7 +101,13 @@ pub(super) fn axes(request: &Request, sources: &mut Sources) -> Result<Vec<Axis>
                         return fail(Code::NO_FILE, None, text);
                     }
                 };
-                let file = sources.add(path.display().to_string(), text.as_str());
+                let name = path.display().to_string();
+                // Spreadsheets begin their files with a byte order mark.
+                let (text, odd) = letters::plain_data(text);
+                if let Some(note) = letters::note_of_file(&name, &text, &odd) {
+                    deck::print(&note.into(), sources);
+                }
+                let file = sources.add(name, text.as_str());
                 Axis::table(&text, file)?
             }
         });

@@ -175,6 +175,12 @@ codes! {
     OTHER_SWEEP = 147, "the sweep in this folder is another",
         "The journal in the folder of a sweep tells of another deck, other runs or another version of perigrain, a file that runs have read has changed since, or somebody is at work there. Results of both in one table would be of no use. `-anew` forgets the earlier runs, `-out DIR` puts the new ones elsewhere.",
         "", "";
+    LETTERS = 149, "a character that looks like another",
+        "Web pages and word processors put in blanks that are none (U+00A0, U+200B and others), byte order marks, curly quotes and minus signs that are no ASCII. They are read as what they look like, as LAMMPS does, outside of comments; quotes and signs also outside of quoted texts. Type them anew where they are not meant.",
+        "print\u{a0}\"x\"", "print \"x\"";
+    LONG_LOOP = 150, "the end of a loop is not in sight",
+        "Where a deck is only looked at (`check`, `plan`), a loop is followed for 10,000 turns, and none any further once 50,000 lines or ten seconds are spent. What variables have behind it counts as unknown. A run follows it to its end.",
+        "", "";
     LOST = 201, "particles lost",
         "A particle left a box with fixed faces. Enlarge the box, use boundary s or m, or shorten the time step.",
         "units si\natom_style sphere\nboundary f f f\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nvelocity all set 1 0 0\nfix 1 all nve\ntimestep 0.01\nrun 100",

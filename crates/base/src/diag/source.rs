@@ -12,7 +12,7 @@ impl FileId {
 }
 
 /// A run of bytes in a source text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Span {
     /// Which text.
     pub file: FileId,
@@ -76,6 +76,11 @@ impl Sources {
             spans.filter(|s| s.file == FileId::BROUGHT).for_each(|s| s.file = file);
         }
         list
+    }
+
+    /// The number of texts so far.
+    pub fn count(&self) -> usize {
+        self.0.len()
     }
 
     /// All texts so far.

@@ -3,9 +3,9 @@
 use super::header::{self, Header};
 use super::more::molecule_id;
 use super::properties::{Filled, Section};
-use super::text::{Line, Lines, not_here, number, whole};
+use super::text::{Line, Lines, not_here, number, under_heading, whole};
 use super::{Column, columns};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use perigrain_lang::Command;
 use perigrain_world::index::twice;
 use perigrain_world::{AtomStyle, Bond, Particles};
@@ -58,6 +58,8 @@ pub struct DataFile {
     pub bonds: Vec<(Bond, u32)>,
     /// What the sections of fixes say.
     pub filled: Vec<Filled>,
+    /// What is worth knowing of the file.
+    pub notes: Diagnostics,
 }
 
 impl DataFile {
@@ -166,12 +168,7 @@ impl<'a> Reader<'a> {
             }
             _ => {}
         }
-        if let Some(line) = self.lines.take()
-            && !line.is_blank()
-        {
-            let text = format!("the line after the heading {name} must be blank");
-            return fail(Code::SYNTAX, line.span(), text);
-        }
+        self.data.notes.0.extend(under_heading(&mut self.lines, name)?);
         let types = self.data.header.types;
         match name {
             "Masses" => self.rows(name, title, types, Self::mass),

@@ -56,6 +56,7 @@ pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
 /// Files that cannot be read, or that only a run would write.
 pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
     let printed = |text: &str| Arc::new(Source { name: word.text.clone(), text: text.to_string() });
+    let load = |path: &Path| load(path).map(|source| plain(w, source));
     seek(w, word, what, printed, load)
 }
 
@@ -65,8 +66,22 @@ pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
 /// As `find`.
 pub fn find_bytes(w: &World, word: &Word, what: &str) -> Result<(String, Vec<u8>)> {
     let printed = |text: &str| (word.text.clone(), text.as_bytes().to_vec());
-    let load = |path: &Path| load_bytes(path).map(|bytes| (path.display().to_string(), bytes));
+    let load = |path: &Path| {
+        let (name, bytes) = (path.display().to_string(), load_bytes(path)?);
+        let bytes = w.read_files.plain_bytes(&name, bytes);
+        Ok((name, bytes))
+    };
     seek(w, word, what, printed, load)
+}
+
+/// The same text with blanks in the place of what looks like them.
+pub fn plain(w: &World, source: Arc<Source>) -> Arc<Source> {
+    if source.text.is_ascii() {
+        return source;
+    }
+    let source = Arc::unwrap_or_clone(source);
+    let text = w.read_files.plain(&source.name, source.text);
+    Arc::new(Source { name: source.name, text })
 }
 
 fn seek<T>(
@@ -243,6 +258,21 @@ impl<'a> Lines<'a> {
         let end = self.text.trim_end().len();
         Span::new(FileId::BROUGHT, end.saturating_sub(1), end)
     }
+}
+
+/// Takes the line under a heading, which LAMMPS passes over whatever it holds: a note where it holds a text.
+///
+/// # Errors
+/// Numbers there, which are a row that LAMMPS would lose.
+pub fn under_heading(lines: &mut Lines, name: &str) -> Result<Option<Diagnostic>> {
+    let Some(line) = lines.take().filter(|line| !line.is_blank()) else { return Ok(None) };
+    if line.word(0).parse::<f64>().is_ok() {
+        let text = format!("the line after the heading {name} must be blank");
+        let d = Diagnostic::error(Code::SYNTAX, line.span(), text);
+        return Err(d.help("LAMMPS passes over this line: put a blank one before the first row").into());
+    }
+    let text = format!("the text under the heading {name} is passed over, as LAMMPS does");
+    Ok(Some(Diagnostic::note(Code::NO_EFFECT, line.span(), text)))
 }
 
 /// Reads a finite number.

@@ -1,7 +1,7 @@
 //! A molecule file: header and sections.
 
-use crate::data::text::{Line, Lines, not_here, number, whole};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
+use crate::data::text::{Line, Lines, not_here, number, under_heading, whole};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use perigrain_world::Template;
 
 const SECTIONS: [&str; 8] =
@@ -26,13 +26,19 @@ const ELSEWHERE: [&str; 12] = [
 /// Header words with a count that must be zero here.
 const COUNTS: [&str; 5] = ["angles", "dihedrals", "impropers", "fragments", "body"];
 
-/// Reads a file; whether lists of special bonds were read past.
+/// Reads a file and leaves notes about it; whether lists of special bonds were read past.
 ///
 /// # Errors
 /// The first thing that is wrong, with its place in the text.
-pub fn read(text: &str) -> Result<(Template, bool)> {
+pub fn read(text: &str, notes: &mut Diagnostics) -> Result<(Template, bool)> {
     let mut lines = Lines::new(text);
-    let mut f = File { t: Template::default(), bonds: 0, skipped: false, seen: vec![] };
+    let mut f = File {
+        t: Template::default(),
+        bonds: 0,
+        skipped: false,
+        seen: vec![],
+        notes: Diagnostics::default(),
+    };
     f.t.title = lines.take().map_or(String::new(), |l| l.text.trim().to_string());
     while let Some(line) = lines.take_filled() {
         if line.text.trim_start().starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -54,6 +60,7 @@ pub fn read(text: &str) -> Result<(Template, bool)> {
         let text = format!("the header promises {} bonds, but there is no section Bonds", f.bonds);
         return fail(Code::INCOMPLETE, lines.end(), text);
     }
+    notes.append(f.notes);
     Ok((f.t, f.skipped))
 }
 
@@ -63,6 +70,7 @@ struct File {
     bonds: usize,
     skipped: bool,
     seen: Vec<String>,
+    notes: Diagnostics,
 }
 
 impl File {
@@ -143,15 +151,7 @@ impl File {
         if self.seen.contains(&name) {
             return fail(Code::DUPLICATE_NAME, title.span(), format!("a second section {name}"));
         }
-        if let Some(line) = lines.take()
-            && !line.is_blank()
-        {
-            return fail(
-                Code::SYNTAX,
-                line.span(),
-                format!("the line after the heading {name} must be blank"),
-            );
-        }
+        self.notes.0.extend(under_heading(lines, &name)?);
         let count = if name == "Bonds" { self.bonds } else { self.t.count };
         self.make_room(&name);
         let mut there = vec![false; count];

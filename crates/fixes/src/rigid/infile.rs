@@ -4,7 +4,7 @@ use super::Declared;
 use super::bodies::orient;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::add;
-use perigrain_commands::data::text::{Line, Lines, load, number, whole};
+use perigrain_commands::data::text::{Line, Lines, load, number, plain, whole};
 use perigrain_lang::Word;
 use perigrain_world::World;
 
@@ -23,6 +23,7 @@ pub fn apply(fix: &Declared, w: &mut World, file: &Word) -> Result<()> {
         let text = format!("the file `{}` cannot be read: {e}", file.text);
         Diagnostic::error(perigrain_base::gate::code(&e), file.span, text)
     })?;
+    let text = plain(w, text);
     read(fix, w, &text.text).map_err(|e| e.within(&text))
 }
 

@@ -233,7 +233,7 @@ fn read_file(kind: Kind, path: &Word, files: &dyn Files) -> Result<Option<Data>>
     if path.unknown {
         return Ok(None);
     }
-    let text = match files.read(&path.text) {
+    let text = match files.read_data(&path.text) {
         Ok(text) => text,
         Err(_) if files.comes_later(&path.text) => return Ok(None),
         Err(e) => return Err(crate::flow::unreadable(path, &e).into()),
