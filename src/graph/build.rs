@@ -2,12 +2,12 @@
 
 use super::node::{ComputeNode, FixNode, Graph};
 use super::pair_modify::pair_modify;
-use super::{bonds, dumps, elsewhere, pairs};
+use super::{bonds, dumps, pairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_computes::COMPUTES;
 use perigrain_fixes::FIXES;
 use perigrain_lang::{Args, Command, Word};
-use perigrain_styles::{BuildCx, Style, Use, UseKind};
+use perigrain_styles::{BuildCx, Style, Use, UseKind, lammps};
 use perigrain_world::{GroupId, Said, World};
 use std::cell::RefCell;
 
@@ -38,28 +38,15 @@ pub const DECLARATIONS: [&str; 20] = [
 /// Finds a style in its table.
 ///
 /// # Errors
-/// An unknown style, with the nearest known one.
+/// An unknown style, with the nearest known one; one of LAMMPS with what does the same here.
 pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args) -> Result<&'t S> {
     let word = args.expect(&format!("a {kind} style"))?;
-    if let Some(s) = table.iter().find(|s| s.name() == word.text) {
+    let name = lammps::plain(kind, &word.text);
+    if let Some(s) = table.iter().find(|s| s.name() == name) {
         return Ok(s);
     }
-    if elsewhere::STYLES.contains(&(kind, word.text.as_str())) {
-        let text = format!("{kind} style `{}` is LAMMPS', but perigrain does not have it yet", word.text);
-        let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
-        return Err(match word.text.starts_with("python/") {
-            true => d.help("where Python hosts the run, `fix external … pf/callback` calls a function in steps, and variables of style python do").into(),
-            false => d.into(),
-        });
-    }
-    let d =
-        Diagnostic::error(Code::UNKNOWN_STYLE, word.span, format!("unknown {kind} style `{}`", word.text));
     let known: Vec<&str> = table.iter().map(|s| s.name()).collect();
-    Err(match nearest(&word.text, known.iter().copied()) {
-        Some(n) => d.help(format!("did you mean `{n}`?")),
-        None => d.help(format!("known: {}", known.join(" "))),
-    }
-    .into())
+    Err(lammps::unknown(kind, &format!("{kind} style"), word, &known))
 }
 
 /// What a declaration has done, for the node's record.

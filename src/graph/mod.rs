@@ -6,7 +6,6 @@ pub mod build;
 pub mod catalogue;
 pub mod dumps;
 pub mod dynamic;
-mod elsewhere;
 pub mod env;
 pub mod guard;
 pub mod keywords;

@@ -1,10 +1,10 @@
 //! Words that nobody knows where they stand: what is like them, and where they belong if they are known elsewhere.
 
-use super::commands;
 use crate::graph::catalogue::styles;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, nearest};
 use perigrain_contact::{Damping, Friction, normal};
 use perigrain_lang::{Command, Word};
+use perigrain_styles::lammps;
 
 /// Categories of styles, the command that takes them, and what stands before the style's name.
 const LINES: [(&str, &str, &str); 6] = [
@@ -26,7 +26,9 @@ pub(super) fn told(problems: Diagnostics, cmd: &Command) -> Diagnostics {
         if explained && d.code == Code::EXTRA_ARGUMENT {
             continue;
         }
-        let home = at_fault(&d, cmd).and_then(|word| home(&word.text, &cmd.name.text));
+        // The line itself may know better what to write.
+        let led = d.help.iter().any(|help| help.starts_with("write "));
+        let home = at_fault(&d, cmd).filter(|_| !led).and_then(|word| home(&word.text, &cmd.name.text));
         explained |= home.is_some();
         kept.push(match home {
             Some(home) => instead(d, home),
@@ -52,13 +54,8 @@ fn instead(mut d: Diagnostic, home: String) -> Diagnostic {
 /// The refusal of a line whose first word is no command.
 pub(super) fn unknown_command(cmd: &Command) -> Diagnostics {
     let name = cmd.name.text.as_str();
-    if commands::LAMMPS_ONLY.contains(&name) {
-        return Diagnostic::error(
-            Code::NOT_SUPPORTED,
-            cmd.name.span,
-            format!("`{name}` is a LAMMPS command that perigrain does not have yet"),
-        )
-        .into();
+    if let Some(refusal) = lammps::refusal("command", "command", &cmd.name) {
+        return refusal;
     }
     let known = styles("command").unwrap_or_default();
     let d = Diagnostic::error(Code::UNKNOWN_COMMAND, cmd.name.span, format!("unknown command `{name}`"));

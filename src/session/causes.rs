@@ -11,6 +11,10 @@ pub(super) struct Refused {
     scene: bool,
     /// A step table was refused, so that its columns are unknown.
     table: bool,
+    /// The atom style was refused, so that nothing is known of what particles have.
+    particles: bool,
+    /// And it is LAMMPS', so that much of what goes with it is so, too.
+    particles_of_lammps: bool,
 }
 
 /// Commands that name what they make in their first word.
@@ -49,10 +53,15 @@ impl Refused {
     ///
     /// Where none is left, the line is a consequence.
     pub fn causes(&mut self, line: &str, problems: Diagnostics) -> Diagnostics {
+        let elsewhere = problems.0.iter().any(|d| d.code == Code::NOT_SUPPORTED);
         let causes = problems.0.into_iter().filter(|d| !self.explains(d)).collect();
         let mut words = line.split_whitespace();
         let (command, first) = (words.next().unwrap_or(""), words.next());
         self.table |= command == "thermo_style";
+        if command == "atom_style" {
+            self.particles = true;
+            self.particles_of_lammps |= elsewhere;
+        }
         if NAMING.contains(&command) {
             self.names.extend(first.map(String::from));
         } else if !HARMLESS.contains(&command) {
@@ -78,6 +87,8 @@ impl Refused {
                 self.names.iter().any(|n| d.message.contains(&format!("`{n}`")))
             }
             Code::WRONG_ORDER | Code::INCOMPLETE => self.scene,
+            Code::CONFLICT | Code::NEVER_SET => self.particles,
+            Code::NOT_SUPPORTED => self.particles_of_lammps,
             _ => false,
         }
     }
@@ -98,6 +109,20 @@ mod tests {
         assert!(!refused.causes("thermo_style custom c_dmg", missing()).is_empty());
         assert!(!refused.causes("compute dmg all damge/atom", problem(Code::UNKNOWN_STYLE, "x")).is_empty());
         assert!(refused.causes("thermo_style custom c_dmg", missing()).is_empty());
+    }
+
+    #[test]
+    fn particles_of_a_refused_kind_lack_nothing() {
+        let mut refused = Refused::default();
+        let lacks = || problem(Code::CONFLICT, "particles of this atom_style have no diameter");
+        let dipoles =
+            || problem(Code::NOT_SUPPORTED, "keyword of set `dipole/random` is not in perigrain yet");
+        assert!(!refused.causes("set group all diameter 1", lacks()).is_empty());
+        refused.causes("atom_style spere", problem(Code::UNKNOWN_STYLE, "x"));
+        assert!(refused.causes("set group all diameter 1", lacks()).is_empty());
+        assert!(!refused.causes("set group all dipole/random 1 1", dipoles()).is_empty());
+        refused.causes("atom_style dipole", problem(Code::NOT_SUPPORTED, "x"));
+        assert!(refused.causes("set group all dipole/random 1 1", dipoles()).is_empty());
     }
 
     #[test]

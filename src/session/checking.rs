@@ -249,7 +249,7 @@ impl Session {
     fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
         let moving: Vec<_> =
             self.graph.fixes.iter().filter(|f| f.fix.facts(&self.world).integrates).collect();
-        if moving.is_empty() {
+        if moving.is_empty() && !(self.checking() && self.fixless) {
             found.push(
                 Diagnostic::warning(Code::NO_MOTION, span, "no fix moves any particle")
                     .help("add a time integrator, as `fix 1 all nve`"),

@@ -15,34 +15,6 @@ use std::path::Path;
 /// The session's own commands and those of the cursor, for "did you mean".
 pub use crate::graph::catalogue::SESSION_COMMANDS as OWN;
 
-/// LAMMPS commands that come with later issues, named so that nobody searches for a typo.
-pub const LAMMPS_ONLY: &[&str] = &[
-    "angle_coeff",
-    "angle_style",
-    "atom_modify_map",
-    "bond_write",
-    "dielectric",
-    "dihedral_coeff",
-    "dihedral_style",
-    "dynamical_matrix",
-    "group2ndx",
-    "improper_coeff",
-    "improper_style",
-    "kspace_modify",
-    "kspace_style",
-    "labelmap",
-    "mdi",
-    "neb",
-    "pair_write",
-    "plugin",
-    "prd",
-    "server",
-    "tad",
-    "temper",
-    "third_order",
-    "write_coeff",
-];
-
 /// What each variable offers, by name.
 pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, Shape> {
     let shape = |n: &str| match vars.kind(n) {

@@ -3,29 +3,12 @@
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{before_box, not_here, setting, unknown_style};
-use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_styles::common::{before_box, setting};
+use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::AtomStyle;
 
 /// The command.
 pub struct AtomStyleCommand;
-
-/// Styles LAMMPS has besides.
-const ELSEWHERE: [&str; 13] = [
-    "angle",
-    "body",
-    "charge",
-    "dipole",
-    "dpd",
-    "electron",
-    "ellipsoid",
-    "full",
-    "line",
-    "mdpd",
-    "sph",
-    "template",
-    "tri",
-];
 
 /// The styles.
 pub const ATOM_STYLES: [&str; 7] = ["atomic", "sphere", "peri", "bond", "molecular", "bpm/sphere", "hybrid"];
@@ -88,10 +71,9 @@ fn add(style: &mut AtomStyle, word: &Word, before: &mut Vec<String>) -> Result<(
         return fail(Code::BAD_VALUE, word.span, format!("atom_style `{}` is named twice", word.text));
     }
     before.push(word.text.clone());
-    match word.text.as_str() {
+    match lammps::plain("atom", &word.text) {
         name if style.add(name) => Ok(()),
-        name if ELSEWHERE.contains(&name) => Err(not_here(word, "atom_style")),
-        _ => Err(unknown_style(word, "atom_style", &ATOM_STYLES)),
+        _ => Err(lammps::unknown("atom", "atom_style", word, &ATOM_STYLES)),
     }
 }
 

@@ -3,8 +3,8 @@
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
-use perigrain_styles::common::{choice_or_refuse, setting};
-use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_styles::common::setting;
+use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::Minimizer;
 use perigrain_world::minimizer::MinStyle;
 
@@ -37,8 +37,14 @@ impl Style for MinStyleCommand {
 impl CommandStyle for MinStyleCommand {
     fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
         let known = MinStyle::ALL.map(|(name, _)| name);
-        let elsewhere = ["hftn", "fire/old", "spin", "spin/cg", "spin/lbfgs"];
-        let name = choice_or_refuse(a, "minimization style", &known, &elsewhere)?;
+        if let Some(refusal) = a
+            .peek()
+            .filter(|word| !known.contains(&word.text.as_str()))
+            .and_then(|word| lammps::refusal("min", "minimization style", word))
+        {
+            return Err(refusal);
+        }
+        let name = a.choice("minimization style", &known)?;
         let style = MinStyle::ALL.iter().find(|(n, _)| *n == name).map_or(MinStyle::Cg, |(_, s)| *s);
         let span = a.span();
         Ok(setting(move |cx| {

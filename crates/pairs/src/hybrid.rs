@@ -1,11 +1,11 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
 use super::{ByPart, Deck, Facts, PAIRS, Pair, PairStyle, Scales, TypePairs};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
-use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_styles::{BuildCx, Doc, SealCx, Style, lammps};
 use perigrain_world::World;
 use std::collections::BTreeMap;
 
@@ -65,14 +65,20 @@ impl PairStyle for Overlay {
     }
 }
 
+/// The name of a style without the ending of LAMMPS' accelerated ones.
+fn plain(name: &str) -> &str {
+    lammps::plain("pair", name)
+}
+
 fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Result<Declared> {
     let known: Vec<&'static str> =
         PAIRS.iter().map(|s| s.name()).filter(|n| !n.starts_with("hybrid")).collect();
     let mut subs: Vec<Box<dyn Pair>> = vec![];
     while subs.is_empty() || !args.is_empty() {
         let first = args.expect("a sub-style")?;
-        let Some(style) = PAIRS.iter().find(|s| s.name() == first.text && known.contains(&s.name())) else {
-            return Err(unknown(first, None, &known).into());
+        let Some(style) = PAIRS.iter().find(|s| s.name() == plain(&first.text) && known.contains(&s.name()))
+        else {
+            return Err(unknown(first, None, &known));
         };
         let (sub, word) = (style.name(), first.span);
         if subs.iter().any(|s| s.facts().name == sub) {
@@ -87,31 +93,37 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
                 .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
                 .into());
         }
-        let mut own = args.until(|word| known.contains(&word));
+        let mut own = args.until(|word| known.contains(&plain(word)));
         subs.push(style.build(&mut own, cx)?);
         if let Some(word) = own.next() {
-            return Err(unknown(word, Some(*style), &known).into());
+            return Err(unknown(word, Some(*style), &known));
         }
     }
     Ok(Declared { name, overlay, subs, users: BTreeMap::new() })
 }
 
 /// The error for a word that is no sub-style, nor one of those of the sub-style `before` it.
-fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) -> Diagnostic {
+fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) -> Diagnostics {
     let own = before.map_or(&[][..], |style| style.options());
     let text = match before {
         Some(style) => format!("`{}` is neither a word of `{}` nor a sub-style", word.text, style.name()),
         None => format!("unknown sub-style: `{}`", word.text),
     };
     let d = blame(word, Code::UNKNOWN_KEYWORD, text);
-    if let Some(n) = nearest(&word.text, own.iter().chain(known).copied()) {
-        return d.help(format!("did you mean `{n}`?"));
+    if let Some(n) = nearest(&word.text, own.iter().copied()) {
+        return d.help(format!("did you mean `{n}`?")).into();
+    }
+    if let Some(refusal) = lammps::refusal("pair", "pair style", word) {
+        return refusal;
+    }
+    if let Some(n) = nearest(&word.text, known.iter().copied()) {
+        return d.help(format!("did you mean `{n}`?")).into();
     }
     let d = match own {
         [] => d,
         _ => d.help(format!("may stand here: {}", own.join(" "))),
     };
-    d.help(format!("sub-styles: {}", known.join(" ")))
+    d.help(format!("sub-styles: {}", known.join(" "))).into()
 }
 
 #[derive(Clone)]
@@ -163,7 +175,14 @@ impl Pair for Declared {
             return Ok(());
         }
         let names: Vec<&'static str> = self.subs.iter().map(|s| s.facts().name).collect();
-        let name = args.choice(&format!("sub-style of this {}", self.name), &names)?;
+        let said = args.peek().map(|word| plain(&word.text));
+        let name = match names.iter().find(|name| said == Some(**name)) {
+            Some(name) => {
+                args.next();
+                *name
+            }
+            None => args.choice(&format!("sub-style of this {}", self.name), &names)?,
+        };
         let k = names.iter().position(|n| *n == name).unwrap_or(0);
         self.subs[k].coeff(pairs, args, cx)?;
         for p in pairs {

@@ -17,6 +17,7 @@ pub mod compute;
 pub mod critical;
 pub mod dump;
 pub mod fix;
+pub mod lammps;
 pub mod ledger;
 pub mod matter;
 pub mod molecules;
