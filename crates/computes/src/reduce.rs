@@ -277,9 +277,8 @@ impl Declared {
             }
         }
         let touched = mode == Mode::MinAbs || (mode == Mode::AveAbs && inputs.len() > 1);
-        if touched && cx.world.settings.lammps() {
-            let text = "compat lammps: `minabs` is 1e20, and `aveabs` of several inputs is a sum";
-            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        if touched {
+            cx.fault(cx.span, "`minabs` is 1e20, and `aveabs` of several inputs is a sum", false);
         }
         Ok(Self { id: cx.id.to_string(), group: cx.group, region, mode, inputs, local, replace })
     }

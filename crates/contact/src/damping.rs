@@ -59,8 +59,8 @@ impl Damping {
 
     /// The constant in front: η₀ itself, or α(e) for normal forces ∝ δⁿ, n the `exponent`. There −ln e = π β/√(1 − β²) with
     /// α = √(2 (n + 1)) β: the impact is that of a spring in δ^((n+1)/2), whatever the velocity.
-    /// LAMMPS 22Jul2025 leaves out the √2 of `tsuji` (it returns e = 0.78 where 0.70 is asked for), which `compat`
-    /// reproduces.
+    /// LAMMPS 22Jul2025 leaves out the √2 of `tsuji` (it returns e = 0.78 where 0.70 is asked for); LAMMPS of 2026 has it, for
+    /// every normal model alike, `hooke` too. `compat` reproduces both.
     pub fn constant(self, eta: f64, exponent: f64, compat: Compat) -> f64 {
         match self {
             Damping::None => 0.0,
@@ -69,7 +69,8 @@ impl Damping {
             | Damping::Viscoelastic
             | Damping::Mdr
             | Damping::MdrConstant => eta,
-            Damping::Tsuji if compat.lammps() => tsuji(eta),
+            Damping::Tsuji if compat == Compat::Lammps2025 => tsuji(eta),
+            Damping::Tsuji if compat == Compat::Lammps2026 => std::f64::consts::SQRT_2 * tsuji(eta),
             // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e.
             Damping::Tsuji if exponent == 1.0 => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
             Damping::Tsuji => std::f64::consts::SQRT_2 * (0.4 * (exponent + 1.0)).sqrt() * tsuji(eta),

@@ -95,6 +95,13 @@ impl Model {
         Self { limit_damping: c.limit_damping, arm: c.arm, ..Self::new(normal, damping, tangential) }
     }
 
+    /// Whether its spring is one of those that LAMMPS 22Jul2025 shortens wrongly when they slide.
+    pub fn slides_loosely(&self) -> bool {
+        let Tangential { kind, drag, .. } = self.tangential;
+        matches!(kind, Friction::LinearHistoryClassic | Friction::MindlinClassic)
+            && matches!(drag, Drag::Times(_))
+    }
+
     /// The law for a pair of types whose model was given.
     pub fn law(&self, compat: Compat) -> Granular {
         self.pair(self, false, compat)

@@ -153,13 +153,9 @@ impl Tangential {
             (Drag::Own(a), Drag::Own(b)) => geometric(a, b),
             (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
         };
-        let classic = match self.kind {
-            // Mended in 2026; nothing is known of the other one.
-            Friction::LinearHistoryClassic => compat == Compat::Lammps2025,
-            Friction::MindlinClassic => compat.lammps(),
-            _ => false,
-        };
-        let loose = classic && matches!(self.drag, Drag::Times(_));
+        // Both are mended in 2026.
+        let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
+        let loose = classic && compat == Compat::Lammps2025 && matches!(self.drag, Drag::Times(_));
         Spring {
             kind: self.kind,
             stiffness,
@@ -193,8 +189,8 @@ pub struct Spring {
     pub damping: f64,
     /// Coefficient of friction.
     pub mu: f64,
-    /// LAMMPS' `…_classic` springs of granular models and walls: the contact radius stiffens `linear_history_classic` too
-    /// (until 2026), and is forgotten where a spring that slides is shortened.
+    /// `…_classic` springs of granular models and walls in LAMMPS 22Jul2025: the contact radius stiffens
+    /// `linear_history_classic` too, and is forgotten where a spring that slides is shortened.
     pub loose: bool,
     /// Whether a spring that slides is rid of no more drag along the sliding than it may carry. Luding's rule leaves
     /// −k ξ = F + η v; in young contacts η v is beyond all friction, and a spring that k ∝ a stiffens more than η grows then

@@ -144,6 +144,10 @@ fn read(args: &mut Args, cx: &BuildCx, controls: Option<Controls>) -> Result<Dec
     fix.scales = scales(cx.world, lattice);
     fix.couple(cx)?;
     fix.check_volume(cx)?;
+    let keeps_volume = fix.motions.iter().any(|m| matches!(m, Some(Motion::Volume)));
+    if fix.remap == Remap::Velocities && (keeps_volume || fix.controls.is_some()) {
+        cx.fault(cx.span, "with `remap v` the rate of strain in the place of the rate of a length", true);
+    }
     Ok(fix)
 }
 

@@ -67,9 +67,8 @@ impl FixStyle for Indent {
                 )
                 .into());
         };
-        if let (Form::Cone { .. }, true) = (&form, cx.world.settings.lammps()) {
-            let text = "compat lammps: a cone pushes away from its middle, with negative energies";
-            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        if let Form::Cone { .. } = &form {
+            cx.fault(cx.span, "a cone pushes away from its middle, with negative energies", false);
         }
         let form = scaled(&form, scales(cx.world, lattice))?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, form, inside }))

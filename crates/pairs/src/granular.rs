@@ -112,7 +112,8 @@ const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each othe
     by the number N of simultaneous ones, of the two particles (the larger number) or of the two bodies; \
     action and reaction stay equal. `curvature impactor` takes R̄ = R of the grain where it meets a \
     peridynamic solid, whose surface counts as flat (Walayat et al., table 1). `arms point`: above.\n\n\
-    `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
+    `-compat lammps` has LAMMPS' faults: tsuji without its √2 (until 2026; and without its 2/√5 for hooke); springs of `mindlin_classic` and \
+    `linear_history_classic` that forget the contact radius when they slide (until 2026); the shear stiffness of mixed types from E* \
     in the place of both moduli; springs of `…_rescale` that shrink twice, in the setup and in the first step, where grains have \
     been moved apart between two runs; springs of `mindlin`, `…_classic` and `…_rescale` that slide in young contacts and are set \
     beyond rest by the drag, so that results hang on the step; friction up to mu |F_n| where a dashpot pulls; a sliding twist that takes the direction of the spin even where its \

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use perigrain_lang::{Param, RefKind, ValueRef, Word};
-use perigrain_world::{GroupId, Key, Offers, Region, World};
+use perigrain_world::{Compat, GroupId, Key, Offers, Region, World};
 use std::cell::RefCell;
 
 use super::Wants;
@@ -187,6 +187,24 @@ impl BuildCx<'_> {
     /// Leaves a warning or note.
     pub fn note(&self, d: Diagnostic) {
         self.notes.borrow_mut().push(d.at(self.span));
+    }
+
+    /// Names a fault of LAMMPS that this line has under `compat`; `mended`: the LAMMPS of 2026 has it no more.
+    pub fn fault(&self, span: Span, fault: &str, mended: bool) {
+        let compat = self.world.settings.compat;
+        if !compat.lammps() {
+            return;
+        }
+        let name = if mended { compat.name() } else { "lammps" };
+        self.note(match mended && compat != Compat::Lammps2025 {
+            false => Diagnostic::note(Code::COMPAT, span, format!("compat {name}: {fault}")),
+            true => Diagnostic::note(
+                Code::COMPAT,
+                span,
+                format!("LAMMPS 22Jul2025 has {fault}; {name} has not"),
+            )
+            .help("where the LAMMPS that is compared with is older than 2026, write `-compat lammps/2025`"),
+        });
     }
 
     /// Records that this line uses a name.

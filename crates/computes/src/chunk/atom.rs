@@ -3,7 +3,7 @@
 use super::assign::{Task, key, window};
 use super::words::{Spec, What};
 use crate::{Compute, ComputeStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
@@ -49,9 +49,8 @@ impl Style for ChunkAtom {
 impl ComputeStyle for ChunkAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         let spec = Spec::read(args, cx)?;
-        if cx.world.settings.lammps() && spec.drops_above() {
-            let text = "compat lammps: what is above the last layer belongs to no chunk";
-            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        if spec.drops_above() {
+            cx.fault(cx.span, "what is above the last layer belongs to no chunk", false);
         }
         Ok(Box::new(Declared(spec)))
     }

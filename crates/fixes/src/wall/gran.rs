@@ -41,8 +41,8 @@ impl Style for WallGran {
                 `contacts` offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, \
                 its radius, and with a model of heat the heat that flows into the particle as a ninth. `temperature` is that of the wall, a number or an \
                 equal-style variable, and belongs to a model of heat: h π a² (T_wall − T) flows into a grain (`heat area h`), or 2 k a (T_wall − T).\n\n\
-                LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history` \
-                (until 2026), `hertz/history` and the `…_classic` models on walls hang on the contact radius and lose it when they slide; \
+                LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history`, \
+                `hertz/history` and the `…_classic` models on walls hang on the contact radius and lose it when they slide (until 2026); \
                 a cylinder with `shear x` or `y` also flies along that axis; sticky grains hold on to hollow walls and regions \
                 no longer than they touch.\n\n\
                 Not in LAMMPS: `material E nu` gives the wall elastic constants of its own, for 1/E* and 1/G* of two \

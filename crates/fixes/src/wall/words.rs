@@ -3,7 +3,7 @@
 use super::Common;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_contact::driver::{Average, Curvature};
-use perigrain_contact::{Arm, Damping, Drag, Friction, Granular, Heat, Model};
+use perigrain_contact::{Arm, Damping, Drag, Granular, Heat, Model, normal};
 use perigrain_lang::{Args, Word};
 use perigrain_pairs::contact::{classic, words};
 use perigrain_styles::BuildCx;
@@ -60,17 +60,36 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
         "hooke/history" => classic(false, true, args)?,
         "hertz/history" => classic(true, true, args)?,
         _ => {
-            let text = format!("unknown force style of a wall: `{}`", word.text);
-            let d = Diagnostic::error(Code::UNKNOWN_STYLE, span, text);
-            return Err(match perigrain_base::diag::nearest(&word.text, STYLES) {
-                Some(n) => d.help(format!("did you mean `{n}`?")),
-                None => d.help(format!("known here: {}", STYLES.join(" "))),
-            }
-            .into());
+            return Err(unknown_force(word, ends).into());
         }
     };
     // As in LAMMPS, friction takes hold of a grain on a wall at its full radius, whatever the overlap.
     Ok(Material { model: Model { arm: Arm::Radius, ..model }, own: None, span })
+}
+
+/// The refusal of a word that is no force style of a wall: one that is a normal model lacks `granular` before it, and one of the
+/// words about the wall stands before its force.
+fn unknown_force(word: &Word, ends: &[&str]) -> Diagnostic {
+    let d = Diagnostic::error(
+        Code::UNKNOWN_STYLE,
+        word.span,
+        format!("unknown force style of a wall: `{}`", word.text),
+    );
+    if normal::STYLES.iter().any(|model| model.name == word.text) {
+        return d.help(format!(
+            "write `granular {} …`: normal models of walls stand behind `granular`",
+            word.text
+        ));
+    }
+    let about_the_wall = |text: &str| ends.contains(&text) || KEYWORDS.contains(&text) || text == "file";
+    if about_the_wall(&word.text) || word.text.contains('.') {
+        let example = "granular hertz/material E e nu tangential mindlin NULL x_gamma mu";
+        return d.help(format!("write the force first: `{example} {} …`", ends[0]));
+    }
+    match perigrain_base::diag::nearest(&word.text, STYLES) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d.help(format!("known here: {}", STYLES.join(" "))),
+    }
 }
 
 fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
@@ -147,17 +166,13 @@ fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
 
 /// The wall's common part before its keywords are read.
 pub fn common(cx: &BuildCx, material: Material) -> Common {
-    let classic = [Friction::LinearHistoryClassic, Friction::MindlinClassic];
-    for (is_so, text) in [
-        (material.model.damping == Damping::Tsuji, "compat lammps: damping tsuji without its factor √2"),
-        (
-            classic.contains(&material.model.tangential.kind),
-            "compat lammps: springs of walls with history hang on the contact radius, and lose it when they slide",
-        ),
-    ] {
-        if is_so && cx.world.settings.lammps() {
-            cx.note(Diagnostic::note(Code::COMPAT, material.span, text));
-        }
+    if material.model.damping == Damping::Tsuji {
+        cx.fault(material.span, "damping tsuji without its factor √2", true);
+    }
+    if material.model.slides_loosely() {
+        let fault =
+            "springs of walls with history that hang on the contact radius, and lose it when they slide";
+        cx.fault(material.span, fault, true);
     }
     Common {
         id: cx.id.to_string(),

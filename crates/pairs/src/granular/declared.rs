@@ -20,6 +20,17 @@ use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::{Compat, World};
 use std::collections::BTreeMap;
 
+/// What LAMMPS does wrong in which models, and whether the LAMMPS of 2026 has mended it.
+const FAULTS: [(fn(&Model) -> bool, &str, bool); 3] = [
+    (|m| m.damping == Damping::Tsuji, "damping tsuji without its factor √2", true),
+    (Model::slides_loosely, "springs of contacts that forget the contact radius when they slide", true),
+    (
+        |m| m.twisting != Twisting::None,
+        "a sliding twist in the direction of the spin, not of its torque",
+        false,
+    ),
+];
+
 /// A granular pair style with its coefficients.
 #[derive(Clone)]
 pub struct Declared {
@@ -224,21 +235,14 @@ impl Pair for Declared {
         if let Err(e) = self.tables(w.types, w.settings.compat) {
             e.0.into_iter().for_each(|d| cx.note(d));
         }
-        if !w.settings.lammps() {
-            return;
-        }
-        if let Some(c) = self.given.values().find(|c| c.model.damping == Damping::Tsuji) {
-            let text = "compat lammps: damping tsuji without its factor √2";
-            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
-        }
-        if let Some(c) = self.given.values().find(|c| c.model.twisting != Twisting::None) {
-            let text = "compat lammps: a sliding twist takes the direction of the spin, not of its torque";
-            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+        for (has, fault, mended) in FAULTS {
+            if let Some(c) = self.given.values().find(|c| has(&c.model)) {
+                cx.fault(c.span, fault, mended);
+            }
         }
         if let Some(c) = self.mixed_shear() {
-            let text =
-                "compat lammps: shear stiffness of mixed type pairs from E* in the place of both moduli";
-            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+            let fault = "the shear stiffness of mixed type pairs from E* in the place of both moduli";
+            cx.fault(c.span, fault, false);
         }
     }
 }

@@ -393,16 +393,14 @@ impl Pair for Solid {
     fn check(&self, cx: &BuildCx) {
         let w = cx.world;
         reunion::check(self, cx);
-        if w.families.is_some() || !w.settings.lammps() || w.settings.lammps_of_2026() {
+        if w.families.is_some() {
             return;
         }
-        let alphas = self.table.iter().any(|c| c.alpha != 0.0);
-        if w.types > 1 && alphas {
-            cx.note(Diagnostic::note(
-                Code::COMPAT,
-                cx.span,
-                "compat lammps: one critical stretch per particle also across mixed types",
-            ));
+        if w.types > 1 && self.table.iter().any(|c| c.alpha != 0.0) {
+            cx.fault(cx.span, "one critical stretch per particle also across mixed types", true);
+        }
+        if self.law.kind == LawKind::ElasticPlastic {
+            cx.fault(cx.span, "the dilatation in the norm of the yield criterion", true);
         }
     }
 
