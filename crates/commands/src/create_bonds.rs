@@ -27,7 +27,7 @@ impl Style for CreateBonds {
             text: "`many`: a bond between each particle of one group and each of the other whose distance lies between RMIN and \
                    RMAX, both included, except where `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) \
                    take the pair out of neighbour lists: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
-                   the default weights particles two or three bonds apart are left out, too. LAMMPS also needs a pair style that \
+                   the default weights particles two or three bonds apart are left out, too: a warning says how many and what would bond them. LAMMPS also needs a pair style that \
                    reaches as far; perigrain does not. `single/bond`: one bond between two ids.\n\n\
                    `special no` leaves open for now which pairs count as bonded: say `yes` with the last of many such lines. \
                    `single/angle` and the like are refused.\n\n\
@@ -145,8 +145,9 @@ fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<(
             // Both ends of the range count: the list's own test is open above.
             let reach = Reach::Fixed(range[1] * (1.0 + 1e-12));
             let near = |_: &Pair, square: f64| square >= range[0] * range[0] && square <= range[1] * range[1];
-            let new = within(cx.world, *groups, reach, near);
-            add(cx, new.into_iter().map(|ends| Bond::new(kind, ends)));
+            let found = within(cx.world, *groups, reach, near);
+            found.note_left_out(cx);
+            add(cx, found.ends.into_iter().map(|ends| Bond::new(kind, ends)));
         }
         Choice::Gap(gap) => {
             common::settle(cx.world);
@@ -169,14 +170,45 @@ fn add(cx: &mut ActCx, new: impl Iterator<Item = Bond>) {
     cx.say(format!("Added {} bonds, new total = {now}", now - before));
 }
 
-/// The pairs of ids to be bonded, ascending: of those within reach that may be in a neighbour list, the ones that `near`
-/// finds by the square of their distance.
-fn within(
-    w: &World,
-    groups: [GroupId; 2],
-    reach: Reach,
-    mut near: impl FnMut(&Pair, f64) -> bool,
-) -> Vec<[u32; 2]> {
+/// Pairs of ids in range, ascending.
+struct Found {
+    /// Those to be bonded.
+    ends: Vec<[u32; 2]>,
+    /// Those two or three bonds apart whose weights keep them out of neighbour lists.
+    apart: Vec<[u32; 2]>,
+    /// Those that `neigh_modify exclude` keeps out.
+    excluded: Vec<[u32; 2]>,
+}
+
+impl Found {
+    /// Warns of pairs in range that get no bond, with what would give them one.
+    fn note_left_out(&self, cx: &ActCx) {
+        let ways = [
+            (
+                &self.apart,
+                "two or three bonds apart, which `special_bonds` gives the weight 0",
+                "put `special_bonds lj/coul 0 1 1` before this line to bond them too",
+            ),
+            (
+                &self.excluded,
+                "excluded by `neigh_modify exclude`",
+                "put `neigh_modify exclude` behind this line to bond them too",
+            ),
+        ];
+        for (pairs, why, help) in ways.into_iter().filter(|way| !way.0.is_empty()) {
+            let n = pairs.len();
+            let subject = if n == 1 {
+                "pair in range was left out: it is"
+            } else {
+                "pairs in range were left out: they are"
+            };
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, format!("{n} {subject} {why}")).help(help));
+        }
+    }
+}
+
+/// Finds the pairs within reach that `near` takes by the square of their distance, and that have no bond yet.
+fn within(w: &World, groups: [GroupId; 2], reach: Reach, mut near: impl FnMut(&Pair, f64) -> bool) -> Found {
     let p = &w.particles;
     let mut wanted = Wanted::new(w.types);
     for a in 1..=w.types as u16 {
@@ -188,30 +220,40 @@ fn within(
     let zero = |apart: usize| weights.lj[apart - 1] == 0.0 && weights.coul[apart - 1] == 0.0;
     // Looking no farther along bonds than weights are zero saves most of the time in a large network.
     let far = (1..=3).rev().find(|apart| zero(*apart)).unwrap_or(0);
-    let barred: Vec<[u32; 2]> = w
-        .bonds
-        .apart(far as u8)
-        .into_iter()
-        .filter(|(_, n)| zero(usize::from(*n)))
-        .map(|(pair, _)| pair)
-        .collect();
-    let allowed = Allowed::excluded(w);
-    let tags = |i: usize, j: usize| [p.tag[i].min(p.tag[j]), p.tag[i].max(p.tag[j])];
-    let keep = |i: usize, j: usize| {
-        ((is(i, groups[0]) && is(j, groups[1])) || (is(j, groups[0]) && is(i, groups[1])))
-            && allowed.pair(i, j)
-            && barred.binary_search(&tags(i, j)).is_err()
+    let barred = w.bonds.apart(far as u8);
+    let apart = |ends: &[u32; 2]| {
+        let k = barred.binary_search_by_key(&ends, |(pair, _)| pair).ok()?;
+        Some(barred[k].1).filter(|n| zero(usize::from(*n)))
     };
+    let tags = |q: &Pair| {
+        let [i, j] = [q.i, q.j].map(|k| p.tag[k as usize]);
+        [i.min(j), i.max(j)]
+    };
+    let keep =
+        |i: usize, j: usize| (is(i, groups[0]) && is(j, groups[1])) || (is(j, groups[0]) && is(i, groups[1]));
     let square = |q: &Pair| {
         let d = view.difference(q);
         d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
     };
-    let found = pairs(&view, &wanted, 0.0, &keep);
-    let found = found.iter().filter(|q| q.i != q.j && near(q, square(q)));
-    let mut list: Vec<[u32; 2]> = found.map(|q| tags(q.i as usize, q.j as usize)).collect();
-    // Of several images of one pair one bond is enough.
-    list.dedup();
-    list
+    let allowed = Allowed::excluded(w);
+    let mut found = Found { ends: vec![], apart: vec![], excluded: vec![] };
+    for q in pairs(&view, &wanted, 0.0, &keep).iter().filter(|q| q.i != q.j) {
+        let ends = tags(q);
+        let apart = apart(&ends);
+        if apart == Some(1) || !near(q, square(q)) {
+            continue;
+        }
+        let list = match apart {
+            Some(_) => &mut found.apart,
+            None if allowed.pair(q.i as usize, q.j as usize) => &mut found.ends,
+            None => &mut found.excluded,
+        };
+        // Of several images of one pair one is enough.
+        if list.last() != Some(&ends) {
+            list.push(ends);
+        }
+    }
+    found
 }
 
 #[cfg(test)]

@@ -89,7 +89,7 @@ impl Gap {
         let mut deeper = 0;
         // Both ends of the range count, whatever rounding does to the list's own test.
         let reach = Reach::Beyond(most + 1e-9 * (largest + most.abs()));
-        let ends = within(w, self.groups, reach, |q: &Pair, square: f64| {
+        let found = within(w, self.groups, reach, |q: &Pair, square: f64| {
             let gap = square.sqrt() - (radius[q.i as usize] + radius[q.j as usize]);
             deeper += usize::from(gap < least && gap < 0.0);
             gap >= least && gap <= most
@@ -100,11 +100,12 @@ impl Gap {
             let help = format!("a smaller GMIN, as -{}, takes them in", general(0.1 * largest, 1));
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, self.spans[0], text).help(help));
         }
+        found.note_left_out(cx);
         let kind = |ends: [u32; 2]| match &self.mix {
             Some(mix) if mix.takes(ends) => mix.kind,
             _ => kind,
         };
-        Ok(ends.into_iter().map(|ends| Bond::new(kind(ends), ends)).collect())
+        Ok(found.ends.into_iter().map(|ends| Bond::new(kind(ends), ends)).collect())
     }
 }
 

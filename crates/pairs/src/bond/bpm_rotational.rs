@@ -36,7 +36,7 @@ impl Style for BpmRotational {
                    angle θ: kr (r − r0) along the bond, ks r γ across it, the torques kt ψ and kb θ. With `normalize yes` kr and ks are divided by r0. \
                    B = F/frc + |Fs|/fsc + |Tt|/ttc + |Tb|/tbc counts how near a bond is to its end (pressure counts as negative, B not below 0): at \
                    B ≥ 1 it exerts no force any more and is gone, and pair forces act between its ends from the next step on. Nothing breaks in the \
-                   setup of a run. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is said; `break no` needs that. Dashpots gn along \
+                   setup of a run. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is said; `break no` needs that, and frc … tbc are any numbers then. Dashpots gn along \
                    the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
                    `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
                    has none. Forces come from no energy, so that without \
@@ -123,15 +123,10 @@ impl Driven<0> for Declared {
     }
 }
 
-/// Four numbers of a line, as stretch, shear, twist, bending.
-fn four(args: &mut Args, names: [&str; 4], positive: bool) -> Result<Stiffness> {
-    let mut next = |what: &str| if positive { args.positive(what) } else { args.non_negative(what) };
-    Ok(Stiffness {
-        normal: next(names[0])?,
-        shear: next(names[1])?,
-        twist: next(names[2])?,
-        bend: next(names[3])?,
-    })
+/// Four numbers that are taken in turns, as stretch, shear, twist, bending.
+fn four(names: [&str; 4], mut next: impl FnMut(&str) -> Result<f64>) -> Result<Stiffness> {
+    let [normal, shear, twist, bend] = names;
+    Ok(Stiffness { normal: next(normal)?, shear: next(shear)?, twist: next(twist)?, bend: next(bend)? })
 }
 
 impl BondForce for Declared {
@@ -141,12 +136,12 @@ impl BondForce for Declared {
 
     fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
         let names = ["the stiffness kr of stretch", "ks of shear", "kt of twist", "kb of bending"];
-        let stiffness = four(args, names, false)?;
+        let stiffness = four(names, |what| args.non_negative(what))?;
         let names =
             ["the force frc at which it breaks", "fsc in shear", "the torque ttc of twist", "tbc of bending"];
-        let strength = four(args, names, true)?;
+        let strength = four(names, |what| self.options.limit(args, what))?;
         let names = ["the damping gn of stretch", "gs of shear", "gr of roll", "gt of twist"];
-        let said = four(args, names, false)?;
+        let said = four(names, |what| args.non_negative(what))?;
         // Roll comes before twist here.
         let damping = Stiffness { twist: said.bend, bend: said.twist, ..said };
         let coeffs = Coeffs { stiffness, strength, damping };

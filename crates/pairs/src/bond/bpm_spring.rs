@@ -78,7 +78,8 @@ impl BondForce for Declared {
 
     fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
         let k = args.non_negative("the stiffness k")?;
-        let spring = [k, self.options.limit(args)?, args.non_negative("the damping gamma")?];
+        let spring =
+            [k, self.options.limit(args, "the breaking strain")?, args.non_negative("the damping gamma")?];
         let volume = if self.volume { args.number("the stiffness av of the volume")? } else { 0.0 };
         self.springs.extend(kinds.iter().map(|&k| (k, (spring, volume))));
         Ok(())

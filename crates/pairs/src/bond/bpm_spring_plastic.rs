@@ -65,7 +65,8 @@ impl BondForce for Declared {
 
     fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
         let k = args.non_negative("the stiffness k")?;
-        let spring = [k, self.options.limit(args)?, args.non_negative("the damping gamma")?];
+        let spring =
+            [k, self.options.limit(args, "the breaking strain")?, args.non_negative("the damping gamma")?];
         let span = args.here();
         let limit = args.non_negative("the strain ep at which it yields")?;
         if limit > 1.0 {

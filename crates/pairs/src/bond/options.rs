@@ -57,13 +57,12 @@ impl Options {
         Ok(options)
     }
 
-    /// A breaking strain: anything goes where nothing breaks.
+    /// What a bond bears before it breaks, a strain, force or torque: with `break no` any number, -1 too, as in LAMMPS.
     ///
     /// # Errors
-    /// What is no such strain.
-    pub fn limit(&self, args: &mut Args) -> Result<f64> {
-        let what = "the breaking strain";
-        if self.breaks { args.positive(what) } else { args.non_negative(what) }
+    /// What is no such number.
+    pub fn limit(&self, args: &mut Args, what: &str) -> Result<f64> {
+        if self.breaks { args.positive(what) } else { args.number(what) }
     }
 
     /// The fix that `store/local` asks for.
