@@ -39,9 +39,10 @@ impl Style for CreateAtoms {
                      [basis M TYPE] [ratio P SEED] [subset N SEED] [var NAME] [set x|y|z NAME] … [group ID] \
                      [units lattice|box] [remap yes|no] [overlap D] [maxtry N] [meshmode bisect R|qrand D] [radscale S] \
                      [mol ID SEED] [rotate ANGLE X Y Z] [volumes cut]\n\
-                     create_atoms TYPE pack REGION SHARE SEED [sizes mono D|uniform D1 D2|lognormal D S] [overlap O] \
+                     create_atoms TYPE pack REGION SHARE|number N SEED \
+                     [sizes mono D|uniform D1 D2|lognormal D S|mix number|mass D1 P1 D2 P2 … [types T1 T2 …]] [overlap O] \
                      [rounds N] [group ID]\n\
-                     create_atoms TYPE opal REGION PORE S SHARE SEED [sizes mono D] [axis 111|100] [overlap O] [rounds N] \
+                     create_atoms TYPE opal REGION PORE S SHARE|number N SEED [sizes mono D] [axis 111|100] [overlap O] [rounds N] \
                      [group ID]\n\
                      create_atoms TYPE aggregate REGION SHARE SEED POROSITY LAMBDA [sizes mono D] [overlap O] [rounds N] \
                      [group ID]",
@@ -85,8 +86,11 @@ impl Style for CreateAtoms {
                    most `rounds` N (1000). Shares up to 0.6 come out easily, 0.63 nearly. `overlap 0` makes all diameters \
                    smaller in the end, by what is needed for no overlap at all. The log tells the number, the share, the \
                    overlaps and the rounds; what was not reached is a warning. Same seed, same bits for any number of threads. \
-                   Diameters are all alike (`mono`, 1 by default), uniform between two, or `lognormal` with median D and \
-                   standard deviation S of the logarithm (up to 0.5), cut at 2.5 deviations. Spheres keep inside of the region \
+                   Diameters are all alike (`mono`, 1 by default), uniform between two, `lognormal` with median D and \
+                   standard deviation S of the logarithm (up to 0.5), cut at 2.5 deviations, or a `mix` of two and more with their parts \
+                   of the number or of the mass, however these add up; behind `types` each of them has a type of its own. In the place of SHARE \
+                   `number N` asks for so many spheres, of all sizes together. Boxes may lean: a region that is the whole box goes on through \
+                   faces that repeat, any other has walls all round there. Spheres keep inside of the region \
                    by their radius; along periodic edges that a region spans they lie across the face. The region may be \
                    any shape at rest, inside or outside, or an intersection. Density is 1, as for all spheres: `set` changes it. \
                    Particles that are there already are not seen.\n\n\
@@ -197,7 +201,7 @@ fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Resul
             ("basis", Place::Lattice { .. }) => basis_type(a, &mut c.basis, cx.world.types)?,
             ("ratio" | "subset", Place::Lattice { subset, .. }) => *subset = Some(some_sites(word, a)?),
             ("sizes" | "rounds" | "axis" | "overlap", Place::Pack(pack)) => {
-                if !pack.keyword(word, a)? {
+                if !pack.keyword(word, a, cx.world.types)? {
                     return Err(does_not_go(word, style));
                 }
             }

@@ -1,9 +1,11 @@
 //! `create_atoms … pack`, `opal` and `aggregate`: their words, and what they say of the packing.
 
+mod words;
+
 use super::packing::aggregate::{LINK, thin};
 use super::packing::pores::{Axis, Pores};
 use super::packing::room::Room;
-use super::packing::sizes::Sizes;
+use super::packing::sizes::{Amount, Sizes};
 use super::packing::{Goal, Packing, THROUGH, pack};
 use super::places::New;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -14,6 +16,7 @@ use perigrain_styles::common::{self, orthogonal, seed};
 use perigrain_styles::{ActCx, BuildCx};
 use perigrain_world::{Domain, Region};
 use std::f64::consts::PI;
+use words::{in_range, mixture, own_types, sizes};
 
 /// Rounds that spheres get if nothing else is said.
 const ROUNDS: usize = 1000;
@@ -29,12 +32,23 @@ pub struct Pack {
     form: Form,
     region: Region,
     name: Word,
-    share: f64,
+    fill: Fill,
     share_span: Span,
     seed: u32,
     sizes: Sizes,
+    /// The types of a mixture's sizes, where they have their own.
+    types: Vec<u16>,
     sizes_span: Span,
     goal: Goal,
+}
+
+/// How full the region is to be.
+#[derive(Clone, Copy)]
+enum Fill {
+    /// The part of the volume that spheres have.
+    Share(f64),
+    /// So many spheres.
+    Number(usize),
 }
 
 /// What is made of the packing.
@@ -59,6 +73,9 @@ pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Pack> {
     let name = a.expect("a region")?.clone();
     let region = cx.region(&name)?.clone();
     refuse_region(&name, &region, common::domain(cx)?)?;
+    if style.text != "pack" && common::domain(cx)?.tilted() {
+        return Err(orthogonal(&format!("create_atoms {}", style.text)).at(name.span));
+    }
     let mut form = Form::Plain;
     if style.text == "opal" {
         let span = a.here();
@@ -74,9 +91,15 @@ pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Pack> {
     }
     let share_span = a.here();
     let remedy = "random packings of equal spheres reach 0.64; write for example 0.6";
-    let share = in_range(a, "the share of the volume", 0.0, DENSEST, remedy)?;
+    let fill = match style.text != "aggregate" && a.eat("number") {
+        true => {
+            let number = a.integer_from(1, "the number of spheres")?;
+            Fill::Number(usize::try_from(number).unwrap_or(usize::MAX))
+        }
+        false => Fill::Share(in_range(a, "the share of the volume", 0.0, DENSEST, remedy)?),
+    };
     let seed = seed(a)?;
-    if style.text == "aggregate" {
+    if let ("aggregate", Fill::Share(share)) = (style.text.as_str(), fill) {
         let spans = [a.here(), a.peek_at(1).map_or(a.here(), |w| w.span)];
         let remedy = "it is the part of the region's volume without spheres";
         let unknown = a.peek().is_some_and(|w| w.unknown);
@@ -92,7 +115,8 @@ pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Pack> {
     }
     let goal = Goal { overlap: None, rounds: ROUNDS };
     let sizes = Sizes::Mono(1.0);
-    Ok(Pack { form, region, name, share, share_span, seed, sizes, sizes_span: style.span, goal })
+    let types = vec![];
+    Ok(Pack { form, region, name, fill, share_span, seed, sizes, types, sizes_span: style.span, goal })
 }
 
 /// Refuses scenes without spheres in space.
@@ -114,38 +138,26 @@ fn spheres(style: &Word, cx: &BuildCx) -> Result<()> {
 
 /// Refuses regions that no distance is known to.
 fn refuse_region(name: &Word, region: &Region, domain: &Domain) -> Result<()> {
-    if domain.tilted() {
-        return Err(orthogonal("packing").at(name.span));
-    }
     let Err(what) = Room::new(domain, region) else { return Ok(()) };
     let text = format!("spheres cannot be packed in region `{}`, which {what}", name.text);
     let d = Diagnostic::error(Code::NOT_SUPPORTED, name.span, text);
     Err(d.help("a single shape at rest with closed faces, `side in` or `side out`, or an intersection of such ones, will do").into())
 }
 
-/// Takes a number above `low` and not above `high`.
-fn in_range(a: &mut Args, what: &str, low: f64, high: f64, remedy: &str) -> Result<f64> {
-    let (span, unknown) = (a.here(), a.peek().is_some_and(|w| w.unknown));
-    let value = a.number(what)?;
-    if unknown {
-        return Ok(high);
-    }
-    if value > low && value <= high {
-        return Ok(value);
-    }
-    let text = format!("{what} must be greater than {low} and at most {high}, not {value}");
-    Err(Diagnostic::error(Code::BAD_VALUE, span, text).help(remedy).into())
-}
-
 impl Pack {
-    /// Takes what stands behind a keyword; `false` if the keyword does not go with this form.
-    pub fn keyword(&mut self, word: &Word, a: &mut Args) -> Result<bool> {
+    /// Takes what stands behind a keyword in a scene of so many types; `false` if the keyword does not go with this form.
+    pub fn keyword(&mut self, word: &Word, a: &mut Args, types: usize) -> Result<bool> {
         match (word.text.as_str(), &mut self.form) {
             ("sizes", form) => {
                 let plain = matches!(form, Form::Plain);
                 let last = a.peek_at(if a.peek_text() == "mono" { 1 } else { 2 });
                 self.sizes_span = word.span.to(last.map_or(a.here(), |w| w.span));
-                self.sizes = sizes(a, plain)?;
+                if plain && a.eat("mix") {
+                    self.sizes = mixture(a)?;
+                    self.types = own_types(a, &self.sizes, types)?;
+                } else {
+                    (self.sizes, self.types) = (sizes(a, plain)?, vec![]);
+                }
             }
             ("overlap", _) => {
                 let remedy = "it is a part of the distance of touching spheres, 0 for none";
@@ -175,7 +187,28 @@ impl Pack {
     /// About how many spheres there will be.
     pub fn expected(&self, domain: &Domain) -> f64 {
         let volume = Room::new(domain, &self.region).map_or(0.0, |room| self.with_pores(room).volume());
-        self.share * volume / self.sizes.mean_volume()
+        self.share(volume) * volume / self.sizes.mean_volume()
+    }
+
+    /// The part of this volume that spheres are to have.
+    fn share(&self, volume: f64) -> f64 {
+        match self.fill {
+            Fill::Share(share) => share,
+            Fill::Number(n) => n as f64 * self.sizes.mean_volume() / volume,
+        }
+    }
+
+    /// Refuses more spheres than a volume has room for.
+    fn fits(&self, volume: f64) -> Result<()> {
+        let share = self.share(volume);
+        if share <= DENSEST {
+            return Ok(());
+        }
+        let text =
+            format!("these spheres would be a share {} of region `{}`", general(share, 4), self.name.text);
+        let d = Diagnostic::error(Code::BAD_VALUE, self.share_span, text);
+        let most = (0.6 * volume / self.sizes.mean_volume()).floor();
+        Err(d.help(format!("about {most} fit, a share of 0.6: write fewer, or smaller diameters")).into())
     }
 
     fn with_pores(&self, room: Room) -> Room {
@@ -199,17 +232,25 @@ impl Pack {
             let text = format!("region `{}` leaves no place in the box", self.name.text);
             return fail(Code::BAD_VALUE, self.name.span, text);
         }
-        let number = self.share * volume / self.sizes.mean_volume();
+        self.fits(volume)?;
+        let number = self.share(volume) * volume / self.sizes.mean_volume();
         if number > f64::from(u32::MAX) {
             let text = format!("{number:.3e} spheres are more than there are ids");
             return fail(Code::TOO_LARGE, self.sizes_span, text);
         }
         let mut stream = ParkMiller::new(self.seed);
         stream.skip(30);
-        let radii = self.sizes.radii(self.share * volume, &mut stream);
+        let amount = match self.fill {
+            Fill::Share(share) => Amount::Volume(share * volume),
+            Fill::Number(n) => Amount::Number(n),
+        };
+        let radii = self.sizes.radii(amount, &mut stream);
         if radii.is_empty() {
-            let text =
-                format!("not even one sphere makes a share {} of region `{}`", self.share, self.name.text);
+            let text = format!(
+                "not even one sphere makes a share {} of region `{}`",
+                self.share(volume),
+                self.name.text
+            );
             let d = Diagnostic::error(Code::BAD_VALUE, self.sizes_span, text);
             return Err(d
                 .help(format!("its volume is {}: write a smaller diameter", general(volume, 6)))
@@ -223,7 +264,12 @@ impl Pack {
         };
         self.tell(cx, &packing, volume)?;
         let kept = self.kept(cx, &room, &packing, volume, &mut stream)?;
-        let new = |k: usize| New::at(packing.x[k], kind, Some(packing.radius[k]));
+        let shrunk = packing.came.shrunk;
+        let own = |radius: f64| self.types.get(self.sizes.kind_of(2.0 * radius / shrunk)).copied();
+        let new = |k: usize| {
+            let radius = packing.radius[k];
+            New::at(packing.x[k], own(radius).unwrap_or(kind), Some(radius))
+        };
         Ok(kept.into_iter().map(new).collect())
     }
 
@@ -239,8 +285,9 @@ impl Pack {
             let d = Diagnostic::error(Code::BAD_VALUE, spans[1], text);
             return Err(d.help("write about the size that holes are to have, twice").into());
         }
-        for d in (0..3).filter(|&d| room.period[d] > 0.0) {
-            let (period, axis) = (room.period[d], ["x", "y", "z"][d]);
+        let repeats = room.repeats();
+        for d in (0..3).filter(|&d| repeats[d] > 0.0) {
+            let (period, axis) = (repeats[d], ["x", "y", "z"][d]);
             if period < 2.0 * self.sizes.largest() {
                 let text = format!(
                     "along {axis} the box repeats after {period}, less than two of the largest diameters, {}",
@@ -298,7 +345,7 @@ impl Pack {
         if came.shrunk < SMALLEST {
             let text = format!(
                 "spheres of share {} overlap so far that diameters would have to be {} of what they should be",
-                self.share,
+                general(self.share(volume), 4),
                 general(came.shrunk, 3)
             );
             let d = Diagnostic::error(Code::BAD_VALUE, self.share_span, text);
@@ -313,6 +360,7 @@ impl Pack {
             general(volume, 6)
         ));
         let (average, most) = (percent(came.mean), percent(came.largest));
+        self.tell_of_sizes(cx, p);
         cx.say(format!("  overlap of spheres that touch {average} on average, {most} at most"));
         let less = percent(1.0 - came.shrunk);
         if came.shrunk < 1.0 {
@@ -322,7 +370,7 @@ impl Pack {
             cx.say(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));
         }
         if !came.reached {
-            let (rounds, share) = (self.goal.rounds, self.share);
+            let (rounds, share) = (self.goal.rounds, general(self.share(volume), 4));
             let (text, help) = match self.goal.overlap {
                 Some(0.0) => (
                     format!(
@@ -342,6 +390,18 @@ impl Pack {
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, self.share_span, text).help(help));
         }
         Ok(())
+    }
+
+    /// Says how many spheres of each size a mixture has, and their parts of the mass.
+    fn tell_of_sizes(&self, cx: &mut ActCx, p: &Packing) {
+        let Sizes::Mix(parts) = &self.sizes else { return };
+        let all = solid(&p.radius);
+        for (k, (diameter, _)) in parts.iter().enumerate() {
+            let of_size = |r: &&f64| self.sizes.kind_of(2.0 * **r / p.came.shrunk) == k;
+            let radii: Vec<f64> = p.radius.iter().filter(of_size).copied().collect();
+            let part = general(100.0 * solid(&radii) / all, 3);
+            cx.say(format!("  {} of diameter {}, {part} % of the mass", radii.len(), general(*diameter, 6)));
+        }
     }
 
     /// The spheres that stay.
@@ -380,29 +440,6 @@ impl Pack {
 /// The volume of spheres.
 fn solid(radius: &[f64]) -> f64 {
     radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum()
-}
-
-fn sizes(a: &mut Args, all: bool) -> Result<Sizes> {
-    let known: &[&'static str] = if all { &["mono", "uniform", "lognormal"] } else { &["mono"] };
-    match a.choice("distribution of sizes", known)? {
-        "mono" => a.positive("the diameter").map(Sizes::Mono),
-        "uniform" => {
-            let low = a.positive("the smallest diameter")?;
-            let span = a.here();
-            let high = a.positive("the largest diameter")?;
-            if high < low {
-                let text = format!("the largest diameter {high} is below the smallest, {low}");
-                return fail(Code::BAD_VALUE, span, text);
-            }
-            Ok(Sizes::Uniform(low, high))
-        }
-        _ => {
-            let median = a.positive("the median diameter")?;
-            let remedy =
-                "it is the standard deviation of the logarithm: about the relative scatter of diameters";
-            Ok(Sizes::Lognormal(median, in_range(a, "the width of the distribution", 0.0, 0.5, remedy)?))
-        }
-    }
 }
 
 #[cfg(test)]

@@ -50,6 +50,63 @@ fn opals_and_aggregates_are_told_of() {
 }
 
 #[test]
+fn mixtures_and_numbers_come_out() {
+    let mut w = box_of(8.0);
+    let line = "create_atoms 1 pack b number 600 4711 sizes mix number 0.6 2 0.9 1 types 2 1 overlap 0";
+    let said = act(&mut w, line, &[]).unwrap();
+    assert!(said[0].starts_with("Packed 600 spheres in "), "{said:?}");
+    // Of diameters 0.6 and 0.9 two to one: 0.432 of 1.161 parts of the volume.
+    assert_eq!(
+        said[1..3],
+        ["  400 of diameter 0.6, 37.2 % of the mass", "  200 of diameter 0.9, 62.8 % of the mass"]
+    );
+    let of = |kind: u16| w.particles.kind.iter().filter(|k| **k == kind).count();
+    assert_eq!([of(1), of(2)], [200, 400]);
+    let small = w.particles.radius.iter().zip(&w.particles.kind).all(|(r, k)| (*r < 0.31) == (*k == 2));
+    assert!(small, "a type each");
+    let mut w = box_of(8.0);
+    let said = act(&mut w, "create_atoms 1 pack b 0.5 3 sizes mix mass 0.6 1 0.9 1 1.2 2", &[]).unwrap();
+    // 64, 64 and 128 units of volume in whole spheres.
+    for (line, part) in said[1..4].iter().zip([25.0, 25.0, 50.0]) {
+        let told: f64 = line.split(", ").nth(1).and_then(|s| s.split(' ').next()).unwrap().parse().unwrap();
+        assert!((told - part).abs() < 0.2, "{said:?}");
+    }
+    let w = box_of(8.0);
+    let (word, text) = refused(&w, "create_atoms 1 pack b number 2000 1 sizes mono 1");
+    assert!(word == "number" && text.contains("a share 2.045"), "{word} {text}");
+    for (line, word) in [
+        ("create_atoms 1 pack b 0.5 1 sizes mix mass 1 1", ""),
+        ("create_atoms 1 pack b 0.5 1 sizes mix volume 1 1 2 1", "volume"),
+        ("create_atoms 1 pack b 0.5 1 sizes mix mass 1 1 2 1 types 1 3", "3"),
+        ("create_atoms 1 pack b number 0 1", "0"),
+        ("create_atoms 1 opal b 6 1 0.4 11 sizes mix mass 1 1 2 1", "mix"),
+    ] {
+        let found = refused(&w, line).0;
+        assert!(word.is_empty() || found == word, "{line}: {found}");
+    }
+}
+
+#[test]
+fn leaning_boxes_are_packed() {
+    let mut w =
+        scene("units si\natom_style sphere\nregion b prism 0 8 0 8 0 8 2 1 -1 units box\ncreate_box 1 b");
+    let said = act(&mut w, "create_atoms 1 pack b 0.55 4711 sizes mono 0.8", &[]).unwrap();
+    assert!(
+        said[0].starts_with("Packed 1050 spheres in ") && said[0].contains("a volume of 512"),
+        "{said:?}"
+    );
+    let domain = w.domain().unwrap();
+    assert!(
+        w.particles.x.iter().all(|x| domain.fractions(x).iter().all(|f| (-1e-9..1.0 + 1e-9).contains(f)))
+    );
+    let mut w =
+        scene("units si\natom_style sphere\nregion b prism 0 8 0 8 0 8 2 1 -1 units box\ncreate_box 1 b");
+    more(&mut w, "region c sphere 4 4 4 3 units box");
+    act(&mut w, "create_atoms 1 pack c 0.5 4711 sizes mono 0.8", &[]).unwrap();
+    assert!(refused(&w, "create_atoms 1 opal b 6 1 0.4 11").1.contains("opal"));
+}
+
+#[test]
 fn zero_overlap_shrinks_diameters() {
     let mut w = box_of(6.0);
     let said = act(&mut w, "create_atoms 1 pack b 0.6 5 overlap 0 sizes uniform 0.7 1.1", &[]).unwrap();

@@ -1,7 +1,7 @@
 //! Who is near whom: for each sphere the others within touch and a skin, good until someone has moved half the skin.
 
 use super::room::Room;
-use perigrain_base::math::vec3::Vec3;
+use perigrain_base::math::vec3::{Vec3, add};
 use perigrain_base::par;
 use perigrain_neigh::grid::Grid;
 
@@ -26,10 +26,19 @@ impl Nearby {
         let mean = radius.iter().sum::<f64>() / radius.len().max(1) as f64;
         let mut grid = Grid::default();
         grid.fill(x, &everyone, 0.62 * (mean + largest + gap));
+        let images = room.images();
+        let shortest = room.repeats().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
         let rows = |range: std::ops::Range<usize>| {
             let mut part = Part { first: range.start, ends: vec![], list: vec![] };
             for i in range {
-                around(room, x, radius, (i, radius[i] + largest + gap, gap), &grid, &mut part.list);
+                around(
+                    (&images, shortest),
+                    x,
+                    radius,
+                    (i, radius[i] + largest + gap, gap),
+                    &grid,
+                    &mut part.list,
+                );
                 part.ends.push(part.list.len() as u32);
             }
             vec![part]
@@ -52,7 +61,7 @@ impl Nearby {
 
 /// Adds the neighbours of one sphere, images of itself left out: rooms are at least two spheres long where they repeat.
 fn around(
-    room: &Room,
+    (images, shortest): (&[Vec3], f64),
     x: &[Vec3],
     radius: &[f64],
     (i, far, gap): (usize, f64, f64),
@@ -60,27 +69,21 @@ fn around(
     list: &mut Vec<u32>,
 ) {
     let own = list.len();
-    let images = room.period.map(|l| if l > 0.0 { -1..=1 } else { 0..=0 });
-    for a in images[0].clone() {
-        for b in images[1].clone() {
-            for c in images[2].clone() {
-                let shift = [f64::from(a), f64::from(b), f64::from(c)];
-                let at: Vec3 = std::array::from_fn(|d| x[i][d] + shift[d] * room.period[d]);
-                grid.near(&at.map(|a| a - far), &at.map(|a| a + far), |run| {
-                    for &j in run {
-                        let y = &x[j as usize];
-                        let reach = radius[i] + radius[j as usize] + gap;
-                        let square = (at[0] - y[0]).powi(2) + (at[1] - y[1]).powi(2) + (at[2] - y[2]).powi(2);
-                        if square < reach * reach && j as usize != i {
-                            list.push(j);
-                        }
-                    }
-                });
+    for image in images {
+        let at = add(x[i], *image);
+        grid.near(&at.map(|a| a - far), &at.map(|a| a + far), |run| {
+            for &j in run {
+                let y = &x[j as usize];
+                let reach = radius[i] + radius[j as usize] + gap;
+                let square = (at[0] - y[0]).powi(2) + (at[1] - y[1]).powi(2) + (at[2] - y[2]).powi(2);
+                if square < reach * reach && j as usize != i {
+                    list.push(j);
+                }
             }
-        }
+        });
     }
     // In a short period two images of one sphere may both be near; the nearest alone is meant later.
-    if room.period.iter().any(|l| *l > 0.0 && *l < 2.0 * far) {
+    if shortest < 2.0 * far {
         let mut kept = own;
         for k in own..list.len() {
             if !list[own..kept].contains(&list[k]) {

@@ -1,7 +1,8 @@
 //! The space that spheres are packed in: a part of the box, open where it repeats, with walls and pores.
 
 use super::pores::Pores;
-use perigrain_base::math::vec3::{Vec3, add, scale};
+use perigrain_base::math::periods::Periods;
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_base::par;
 use perigrain_world::region::{INFINITE, Look, Near, Shape};
 use perigrain_world::{Domain, Region};
@@ -19,10 +20,24 @@ pub struct Room {
     pub lo: Vec3,
     /// Upper corner [length].
     pub hi: Vec3,
-    /// Edge lengths where it repeats, else 0 [length].
+    /// Edge lengths where it repeats, else 0 [length]; 0 in a room that leans.
     pub period: Vec3,
+    /// Whether its sides across each axis are walls.
+    closed: [bool; 3],
+    lean: Option<Lean>,
     walls: Vec<Wall>,
     pores: Option<Pores>,
+}
+
+/// A box that leans and is the room as a whole.
+#[derive(Clone, Debug)]
+struct Lean {
+    /// Its lower corner.
+    lo: Vec3,
+    /// Its edges.
+    edges: Periods,
+    /// Those along which it repeats, of length 0 elsewhere.
+    periods: Periods,
 }
 
 /// A surface that spheres stay on one side of.
@@ -44,7 +59,16 @@ impl Room {
     pub fn new(domain: &Domain, region: &Region) -> Result<Self, &'static str> {
         let mut shapes = vec![];
         flatten(region, false, &mut shapes)?;
-        let mut room = Self { lo: domain.lo, hi: domain.hi, period: [0.0; 3], walls: vec![], pores: None };
+        let bounds = domain.bounds();
+        let mut room = Self {
+            lo: bounds.map(|b| b[0]),
+            hi: bounds.map(|b| b[1]),
+            period: [0.0; 3],
+            closed: [true; 3],
+            lean: None,
+            walls: vec![],
+            pores: None,
+        };
         let mut open = domain.periodic();
         for shape in &shapes {
             for d in 0..3 {
@@ -55,12 +79,51 @@ impl Room {
                 room.hi = std::array::from_fn(|d| room.hi[d].min(hi[d]));
             }
         }
+        if domain.tilted() {
+            room.lean_as(domain, shapes);
+            return Ok(room);
+        }
         let edges = domain.lengths();
         room.period = std::array::from_fn(|d| if open[d] { edges[d] } else { 0.0 });
+        room.closed = open.map(|open| !open);
         // The faces of the room are those of its blocks.
         shapes.retain(|s| s.outside || !matches!(s.shape, Shape::Block { .. }));
         room.walls = shapes.into_iter().map(|s| Wall::new(s, &room.period)).collect();
         Ok(room)
+    }
+
+    /// Gives the room the walls that a leaning box and these shapes in it have. It repeats only where it is the whole box: a part of
+    /// one has walls all round.
+    fn lean_as(&mut self, domain: &Domain, mut shapes: Vec<Region>) {
+        let whole = shapes.iter().all(|shape| is_box(shape, domain));
+        let closed = domain.periodic().map(|periodic| !periodic || !whole);
+        let sides = (0..3).filter(|d| closed[*d]).flat_map(|d| faces(domain, d));
+        if whole {
+            (self.lo, self.hi) = (domain.bounds().map(|b| b[0]), domain.bounds().map(|b| b[1]));
+            self.closed = [false; 3];
+            self.lean = Some(Lean { lo: domain.lo, edges: domain.edges(), periods: domain.periods() });
+            shapes.clear();
+        }
+        shapes.retain(|s| s.outside || !matches!(s.shape, Shape::Block { .. }));
+        self.walls = shapes.into_iter().chain(sides).map(|s| Wall::new(s, &[0.0; 3])).collect();
+    }
+
+    /// How far it goes along each axis before it repeats, 0 where it does not; in a room that leans from face to face.
+    pub fn repeats(&self) -> Vec3 {
+        self.lean.as_ref().map_or(self.period, |lean| lean.periods.heights())
+    }
+
+    /// How far away its images are, itself among them, up to one period along each axis.
+    pub fn images(&self) -> Vec<Vec3> {
+        let periods = self.lean.as_ref().map_or(Periods::upright(self.period), |lean| lean.periods);
+        let some = periods.length.map(|l| if l > 0.0 { -1..=1 } else { 0..=0 });
+        let mut images = vec![];
+        for a in some[0].clone() {
+            for b in some[1].clone() {
+                images.extend(some[2].clone().map(|c| periods.shift([a, b, c].map(f64::from))));
+            }
+        }
+        images
     }
 
     /// The room without these pores.
@@ -71,6 +134,7 @@ impl Room {
     /// Whether a point is inside.
     pub fn contains(&self, x: Vec3) -> bool {
         (0..3).all(|d| x[d] >= self.lo[d] && x[d] <= self.hi[d])
+            && self.lean.as_ref().is_none_or(|lean| lean.turns(x) == [0.0; 3])
             && self.walls.iter().all(|w| w.region.contains(w.image(x, &self.period)))
             && self.pores.as_ref().is_none_or(|p| p.distance(x) >= 0.0)
     }
@@ -80,6 +144,9 @@ impl Room {
         let edges: Vec3 = std::array::from_fn(|d| self.hi[d] - self.lo[d]);
         if edges.iter().any(|l| *l <= 0.0) {
             return 0.0;
+        }
+        if let Some(lean) = &self.lean {
+            return lean.edges.length.iter().product();
         }
         match (&self.walls[..], &self.pores) {
             ([], None) => return edges.iter().product(),
@@ -116,6 +183,9 @@ impl Room {
     /// The shorter way between two images.
     #[inline]
     pub fn nearest(&self, mut d: Vec3) -> Vec3 {
+        if let Some(lean) = &self.lean {
+            return lean.periods.nearest(d);
+        }
         for k in 0..3 {
             let l = self.period[k];
             if d[k] > 0.5 * l {
@@ -129,6 +199,10 @@ impl Room {
 
     /// Puts a point back into the period.
     pub fn wrap(&self, x: &mut Vec3) {
+        if let Some(lean) = &self.lean {
+            *x = sub(*x, lean.edges.shift(lean.turns(*x)));
+            return;
+        }
         for d in (0..3).filter(|&d| self.period[d] > 0.0) {
             x[d] -= self.period[d] * ((x[d] - self.lo[d]) / self.period[d]).floor();
             // Rounding may have led to the upper face itself.
@@ -146,7 +220,7 @@ impl Room {
     /// By how much a sphere reaches through the walls [length].
     pub fn beyond(&self, x: Vec3, radius: f64, spare: &mut Vec<Near>) -> f64 {
         let mut most: f64 = 0.0;
-        for d in (0..3).filter(|&d| self.period[d] == 0.0) {
+        for d in (0..3).filter(|&d| self.closed[d]) {
             most = most.max(radius - (x[d] - self.lo[d])).max(radius - (self.hi[d] - x[d]));
         }
         for wall in &self.walls {
@@ -160,7 +234,7 @@ impl Room {
     pub fn keep(&self, x: &mut Vec3, radius: f64, spare: &mut Vec<Near>) {
         for _ in 0..SWEEPS {
             let before = *x;
-            for d in (0..3).filter(|&d| self.period[d] == 0.0) {
+            for d in (0..3).filter(|&d| self.closed[d]) {
                 let (low, high) = (self.lo[d] + radius, self.hi[d] - radius);
                 x[d] = if low <= high { x[d].clamp(low, high) } else { 0.5 * (low + high) };
             }
@@ -178,6 +252,39 @@ impl Room {
             }
         }
     }
+}
+
+impl Lean {
+    /// How many edges away from the box a place is, along those that repeat.
+    fn turns(&self, x: Vec3) -> Vec3 {
+        let at = self.edges.fractions(sub(x, self.lo));
+        std::array::from_fn(|d| if self.periods.length[d] > 0.0 { at[d].floor() } else { 0.0 })
+    }
+}
+
+/// Whether a shape is all of a box that leans.
+fn is_box(region: &Region, domain: &Domain) -> bool {
+    let near = |a: f64, b: f64, d: usize| (a - b).abs() <= 1e-12 * domain.lengths()[d];
+    !region.outside
+        && match &region.shape {
+            Shape::Block { lo, hi } => {
+                (0..3).all(|d| lo[d] <= domain.bounds()[d][0] && hi[d] >= domain.bounds()[d][1])
+            }
+            Shape::Prism { lo, hi, tilt } => (0..3).all(|d| {
+                near(lo[d], domain.lo[d], d)
+                    && near(hi[d], domain.hi[d], d)
+                    && near(tilt[d], domain.edges().tilt[d], d / 2)
+            }),
+            _ => false,
+        }
+}
+
+/// The two faces of a leaning box across its edge `d` as walls.
+fn faces(domain: &Domain, d: usize) -> [Region; 2] {
+    let edges = domain.edges().vectors();
+    let normal = cross(edges[(d + 1) % 3], edges[(d + 2) % 3]);
+    let wall = |point: Vec3, normal: Vec3| Region::inside(Shape::Plane { point, normal });
+    [wall(domain.lo, normal), wall(domain.at([1.0; 3]), scale(-1.0, normal))]
 }
 
 impl Wall {

@@ -2,7 +2,7 @@
 
 use super::aggregate::{LINK, thin};
 use super::pores::{Axis, Pores};
-use super::sizes::Sizes;
+use super::sizes::{Amount, Sizes};
 use super::*;
 use perigrain_base::math::vec3::length;
 use perigrain_world::region::Shape;
@@ -23,7 +23,7 @@ fn cube(edge: f64, face: Face) -> Room {
 
 fn packed(room: &Room, share: f64, sizes: Sizes, seed: u32, goal: &Goal) -> Packing {
     let mut stream = ParkMiller::new(seed);
-    let radii = sizes.radii(share * room.volume(), &mut stream);
+    let radii = sizes.radii(Amount::Volume(share * room.volume()), &mut stream);
     pack(room, radii, &mut stream, goal).unwrap()
 }
 
@@ -140,7 +140,7 @@ fn two_sizes_lie_between_each_other() {
 fn sizes_have_their_volume_and_range() {
     let mut stream = ParkMiller::new(5);
     for (sizes, low) in [(Sizes::Uniform(0.5, 1.5), 0.5), (Sizes::Lognormal(1.0, 0.2), (-0.5f64).exp())] {
-        let radii = sizes.radii(5000.0, &mut stream);
+        let radii = sizes.radii(Amount::Volume(5000.0), &mut stream);
         let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum();
         assert!((volume - 5000.0).abs() < sizes.mean_volume() * 2.0);
         assert!(radii.iter().all(|r| 2.0 * r >= low && 2.0 * r <= sizes.largest()));
@@ -209,6 +209,53 @@ fn spheres_keep_inside_of_regions() {
     // A hole that crosses the face is met from its other side.
     let room = Room::new(&domain([10.0; 3], [Face::Periodic; 3]), &hole).unwrap();
     assert_eq!(room.period, [10.0, 10.0, 0.0]);
+}
+
+#[test]
+fn leaning_boxes_are_packed_through_their_faces() {
+    let tilt = [2.0, -1.5, 1.0];
+    let whole = Region::inside(Shape::Prism { lo: [0.0; 3], hi: [8.0; 3], tilt });
+    let ball = Region::inside(Shape::Sphere { center: [4.0, 4.5, 4.0], radius: 3.0 });
+    let (periodic, fixed) = ([Face::Periodic; 3], [Face::Periodic, Face::Periodic, Face::Fixed]);
+    for (faces, region, volume) in
+        [(periodic, &whole, 512.0), (fixed, &whole, 512.0), (periodic, &ball, 36.0 * PI)]
+    {
+        let leaning = Domain { tilt: Some(tilt), ..domain([8.0; 3], faces) };
+        let room = Room::new(&leaning, region).unwrap();
+        let p = packed(&room, 0.55, Sizes::Mono(0.9), 31, &PLAIN);
+        // Sample points of the ball's box: a hundred along each edge.
+        assert!((room.volume() / volume - 1.0).abs() < 2e-3, "{} {volume}", room.volume());
+        assert!(p.came.reached, "{:?}", p.came);
+        says_the_truth(&room, &p);
+        assert!(p.x.iter().all(|x| leaning.holds(x) || region == &ball), "{faces:?}");
+        assert!(p.x.iter().all(|x| region.contains(*x)));
+        // Where the box repeats spheres lie across its faces.
+        let near = |d: usize| p.x.iter().any(|x| leaning.fractions(x)[d] < 0.02);
+        assert_eq!(
+            [0, 1, 2].map(near),
+            if region == &ball { [false; 3] } else { [true, true, faces == periodic] }
+        );
+    }
+}
+
+#[test]
+fn mixtures_have_their_parts() {
+    let mut stream = ParkMiller::new(7);
+    let count = |radii: &[f64], d: f64| radii.iter().filter(|r| **r == 0.5 * d).count();
+    let two = Sizes::by_number(&[(1.0, 3.0), (2.0, 1.0)]);
+    let radii = two.radii(Amount::Number(1001), &mut stream);
+    assert_eq!([count(&radii, 1.0), count(&radii, 2.0)], [751, 250]);
+    // 70 parts of the mass in large ones, 30 in those of half the diameter: 24 small ones to 7 large ones.
+    let two = Sizes::by_mass(&[(2.0, 70.0), (1.0, 30.0)]);
+    let radii = two.radii(Amount::Number(310), &mut stream);
+    assert_eq!([count(&radii, 2.0), count(&radii, 1.0)], [70, 240]);
+    let radii = two.radii(Amount::Volume(1000.0), &mut stream);
+    let volume = |d: f64| count(&radii, d) as f64 * PI / 6.0 * d.powi(3);
+    // A whole number of spheres of each size.
+    assert!((volume(2.0) - 700.0).abs() < 2.1 && (volume(1.0) - 300.0).abs() < 0.3);
+    assert_eq!([two.kind_of(1.02), two.kind_of(1.9), two.largest() as usize], [1, 0, 2]);
+    assert_eq!(Sizes::Mono(1.0).radii(Amount::Number(5), &mut stream), [0.5; 5]);
+    assert_eq!(Sizes::Uniform(1.0, 2.0).radii(Amount::Number(50), &mut stream).len(), 50);
 }
 
 #[test]
