@@ -2,7 +2,7 @@
 //! `PERIGRAIN_BLESS=1 cargo test --test folders docs::` writes the pages anew.
 
 use perigrain::cli::errors_page;
-use perigrain::cli::grammar::textmate;
+use perigrain::cli::grammar::{textmate, vim};
 use perigrain::cli::manual::{heading, pages};
 use perigrain::diag::{CODES, Code};
 use perigrain::out::log::Log;
@@ -35,6 +35,7 @@ fn generated() -> Vec<(PathBuf, String)> {
     files.push((docs().join("errors.md"), errors_page()));
     files.push((docs().join("SUMMARY.md"), summary()));
     files.push((docs().join("editor/vscode/perigrain.tmLanguage.json"), textmate()));
+    files.push((docs().join("editor/vim/syntax/perigrain.vim"), vim()));
     let house = docs().join("architecture.md");
     files.push((house.clone(), with_code(&fs::read_to_string(house).unwrap())));
     files

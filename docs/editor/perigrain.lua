@@ -1,4 +1,12 @@
--- Decks in Neovim 0.11 and newer: copy this file to ~/.config/nvim/plugin/perigrain.lua.
+-- Decks in Neovim 0.11 and newer: copy this file to ~/.config/nvim/plugin/perigrain.lua, and the folder `vim` beside it for colours.
+if not (vim.lsp and vim.lsp.config and vim.filetype and vim.filetype.add) then
+  vim.api.nvim_echo({ {
+    'perigrain.lua: messages, completion and help need Neovim 0.11 or newer; colours (docs/editor/vim) work in this one',
+    'WarningMsg',
+  } }, true, {})
+  return
+end
+
 vim.filetype.add({
   extension = { perigrain = 'perigrain', lmp = 'perigrain' },
   pattern = { ['.*/in%.[^/]*'] = 'perigrain' },

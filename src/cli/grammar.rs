@@ -1,4 +1,4 @@
-//! A TextMate grammar for editors, written from the tables of commands and styles.
+//! Grammars for editors, TextMate's and Vim's, written from the tables of commands and styles.
 
 use super::manual::{Page, pages};
 use perigrain_lang::Script;
@@ -71,3 +71,62 @@ fn style(page: &Page) -> Option<String> {
         page.kind, page.name
     ))
 }
+
+/// The syntax file for Vim and Neovim.
+pub fn vim() -> String {
+    let mut all = pages();
+    all.sort_by_key(|p| (p.kind, p.name));
+    let mut out = String::from(VIM_HEAD);
+    for page in all.iter().filter(|p| p.kind == "command") {
+        let group = if Script::FLOW.contains(&page.name) { "Flow" } else { "Command" };
+        let _ = writeln!(out, "syntax match perigrain{group} /\\v^\\s*\\zs{}\\S@!/", page.name);
+    }
+    // The style of a line stands behind its command, or behind an ID and a group.
+    for (kind, words) in [("pair_style", 0), ("bond_style", 0), ("fix", 2), ("compute", 2), ("dump", 2)] {
+        let word = |k: usize| format!("perigrain_{kind}_{k}");
+        let next = |k: usize| if k < words { word(k + 1) } else { format!("perigrain_{kind}_style") };
+        let _ = writeln!(
+            out,
+            "syntax match perigrainCommand /\\v^\\s*\\zs{kind}\\S@!/ nextgroup={} skipwhite",
+            next(0)
+        );
+        for k in 1..=words {
+            let _ =
+                writeln!(out, "syntax match {} /\\S\\+/ contained nextgroup={} skipwhite", word(k), next(k));
+        }
+        for page in all.iter().filter(|p| p.kind == kind) {
+            let name = page.name.replace('/', "\\/");
+            let _ = writeln!(out, "syntax match perigrain_{kind}_style /\\v{name}\\S@!/ contained");
+        }
+        let _ = writeln!(out, "highlight default link perigrain_{kind}_style Type");
+    }
+    out + VIM_LINKS
+}
+
+const VIM_HEAD: &str = r#"" Colours of decks. Written from the program's tables: PERIGRAIN_BLESS=1 cargo test --test folders docs::
+if exists('b:current_syntax')
+  finish
+endif
+syntax case match
+syntax match perigrainNumber /\v[[:alnum:]_.]@<![-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?[[:alnum:]_.]@!/
+syntax match perigrainConstant /\v\S@<!(INF|EDGE|NULL|SELF|yes|no|on|off)\S@!/
+syntax match perigrainReference /\v[[:alnum:]_.]@<![vcfCF]_\w+/
+syntax match perigrainValue /\v\$\{[^}]*\}|\$\w|\$\([^)]*\)/
+syntax match perigrainContinuation /&\s*$/
+syntax match perigrainComment /#.*$/ contains=@Spell
+syntax region perigrainString start=/"/ end=/"/ oneline contains=perigrainValue
+syntax region perigrainString start=/'/ end=/'/ oneline contains=perigrainValue
+syntax region perigrainString start=/"""/ end=/"""/ contains=perigrainValue
+"#;
+
+const VIM_LINKS: &str = r"highlight default link perigrainCommand Function
+highlight default link perigrainFlow Keyword
+highlight default link perigrainNumber Number
+highlight default link perigrainConstant Constant
+highlight default link perigrainReference Identifier
+highlight default link perigrainValue Identifier
+highlight default link perigrainContinuation Special
+highlight default link perigrainComment Comment
+highlight default link perigrainString String
+let b:current_syntax = 'perigrain'
+";

@@ -1,6 +1,7 @@
 //! Pages of the manual as they are asked for: the list, one by its name, those that speak of a word.
 
 use super::args::Usage;
+use crate::manual::howtos::{HOWTOS, HowTo};
 pub use crate::manual::{Page, heading, pages};
 use perigrain_base::diag::nearest;
 use std::fmt::Write;
@@ -16,6 +17,10 @@ pub fn list() -> String {
         }
         let _ = writeln!(text, "  {:<24} {}", page.name, page.doc.summary);
     }
+    let _ = writeln!(text, "\nhow-tos");
+    for howto in HOWTOS {
+        let _ = writeln!(text, "  {:<24} {}", howto.name, howto.question());
+    }
     text
 }
 
@@ -30,7 +35,13 @@ pub fn page(name: &str) -> Result<String, Usage> {
     if !found.is_empty() {
         let text = found.iter().map(|p| p.markdown()).collect::<Vec<_>>().join("\n");
         let styles: Vec<&Page> = all.iter().filter(|p| p.kind == name).collect();
-        return Ok(if styles.is_empty() { text } else { text + "\n## Styles\n\n" + &lines(&styles) });
+        let text = if styles.is_empty() { text } else { text + "\n## Styles\n\n" + &lines(&styles) };
+        // A how-to of the same name answers more than the page.
+        let named: Vec<&HowTo> = HOWTOS.iter().filter(|h| h.name == name).collect();
+        return Ok(if named.is_empty() { text } else { text + "\n## How-tos\n\n" + &questions(&named) });
+    }
+    if let Some(howto) = HOWTOS.iter().find(|h| h.name == name || h.title() == name) {
+        return Ok(howto.text());
     }
     if let Some(text) = speaking_of(name, &all) {
         return Ok(text);
@@ -59,13 +70,25 @@ fn found(words: &str, each: &[&str], all: &[Page]) -> Option<String> {
     };
     let (named, others): (Vec<&Page>, Vec<&Page>) = all.iter().partition(|p| holds(&p.title()));
     let telling: Vec<&Page> = others.into_iter().filter(|p| holds(&p.markdown())).collect();
-    let parts = [("Pages named so", named), ("Pages that speak of it", telling)];
+    let howtos: Vec<&HowTo> = HOWTOS.iter().filter(|h| h.speaks_of(each)).collect();
+    let parts = [
+        ("Pages named so", lines(&named)),
+        ("How-tos", questions(&howtos)),
+        ("Pages that speak of it", lines(&telling)),
+    ];
     let text: Vec<String> = parts
         .iter()
-        .filter(|(_, pages)| !pages.is_empty())
-        .map(|(head, pages)| format!("# {head}: `{words}`\n\n{}", lines(pages)))
+        .filter(|(_, lines)| !lines.is_empty())
+        .map(|(head, lines)| format!("# {head}: `{words}`\n\n{lines}"))
         .collect();
     (!text.is_empty()).then(|| text.join("\n"))
+}
+
+/// Titles of how-tos and the questions that they answer.
+fn questions(howtos: &[&HowTo]) -> String {
+    howtos
+        .iter()
+        .fold(String::new(), |text, howto| text + &format!("  {:<28} {}\n", howto.title(), howto.question()))
 }
 
 /// Titles and summaries.
@@ -89,5 +112,16 @@ mod tests {
         assert!(page("fix").unwrap().contains("\n  fix wall/gran "));
         assert!(page("Wiggle").unwrap().starts_with("# Pages that speak of it: `wiggle`"));
         assert!(page("fix nvee").unwrap_err().help.unwrap().contains("`fix nve`"));
+    }
+
+    #[test]
+    fn how_tos_are_pages_too() {
+        for name in ["notch", "howto notch"] {
+            let text = page(name).unwrap();
+            assert!(text.starts_with("# A crack from a notch\n") && text.contains("peri_crack"), "{text}");
+        }
+        assert!(page("movie").unwrap().contains("movie of a"));
+        assert!(page("lattice spacing").unwrap().contains("\n  howto "));
+        assert!(list().contains("\n  notch "));
     }
 }

@@ -2,6 +2,7 @@
 //! along, and what may stand where. The prompt and the language server both draw on it.
 
 pub mod completing;
+pub mod howtos;
 pub mod knowing;
 mod pages;
 pub mod syntax;

@@ -17,6 +17,8 @@ pub use globals::Global;
 pub use making::Newcomers;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail, nearest};
 use perigrain_lang::{Expr, Kind, RefKind, Value, ValueRef, substitute};
+use perigrain_out::rows::Table;
+use perigrain_out::thermo;
 use perigrain_styles::Names;
 use perigrain_world::{Slot, TableRow};
 
@@ -31,6 +33,17 @@ pub enum Told {
     Particles(Vec<f64>),
     /// A text.
     Text(String),
+}
+
+/// The columns of a step table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    /// What stands above each.
+    pub headings: Vec<String>,
+    /// Which hold whole numbers.
+    pub whole: Vec<bool>,
+    /// Their values from the first row on.
+    pub values: Vec<Vec<f64>>,
 }
 
 impl Session {
@@ -169,6 +182,30 @@ impl Session {
     /// The latest row of the step table.
     pub fn table_row(&self) -> Option<&TableRow> {
         self.world.parts.row.as_deref()
+    }
+
+    /// From now on all rows of step tables are kept for [`Session::table_rows`].
+    pub fn keep_table_rows(&self) {
+        self.options.log.keep_rows();
+    }
+
+    /// The rows of step tables so far, tables of other columns apart: a row that repeats the one before it, as that of a second run
+    /// does, counts once.
+    pub fn table_rows(&self) -> Vec<Columns> {
+        let tables = self.options.log.tables(|tables| tables.0.clone());
+        let columns = |table: Table| {
+            let Table { columns, mut rows } = table;
+            rows.dedup();
+            let known = |name: &String| thermo::Column::keyword(name);
+            let heading = |name: &String| known(name).map_or_else(|| name.clone(), |column| column.header);
+            let whole = |name: &String| known(name).is_some_and(|column| column.kind == thermo::Kind::Int);
+            Columns {
+                headings: columns.iter().map(heading).collect(),
+                whole: columns.iter().map(whole).collect(),
+                values: (0..columns.len()).map(|k| rows.iter().map(|row| row.values[k]).collect()).collect(),
+            }
+        };
+        tables.into_iter().map(columns).collect()
     }
 
     /// Changes whenever particles come, go or change places, and when another scene begins.

@@ -16,6 +16,11 @@ local function run()
   if vim.bo.filetype ~= 'perigrain' then
     fail('in.plate is taken for ' .. vim.bo.filetype)
   end
+  vim.cmd('syntax on')
+  for _, part in ipairs({ { 1, 1, 'Flow' }, { 1, 22, 'Number' }, { 1, 24, 'Comment' }, { 3, 1, 'Command' }, { 3, 7, 'String' }, { 3, 9, 'Value' } }) do
+    local name = vim.fn.synIDattr(vim.fn.synID(part[1], part[2], 1), 'name')
+    expect(('colour of line %d, column %d'):format(part[1], part[2]), name, 'perigrain' .. part[3])
+  end
   local function there(what, test)
     if not vim.wait(20000, test, 20) then
       fail(what .. ' does not come')
@@ -47,7 +52,7 @@ local function run()
   there('quick fix', function() return line(2) == 'pair_style  zero 1.0' end)
   vim.lsp.buf.format({ timeout_ms = 20000 })
   there('layout', function() return line(2) == 'pair_style zero 1.0' end)
-  print('editor: Neovim gets messages, help, completion, outline, names, quick fixes and layout\n')
+  print('editor: Neovim gets colours, messages, help, completion, outline, names, quick fixes and layout\n')
   vim.cmd('qall!')
 end
 

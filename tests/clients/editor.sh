@@ -42,5 +42,8 @@ run=$(mktemp -d)
 trap 'rm -rf "$run"' EXIT
 cd "$run"
 printf 'variable speed equal 2 # größe 𝕏\npair_sytle  zero 1.0\nprint "${speed}"\n' >in.plate
-XDG_STATE_HOME=$run timeout 60 "$nvim" --clean --headless -n -c "luafile $top/docs/editor/perigrain.lua" \
+# An older Neovim, which has no vim.lsp.config, gets a sentence and no trace.
+told=$("$nvim" --clean --headless --cmd 'lua vim.lsp.config = nil' -c "luafile $top/docs/editor/perigrain.lua" -c 'qall!' 2>&1)
+[[ $told == *"need Neovim 0.11 or newer"* && $told != *traceback* ]] || { echo "editor: an old Neovim says: $told" >&2 && exit 1; }
+XDG_STATE_HOME=$run timeout 60 "$nvim" --clean --headless -n --cmd "set runtimepath^=$top/docs/editor/vim" -c "luafile $top/docs/editor/perigrain.lua" \
     -c "luafile $top/tests/clients/editor.lua"

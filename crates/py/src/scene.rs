@@ -10,7 +10,7 @@ use super::values;
 use super::working::{at_once, beside, words};
 use perigrain::cli::deck::host;
 use perigrain::diag::Result as Deck;
-use perigrain::session::{Heard, Newcomers, Session};
+use perigrain::session::{Columns, Heard, Newcomers, Session};
 use perigrain::world::{Outside, RowValue};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -26,6 +26,9 @@ type Edges = ([f64; 3], [f64; 3], [f64; 3], [bool; 3]);
 
 /// A row of the step table: the step, and the columns with their values.
 type Row = (i64, Vec<(String, Py<PyAny>)>);
+
+/// A column of a step table: its heading, whether it holds whole numbers, these as bytes.
+type TableColumn<'py> = (String, bool, Bound<'py, PyBytes>);
 
 /// A scene: a deck's world, worked on line by line.
 #[pyclass(frozen, module = "perigrain._core")]
@@ -289,6 +292,27 @@ impl Scene {
         self.look(py, false, |session| {
             Ok(u32::try_from(id).ok().and_then(|tag| session.world.particles.index_of(tag)))
         })
+    }
+
+    /// From now on all rows of step tables are kept.
+    fn keep_rows(&self, py: Python<'_>) -> PyResult<()> {
+        self.ask(py, false, |session| {
+            session.keep_table_rows();
+            Ok(())
+        })
+    }
+
+    /// The rows kept so far as columns: heading, whether it holds whole numbers, its numbers as bytes; tables of other columns apart.
+    fn rows<'py>(&self, py: Python<'py>) -> PyResult<Vec<Vec<TableColumn<'py>>>> {
+        let tables = self.look(py, false, |session| Ok(session.table_rows()))?;
+        let column = |(name, (whole, values)): (String, (bool, Vec<f64>))| {
+            let bytes: Vec<u8> = values.iter().flat_map(|a| a.to_ne_bytes()).collect();
+            (name, whole, PyBytes::new(py, &bytes))
+        };
+        let columns = |table: Columns| {
+            table.headings.into_iter().zip(table.whole.into_iter().zip(table.values)).map(column).collect()
+        };
+        Ok(tables.into_iter().map(columns).collect())
     }
 
     /// The latest row of the step table.

@@ -29,6 +29,28 @@ def test_a_scene_iterates_over_steps_as_one_run_does():
     assert repr(scene) == "<Scene, closed>"
 
 
+def test_the_table_has_the_rows_of_all_runs(tmp_path):
+    deck = tmp_path / "in.deck"
+    deck.write_text("thermo 5\nrun 10\nthermo_style custom step time ke\nrun 10\n")
+    with Scene(PERI) as scene:
+        assert len(scene.table) == 0 and scene.table.columns == []
+        scene.run(10)
+        assert scene.table["Step"].tolist() == [0, 10] and scene.table["Step"].dtype == np.int64
+        scene.do("run 5\n")
+        assert scene.table["Step"].tolist() == [0, 10, 15], "what a second run repeats counts once"
+        scene.file(deck)
+        assert scene.table["Step"].tolist() == [0, 10, 15, 20, 25, 25, 30, 35]
+        assert np.isnan(scene.table["Time"][:5]).all() and scene.table["Time"][-1] == pytest.approx(scene.time)
+        assert scene.table["KinEng"][-1] == pytest.approx(scene["ke"])
+        assert list(scene.steps(10, every=5)) == [35, 40, 45] and scene.table["Step"][-1] == 45
+        scene.run(1e1)
+        assert scene.step == 55
+        for steps in (10.5, "ten", None, float("inf")):
+            with pytest.raises(perigrain.DataError, match="no whole number of steps"):
+                scene.run(steps)
+        assert scene.step == 55
+
+
 def test_variables_and_a_log():
     with Scene("print 'v is $v'\n", variables={"v": 30, "w": [1, 2]}, log="log.v", threads=1) as scene:
         assert scene.lammps.extract_variable("w") == "1"
@@ -60,6 +82,11 @@ def test_logs_are_tables(tmp_path):
     assert table.runs[0].columns == ["Step", "Time", "KinEng"] and table.runs[1]["TotEng"][1] > 0
     assert np.isnan(table["Time"][3:5]).all() and "<th>Step</th>" in table._repr_html_()
     assert table["KinEng"].dtype == float and dict(table)["Step"].dtype.kind in "if"
+    # pandas.DataFrame, polars and others take a mapping, which must be a dict to them
+    assert isinstance(table, dict) and list(table.items())[0][0] == "Step" and table == table and "Step" in table
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(table)
+    assert list(frame.columns) == table.columns and frame["Step"].tolist() == table["Step"].tolist()
     with pytest.raises(perigrain.DataError, match="no column `Tmep`"):
         table["Tmep"]
     (tmp_path / "empty").write_text("")

@@ -3,6 +3,8 @@
 import ast
 import importlib.metadata
 import inspect
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -28,6 +30,12 @@ def test_files_and_metadata():
     assert [f for f in files if f.startswith("perigrain/_core.") and ".abi3." in f]
     assert {Path(f).name for f in files if ".dist-info/licenses/" in f} == {"LICENSE-MIT", "LICENSE-APACHE"}
     assert not [f for f in files if "test" in f]
+    commands = {entry.name: entry.value for entry in wheel.entry_points if entry.group == "console_scripts"}
+    assert commands == {"perigrain": "perigrain.__main__:main"}
+    script = Path(sys.executable).with_name("perigrain")
+    if script.exists():
+        told = subprocess.run([str(script), "-version"], capture_output=True, text=True)
+        assert told.returncode == 0 and perigrain.__version__ in told.stdout
     assert "cp39-abi3" in (wheel.read_text("WHEEL") or "")
     # what is imported is what was installed
     assert Path(perigrain.__file__).resolve() == Path(str(wheel.locate_file("perigrain/__init__.py"))).resolve()

@@ -55,7 +55,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
     their numbers: see [verify](verify.md). `report` writes a web page about a run that is over, from its log and dumps: see [Look at a run](../howto/report.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
     `examples` lists the larger ones that the program carries, shows what they are about, or copies one into a folder of its own; neither \
-    writes over anything. `doc` (or `help`) of a word that has no page lists those that speak of it; on a terminal pages are wrapped at words and \
+    writes over anything. `doc` (or `help`) also shows the how-tos (`perigrain help notch`); of a word that has no page it lists pages and how-tos that speak of it; on a terminal pages are wrapped at words and \
     go through `$PAGER` (`less`). `completions` prints what a shell needs to complete these lines (`source <(perigrain completions bash)`), `man` writes pages for `man`. \
     `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\

@@ -17,53 +17,52 @@ _BEGIN = "Per MPI rank memory allocation"
 _END = "Loop time of"
 
 
-class Table:
-    """Columns of numbers by name, as rows of thermo output: ``table["Step"]``, ``len(table)``, ``table.runs``."""
+class Table(Dict[str, Any]):
+    """A mapping of columns by heading, as rows of thermo output: ``table["Step"]``, ``pandas.DataFrame(table)``.
+
+    ``len(table)`` is the number of rows, ``table.runs`` has the rows of each run by itself.
+    """
 
     def __init__(self, columns: Dict[str, Any], runs: Optional[List["Table"]] = None) -> None:
-        self.data = columns
+        super().__init__(columns)
         #: The rows of each `run` by itself.
         self.runs: List["Table"] = [self] if runs is None else runs
 
     @property
+    def data(self) -> Dict[str, Any]:
+        """The columns as a plain dictionary."""
+        return dict(self)
+
+    @property
     def columns(self) -> List[str]:
         """The headings."""
-        return list(self.data)
+        return list(self)
 
-    def __getitem__(self, name: str) -> Any:
-        try:
-            return self.data[name]
-        except KeyError:
-            raise DataError(f"there is no column `{name}`: there are {', '.join(self.data) or 'none'}") from None
-
-    def __contains__(self, name: str) -> bool:
-        return name in self.data
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.data)
+    def __missing__(self, name: str) -> Any:
+        raise DataError(f"there is no column `{name}`: there are {', '.join(self) or 'none'}")
 
     def __len__(self) -> int:
-        return len(next(iter(self.data.values()), ()))
+        return len(next(iter(self.values()), ()))
 
-    def keys(self) -> Any:
-        """The headings, so that ``dict(table)`` and ``pandas.DataFrame(dict(table))`` work."""
-        return self.data.keys()
+    __eq__ = object.__eq__
+    __ne__ = object.__ne__
+    __hash__ = object.__hash__  # type: ignore[assignment]
 
     def to_pandas(self) -> Any:
         """A `pandas.DataFrame` of it."""
         import pandas
 
-        return pandas.DataFrame(self.data)
+        return pandas.DataFrame(self)
 
     def __repr__(self) -> str:
-        return f"<Table of {len(self)} rows: {', '.join(self.data)}>"
+        return f"<Table of {len(self)} rows: {', '.join(self)}>"
 
     def _repr_html_(self) -> str:
         most = 20
         cells = lambda tag, row: "".join(f"<{tag}>{html.escape(str(c))}</{tag}>" for c in row)  # noqa: E731
-        rows = [cells("td", [f"{self.data[c][k]:.6g}" for c in self.data]) for k in range(min(len(self), most))]
+        rows = [cells("td", [f"{self.data[c][k]:.6g}" for c in self]) for k in range(min(len(self), most))]
         more = f"<caption>{len(self)} rows, the first {most} shown</caption>" if len(self) > most else ""
-        return f"<table>{more}<tr>{cells('th', self.data)}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
+        return f"<table>{more}<tr>{cells('th', self)}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
 
 
 def read_log(path: Path) -> Table:
@@ -83,7 +82,7 @@ def joined(runs: List[Table]) -> Table:
     names = list(dict.fromkeys(name for run in runs for name in run))
     columns = {}
     for name in names:
-        parts = [run.data[name] if name in run else numpy.full(len(run), numpy.nan) for run in runs]
+        parts = [run[name] if name in run else numpy.full(len(run), numpy.nan) for run in runs]
         columns[name] = numpy.concatenate(parts)
     return Table(columns, runs)
 
@@ -163,7 +162,7 @@ class Frame(Table):
         self.step, self.box, self.periodic, self.time = step, box, periodic, time
 
     def __repr__(self) -> str:
-        return f"<Frame of step {self.step}: {len(self)} particles with {', '.join(self.data)}>"
+        return f"<Frame of step {self.step}: {len(self)} particles with {', '.join(self)}>"
 
     def rows(self, *names: str) -> Any:
         """Several columns side by side, as ``frame.rows("x", "y", "z")``."""

@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
 
 from .errors import DataError
 from .lmp import lammps
-from .reading import Frame, Table, frame_of
+from .reading import Frame, Table, frame_of, joined
 
 Value = Union[str, int, float, Sequence[Union[str, int, float]]]
 
@@ -59,7 +59,7 @@ class Scene:
             several = value if isinstance(value, (list, tuple)) else [value]
             words += ["-var", name, *map(str, several)]
         self.lammps = lammps(cmdargs=words)
-        self._rows: List[Dict[str, Union[int, float]]] = []
+        self.lammps._scene.keep_rows()
         if deck:
             self.do(deck)
 
@@ -75,7 +75,7 @@ class Scene:
 
     def run(self, steps: int) -> "Scene":
         """Makes steps."""
-        self.lammps.command(f"run {int(steps)}")
+        self.lammps.command(f"run {_whole(steps)}")
         return self
 
     def steps(self, steps: int, every: int = 1) -> Iterator[int]:
@@ -83,12 +83,12 @@ class Scene:
 
         The steps are those of one run, to the bit, if the scene is only looked at in between.
         """
+        steps, every = _whole(steps), _whole(every)
         if every < 1 or steps < 0:
             raise DataError(f"{steps} steps cannot be looked at every {every}")
-        last = self.step + int(steps)
+        last = self.step + steps
         self.lammps.command("run 0 post no")
         while True:
-            self._keep()
             yield self.step
             left = last - self.step
             if left <= 0:
@@ -99,18 +99,20 @@ class Scene:
                 # a fix or the limit of `timer` has ended it
                 return
 
-    def _keep(self) -> None:
-        row = self.lammps.last_thermo()
-        if row is not None and (not self._rows or self._rows[-1] != row):
-            self._rows.append(row)
-
     @property
     def table(self) -> Table:
-        """The rows of thermo output at the steps that `steps` has given."""
+        """The rows of thermo output of all runs so far; a row that a second run repeats counts once.
+
+        Where runs have different columns, those that a row does not have are NaN; ``runs`` has the rows of each set of columns.
+        """
         import numpy
 
-        names = list(dict.fromkeys(name for row in self._rows for name in row))
-        return Table({name: numpy.array([row.get(name, numpy.nan) for row in self._rows]) for name in names})
+        def column(whole: bool, data: bytes) -> Any:
+            numbers = numpy.frombuffer(bytearray(data), dtype=numpy.float64)
+            return numbers.astype(numpy.int64) if whole else numbers
+
+        tables = self.lammps._scene.rows()
+        return joined([Table({name: column(whole, data) for name, whole, data in table}) for table in tables])
 
     @property
     def step(self) -> int:
@@ -194,6 +196,16 @@ class Scene:
 
     def __exit__(self, *_: Any) -> None:
         self.close()
+
+
+def _whole(steps: Any) -> int:
+    """A number of steps; 1e4 is one, 10.5 is none."""
+    try:
+        if int(steps) == steps:
+            return int(steps)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise DataError(f"{steps!r} is no whole number of steps")
 
 
 def _first(scalar: Optional[float], rest: List[Any]) -> Any:
