@@ -3,8 +3,7 @@
 use super::rigid_energy::RigidFix;
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::math::body::{axes, from_axes};
-use perigrain_base::math::vec3::{Vec3, dot, scale, sub};
+use perigrain_base::math::vec3::{Vec3, dot, sub};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
@@ -148,16 +147,6 @@ impl Declared {
     }
 }
 
-/// The body with its principal moments in LAMMPS' order.
-fn ascending(body: Body) -> Body {
-    let [a, b, c] = body.moments;
-    if a <= c {
-        return body;
-    }
-    let [x, y, z] = axes(body.q);
-    Body { moments: [c, b, a], q: from_axes([z, y, scale(-1.0, x)]), ..body }
-}
-
 impl Compute for Declared {
     fn shape(&self) -> Shape {
         Shape { local: self.list.len(), ..Shape::default() }
@@ -188,7 +177,7 @@ impl Compute for Declared {
                 .write(SLOTS)
                 .keep(MEMO),
             move |w: &mut World, t| {
-                let bodies: Vec<Body> = bodies(w, kept).into_iter().map(ascending).collect();
+                let bodies = bodies(w, kept);
                 let mut owners = w.memo.remove(key).unwrap_or_default();
                 owners.truncate(bodies.len());
                 owners.extend(Self::owners(w, column, owners.len(), bodies.len() - owners.len()));
@@ -200,22 +189,5 @@ impl Compute for Declared {
             },
         );
         Ok(op.when(when.clone()).in_setup(true).boxed())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn moments_ascend_and_axes_follow() {
-        let q = from_axes([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
-        let body = ascending(Body { moments: [3.0, 2.0, 1.0], q, ..Body::default() });
-        assert_eq!(body.moments, [1.0, 2.0, 3.0]);
-        let close = |a: Vec3, b: Vec3| dot(sub(a, b), sub(a, b)) < 1e-28;
-        let [x, y, z] = axes(body.q);
-        // The axis of the moment 1 comes first, that of 3 last, and they are right-handed.
-        assert!(close(x, [0.0, 0.0, 1.0]) && close(y, [-1.0, 0.0, 0.0]) && close(z, [0.0, -1.0, 0.0]));
-        assert_eq!(ascending(Body { moments: [1.0, 2.0, 2.0], ..body }).q, body.q);
     }
 }

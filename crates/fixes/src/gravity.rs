@@ -32,8 +32,8 @@ impl Style for Gravity {
                    Angles in degrees. Each parameter is a number or `v_name` of an equal-style variable, evaluated each \
                    step. Scalar (extensive): the potential energy −Σ m g e·x of the positions in the box; `fix_modify ID \
                    energy yes` adds it to the potential energy. Acts with the particles' mass: for peridynamic particles \
-                   in LAMMPS' convention that is the density, as f is a force density. With `disable` it acts on nobody, and is there for fixes \
-                   that ask for the acceleration (`fix pour`).",
+                   in LAMMPS' convention that is the density, as f is a force density. With `disable` it does not act by itself: fixes use its \
+                   acceleration (`fix pour`, `gravity ID` of `fix rigid`).",
             example: "fix g all gravity 9.81 vector 0 0 -1",
         }
     }
@@ -78,7 +78,7 @@ struct Declared {
     group: GroupId,
     magnitude: Param,
     direction: Direction,
-    /// Acts on nobody.
+    /// Does not act by itself.
     disabled: bool,
 }
 
@@ -225,6 +225,9 @@ impl Fix for Declared {
         let steady = (magnitude.is_const() && pointer.is_const()).then(|| acceleration(cx.world()));
         let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
         let access = Needs::new().read(X | MASS | MASK).add(F).write(SLOTS);
+        if let Some(a) = steady {
+            cx.world().slots.get_mut(slot).vector = a.to_vec();
+        }
         let pull = move |w: &World, t: &Tick, room: &mut Room| {
             if t.unchanged || disabled {
                 return false;
@@ -237,9 +240,19 @@ impl Fix for Declared {
             });
             true
         };
-        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish(w, slot, t, sums.sums[0], &[]);
+        // Others read the acceleration where it stands (`SealCx::gravities`); decks do not see it.
+        let told = move |w: &mut World, t: &Tick, sums: BlockSums| {
+            let a = steady.unwrap_or_else(|| acceleration(w));
+            publish(w, slot, t, sums.sums[0], &a);
+        };
         let name = format!("fix {} gravity", self.id);
-        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(pull, told);
+        let idle = move |w: &mut World, t: &Tick| {
+            if disabled && !t.unchanged && steady.is_none() {
+                publish(w, slot, t, 0.0, &acceleration(w));
+            }
+            Ok(())
+        };
+        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told);
         Ok(vec![op.boxed()])
     }
 
@@ -268,7 +281,8 @@ impl Fix for Declared {
             _ => Pull::Varying,
         };
         let (minimizing, pull) = (Minimizing::Absent, Some(pull));
-        Facts { minimizing, pull, has_level: true, has_energy: true, ..Facts::default() }
+        let disabled = self.disabled;
+        Facts { minimizing, pull, disabled, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

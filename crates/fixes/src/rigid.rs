@@ -2,7 +2,10 @@
 
 mod bodies;
 mod follow;
+mod gravity;
 mod infile;
+mod ledger;
+mod mold;
 mod motion;
 mod nve;
 mod pass;
@@ -11,6 +14,8 @@ pub use nve::{RigidNve, RigidNveSmall};
 
 use super::{Facts, Fix, FixStyle, no_option};
 use bodies::Split;
+use gravity::Weight;
+use mold::Mold;
 use motion::Crew;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
@@ -22,10 +27,10 @@ use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
-    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TALLY, TORQUE,
+    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TAG, TALLY, TORQUE,
     TRAVEL, TYPE_MASS, V, X,
 };
-use perigrain_world::{GroupId, Key, Numbers, Vectors, World};
+use perigrain_world::{Fields, GroupId, Key, Numbers, Template, Vectors, World};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
 const COLUMNS: usize = 15;
@@ -43,24 +48,29 @@ impl Style for Rigid {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group rigid single | molecule | custom i_NAME | group N ID1 … IDN  [force M x y z] [torque M x y z] \
-                     [reinit yes|no] [infile FILE]",
+                     [reinit yes|no] [infile FILE] [gravity ID]",
             summary: "Lets groups of particles move as rigid bodies.",
             text: "One body of the whole group (`single`), one for each molecule ID or value of a property of `fix property/atom`, in \
                    ascending order, or one for each of N groups; each needs two particles at least. Mass, centre and moments of inertia are \
                    those of the particles, spheres being solid; overlaps count twice. Forces and torques on a body are the \
                    sums of those on its particles. The centre moves by velocity Verlet, the orientation by Richardson's \
-                   steps of the quaternion at constant angular momentum; places, velocities and spins of the particles follow. \
+                   steps of the quaternion at constant angular momentum (bodies in space whose smallest moment is less than a thousandth \
+                   of the largest by the exact rotations of `fix rigid/nve`: Richardson's steps let them tumble, as they do in LAMMPS); places, velocities and spins of the particles follow. \
                    No other fix may move them, and contacts inside a body are left out with `neigh_modify exclude`.\n\n\
                    `force M off off on` and `torque M …` turn components of the sum off for bodies M (a number or range, `1*3`). Bodies are set up from their particles \
                    when a run begins after something has changed; with `reinit no` only once, so that what was done to the particles \
                    between runs is undone. `infile` gives mass, centre, inertia xx yy zz xy xz yz, velocity, angular momentum and image \
                    counts of some bodies, one line each behind the number of lines, and means `reinit no`.\n\n\
+                   Spheres that overlap weigh too much, and the middle of their masses is not that of the body: `infile` (or, with \
+                   `rigid/small … mol`, a molecule template) gives the true mass, centre and inertia. `fix gravity` then acts on such a body by M g at its \
+                   centre, if all its particles are in the group of that fix; LAMMPS pulls the particles, so that the body falls at another rate and \
+                   turns about its centre. `gravity ID` here with `disable` at the end of that `fix gravity` gives the right motion in both. Computes of particles (`com`, `ke`, \
+                   `vcm` …, the pressure) go on with the particles' masses; `ke/rigid`, `erotate/rigid`, `rigid/local` and `energy/ledger` know the body's.\n\n\
                    Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) of components that are on, over as many degrees of freedom and Boltzmann's constant (torques by the body's own axes). Array, a row for each body: centre, \
                    velocity, force, torque, image counts (3 columns each). The forces that hold bodies together count in \
                    pressures, unless `fix_modify ID virial no`. In the setup of a run LAMMPS leaves out the forces of fixes that stand below this \
                    one, so that its first half kick lacks them; perigrain does so under `compat lammps` only. Temperatures count the freedom of single particles; LAMMPS \
-                   takes away what bodies have lost. `langevin`, `gravity` (fix gravity acts on the particles), thermostats and \
-                   barostats are refused.",
+                   takes away what bodies have lost. `langevin`, thermostats and barostats are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single torque * off off on",
         }
     }
@@ -72,11 +82,14 @@ impl Style for RigidSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group rigid/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE]",
+            syntax: "fix ID group rigid/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE] [gravity ID]",
             summary: "Lets molecules move as rigid bodies, as many as there are.",
             text: "As `fix rigid`, without its array and its keywords `force` and `torque`. Particles that join the group during a run become \
                    bodies of their own, molecule by molecule, with the next rebuild of neighbour lists; `mol` names the template they come \
-                   from, for LAMMPS' sake. In `infile` the number of a body is its molecule ID.",
+                   from. Where its file gives `mass`, `com` or `inertia` of the whole, bodies that are copies of it have these instead of the sums over their \
+                   particles, however they came: by `create_atoms`, `fix pour` or `fix deposit`, and in later runs too. LAMMPS takes them for bodies that come during a run \
+                   only, forgets them when the next run sets bodies up (unless `reinit no`), takes Ixy for Iyz and the other way round, and divides Σ m x by the mass \
+                   that the file gives where it gives no `com`; `compat lammps` does so too. In `infile` the number of a body is its molecule ID.",
             example: "units si\natom_style sphere\nregion b block 0 0.1 0 0.1 0 0.1\ncreate_box 1 b\nfix m all property/atom mol\n\
                       create_atoms 1 single 0.05 0.05 0.05\ncreate_atoms 1 single 0.055 0.05 0.05\nset group all diameter 0.01 density 2500.0 \
                       mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
@@ -171,7 +184,8 @@ fn build(
         switches: vec![],
         reinit: true,
         infile: None,
-        template: None,
+        mold: None,
+        gravity: None,
         virial: true,
     };
     while let Some(word) = args.next() {
@@ -179,14 +193,15 @@ fn build(
             "force" | "torque" if whole => me.switches.push(switch(word, args)?),
             "reinit" => me.reinit = args.flag("reinit")?,
             "infile" => me.infile = Some(args.expect("a file name")?.clone()),
-            "mol" if !whole => me.template = Some(template(args, cx)?),
-            "langevin" | "gravity" | "temp" | "iso" | "aniso" | "x" | "y" | "z" | "couple" | "tparam"
-            | "pchain" | "dilate" => {
+            "mol" if !whole => me.mold = Some(mold(args, cx)?),
+            "gravity" => me.gravity = Some(args.expect("the ID of a fix gravity")?.clone()),
+            "langevin" | "temp" | "iso" | "aniso" | "x" | "y" | "z" | "couple" | "tparam" | "pchain"
+            | "dilate" => {
                 let text = format!("fix {style}: `{}` is not in perigrain", word.text);
                 return fail(Code::NOT_SUPPORTED, word.span, text);
             }
-            _ if whole => return Err(args.unknown(word, &["force", "torque", "reinit", "infile"])),
-            _ => return Err(args.unknown(word, &["reinit", "infile", "mol"])),
+            _ if whole => return Err(args.unknown(word, &["force", "torque", "reinit", "infile", "gravity"])),
+            _ => return Err(args.unknown(word, &["reinit", "infile", "mol", "gravity"])),
         }
     }
     me.reinit &= me.infile.is_none();
@@ -200,15 +215,19 @@ fn switch(word: &Word, args: &mut Args) -> Result<Switch> {
     Ok(Switch { torque: word.text == "torque", bodies, on, span: at.span })
 }
 
-/// The template that inserted bodies come from: here bodies are found by themselves.
-fn template(args: &mut Args, cx: &BuildCx) -> Result<String> {
+/// The template that bodies come from.
+fn mold(args: &mut Args, cx: &BuildCx) -> Result<Mold> {
     let word = args.expect("a molecule template")?;
     let set = named(word, cx)?;
-    if set.iter().any(|t| t.mass.is_some() || t.com.is_some() || t.inertia.is_some()) {
-        let text = "templates that give mass, com or inertia of the whole are not in perigrain: bodies have those of their particles";
-        return fail(Code::NOT_SUPPORTED, word.span, text);
+    let beside = |t: &Template| t.com.is_some_and(|x| x[2] != 0.0);
+    if cx.world.settings.two_dimensional && set.iter().any(beside) {
+        return fail(
+            Code::BAD_VALUE,
+            word.span,
+            "in a flat scene the `com` of a molecule file has the z of 0",
+        );
     }
-    Ok(word.text.clone())
+    Ok(Mold { name: word.text.clone(), set })
 }
 
 /// Where the world keeps its state.
@@ -225,15 +244,18 @@ struct Keys {
     mass: Numbers,
     /// Where particles are as seen from their bodies.
     place: Vectors,
+    /// What bodies have beyond their particles: see [`BODY_ENERGY`](perigrain_world::BODY_ENERGY).
+    energy: Numbers,
 }
 
 impl Keys {
     fn new(style: &str, id: &str) -> Self {
         let bodies = bodies_key(style, id);
-        let [virial, mass] = ["virial", "contact mass"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
+        let [virial, mass, energy] =
+            ["virial", "contact mass", "body energy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
         let (body, place) = (body_column(style, id), Key::new(&format!("{style}/{id}/place")));
         let virials = ["virial xx", "virial xy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
-        Self { bodies, virial, virials, body, mass, place }
+        Self { bodies, virial, virials, body, mass, place, energy }
     }
 }
 
@@ -249,12 +271,24 @@ struct Declared {
     switches: Vec<Switch>,
     reinit: bool,
     infile: Option<Word>,
-    /// The template of inserted bodies.
-    template: Option<String>,
+    /// The template of bodies.
+    mold: Option<Mold>,
+    /// The fix gravity that pulls the bodies.
+    gravity: Option<Word>,
     virial: bool,
 }
 
 impl Declared {
+    /// Whether a file gives masses that are not the sums over particles.
+    fn gives(&self) -> bool {
+        self.infile.is_some() || self.casts()
+    }
+
+    /// Whether a template does.
+    fn casts(&self) -> bool {
+        self.mold.as_ref().is_some_and(Mold::gives)
+    }
+
     /// Whether orientations move by NO_SQUISH.
     fn exact(&self) -> bool {
         self.style.starts_with("rigid/nve")
@@ -303,7 +337,7 @@ impl Fix for Declared {
 
     fn remove(&self, w: &mut World) {
         let keys = self.keys;
-        [keys.bodies, keys.virial].into_iter().for_each(|key| drop(w.memo.remove(key)));
+        [keys.bodies, keys.virial, keys.energy].into_iter().for_each(|key| drop(w.memo.remove(key)));
         [keys.body, keys.mass].into_iter().for_each(|key| w.columns.remove(key));
         [keys.place, keys.virials[0], keys.virials[1]].into_iter().for_each(|key| w.columns.remove(key));
     }
@@ -328,6 +362,7 @@ impl Fix for Declared {
             name.clone(),
             Stage::Neighbor,
             Needs::new()
+                .read(if self.casts() { TAG } else { Fields::NONE })
                 .read(
                     X | V | OMEGA | MASS | LISTS | MASK | KIND | RADIUS | BOX | MOLECULE | IMAGE | TYPE_MASS,
                 )
@@ -345,9 +380,12 @@ impl Fix for Declared {
                 Ok(())
             },
         );
+        let weight = Weight::find(self, cx)?;
+        let pulled = if weight.is_none() { Fields::NONE } else { MASK | SLOTS };
         let (me, mut crew) = (self.clone(), Crew::of(self));
         let access = || {
             Needs::new()
+                .read(pulled)
                 .add(TRAVEL | TALLY)
                 .read(
                     F | TORQUE
@@ -370,6 +408,7 @@ impl Fix for Declared {
         });
         let second = |me: Declared| {
             let mut crew = Crew::of(&me);
+            crew.weight = weight.clone();
             move |w: &mut World, t: &Tick| {
                 if t.on {
                     me.go_on(w, t, slot, &mut crew);
@@ -421,7 +460,7 @@ impl Fix for Declared {
             needs_whole_steps: Some(
                 "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
             ),
-            adopts: self.template.clone(),
+            adopts: self.mold.as_ref().map(|m| m.name.clone()),
             ..Facts::default()
         }
     }

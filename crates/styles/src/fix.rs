@@ -61,6 +61,8 @@ pub struct Facts {
     pub guard: Option<Rule>,
     /// The acceleration it gives to everyone.
     pub pull: Option<Pull>,
+    /// It does not act by itself: its acceleration is there for others.
+    pub disabled: bool,
 }
 
 /// A declared fix. A failing `fix_modify` changes nothing: it works on a copy.

@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
 use perigrain_world::contacts::PairTouch;
-use perigrain_world::{Constant, Named, World};
+use perigrain_world::{BODY_ENERGY, Constant, Named, World};
 
 /// What does work on particles besides their mutual forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,6 +210,17 @@ pub fn open(w: &mut World) -> Result<()> {
     Ok(())
 }
 
+/// Whether there is a ledger.
+pub fn is_open(w: &World) -> bool {
+    w.memo.contains(*BOOK)
+}
+
+/// What rigid bodies have beyond their particles: twice their kinetic energies, and the power of gravity.
+fn of_bodies(w: &World) -> [f64; 3] {
+    let all = w.memo.playing(*BODY_ENERGY).filter_map(|(_, own)| own.first_chunk::<3>());
+    all.fold([0.0; 3], |sum, own| super::matter::add(sum, *own))
+}
+
 /// Forgets the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
@@ -319,7 +330,9 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let held = |i: usize| p.mask[i] & free == 0;
     let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
     let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
-    let driven = par::sum(p.len(), forces);
+    let [own, spin, weight] = of_bodies(w);
+    // Rigid bodies are driven: what moves them besides forces is nothing, whatever their masses are.
+    let driven = par::sum(p.len(), forces) + weight;
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();
     // Where nothing has changed since the last run contacts have nothing new to tell.
@@ -331,8 +344,9 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let damping = pairs.damping + walls.damping + w.bonds.power.iter().sum::<f64>();
     let across = pairs.across + walls.across;
     // What contacts with walls take they hold or turn into heat: work is what walls do by moving.
-    let now = [power(0) - walls.taken, power(1), power(2), damping, across, driven, pressing];
-    let moving: f64 = kinetic(w, held).iter().sum();
+    let now = [power(0) - walls.taken, power(1) + weight, power(2), damping, across, driven, pressing];
+    let bodies = 0.5 * w.settings.units.constants().mvv2e * (own + spin);
+    let moving = kinetic(w, held).iter().sum::<f64>() + bodies;
     let springs = pairs.held + walls.held;
     if t.setup || known.is_none() {
         (book.power, book.driven[0]) = (now, moving);
@@ -401,6 +415,7 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
     }
     let book = Book::read(w).unwrap_or_default();
     let [straight, turning] = kinetic(w, |_| true);
+    let [own, spin, _] = of_bodies(w).map(|e| 0.5 * w.settings.units.constants().mvv2e * e);
     let mut strain = vec![0.0; w.types];
     for (i, energy) in w.tally.atom.iter().enumerate().take(w.n()) {
         strain[usize::from(w.particles.kind[i]) - 1] += scale(w, i) * energy;
@@ -411,8 +426,8 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
     let [walls, gravity, imposed, damping, across, ..] = book.work;
     let [normal, springs] = [0, 1].map(|k| contacts[k] + book.walls.stored[k]);
     let channels = [
-        straight,
-        turning,
+        straight + own,
+        turning + spin,
         bonds,
         normal + springs,
         damping + book.flow[0],

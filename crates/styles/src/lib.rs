@@ -46,7 +46,7 @@ pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};
 pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
-pub use seal::{FORMULAS, PlaceTest, Pull, Reading, SealCx, Text, Wants};
+pub use seal::{FORMULAS, Gravity, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 
 /// What the manual says of a style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use perigrain_world::field::{
     BOX, COLUMNS, CONTROLS, IMAGE, KIND, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, REGIONS, SLOTS, TAG,
     TYPE_MASS, V, X,
 };
-use perigrain_world::{Fields, SlotId, World};
+use perigrain_world::{Fields, GroupId, SlotId, World};
 
 /// Where an op finds a value while it runs; the plan makes sure it is fresh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,6 +162,19 @@ pub enum Pull {
     Varying,
 }
 
+/// A fix gravity in force.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gravity {
+    /// Its ID.
+    pub id: String,
+    /// Its group.
+    pub group: GroupId,
+    /// Whether it pulls the particles of the group by itself.
+    pub acts: bool,
+    /// The slot whose vector is its acceleration at the present step, in force/mass units.
+    pub slot: SlotId,
+}
+
 /// What a style may ask for while a run is sealed.
 pub trait SealCx {
     /// The world as the run starts: columns may be made here.
@@ -223,6 +236,10 @@ pub trait SealCx {
     ) -> Result<PlaceTest>;
     /// The accelerations of the fixes gravity in force.
     fn pulls(&self) -> Vec<Pull>;
+    /// The same fixes as those see them that pull bodies for them.
+    fn gravities(&mut self) -> Vec<Gravity> {
+        vec![]
+    }
     /// Of a fix of this ID, of which molecule template new copies become its rigid bodies; `None` without such a fix.
     fn adopts(&self, _id: &str) -> Option<Option<String>> {
         None

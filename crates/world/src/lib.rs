@@ -93,6 +93,10 @@ pub static RATES: Constant<Vec<f64>> = Constant::new("/rates");
 /// The role of columns that hold the mass of the rigid body a particle belongs to, 0 for none.
 pub static CONTACT_MASS: Constant<Vec<f64>> = Constant::new("/contact mass");
 
+/// The role of what rigid bodies with masses of their own have beyond their particles: twice their kinetic energies of translation and of
+/// rotation [mass velocity²], and the power of gravity on them.
+pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
+
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct World {

@@ -1,6 +1,6 @@
 //! State by name: a name becomes a handle once, outside of steps, and the handle finds its entry by number.
 
-use super::{CONTACT_MASS, COUPLED, RATES};
+use super::{BODY_ENERGY, CONTACT_MASS, COUPLED, RATES};
 use serde::de::Deserialize;
 use serde::ser::SerializeMap;
 use std::collections::BTreeMap;
@@ -16,8 +16,8 @@ struct Name {
 }
 
 /// How names begin and end whose ends are roles.
-const ROLES: [(&str, &Constant<Vec<f64>>); 3] =
-    [("langevin/", &COUPLED), ("deform/", &RATES), ("rigid/", &CONTACT_MASS)];
+const ROLES: [(&str, &Constant<Vec<f64>>); 4] =
+    [("langevin/", &COUPLED), ("deform/", &RATES), ("rigid/", &CONTACT_MASS), ("rigid/", &BODY_ENERGY)];
 
 /// What entries of several fixes are to all others: `temperature` of `property/atom/ID/temperature`.
 fn role(text: &str) -> Option<&str> {

@@ -9,7 +9,7 @@ use perigrain_pairs::bond::BondForce;
 use perigrain_plan::{LeftOut, Level, Op, Stage, When};
 use perigrain_styles::pair::Deck;
 use perigrain_styles::probe::Probe;
-use perigrain_styles::{Compute, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
+use perigrain_styles::{Compute, Gravity, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::{SlotId, World};
 
@@ -101,6 +101,16 @@ impl SealCx for Sealer<'_> {
 
     fn pulls(&self) -> Vec<Pull> {
         self.facts().filter_map(|(_, facts)| facts.pull).collect()
+    }
+
+    fn gravities(&mut self) -> Vec<Gravity> {
+        let found = self.facts().filter(|(_, facts)| facts.pull.is_some());
+        let found: Vec<_> = found.map(|(f, facts)| (f.id.clone(), f.group, !facts.disabled)).collect();
+        let gravity = |(id, group, acts): (String, _, _)| {
+            let slot = self.world.slots.id(&format!("f_{id}"));
+            Gravity { id, group, acts, slot }
+        };
+        found.into_iter().map(gravity).collect()
     }
 
     fn adopts(&self, id: &str) -> Option<Option<String>> {

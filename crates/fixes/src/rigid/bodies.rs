@@ -1,9 +1,11 @@
 //! Rigid bodies as state: which particles they are made of, what they weigh, where they are.
 
 use super::Declared;
+use super::mold::Mold;
 use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_base::math::body::Quat;
 use perigrain_base::math::body::{apply, axes, from_axes, principal};
-use perigrain_base::math::vec3::{add, cross, scale, sub};
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_styles::matter::{Masses, unwrapped};
 use perigrain_styles::rigid_bodies::Body;
 use perigrain_styles::rigid_bodies::{WIDTH, bodies};
@@ -92,6 +94,7 @@ impl Declared {
     /// Makes all bodies anew from their particles.
     pub fn set_up(&self, w: &mut World, span: Span) -> Result<()> {
         let n = w.n();
+        let before = (self.load(w), w.columns.get_scalar(self.keys.body).unwrap_or_default().to_vec());
         let list = self.loose(w, &[], span)?;
         if let Split::Groups(groups) = &self.split
             && list.len() < groups.len()
@@ -114,7 +117,12 @@ impl Declared {
         let all: Vec<usize> = (0..n).collect();
         self.weigh(w, &all, 0.0);
         self.store(w, &[]);
-        self.enter(w, &list);
+        // LAMMPS knows the template of what comes during a run alone.
+        let mold = self.mold.as_ref().filter(|mold| mold.gives() && !w.settings.lammps());
+        self.enter(w, &list, mold, |i| {
+            let number = before.1.get(i).copied().unwrap_or(0.0) as usize;
+            number.checked_sub(1).and_then(|k| before.0.get(k)).map(|b| b.q)
+        });
         Ok(())
     }
 
@@ -126,16 +134,25 @@ impl Declared {
         let body = w.columns.get_scalar(self.keys.body).unwrap_or_default();
         let list = self.loose(w, body, span)?;
         if !list.is_empty() {
-            self.enter(w, &list);
+            self.enter(w, &list, self.mold.as_ref().filter(|mold| mold.gives()), |_| None);
         }
         Ok(())
     }
 
-    fn enter(&self, w: &mut World, list: &[(f64, Vec<usize>)]) {
+    /// Makes bodies; `before` tells how the body was turned that a particle belonged to.
+    fn enter(
+        &self,
+        w: &mut World,
+        list: &[(f64, Vec<usize>)],
+        mold: Option<&Mold>,
+        before: impl Fn(usize) -> Option<Quat>,
+    ) {
         let n = w.n();
         let mut bodies = self.load(w);
         for (name, members) in list {
-            let body = Body { name: *name, ..of_particles(w, members) };
+            let sum = of_particles(w, members);
+            let cast = mold.and_then(|mold| mold.cast(w, members, &sum, before(members[0])));
+            let body = Body { name: *name, ..cast.unwrap_or(sum) };
             bodies.push(body);
             let number = bodies.len() as f64;
             members.iter().for_each(|&i| w.columns.scalar(self.keys.body, n)[i] = number);
@@ -189,10 +206,24 @@ fn of_particles(w: &World, members: &[usize]) -> Body {
     }
     b.x = b.x.map(|a| a / b.mass);
     b.v = b.v.map(|a| a / b.mass);
+    let radius = |i: usize| p.radius.get(i).copied().unwrap_or(0.0);
+    let centre = b.x;
+    let spheres = members.iter().map(|&i| (masses.get(i), sub(unwrapped(w, i), centre), radius(i)));
+    let inertia = tensor(spheres.clone());
+    for (&i, (m, d, r)) in members.iter().zip(spheres) {
+        b.momentum = add(b.momentum, scale(m, cross(d, p.v[i])));
+        if let Some(omega) = p.omega.get(i).filter(|_| r > 0.0) {
+            b.momentum = add(b.momentum, scale(SPHERE * m * r * r, *omega));
+        }
+    }
+    orient(&mut b, inertia, w.settings.two_dimensional);
+    b
+}
+
+/// The tensor of inertia xx yy zz xy xz yz of solid spheres: mass, place as seen from the centre, radius.
+pub fn tensor(spheres: impl Iterator<Item = (f64, Vec3, f64)>) -> [f64; 6] {
     let mut tensor = [0.0; 6];
-    for &i in members {
-        let (m, d) = (masses.get(i), sub(unwrapped(w, i), b.x));
-        let r = p.radius.get(i).copied().unwrap_or(0.0);
+    for (m, d, r) in spheres {
         let own = SPHERE * m * r * r;
         for (k, (a, c)) in [(1, 2), (0, 2), (0, 1)].into_iter().enumerate() {
             tensor[k] += m * (d[a] * d[a] + d[c] * d[c]) + own;
@@ -200,18 +231,19 @@ fn of_particles(w: &World, members: &[usize]) -> Body {
         for (k, (a, c)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
             tensor[3 + k] -= m * d[a] * d[c];
         }
-        b.momentum = add(b.momentum, scale(m, cross(d, p.v[i])));
-        if let Some(omega) = p.omega.get(i).filter(|_| r > 0.0) {
-            b.momentum = add(b.momentum, scale(own, *omega));
-        }
     }
-    orient(&mut b, tensor);
-    b
+    tensor
 }
 
-/// Axes and principal moments from a tensor of inertia xx yy zz xy xz yz.
-pub fn orient(body: &mut Body, tensor: [f64; 6]) {
-    let (moments, frame) = principal(tensor);
+/// Axes and principal moments from a tensor of inertia xx yy zz xy xz yz; in flat scenes the last axis is z, so that bodies turn about one
+/// component of their quaternion alone: with z elsewhere the steps of nearly straight ones would make a motion out of the plane from rounding.
+pub fn orient(body: &mut Body, tensor: [f64; 6], flat: bool) {
+    let (mut moments, mut frame) = principal(tensor);
+    let along = |k: usize| frame[k][2].abs();
+    if flat && along(1) > along(2) {
+        moments.swap(1, 2);
+        frame = [frame[0], frame[2], scale(-1.0, frame[1])];
+    }
     body.moments = moments;
     body.q = from_axes(frame);
 }

@@ -35,7 +35,7 @@ fn read(fix: &Declared, w: &mut World, text: &str) -> Result<()> {
     let count = whole(&first, first.word(0), "the number of bodies")?;
     let mut bodies = fix.load(w);
     let number_of = w.columns.get_scalar(fix.keys.body).unwrap_or_default().to_vec();
-    let edges = w.domain()?.edges();
+    let (edges, flat) = (w.domain()?.edges(), w.settings.two_dimensional);
     for have in 0..count {
         let Some(line) = lines.take_filled() else {
             let text = format!("the first line promises {count} bodies, the file has {have}");
@@ -56,7 +56,7 @@ fn read(fix: &Declared, w: &mut World, text: &str) -> Result<()> {
         b.mass = row[1];
         (b.v, b.momentum, b.image) = (three(11), three(14), three(17));
         b.x = add(three(2), edges.shift(b.image));
-        orient(b, [row[5], row[6], row[7], row[8], row[9], row[10]]);
+        orient(b, [row[5], row[6], row[7], row[8], row[9], row[10]], flat);
         let body = *b;
         let members: Vec<usize> = (0..w.n()).filter(|&i| number_of[i] == k as f64 + 1.0).collect();
         fix.place(w, &body, &members);

@@ -1,6 +1,7 @@
 //! One step of rigid bodies and of the particles that follow them.
 
 use super::follow::{Came, Follow, Holds};
+use super::gravity::Weight;
 use super::pass::{POSE, Part, Pass};
 use super::{COLUMNS, Declared, Keys};
 use perigrain_base::math::body::{apply_transposed, matrix};
@@ -23,6 +24,8 @@ pub struct Crew {
     /// Places of the bodies.
     poses: Vec<[f64; POSE]>,
     keys: Keys,
+    /// What pulls bodies as a whole.
+    pub weight: Weight,
 }
 
 /// Half the virial of the forces that hold bodies together.
@@ -35,7 +38,19 @@ struct Held {
 impl Crew {
     /// Nobody so far.
     pub fn of(fix: &Declared) -> Self {
-        Self { seen: None, first: vec![], members: vec![], poses: vec![], keys: fix.keys }
+        Self {
+            seen: None,
+            first: vec![],
+            members: vec![],
+            poses: vec![],
+            keys: fix.keys,
+            weight: Weight::default(),
+        }
+    }
+
+    /// The particles of body `k`.
+    pub fn members(&self, k: usize) -> &[usize] {
+        &self.members[self.first[k]..self.first[k + 1]]
     }
 
     /// Sorts the particles by bodies where their order may have changed.
@@ -108,7 +123,9 @@ impl Declared {
             }
             crew.keys.virials.into_iter().for_each(|key| w.columns.remove(key));
         }
-        self.publish(w, t, slot, &self.load(w));
+        let bodies = self.load(w);
+        self.publish(w, t, slot, &bodies);
+        self.tell_ledger(w, crew, &bodies);
     }
 
     /// The end of a step and the beginning of the next one, which asks for no virial; nobody sees the velocities in between.
@@ -138,8 +155,11 @@ impl Declared {
             half: half(w, t),
             dt: t.dt,
             flat: w.settings.two_dimensional,
+            lammps: w.settings.lammps(),
             edges: w.edges(),
             p: &w.particles,
+            masses: Masses::of(w),
+            pulls: crew.weight.now(w),
             first: &crew.first,
             members: &crew.members,
         };

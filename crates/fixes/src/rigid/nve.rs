@@ -19,7 +19,7 @@ impl Style for RigidNve {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group rigid/nve single | molecule | custom i_NAME | group N ID1 … IDN  [force M x y z] [torque M x y z] \
-                     [reinit yes|no] [infile FILE]",
+                     [reinit yes|no] [infile FILE] [gravity ID]",
             summary: "Rigid bodies as fix rigid, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid` in everything, but for how orientations move: a step is split into exact rotations about the principal axes \
                    (Miller et al., J. Chem. Phys. 116, 2002, 8649). It is symplectic, so that energy does not drift in long runs; \
@@ -36,7 +36,7 @@ impl Style for RigidNveSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group rigid/nve/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE]",
+            syntax: "fix ID group rigid/nve/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE] [gravity ID]",
             summary: "Molecules as rigid bodies as fix rigid/small, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid/small`, with the rotations of `fix rigid/nve`. The scalar is the temperature here too, where LAMMPS \
                    (and `compat lammps`) gives an energy.",

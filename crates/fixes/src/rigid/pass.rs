@@ -1,12 +1,14 @@
 //! The motion of rigid bodies themselves: forces, kicks, drift and turn, as many bodies at a time as the processor can.
 
 use super::Declared;
+use super::gravity::{Pulls, member};
 use perigrain_base::math::body::{Quat, matrix, no_squish, richardson, spin};
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
+use perigrain_styles::matter::Masses;
 use perigrain_styles::rigid_bodies::WIDTH;
 use perigrain_world::Particles;
 
@@ -15,6 +17,9 @@ pub const POSE: usize = 24;
 
 /// Numbers of a body that its motion takes up: whole rows of four, up to the first image count.
 const MOVING: usize = 28;
+
+/// The part of the largest moment of inertia below which the smallest one makes a body nearly straight.
+const SLENDER: f64 = 1e-3;
 
 /// What a pass makes of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,10 +60,16 @@ pub struct Pass<'a> {
     pub dt: f64,
     /// A scene of two dimensions.
     pub flat: bool,
+    /// LAMMPS' steps.
+    pub lammps: bool,
     /// Edges of the box.
     pub edges: Periods,
     /// The particles.
     pub p: &'a Particles,
+    /// Their masses.
+    pub masses: Masses<'a>,
+    /// Gravity on bodies as a whole.
+    pub pulls: Pulls,
     /// Where the members of each body begin.
     pub first: &'a [usize],
     /// Particles by bodies.
@@ -144,16 +155,25 @@ impl Pass<'_> {
             false => unsafe { Form::here().run(Groups { pass: self, start, rows, poses }) },
         };
         let rest = rows[done..].iter_mut().zip(&mut poses[done..]);
-        for (k, (row, pose)) in rest.enumerate() {
-            // Bodies have more numbers than those of their motion: see `columns`.
-            let (own, _) = row.split_first_chunk_mut::<MOVING>().unwrap_or_else(|| unreachable!());
-            let mut b = Moving::of(own);
-            self.go(&mut b, &self.fix.allowed(start + done + k, self.flat), |b| {
-                let exact = self.fix.exact();
-                exact.then(|| no_squish(b.q, b.momentum, b.moments, self.dt))
-            });
-            (*own, *pose) = (b.numbers(), b.pose());
-        }
+        rest.enumerate().for_each(|(k, (row, pose))| self.one(start + done + k, row, pose));
+    }
+
+    /// Body `k`.
+    fn one(&self, k: usize, row: &mut [f64; WIDTH], pose: &mut [f64; POSE]) {
+        // Bodies have more numbers than those of their motion: see `columns`.
+        let (own, _) = row.split_first_chunk_mut::<MOVING>().unwrap_or_else(|| unreachable!());
+        let mut b = Moving::of(own);
+        let exact = self.fix.exact() || self.slender(&b.moments);
+        self.go(&mut b, &self.fix.allowed(k, self.flat), |b| {
+            exact.then(|| no_squish(b.q, b.momentum, b.moments, self.dt))
+        });
+        (*own, *pose) = (b.numbers(), b.pose());
+    }
+
+    /// Whether a body is so straight that Richardson's steps let it tumble: their error of (ω Δt)² outweighs what holds the axis of the largest
+    /// moment, which is as small as the smallest moment is beside the others. In flat scenes, where z is an axis to the bit, nothing tumbles.
+    fn slender(&self, moments: &Vec3) -> bool {
+        !self.flat && !self.lammps && moments[0] > 0.0 && moments[0] < SLENDER * moments[2]
     }
 
     /// As many bodies as there are lanes; `all`: what counts of forces and torques, where that is the same for all bodies.
@@ -190,14 +210,13 @@ impl Pass<'_> {
         }
     }
 
-    /// The pass for a body, or lanes of bodies; `exactly` gives orientation and angular momentum after a step where
-    /// Richardson's is not wanted.
+    /// The pass for a body, or lanes of bodies; `exactly` gives the orientation after a step where Richardson's is not wanted.
     #[inline(always)]
     fn go<R: Real>(
         &self,
         b: &mut Moving<R>,
         on: &[Vec3<R>; 2],
-        exactly: impl Fn(&Moving<R>) -> Option<(Quat<R>, Vec3<R>)>,
+        exactly: impl Fn(&Moving<R>) -> Option<Quat<R>>,
     ) {
         if matches!(self.part, Part::Second | Part::Both) {
             b.kick(self.half, on);
@@ -210,8 +229,8 @@ impl Pass<'_> {
         }
         b.kick(self.half, on);
         b.x = add(b.x, scale(b.mass.like(self.dt), b.v));
-        if let Some(turned) = exactly(b) {
-            (b.q, b.momentum) = turned;
+        if let Some(q) = exactly(b) {
+            b.q = q;
             b.omega = spin(b.momentum, b.q, b.moments);
             return;
         }
@@ -223,14 +242,19 @@ impl Pass<'_> {
     fn gather(&self, k: usize, row: &mut [f64; WIDTH]) {
         let (mut force, mut torque, centre) = ([0.0; 3], [0.0; 3], [row[2], row[3], row[4]]);
         let p = self.p;
-        for &i in &self.members[self.first[k]..self.first[k + 1]] {
-            let (x, image) = (p.x[i], p.image[i]);
-            let there = add(x, self.edges.shift_of(image));
+        let members = &self.members[self.first[k]..self.first[k + 1]];
+        let away = |i: usize| sub(add(p.x[i], self.edges.shift_of(p.image[i])), centre);
+        for &i in members {
             force = add(force, p.f[i]);
-            torque = add(torque, cross(sub(there, centre), p.f[i]));
+            torque = add(torque, cross(away(i), p.f[i]));
             if let Some(own) = p.torque.get(i) {
                 torque = add(torque, *own);
             }
+        }
+        if !self.pulls.is_none() {
+            let all = members.iter().map(|&i| member(&self.masses, &p.mask, i, away(i)));
+            let [weight, turning] = self.pulls.on(row[1], all);
+            (force, torque) = (add(force, weight), add(torque, turning));
         }
         row[18..21].copy_from_slice(&force);
         row[21..24].copy_from_slice(&torque);
@@ -254,6 +278,10 @@ impl InLanes for Groups<'_, '_> {
         let (rows, poses) = (rows.as_chunks_mut::<N>().0, poses.as_chunks_mut::<N>().0);
         let all = if pass.fix.switches.is_empty() { Some(pass.fix.allowed(start, pass.flat)) } else { None };
         for (k, (rows, poses)) in rows.iter_mut().zip(poses).enumerate() {
+            if rows.iter().any(|row| pass.slender(&[row[15], row[16], row[17]])) {
+                (0..N).for_each(|l| pass.one(start + N * k + l, &mut rows[l], &mut poses[l]));
+                continue;
+            }
             // SAFETY: passed on.
             unsafe { pass.group::<N, V>(start + N * k, all, rows, poses) };
         }

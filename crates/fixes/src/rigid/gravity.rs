@@ -1,0 +1,168 @@
+//! Gravity on rigid bodies: M g at the centre, where a body's mass and centre are not the sums over its particles.
+
+use super::Declared;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
+use perigrain_styles::matter::Masses;
+use perigrain_styles::{Gravity, SealCx};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// Fixes gravity that pull bodies as a whole.
+#[derive(Clone, Default)]
+pub struct Weight {
+    /// The one that `gravity` names: it acts besides all forces on particles.
+    named: Option<SlotId>,
+    /// Those that pull particles of bodies with a mass of their own: the bit of their group, and where their acceleration is.
+    pulling: Vec<(u32, SlotId)>,
+}
+
+/// Accelerations of such fixes at a step [force/mass].
+#[derive(Default)]
+pub struct Pulls {
+    /// On every body, at its centre.
+    centre: Option<Vec3>,
+    /// On all particles of the group with this bit.
+    particles: Vec<(u32, Vec3)>,
+}
+
+/// Particles of a body: mass, and where they are as seen from its centre, with the groups they are in.
+type Member = (f64, Vec3, u32);
+
+impl Weight {
+    /// What the fixes gravity of a deck mean for the bodies of `fix`.
+    ///
+    /// # Errors
+    /// `gravity` names no fix gravity.
+    pub fn find(fix: &Declared, cx: &mut dyn SealCx) -> Result<Self> {
+        let (all, span) = (cx.gravities(), cx.span());
+        let named = match &fix.gravity {
+            Some(word) => match all.iter().find(|g| g.id == word.text) {
+                Some(gravity) => Some(gravity),
+                None => {
+                    let text = format!("there is no fix gravity `{}`", word.text);
+                    let help = format!(
+                        "write for example `fix {} all gravity 9.81 vector 0 0 -1 disable`",
+                        word.text
+                    );
+                    return Err(Diagnostic::error(Code::UNKNOWN_FIX, word.span, text).help(help).into());
+                }
+            },
+            None => None,
+        };
+        let w = cx.world();
+        let shares = |g: &&Gravity| {
+            let both = g.group.bit() | fix.group.bit();
+            let same = g.group == fix.group || g.group == GroupId::ALL;
+            g.acts && (same || w.particles.mask.iter().any(|m| m & both == both))
+        };
+        let lammps = w.settings.lammps();
+        // Bodies may come later: whose particles are pulled is asked at each step.
+        let other = |g: &&Gravity| g.acts && fix.gives() && named.is_none_or(|n| n.id != g.id);
+        let pulling: Vec<&Gravity> = all.iter().filter(other).collect();
+        let note = match named {
+            Some(_) => named.filter(shares).map(|g| twice(g, span)),
+            None => pulling.iter().copied().find(shares).map(|g| told(fix, g, lammps, span)),
+        };
+        note.into_iter().for_each(|note| w.parts.notes.push(note));
+        // LAMMPS leaves the pull on particles as it is.
+        let kept = if lammps { vec![] } else { pulling };
+        Ok(Self {
+            named: named.map(|g| g.slot),
+            pulling: kept.into_iter().map(|g| (g.group.bit(), g.slot)).collect(),
+        })
+    }
+
+    /// Whether no fix gravity pulls bodies as a whole.
+    pub fn is_none(&self) -> bool {
+        self.named.is_none() && self.pulling.is_empty()
+    }
+
+    /// Accelerations now.
+    pub fn now(&self, w: &World) -> Pulls {
+        let at = |slot: SlotId| w.slots.get(slot).vector.first_chunk().copied().unwrap_or([0.0; 3]);
+        Pulls {
+            centre: self.named.map(at),
+            particles: self.pulling.iter().map(|(bit, slot)| (*bit, at(*slot))).collect(),
+        }
+    }
+}
+
+/// That a fix gravity acts on particles and on their bodies.
+fn twice(g: &Gravity, span: Span) -> Diagnostic {
+    let text =
+        format!("fix gravity `{}` pulls these bodies twice: at their centres, and their particles", g.id);
+    let help = "write `disable` at the end of fix gravity, so that it acts through this fix alone";
+    Diagnostic::warning(Code::SUSPICIOUS, span, text).help(help)
+}
+
+/// That gravity and the masses of particles do not go together.
+fn told(fix: &Declared, g: &Gravity, lammps: bool, span: Span) -> Diagnostic {
+    let source = if fix.infile.is_some() { "`infile`" } else { "the template" };
+    let help = format!("write `gravity {}` here and `disable` at the end of fix gravity", g.id);
+    if lammps {
+        let text = format!(
+            "gravity pulls the particles of these bodies by their own masses, not the bodies by those that {source} gives"
+        );
+        return Diagnostic::warning(Code::SUSPICIOUS, span, text).help(help);
+    }
+    let text = format!(
+        "bodies whose mass or centre {source} gives fall with the acceleration of fix gravity, pulled at their centres; in LAMMPS \
+         their particles are pulled, so that they fall at another rate and may turn"
+    );
+    Diagnostic::note(Code::COMPAT, span, text).help(format!("for the same in LAMMPS {help}"))
+}
+
+impl Pulls {
+    /// A pull on all particles of the group with this bit.
+    #[cfg(test)]
+    pub fn of_particles(bit: u32, a: Vec3) -> Self {
+        Self { centre: None, particles: vec![(bit, a)] }
+    }
+
+    /// Whether there are none.
+    pub fn is_none(&self) -> bool {
+        self.centre.is_none() && self.particles.is_empty()
+    }
+
+    /// Force and torque about its centre that a body of this mass feels besides forces on its particles: M g, and in the place of
+    /// the weights of particles that have been pulled one by one, Σ m g and Σ m d × g, M g too, if all of them have been.
+    pub fn on(&self, mass: f64, members: impl Iterator<Item = Member> + Clone) -> [Vec3; 2] {
+        let mut force = self.centre.map_or([0.0; 3], |a| scale(mass, a));
+        let mut torque = [0.0; 3];
+        for (bit, a) in &self.particles {
+            if !members.clone().all(|(.., mask)| mask & bit != 0) {
+                continue;
+            }
+            let (mut sum, mut lever) = (0.0, [0.0; 3]);
+            for (m, d, _) in members.clone() {
+                (sum, lever) = (sum + m, add(lever, scale(m, d)));
+            }
+            force = add(force, scale(mass - sum, *a));
+            torque = sub(torque, cross(lever, *a));
+        }
+        [force, torque]
+    }
+}
+
+/// What [`Pulls::on`] asks of particle `i` of a body.
+pub fn member(masses: &Masses, mask: &[u32], i: usize, d: Vec3) -> Member {
+    (masses.get(i), d, mask[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_of_particles_become_that_of_the_body() {
+        let a = [0.0, 0.0, -2.0];
+        let all = [(1.0, [0.5, 0.0, 0.0], 1), (1.0, [0.25, 0.0, 0.0], 1)];
+        // Σ m a + what is added = M a; Σ m d × a + what is added = 0.
+        let [force, torque] = Pulls { centre: None, particles: vec![(1, a)] }.on(1.5, all.into_iter());
+        assert_eq!((force, torque), ([0.0, 0.0, 1.0], [0.0, -1.5, 0.0]));
+        // A part of a body that is pulled is what the deck says.
+        let some = [all[0], (1.0, [0.25, 0.0, 0.0], 2)];
+        let [force, torque] = Pulls { centre: Some(a), particles: vec![(1, a)] }.on(1.5, some.into_iter());
+        assert_eq!((force, torque), ([0.0, 0.0, -3.0], [0.0; 3]));
+    }
+}
