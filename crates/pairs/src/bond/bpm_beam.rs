@@ -43,7 +43,7 @@ impl Style for BpmBeam {
                    shear force Q, the moments M_b of bending and M_t of twist; `moment` B is between 0 and 1 (1). `criterion separate` asks each of the \
                    four alone, N and M_b only where the bond is pulled. `weibull M SEED` multiplies both strengths of every bond with a number of a Weibull \
                    distribution of modulus M and mean 1, which belongs to the IDs of its ends. A broken bond is gone, and pair forces act between its ends \
-                   from the next step on; nothing breaks in the setup of a run, and nothing without `strength`. `smooth yes` multiplies forces with 1 − B⁴, \
+                   from the next step on; nothing breaks without `strength`, nor under `compat lammps` in the setup of a run. `smooth yes` multiplies forces with 1 − B⁴, \
                    B the share of the strength that is used up; energy is not kept then.\n\
                    `damping`: dashpots of Z times the critical damping of the two ends on the bond, of all modes or of stretch, shear, twist and bending.\n\
                    Needs `atom_style bpm/sphere` and `fix nve/bpm/sphere`; bonds that break need `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair \

@@ -343,6 +343,8 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         let none: (&[Vec3], &[Quat]) = (&[], &[]);
         let (omega, quat) = if L::Law::TURNS { (&p.omega[..], &p.quat[..]) } else { none };
         let v = if self.law.damped() { &p.v[..] } else { &[] };
+        // In the setup of a run LAMMPS lets no bond break: one beyond its limit pulls, with a factor of fading below zero.
+        let holds = t.setup && w.settings.lammps();
         let dimension = if w.settings.two_dimensional { 2 } else { 3 };
         let body = Body { x: &p.x, v, omega, quat, periods };
         for (bond, memory) in self.law.prepare(&mut self.columns, &body, dimension) {
@@ -354,8 +356,8 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             coeffs: &self.coeffs,
             body,
             damped: self.law.damped(),
-            // Nothing breaks in the setup of a run, nor where a line search tries.
-            breaks: self.law.breaks() && !t.setup && !t.trial,
+            // Nothing breaks where a line search tries.
+            breaks: self.law.breaks() && !holds && !t.trial,
             counts: w.bonds.counts_losses && self.law.damped(),
         };
         self.law.law().sweep(&pass, &mut self.out);
