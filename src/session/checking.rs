@@ -46,6 +46,9 @@ impl Session {
         self.check_orthogonal(&mut found);
         self.check_variables(&mut found);
         self.check_lattice_units(&mut found);
+        self.check_width_of_box(&mut found);
+        self.check_empty_groups(&mut found);
+        self.check_pictures(&mut found);
         found.0.extend(self.graph.thermo.forgotten());
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) =

@@ -464,6 +464,9 @@ impl Session {
         let dump = once_dump(&self.graph, &self.world, &mut Args::new(cmd), &cx);
         self.notes.append(notes.into_inner());
         let dump = dump?;
+        if let Some(doubt) = dump.doubts(&self.world) {
+            self.note_once(doubt.at(cmd.span));
+        }
         self.record(cmd, Role::Act, None, uses.into_inner(), vec![]);
         if self.looking() {
             let file = cmd.args.get(2).map_or("", |w| &w.text);

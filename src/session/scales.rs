@@ -1,7 +1,11 @@
 //! Notes on speeds and lengths that are in lattice units where the numbers look like those of the lines around them, which are not.
 
 use super::Session;
+use crate::graph::DumpNode;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Span};
+use perigrain_base::math::cformat::general;
+use perigrain_styles::common::about;
+use perigrain_world::GroupId;
 
 /// How much smaller than others of its kind a speed is that is likely to be meant otherwise.
 const THOUSANDTH: f64 = 1.0 / 200.0;
@@ -21,11 +25,11 @@ impl Said {
 }
 
 impl Session {
-    /// Notes on numbers in lattice units, of a deck that is checked.
+    /// Notes on numbers in lattice units.
     pub(super) fn check_lattice_units(&self, found: &mut Diagnostics) {
         let spacing = self.world.lattice.spacing;
         let scale = spacing.iter().copied().fold(0.0, f64::max);
-        if !self.checking() || scale <= 0.0 || (0.1..=10.0).contains(&scale) {
+        if scale <= 0.0 || (0.1..=10.0).contains(&scale) {
             return;
         }
         let lines = || self.graph.lines.nodes().iter().map(|n| (n.text.as_str(), n.span));
@@ -51,6 +55,89 @@ impl Session {
         }
     }
 }
+
+impl Session {
+    /// A warning where the whole box is a small part of one lattice spacing wide: its lengths were meant as they stand.
+    pub(super) fn check_width_of_box(&self, found: &mut Diagnostics) {
+        let (lattice, flat) = (&self.world.lattice, self.world.settings.two_dimensional);
+        let Some(domain) = self.world.domain.as_ref().filter(|_| !lattice.basis.is_empty()) else { return };
+        let axes = if flat { 0..2 } else { 0..3 };
+        let spacings = |d: usize| domain.lengths()[d] / lattice.spacing[d];
+        let widest = axes.map(spacings).fold(0.0, f64::max);
+        if widest >= PART_OF_SPACING || self.world.parts.unseen.space {
+            return;
+        }
+        let words = |text: &str| text.split_whitespace().map(String::from).collect::<Vec<_>>();
+        let lines = || self.graph.lines.nodes().iter().map(|n| (words(&n.text), n.span));
+        let Some((made, _)) = lines().rfind(|(w, _)| w.first().is_some_and(|w| w == "create_box")) else {
+            return;
+        };
+        let names = |w: &[String]| w.len() > 2 && w[0] == "region" && Some(&w[1]) == made.get(2);
+        let Some((region, span)) = lines().rfind(|(w, _)| names(w)) else { return };
+        if region.iter().any(|w| w == "units") {
+            return;
+        }
+        let text = format!(
+            "the box is {} lattice spacings wide: lengths of this region count in spacings of {}",
+            about(widest),
+            general(lattice.spacing[0], 4)
+        );
+        found.push(
+            Diagnostic::warning(Code::SUSPICIOUS, span, text).help(
+                "did you mean `units box`? write it at the end of this line, or `units lattice` if not",
+            ),
+        );
+    }
+
+    /// Warnings of fixes for groups without particles, where nothing will put any there.
+    pub(super) fn check_empty_groups(&self, found: &mut Diagnostics) {
+        let w = &self.world;
+        if w.n() == 0 || w.parts.unseen.particles {
+            return;
+        }
+        let taken = w.particles.mask.iter().fold(0, |all, mask| all | mask);
+        let sources = ["pour", "deposit"];
+        let fills = |group| self.graph.fixes.iter().any(|f| sources.contains(&f.style) && f.group == group);
+        for f in &self.graph.fixes {
+            let acts = !sources.contains(&f.style) && !WITHOUT_GROUP.iter().any(|s| f.style.starts_with(s));
+            let empty =
+                f.group != GroupId::ALL && taken & f.group.bit() == 0 && w.groups.dynamic(f.group).is_none();
+            if acts && empty && !fills(f.group) {
+                let name = w.groups.name(f.group);
+                let text = format!("there is no particle in group `{name}`: this fix does nothing");
+                found.push(
+                    Diagnostic::warning(Code::SUSPICIOUS, f.span, text)
+                        .help("a group takes the particles that are there when it is defined: let `group` follow `create_atoms`"),
+                );
+            }
+        }
+    }
+
+    /// Warnings of pictures that would show nothing but one sphere.
+    pub(super) fn check_pictures(&self, found: &mut Diagnostics) {
+        let doubts = |d: &DumpNode| d.dump.doubts(&self.world).map(|doubt| doubt.at(d.span));
+        found.0.extend(self.graph.dumps.iter().filter_map(doubts));
+    }
+}
+
+/// A box that is no wider than this part of a lattice spacing was hardly meant so.
+const PART_OF_SPACING: f64 = 0.5;
+
+/// Beginnings of the names of fixes for which their group means nothing, or that only look.
+const WITHOUT_GROUP: [&str; 12] = [
+    "ave/",
+    "balance",
+    "dt/",
+    "external",
+    "extremes",
+    "halt",
+    "print",
+    "property/atom",
+    "python",
+    "store/",
+    "vector",
+    "deform",
+];
 
 fn said(raw: f64, text: &str, span: Span, scale: f64) -> Option<Said> {
     let boxed = text.split_whitespace().collect::<Vec<_>>().windows(2).any(|w| w == ["units", "box"]);

@@ -291,7 +291,8 @@ fn check(domain: &Domain, span: Span) -> Result<()> {
             return fail(Code::BAD_VALUE, span, format!("the box would run from {lo} to {hi} in {name}"));
         }
     }
-    common::check_flat(domain.boundary, (domain.lo[2], domain.hi[2]), domain.flat)
+    common::check_flat(domain.boundary, (domain.lo[2], domain.hi[2]), domain.flat)?;
+    common::check_volume(domain.lengths())
 }
 
 /// What LAMMPS does with every new box: the room beyond shrink-wrapped faces is measured anew and added.

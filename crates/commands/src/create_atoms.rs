@@ -52,7 +52,7 @@ impl Style for CreateAtoms {
                    length, so that exactly one of two equivalent sites is taken. `region` also asks the region. `single` \
                    takes lattice spacings unless `units box` is said; `remap yes` wraps its place into a periodic box. \
                    `random` draws from LAMMPS' Park–Miller stream; `overlap D` keeps new particles D away from all \
-                   others, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
+                   others, in lattice spacings (along x) unless `units box` is said, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
                    cell another type. `ratio` and `subset` take a random part of the sites, exact in number, the sites \
                    that LAMMPS takes.\n\n\
                    `var` names an equal-style variable that decides about each place of `box`, `region` and `random`: no \
@@ -150,9 +150,12 @@ impl CommandStyle for CreateAtoms {
             }
             None => {}
         }
-        if let Place::Single { x, .. } = &mut c.place {
-            let scale = scales(cx.world, c.lattice_units);
-            *x = [0, 1, 2].map(|d| x[d] * scale[d]);
+        let scale = scales(cx.world, c.lattice_units);
+        match &mut c.place {
+            Place::Single { x, .. } => *x = [0, 1, 2].map(|d| x[d] * scale[d]),
+            // A distance has no direction; LAMMPS takes the spacing along x.
+            Place::Random { overlap, .. } => *overlap *= scale[0],
+            _ => {}
         }
         if matches!(c.place, Place::Mesh(_)) && c.lattice_units {
             let d = Diagnostic::error(Code::INCOMPLETE, style.span, "triangles are in box units: say so");

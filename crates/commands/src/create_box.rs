@@ -89,6 +89,7 @@ impl CommandStyle for CreateBox {
         let bond_types = bond_types(a, cx)?;
         let flat = cx.world.settings.two_dimensional;
         common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
+        common::check_volume([0, 1, 2].map(|d| hi[d] - lo[d])).map_err(|e| e.at(word.span))?;
         Ok(setting(move |cx| {
             let mut domain = Domain { flat, tilt, ..Domain::new(lo, hi, cx.world.settings.boundary) };
             cx.say(format!("Created {}", domain.told(lo, hi)));

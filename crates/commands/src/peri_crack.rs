@@ -98,6 +98,7 @@ fn sheet(a: &mut Args, cx: &BuildCx) -> Result<Sheet> {
     let Some(surface) = triangles::read_faces(file, cx)? else { return Ok(Sheet::from(vec![])) };
     let mut placed = surface.triangles.clone();
     placing.apply(&mut placed, scales(cx.world, lattice));
+    triangles::doubt_size(file, &placed, cx);
     Sheet::new(placed).map_err(|fault| {
         let text = format!("`{}` is no surface: {}", file.text, fault.text(&surface));
         Diagnostic::error(Code::BAD_VALUE, file.span, text).help(fault.help()).into()

@@ -4,13 +4,15 @@ use super::attribute::{Attribute, Core, Source, attribute};
 use super::base::{Base, Shot, unknown};
 use super::picture::{self, Options};
 use super::{Dump, DumpStyle};
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::cformat::general;
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, Word};
 use perigrain_out::dump::Data;
 use perigrain_out::image::{Colour, ENDINGS, Legend, ScaleBar, Scene, by_kind, edges, render};
 use perigrain_out::movie::{Movie, Pace};
 use perigrain_plan::Op;
+use perigrain_styles::common::about;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{World, outline};
 
@@ -164,6 +166,25 @@ impl Dump for Declared {
             }
         }
         Ok(())
+    }
+
+    fn doubts(&self, w: &World) -> Option<Diagnostic> {
+        let domain = w.domain.as_ref()?;
+        let widest = domain.lengths().into_iter().fold(0.0, f64::max);
+        let by_type =
+            |kind: u16| self.options.diameters.iter().rev().find(|(k, _)| *k == kind).map(|(_, d)| *d);
+        let own = || self.options.diameter.or(matches!(self.size, Size::ByType).then_some(1.0));
+        let most = (1..=w.types as u16).filter_map(|k| by_type(k).or_else(own)).fold(0.0, f64::max);
+        if !matches!(self.size, Size::ByType) || most <= widest || w.parts.unseen.space {
+            return None;
+        }
+        let text = format!(
+            "spheres of diameter {}, as `type` draws them, are {} times as wide as the box",
+            general(most, 4),
+            about(most / widest)
+        );
+        let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
+        Some(d.help("write `auto` in place of the second `type`: spheres as large as the particles are"))
     }
 
     fn every(&self) -> Option<i64> {

@@ -145,6 +145,33 @@ pub fn check_flat(boundary: Boundary, (lo, hi): (f64, f64), flat: bool) -> Resul
     Ok(())
 }
 
+/// Refuses a box whose volume is too small or too large to divide by it.
+pub fn check_volume(lengths: [f64; 3]) -> Result<()> {
+    let [x, y, z] = lengths;
+    if (x * y * z).is_normal() {
+        return Ok(());
+    }
+    let text = format!(
+        "a box of {} x {} x {} has no volume that can be computed with",
+        short(x),
+        short(y),
+        short(z)
+    );
+    let d = Diagnostic::error(Code::BAD_VALUE, None, text);
+    Err(d.help("take units in which its edges are nearer to 1").into())
+}
+
+/// A number to two digits, for people: 700, 25, 0.04.
+pub fn about(x: f64) -> String {
+    let rounded = perigrain_base::math::cformat::general(x, 2).parse().unwrap_or(x);
+    perigrain_base::math::cformat::general(rounded, 6)
+}
+
+/// A number with a few digits.
+fn short(x: f64) -> String {
+    perigrain_base::math::cformat::general(x, 4)
+}
+
 /// The box, or the error that it is missing.
 pub fn domain<'a>(cx: &BuildCx<'a>) -> Result<&'a Domain> {
     cx.world.domain().map_err(|d| d.at(cx.span))

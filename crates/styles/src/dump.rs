@@ -2,9 +2,10 @@
 
 use super::{BuildCx, SealCx, Style};
 use dyn_clone::DynClone;
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_world::World;
 
 /// A dump style: one file, one line in `DUMPS`.
 pub trait DumpStyle: Style {
@@ -31,6 +32,12 @@ pub trait Dump: DynClone + Send {
     /// # Errors
     /// Unknown keywords.
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()>;
+
+    /// What its snapshots would show other than is meant, told before any is made; `w` may be a scene that is only looked at.
+    fn doubts(&self, w: &World) -> Option<Diagnostic> {
+        let _ = w;
+        None
+    }
 
     /// The interval a `dump_modify … every N` asked for, if it did.
     fn every(&self) -> Option<i64> {

@@ -1,8 +1,10 @@
 //! Surfaces of triangles that a deck names: the file, and the words that put it in its place.
 
 use crate::BuildCx;
+use crate::common::about;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::gate;
+use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
 use perigrain_mesh::{Surface, Triangle};
 
@@ -65,6 +67,34 @@ pub fn read_faces(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
     let note = Diagnostic::warning(Code::SUSPICIOUS, file.span, text + ": left out");
     cx.note(note.help("where corners of neighbours lie on its long side, nothing is missing without it"));
     Ok(Some(surface))
+}
+
+/// How many times as large as the box a surface may be before that is doubted; as much smaller, ten times so often.
+const TIMES: f64 = 100.0;
+
+/// Warns of a surface in its place whose size has nothing to do with that of the box: files are often in millimetres.
+pub fn doubt_size(file: &Word, placed: &[Triangle], cx: &BuildCx) {
+    let Some(domain) =
+        cx.world.domain.as_ref().filter(|_| !placed.is_empty() && !cx.world.parts.unseen.space)
+    else {
+        return;
+    };
+    let bounds = |d: usize| {
+        let along = placed.as_flattened().iter().map(|p| p[d]);
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)])
+    };
+    let widest = (0..3).map(bounds).map(|[lo, hi]| hi - lo).fold(0.0, f64::max);
+    let times = widest / domain.lengths().into_iter().fold(0.0, f64::max);
+    if !times.is_finite() || (1.0 / (10.0 * TIMES)..TIMES).contains(&times) {
+        return;
+    }
+    // Units of length differ by thousands; what is left is a fraction of the box to a hundred times it.
+    let scale = 10f64.powf(-3.0 * (times.log10() / 3.0).round());
+    let (size, other) = if times > 1.0 { (times, "large") } else { (1.0 / times, "small") };
+    let text = format!("the mesh `{}` is {} times as {other} as the box", file.text, about(size));
+    let help =
+        format!("did you mean `scale {}`? its numbers count in the deck's unit of length", general(scale, 3));
+    cx.note(Diagnostic::warning(Code::SUSPICIOUS, file.span, text).help(help));
 }
 
 /// Reads the surface in a file; nothing where a line above may write it, and it is not there yet (`perigrain check`).

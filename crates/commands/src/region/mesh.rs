@@ -13,6 +13,7 @@ pub fn read(a: &mut Args, cx: &BuildCx, placing: Placing, unit: [f64; 3]) -> Res
     let Some(surface) = triangles::read_faces(file, cx)? else { return Ok((Solid::default(), vec![])) };
     let mut placed = surface.triangles.clone();
     placing.apply(&mut placed, unit);
+    triangles::doubt_size(file, &placed, cx);
     let solid = Solid::new(placed).map_err(|fault| {
         let text = format!("`{}` is no surface of a body: {}", file.text, fault.text(&surface));
         Diagnostic::error(Code::BAD_VALUE, file.span, text).help(fault.help())

@@ -74,11 +74,11 @@ impl Volume {
         }
     }
 
-    /// Its volume, in a flat scene its area; a block thinner than 1 along y counts as LAMMPS counts it, as 1 thick.
+    /// Its volume, in a flat scene its area.
     pub fn space(&self, flat: bool) -> f64 {
         match *self {
             Self::Block(lo, hi) if flat => (hi[0] - lo[0]) * (hi[1] - lo[1]),
-            Self::Block(lo, hi) => (hi[0] - lo[0]) * (hi[1] - lo[1]).max(1.0) * (hi[2] - lo[2]),
+            Self::Block(lo, hi) => (hi[0] - lo[0]) * (hi[1] - lo[1]) * (hi[2] - lo[2]),
             Self::Cylinder(_, r, lo, hi) => PI * r * r * (hi - lo),
         }
     }

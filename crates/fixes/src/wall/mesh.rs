@@ -101,6 +101,7 @@ impl FixStyle for WallMesh {
 fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<(Facets, Vec<u32>)> {
     let Some(mut read) = triangles::read_faces(file, cx)? else { return Ok((Facets::default(), vec![])) };
     placing.apply(&mut read.triangles, [1.0; 3]);
+    triangles::doubt_size(file, &read.triangles, cx);
     let numbers = (0..read.triangles.len()).map(|k| read.number(k) as u32).collect();
     let mesh = Facets::new(read.triangles).map_err(|bad| {
         let text = format!("triangle {} of `{}` is too small for its place", bad + 1, file.text);

@@ -53,6 +53,7 @@ pub fn domain(w: &World) -> Outcome {
         (0..3).all(|k| d.lo[k] < d.hi[k] && (d.hi[k] - d.lo[k]).is_finite()),
         "its lower faces are not the lower ones",
     )?;
+    must((0..3).map(|k| d.hi[k] - d.lo[k]).product::<f64>().is_normal(), "it has no volume to compute with")?;
     must(d.tilt.iter().flatten().all(|x| x.is_finite()), "it leans beyond all numbers")?;
     must(
         d.flip.is_none_or(|f| d.tilt.is_some() && f.tilt.iter().all(|x| x.is_finite())),

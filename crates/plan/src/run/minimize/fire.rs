@@ -9,7 +9,7 @@ use perigrain_world::minimizer::{Fire, FireIntegrator};
 /// The least mixing whose bias is corrected.
 const LEAST_MIXING: f64 = 1e-10;
 
-/// Squared forces below this have no direction.
+/// Squared forces below this have no direction, in LAMMPS: a number with a unit.
 const NO_FORCE: f64 = 1e-20;
 
 /// The state of the damping.
@@ -90,7 +90,8 @@ fn iterate(s: &mut Search, d: &mut Damping) -> Result<Stop> {
 fn speed_up(w: &mut World, d: &mut Damping) {
     let p = &w.particles;
     let (vv, ff) = (product(&p.v, &p.v), product(&p.f, &p.f));
-    let along = if ff <= NO_FORCE { 0.0 } else { d.alpha * (vv / ff).sqrt() };
+    let none = if w.settings.lammps() { NO_FORCE } else { 0.0 };
+    let along = if ff <= none { 0.0 } else { d.alpha * (vv / ff).sqrt() };
     d.mix = Some((1.0 - d.alpha, along));
     if d.set.unbiased {
         d.downhills += 1;

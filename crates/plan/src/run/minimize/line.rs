@@ -14,10 +14,12 @@ const SHORTER: f64 = 0.5;
 const ENOUGH: f64 = 0.4;
 /// How far from quadratic the energy may be for the secant step.
 const QUADRATIC: f64 = 0.1;
-/// Energies closer than this are equal.
-const SAME: f64 = 1e-8;
-/// Forces along the line below this are none.
+/// Energies closer than this are equal, in LAMMPS: a number with a unit, which stops every search of a small scene in SI units.
+const SAME_IN_LAMMPS: f64 = 1e-8;
+/// Forces along the line below this are none, in LAMMPS as they stand, else beside the force at its start.
 const NOTHING: f64 = 1e-28;
+/// Falls of energy below this part of the first one expected are rounding.
+const ROUNDING: f64 = 1e-14;
 
 /// A direction and where it starts.
 pub struct Line {
@@ -100,9 +102,14 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
     if steepest == 0.0 {
         return Ok(Some(Stop::ZeroForce));
     }
+    let lammps = s.w.settings.lammps();
     let quadratic = s.w.settings.minimizer.line == LineSearch::Quadratic;
     let longest = LONGEST.min(s.farthest / steepest);
     let from = s.energy;
+    let (same, nothing) = match lammps {
+        true => (SAME_IN_LAMMPS, NOTHING),
+        false => (4.0 * f64::EPSILON * from.abs() + ROUNDING * longest * slope, NOTHING * slope),
+    };
     line.hold(s.w);
     // The trial before: step, force along the line, energy.
     let mut before = (0.0, slope, from);
@@ -112,7 +119,7 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
         if quadratic {
             let along = product(&s.w.particles.f, &line.direction) / s.per;
             let change = along - before.1;
-            if along.abs() < NOTHING || change.abs() < NOTHING {
+            if along.abs() < nothing || change.abs() < nothing {
                 return give_up(s, line, (alpha, from), Stop::ZeroCurvature);
             }
             let expected = 0.5 * (alpha - before.0) * (along + before.1) + s.energy;
@@ -120,7 +127,7 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
             let near = (1.0 - expected / before.2).abs() <= QUADRATIC;
             if near && zero > 0.0 && zero < longest {
                 go(s, line, zero)?;
-                if s.energy - from < SAME {
+                if s.energy - from < same {
                     // LAMMPS reports the trial, not the zero.
                     s.alpha = alpha;
                     return Ok(None);
@@ -135,7 +142,7 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
             return Ok(None);
         }
         alpha *= SHORTER;
-        if alpha <= 0.0 || ideal >= -SAME {
+        if alpha <= 0.0 || ideal >= -same {
             return give_up(s, line, (alpha, from), Stop::ZeroStep);
         }
     }
