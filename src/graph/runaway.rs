@@ -232,6 +232,15 @@ impl Look {
         ))
     }
 
+    /// Says a problem once, as an error where that is wanted.
+    fn tell(&mut self, problem: Diagnostic) -> Result<()> {
+        self.told = true;
+        match self.how {
+            Runaway::Error => Err(problem.into()),
+            _ => self.log.line(&format!("WARNING: {}", problem.message)),
+        }
+    }
+
     fn problem(&self, t: &Tick, why: &str) -> Diagnostic {
         let dt = t.dt;
         let text = format!("energy has grown beyond reason at step {}: {why}", t.step);
@@ -273,6 +282,10 @@ impl Op for Look {
         if self.told {
             return Ok(());
         }
+        // Compared with anything, what is no number is never more: it is looked for by itself.
+        if self.closed && w.tally.step == Some(t.step) && (w.tally.pair + w.tally.bond).is_nan() {
+            return self.tell(no_number(t));
+        }
         let now = self.state(w);
         if t.setup {
             self.begin = now;
@@ -281,12 +294,16 @@ impl Op for Look {
             }
             return Ok(());
         }
-        let Some(why) = self.beyond(now) else { return Ok(()) };
-        self.told = true;
-        let problem = self.problem(t, &why);
-        match self.how {
-            Runaway::Error => Err(problem.into()),
-            _ => self.log.line(&format!("WARNING: {}", problem.message)),
+        match self.beyond(now) {
+            Some(why) => self.tell(self.problem(t, &why)),
+            None => Ok(()),
         }
     }
+}
+
+/// The error of a potential energy that is none.
+fn no_number(t: &Tick) -> Diagnostic {
+    let text = format!("the potential energy at step {} is no number", t.step);
+    let d = Diagnostic::error(Code::NOT_FINITE, None, text);
+    d.help("a coefficient, or a number of the file that the scene was read from, is beyond reason")
 }

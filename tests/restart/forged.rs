@@ -120,6 +120,14 @@ fn lattices_lead_where_there_is_something() {
             (body!(|b| b.state.touched.clear()), s, "touched chunks"),
             (body!(|b| b.state.awake.truncate(1)), s, "ever woke"),
             (body!(|b| b.state.theta.clear()), s, "dilatations is 0"),
+            (body!(|b| b.state.theta[40] = f64::NAN), s, "one of the dilatations is no number"),
+            (
+                body!(|b| b.state.memory[3] = f64::NAN),
+                s,
+                "one of the numbers that bonds remember is no number",
+            ),
+            (body!(|b| b.u[1][30] = f64::NAN), s, "one of the displacements is no number"),
+            (families!(|f| f.family_volume[1] = f64::NAN), s, "one of the volumes of families is no number"),
         ],
     );
 }
@@ -167,6 +175,9 @@ fn particles_and_pairs_are_those_of_the_scene() {
             (|w| w.particles.tag[1] = w.particles.tag[0], "particles", "two particles have one id"),
             (|w| w.particles.kind[1] = 0, "particles", "beyond the number of types"),
             (|w| w.particles.x[1][2] = f64::NAN, "particles", "is nowhere"),
+            (|w| w.particles.v[1][2] = f64::NAN, "particles", "a velocity is no number"),
+            (|w| w.particles.mass[0] = f64::NAN, "particles", "a mass is no number"),
+            (|w| w.contacts.values_mut().for_each(|c| c.history[0] = f64::NAN), contacts, "is no number"),
             (|w| w.particles.omega.truncate(1), "particles", "angular velocities is"),
             (|w| w.particles.rank = vec![0; w.n()].into(), "particles", "ranks are no order"),
             (|w| w.particles.radius[0] = f64::INFINITY, "particles", "a radius is no length"),

@@ -41,6 +41,18 @@ pub fn particles(w: &World) -> Outcome {
     must(twice(p.tag.past()).is_none(), "two particles have one id")?;
     must(p.x.past().as_flattened().iter().all(|x| x.is_finite()), "a particle is nowhere")?;
     must(p.radius.past().iter().all(|r| r.is_finite() && *r >= 0.0), "a radius is no length")?;
+    for (what, triples) in [
+        ("velocity", p.v.past()),
+        ("force", p.f.past()),
+        ("angular velocity", p.omega.past()),
+        ("torque", p.torque.past()),
+    ] {
+        must(!triples.as_flattened().iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
+    }
+    for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past()), ("density", p.density.past())] {
+        must(!all.iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
+    }
+    must(!p.quat.past().as_flattened().iter().any(|x| x.is_nan()), "an orientation is no number")?;
     let mut seen = vec![false; p.rank.len()];
     let first = |r: &u32| seen.get_mut(*r as usize).is_some_and(|seen| !std::mem::replace(seen, true));
     must(p.rank.past().iter().all(first), "ranks are no order")
@@ -108,6 +120,7 @@ pub fn bonds(w: &World) -> Outcome {
 pub fn contacts(w: &World) -> Outcome {
     let sound = |c: &contacts::Contacts| {
         must(c.sound(), "contacts and their history differ in length")?;
+        must(!c.history.iter().any(|x| x.is_nan()), "what a contact remembers is no number")?;
         must(c.keys.is_sorted_by(|a, b| a < b), "contacts are out of order")
     };
     for c in w.contacts.past().values() {

@@ -1,6 +1,6 @@
 //! Whether a body on a lattice fits together: rows, stencil, bits of bonds, columns.
 
-use super::{Fault, at_home, equal, must, states};
+use super::{Fault, at_home, equal, must, numbers, states, states_are_numbers};
 use crate::build::lattice::{Pruned, half_stencil, prune, reach, thickness};
 use crate::families::Law;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, RowMotion, staggered};
@@ -20,6 +20,10 @@ impl LatticeBody {
         self.bonds_are_sound()?;
         let (cells, chunks) = (self.particle.len(), self.intact.len());
         states(&self.state, law.kind, (cells + 2 * PAD, self.alive.len() * LANES))?;
+        states_are_numbers(&self.state)?;
+        numbers("displacements", self.u.iter().flatten())?;
+        numbers("constants", self.tables.iter().chain(self.pairs.as_flattened()))?;
+        numbers("volumes of cells", &self.cell_volume)?;
         let touched = if law.kind.has_states() { chunks } else { 0 };
         equal("the number of its touched chunks is", self.state.touched.len(), touched)?;
         let awake = self.state.awake.len();

@@ -1,6 +1,6 @@
 //! Whether bonds kept as a list fit together: records in slabs, groups of bonds, and the ways back.
 
-use super::{Fault, equal, must, states};
+use super::{Fault, equal, must, numbers, states, states_are_numbers};
 use crate::families::Law;
 use crate::families::list::{GROUP, ListBody};
 use perigrain_base::math::vec3::Vec3;
@@ -21,6 +21,11 @@ impl ListBody {
         }
         let n = self.record.len();
         states(&self.state, law.kind, (n, self.partner.len()))?;
+        states_are_numbers(&self.state)?;
+        numbers("former displacements", self.last.as_flattened())?;
+        let constants =
+            self.pairs.iter().flat_map(|p| [&p.c, &p.shape, &p.s00, &p.alpha, &p.horizon, &p.yields]);
+        numbers("constants", constants)?;
         let touched = self.state.touched.len();
         must(touched == 0 || touched == n, "its records and those that are touched differ in number")?;
         let awake = self.state.awake.len();

@@ -49,6 +49,7 @@ impl Families {
         ] {
             equal(&format!("the number of {what} is"), len, n)?;
         }
+        numbers("volumes of families", &self.family_volume)?;
         must(self.spacing.iter().all(|h| h.is_finite() && *h > 0.0), "a particle has no spacing")?;
         let reference = self.reference.as_deref().unwrap_or(x0);
         for (k, body) in self.lattices.iter().enumerate() {
@@ -114,6 +115,28 @@ impl Families {
             "declare the style that was in force at the first run, or `clear` the scene and make it anew";
         Err(Diagnostic::error(Code::CONFLICT, None, text).help(help).into())
     }
+}
+
+/// A fault if one of some numbers is none (NaN): it would go into every sum.
+fn numbers<'a>(what: &str, all: impl IntoIterator<Item = &'a f64>) -> Fault {
+    must(!all.into_iter().any(|x| x.is_nan()), &format!("one of the {what} is no number"))
+}
+
+/// Whether what sites and bonds remember are numbers.
+fn states_are_numbers(state: &SiteState) -> Fault {
+    for (what, column) in [
+        ("weighted volumes", &state.weighted),
+        ("spreads", &state.spread),
+        ("dilatations", &state.theta),
+        ("former dilatations", &state.before),
+        ("unrelaxed dilatations", &state.unrelaxed),
+        ("plastic multipliers", &state.plastic),
+        ("numbers that bonds remember", &state.memory),
+        ("constants of dilatations", &state.tables),
+    ] {
+        numbers(what, column)?;
+    }
+    Ok(())
 }
 
 /// Whether columns of sites and memory of bonds are as long as a law needs: `sites` entries, and numbers for `bonds` bonds.
