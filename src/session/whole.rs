@@ -32,6 +32,7 @@ pub fn check(options: &Options, name: &str, text: &str, stop: &Arc<AtomicBool>) 
     if let Some(swept) = session.swept() {
         combinations(options, &swept.axes, (name, text), stop, &mut all);
     }
+    let mut all = all.together();
     all.0.sort_by_key(|d| d.span.map(|s| (s.file, s.start)));
     Checked { sources: session.sources, problems: all }
 }

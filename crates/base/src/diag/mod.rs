@@ -6,6 +6,7 @@ mod nearest;
 pub mod render;
 mod source;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 pub use code::{CODES, Code, Kind};
@@ -124,6 +125,28 @@ impl Diagnostics {
     /// Adds all of another's.
     pub fn append(&mut self, mut other: Diagnostics) {
         self.0.append(&mut other.0);
+    }
+
+    /// Each problem once, where it came first; what came several times, as a loop is read turn by turn, says how often.
+    #[must_use]
+    pub fn together(self) -> Self {
+        let (mut out, mut often): (Vec<Diagnostic>, Vec<usize>) = (vec![], vec![]);
+        let mut known: HashMap<(Option<Span>, String), Vec<usize>> = HashMap::new();
+        for d in self.0 {
+            let alike = known.entry((d.span, d.message.clone())).or_default();
+            match alike.iter().find(|k| out[**k] == d) {
+                Some(k) => often[*k] += 1,
+                None => {
+                    alike.push(out.len());
+                    out.push(d);
+                    often.push(1);
+                }
+            }
+        }
+        for (d, n) in out.iter_mut().zip(often).filter(|(_, n)| *n > 1) {
+            d.help.push(format!("this comes {n} times: the line is read as often"));
+        }
+        Self(out)
     }
 
     /// Whether one of them refuses.
