@@ -1,5 +1,9 @@
 //! The `perigrain` program: maps the command line's result to an exit code.
 
+/// Ends the program with a message where memory is not there, or beyond `-limit memory`.
+#[global_allocator]
+static FENCE: perigrain_base::memory::Fence = perigrain_base::memory::Fence;
+
 fn main() -> std::process::ExitCode {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     memory::settle();

@@ -53,8 +53,8 @@ pub use measuring::Worked;
 pub use options::{Mode, Options};
 pub use overlay::{Overlay, absolute};
 use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fail};
-use perigrain_base::letters;
 pub use perigrain_base::par::{set_threads, threads};
+use perigrain_base::{letters, memory};
 use perigrain_commands::COMMANDS;
 use perigrain_lang::{Command, Flow, Line, Script, Vars, plain_value};
 use perigrain_out::log::Log;
@@ -131,6 +131,8 @@ pub struct Session {
     plans: planning::Plans,
     /// Where plans are told.
     told_to: Log,
+    /// The text of the latest line.
+    read_from: Option<FileId>,
     /// Lines worked off, each turn of a loop by itself.
     turns: u64,
     /// Steps made in all runs.
@@ -191,6 +193,7 @@ impl Session {
             seen_names: 0,
             plans: Default::default(),
             told_to,
+            read_from: None,
             turns: 0,
             made: 0,
             scenes: 0,
@@ -378,6 +381,7 @@ impl Session {
             self.options.log.echo(text)?;
         }
         let Some(cmd) = &line.command else { return Ok(None) };
+        self.say_where(cmd.span);
         if self.checking() {
             match cmd.name.text.as_str() {
                 "if" => self.foresee_loop(&line.raw),
@@ -398,6 +402,16 @@ impl Session {
         }
         outcome
             .map_err(|e| checking::with_origins(belongs::told(self.sources.adopt(e), cmd).at(cmd.span), cmd))
+    }
+
+    /// The line that is worked off now, for the message of memory that is not there.
+    fn say_where(&mut self, line: Span) {
+        if self.read_from.replace(line.file) != Some(line.file)
+            && let Some(text) = self.sources.keep(line.file)
+        {
+            memory::reads(text);
+        }
+        memory::at(line);
     }
 
     /// Warnings go to screen and log as they come.

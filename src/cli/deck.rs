@@ -7,7 +7,7 @@ use super::{FAILED, INTERRUPTED, OK, partitions, signals, viewing};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use console::Term;
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
-use perigrain_base::gate;
+use perigrain_base::{gate, memory};
 use perigrain_out::file::trouble;
 use perigrain_out::log::{Echo, Log};
 use perigrain_out::thermo::wall_time;
@@ -23,6 +23,7 @@ pub fn work_off(o: &Options, mode: Mode) -> u8 {
     let begin = Instant::now();
     let log = Log::silent();
     let progress = Progress::new(Some(log.clone()));
+    say_lacking(&log);
     let mut sources = Sources::default();
     let outcome = attempt(o, mode, &progress, &log, &mut sources);
     progress.clear();
@@ -320,6 +321,17 @@ pub(super) fn open_screen(log: &Log, o: &Options, progress: &Progress) -> Result
 }
 
 /// Problems go to standard error, and to the log without colours.
+/// Where memory is not there, or `-limit memory` does not allow it, the program ends with a message in place of an abort.
+pub(super) fn say_lacking(log: &Log) {
+    let log = log.clone();
+    memory::speaks(move |said| {
+        let mut sources = Sources::default();
+        let said = sources.adopt(said.into());
+        log.last_words(render::plain(&said, &sources).trim_end());
+        print(&said, &sources);
+    });
+}
+
 fn complain(problems: &Diagnostics, sources: &Sources, log: &Log) {
     // When the log cannot be written the terminal has it all the same.
     let _ = log.to_log(render::plain(problems, sources).trim_end());

@@ -86,7 +86,7 @@ fn a_box_within_one_spacing_was_meant_otherwise() {
 fn a_mesh_in_millimetres_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let scene = "units si\natom_style sphere\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\n";
-    let wall = "fix w all wall/mesh hertz/material 1e7 0.5 0.3 tangential linear_nohistory 1 0.5 file c.stl";
+    let wall = "fix w all wall/mesh granular hertz/material 1e7 0.5 0.3 tangential linear_nohistory 1 0.5 mesh c.stl";
     for (edge, with, said) in [
         (700.0, "", Some(("700 times as large as the box", "`scale 0.001`"))),
         (700.0, " scale 0.001", None),
@@ -134,7 +134,7 @@ fn spheres_wider_than_the_box_are_named() {
     let scene = "units si\natom_style sphere\nregion b block 0 0.04 0 0.04 0 0.04 units box\ncreate_box 1 b\n\
                  create_atoms 1 single 0.02 0.02 0.02 units box\nset group all diameter 0.01 density 2500\npair_style none\n\
                  fix n all nve/sphere\ntimestep 1e-6\n";
-    let pictures = "view 60 30 size 16 12";
+    let pictures = "view 60 30 size 16 16";
     for line in [
         format!("write_dump all image x.png type type {pictures}"),
         format!("dump d all image 1 x.*.png type type {pictures}\nrun 1\nrun 1"),

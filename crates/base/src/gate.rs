@@ -3,6 +3,7 @@
 //! Every file that a deck names is opened here. Without `-safe` the gate is open and nothing is looked at.
 
 use crate::diag::{Code, Diagnostic};
+use crate::memory;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::fs::{self, File, ReadDir};
@@ -64,6 +65,7 @@ pub fn close(folder: &Path, limits: Limits) -> Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let gate = Gate { folder: folder.canonicalize()?, limits, written: Mutex::default() };
     *GATE.write().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(gate));
+    memory::limit(1e6 * limits.memory as f64);
     Ok(())
 }
 
@@ -88,12 +90,18 @@ fn refuse<T>(why: String) -> Result<T> {
     Err(Error::new(ErrorKind::PermissionDenied, Refusal(why)))
 }
 
-/// The code for an error with a file: refused here, or one of the system's.
+/// The code for an error with a file: refused here, larger than the memory, or one of the system's.
 pub fn code(error: &Error) -> Code {
     match error.get_ref().is_some_and(|e| e.is::<Refusal>()) {
         true => Code::NOT_ALLOWED,
+        false if error.kind() == ErrorKind::OutOfMemory => Code::TOO_LARGE,
         false => Code::NO_FILE,
     }
+}
+
+/// Whether a file is there and may not be taken in: that it is elsewhere as well is no way around it.
+pub fn final_word(error: &Error) -> bool {
+    code(error) != Code::NO_FILE
 }
 
 /// The error of what decks may not do at all, if the gate is closed.
@@ -118,7 +126,7 @@ pub fn beyond(wanted: f64, limit: impl Fn(&Limits) -> u64, name: &str, what: &st
 /// The error of a program that has more memory than it may.
 pub fn too_much_memory() -> Option<Diagnostic> {
     let most = limits()?.memory;
-    let used = resident()? / 1e6;
+    let used = memory::resident()? / 1e6;
     if used <= most as f64 {
         return None;
     }
@@ -127,36 +135,34 @@ pub fn too_much_memory() -> Option<Diagnostic> {
 }
 
 /// Bytes that may still be used; nothing where the gate is open.
-pub fn memory_left() -> Option<f64> {
-    Some((1e6 * limits()?.memory as f64 - resident().unwrap_or(0.0)).max(0.0))
+pub(crate) fn memory_left() -> Option<f64> {
+    let left = memory_of_limit()?;
+    Some(memory::limited().map_or(left, |counted| counted.min(left)))
 }
 
-/// Bytes of memory that the program has, where the system tells.
-fn resident() -> Option<f64> {
-    let text = fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find(|l| l.starts_with("VmRSS:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(1024.0 * kilobytes)
+/// What the limit leaves by what the system says of the program, which lags behind what was asked for.
+pub(crate) fn memory_of_limit() -> Option<f64> {
+    Some((1e6 * limits()?.memory as f64 - memory::resident().unwrap_or(0.0)).max(0.0))
 }
 
 /// Whether a path leads to a plain file or folder inside, or would do so once it is made; links are followed.
 fn inside(gate: &Gate, path: &Path) -> Result<PathBuf> {
+    let outside = || refuse(format!("-safe: it is outside of the deck's folder `{}`", gate.folder.display()));
     let there = fs::symlink_metadata(path).is_ok();
-    let whole = match (there, path.file_name()) {
-        (false, Some(name)) => {
-            let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            folder.canonicalize()?.join(name)
-        }
-        _ => match path.canonicalize() {
-            Ok(whole) => whole,
-            // Whoever writes there would make the file that the link names.
-            Err(_) if there => return refuse("-safe: it is a link that leads nowhere".into()),
-            Err(e) => return Err(e),
-        },
+    let found = match (there, path.file_name()) {
+        (false, Some(name)) => folder_of(path).canonicalize().map(|folder| folder.join(name)),
+        _ => path.canonicalize(),
+    };
+    let whole = match found {
+        Ok(whole) => whole,
+        // What is outside is not looked into: whether a folder there exists makes no difference to the words.
+        Err(_) if !way_in(gate, path) => return outside(),
+        // Writing there would make the file that the link names.
+        Err(_) if there => return refuse("-safe: it is a link that leads nowhere".into()),
+        Err(e) => return Err(e),
     };
     if !whole.starts_with(&gate.folder) {
-        let text = format!("-safe: it is outside of the deck's folder `{}`", gate.folder.display());
-        return refuse(text);
+        return outside();
     }
     match fs::metadata(&whole) {
         Ok(m) if !m.is_file() && !m.is_dir() => refuse("-safe: it is no plain file".into()),
@@ -165,6 +171,25 @@ fn inside(gate: &Gate, path: &Path) -> Result<PathBuf> {
             gate.limits.memory
         )),
         _ => Ok(whole),
+    }
+}
+
+/// The folder that a path names something in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Whether the part of a path that is there leads inside; the rest of it is not there.
+fn way_in(gate: &Gate, path: &Path) -> bool {
+    let mut part = folder_of(path);
+    loop {
+        if let Ok(whole) = part.canonicalize() {
+            return whole.starts_with(&gate.folder);
+        }
+        if part == Path::new(".") {
+            return false;
+        }
+        part = folder_of(part);
     }
 }
 
@@ -223,8 +248,9 @@ pub fn create(path: impl AsRef<Path>, append: bool) -> Result<File> {
 /// # Errors
 /// As [`open`].
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
-    pass(path.as_ref())?;
-    fs::read(path)
+    let mut bytes = vec![];
+    memory::read_file(open(path)?, &mut bytes)?;
+    Ok(bytes)
 }
 
 /// All text of a file.
@@ -232,8 +258,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`open`], and bytes that are no text.
 pub fn read_to_string(path: impl AsRef<Path>) -> Result<String> {
-    pass(path.as_ref())?;
-    fs::read_to_string(path)
+    let odd = |_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8");
+    String::from_utf8(read(path)?).map_err(odd)
 }
 
 /// What a folder holds.
@@ -274,6 +300,10 @@ mod tests {
         assert!(passes("in") && passes("new") && passes("."));
         assert!(!passes("../out") && !passes("../new") && !passes("..") && !passes("/dev/null"));
         assert!(passes("../deck/in") && !passes("no/such"));
+        // Of what is outside, nothing tells whether it is there.
+        let said = |name: &str| inside(&gate, &folder.join(name)).unwrap_err().to_string();
+        assert!(said("../out/x") == said("../out") && said("../no/such/folder") == said("../out"));
+        assert!(!said("no/such").contains("outside") && said("/no/such/folder") == said("../out"));
         let largest = Limits { memory: 0, ..Limits::default() };
         let small = Gate { folder: gate.folder.clone(), limits: largest, written: Mutex::default() };
         assert!(inside(&small, &folder.join("in")).is_err() && inside(&small, &folder.join("new")).is_ok());

@@ -1,21 +1,93 @@
-//! How much memory there is.
+//! The one door for memory that input can ask for: it is forecast, compared with what is free, and refused by name.
+//!
+//! A count that a deck, a file or a command line says passes [`lacking`] (or `Args::count`, which calls it) before anything of its size
+//! is made. Behind the door stands the [`Fence`], the program's allocator: what no forecast has seen ends there, with the line of the deck.
+
+mod fence;
+mod free;
 
 use crate::diag::{Code, Diagnostic};
 use crate::gate;
+pub use fence::{Fence, at, reads, speaks};
+pub(crate) use fence::{limit, limited};
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read, Result};
+
+/// Less than this is never asked about [byte].
+const SMALL: f64 = 1e6;
 
 /// The error of what takes more bytes than are free now.
 pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
-    let allowed = gate::memory_left();
-    let free = available().into_iter().chain(allowed).reduce(f64::min).filter(|free| bytes > *free)?;
-    let (needed, free) = (bytes / 1e9, free / 1e9);
-    let text = format!("{what} would need {needed:.1} GB of memory; {free:.1} GB are free");
-    Some(Diagnostic::error(Code::TOO_LARGE, None, text))
+    if bytes <= SMALL {
+        return None;
+    }
+    let free = room().filter(|free| bytes > *free)?;
+    let text = format!("{what} would need {} of memory; {} are free", size(bytes), size(free));
+    let error = Diagnostic::error(Code::TOO_LARGE, None, text);
+    Some(if gate::limits().is_some() { error.help("`-limit memory MB` allows more") } else { error })
 }
 
-/// Bytes of memory that are free, where the system tells.
-fn available() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|l| l.starts_with("MemAvailable:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024.0)
+/// Bytes that may still be asked for, where the system tells: what the machine, the process' own limits and `-limit memory` leave.
+pub fn room() -> Option<f64> {
+    free::bytes().into_iter().chain(gate::memory_left()).reduce(f64::min)
+}
+
+/// Bytes of memory that the program has, where the system tells.
+pub fn resident() -> Option<f64> {
+    free::resident()
+}
+
+/// All that a file has, appended to `bytes`.
+///
+/// # Errors
+/// The system's, and more than there is room for.
+pub fn read_file(file: File, bytes: &mut Vec<u8>) -> Result<()> {
+    let length = file.metadata().map_or(0, |m| m.len());
+    if let Some(d) = lacking(length as f64, "what is in it") {
+        return Err(Error::new(ErrorKind::OutOfMemory, d.message));
+    }
+    bytes.reserve_exact((length as usize).saturating_add(1));
+    read_all(file, bytes)
+}
+
+/// All that a reader has, appended to `bytes`: of packed files nothing tells before how much that is.
+///
+/// # Errors
+/// The reader's, and more than there is room for.
+pub fn read_all(reader: impl Read, bytes: &mut Vec<u8>) -> Result<()> {
+    let ready = bytes.capacity() - bytes.len();
+    // Half of the room: a piece that grows may lie beside the one that it has grown from.
+    let most = (room().map_or(f64::INFINITY, |room| room / 2.0) + ready as f64).min(u64::MAX as f64) as u64;
+    let read = reader.take(most).read_to_end(bytes)? as u64;
+    if read == most {
+        let text =
+            format!("what is in it does not fit into the {} of memory that are free", size(most as f64));
+        return Err(Error::new(ErrorKind::OutOfMemory, text));
+    }
+    Ok(())
+}
+
+/// Bytes for people.
+fn size(bytes: f64) -> String {
+    match bytes {
+        b if b < 1e8 => format!("{:.1} MB", b / 1e6),
+        b if b < 1e15 => format!("{:.1} GB", b / 1e9),
+        b => format!("{:.1e} GB", b / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_refused_and_what_does_is_not() {
+        let said = lacking(1e18, "a table").unwrap();
+        assert!(said.message.starts_with("a table would need 1.0e9 GB of memory; "), "{}", said.message);
+        assert_eq!(said.code, Code::TOO_LARGE);
+        assert!(lacking(1000.0, "a row").is_none() && lacking(f64::INFINITY, "all").is_some());
+        let mut bytes = vec![];
+        read_all(&b"text"[..], &mut bytes).unwrap();
+        assert_eq!(bytes, b"text");
+    }
 }

@@ -5,8 +5,9 @@ mod gap;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
-use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs};
+use perigrain_neigh::list::{Pair, Reach, View, pairs};
 use perigrain_styles::common::{self, bad_keyword, bond_type, on_particles};
+use perigrain_styles::near::{every_type, room_for_pairs};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Bond, GroupId, World};
@@ -43,7 +44,7 @@ impl Style for CreateBonds {
 }
 
 enum Choice {
-    Many { groups: [GroupId; 2], range: [f64; 2] },
+    Many { groups: [GroupId; 2], range: [f64; 2], at: Span },
     Gap(gap::Gap),
     Single { ids: [u32; 2], spans: [Span; 2] },
 }
@@ -98,7 +99,7 @@ fn many(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
         );
     }
     needs_zero_weights("many", a, cx)?;
-    Ok((kind, Choice::Many { groups, range: [least, most] }))
+    Ok((kind, Choice::Many { groups, range: [least, most], at: span }))
 }
 
 /// Refuses weights that leave bonded pairs in neighbour lists.
@@ -140,10 +141,11 @@ fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<(
             }
             cx.world.bonds.push(Bond::new(kind, *ids));
         }
-        Choice::Many { groups, range } => {
+        Choice::Many { groups, range, at } => {
             common::settle(cx.world);
             // Both ends of the range count: the list's own test is open above.
             let reach = Reach::Fixed(range[1] * (1.0 + 1e-12));
+            room_for_pairs(cx.world, &every_type(cx.world, reach), 0.0).map_err(|e| e.at(*at))?;
             let near = |_: &Pair, square: f64| square >= range[0] * range[0] && square <= range[1] * range[1];
             let found = within(cx.world, *groups, reach, near);
             found.note_left_out(cx);
@@ -210,10 +212,7 @@ impl Found {
 /// Finds the pairs within reach that `near` takes by the square of their distance, and that have no bond yet.
 fn within(w: &World, groups: [GroupId; 2], reach: Reach, mut near: impl FnMut(&Pair, f64) -> bool) -> Found {
     let p = &w.particles;
-    let mut wanted = Wanted::new(w.types);
-    for a in 1..=w.types as u16 {
-        (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));
-    }
+    let wanted = every_type(w, reach);
     let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
     let is = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
     let weights = w.bonds.weights;

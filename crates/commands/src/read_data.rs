@@ -336,6 +336,10 @@ impl Reading {
         let domain = self.domain(cx.world, data);
         let faces = (domain.lo[2], domain.hi[2]);
         common::check_flat(domain.boundary, faces, domain.flat).map_err(|e| e.at(self.file.span))?;
+        common::check_volume(domain.lengths()).map_err(|e| e.at(self.file.span))?;
+        if let Some(d) = memory::lacking_for_types(data.types) {
+            return Err(d.at(self.file.span).into());
+        }
         let bit = self.group(cx)?;
         self.tell(cx, data, &domain);
         let w = &mut *cx.world;

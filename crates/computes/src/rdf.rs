@@ -39,7 +39,7 @@ impl Style for Rdf {
 
 impl ComputeStyle for Rdf {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let bins = args.integer_from(1, "the number of bins")? as usize;
+        let bins = args.count("the number of bins", BYTES_PER_BIN)?;
         if bins > MOST {
             return fail(Code::BAD_VALUE, cx.span, format!("more than {MOST} bins"));
         }
@@ -58,6 +58,9 @@ impl ComputeStyle for Rdf {
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, bins, pairs, cutoff }))
     }
 }
+
+/// Counts and rows of one pair of types, here and where they are shown.
+const BYTES_PER_BIN: f64 = 80.0;
 
 /// More bins than this are a mistake.
 const MOST: usize = 10_000_000;

@@ -3,6 +3,7 @@
 use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::memory;
 use perigrain_lang::Args;
 use perigrain_styles::matter::{Masses, count};
 use perigrain_styles::{BuildCx, Doc, Style};
@@ -51,6 +52,10 @@ impl ComputeStyle for TempProfile {
         if bins.iter().try_fold(1usize, |all, n| all.checked_mul(*n)).is_none_or(|all| all > MOST) {
             return fail(Code::BAD_VALUE, span, format!("more than {MOST} bins"));
         }
+        let bytes = bins.iter().map(|n| *n as f64).product::<f64>() * BYTES_PER_BIN;
+        if let Some(d) = memory::lacking(bytes, "so many bins") {
+            return Err(d.at(span).into());
+        }
         let mut by_bin = false;
         while let Some(word) = args.next() {
             match word.text.as_str() {
@@ -61,6 +66,9 @@ impl ComputeStyle for TempProfile {
         Ok(Box::new(Thermal::new(Profile { streams, bins, by_bin }, cx)))
     }
 }
+
+/// Sums, means and a row of a bin.
+const BYTES_PER_BIN: f64 = 64.0;
 
 /// More bins than this are a mistake.
 const MOST: usize = 100_000_000;

@@ -89,6 +89,9 @@ const KEYWORDS: &[&str] = &[
     "title3",
 ];
 
+/// Counts of this sample and of all so far, and a row of what is shown.
+const BYTES_PER_BIN: f64 = 80.0;
+
 fn build(args: &mut Args, cx: &BuildCx, weight: bool) -> Result<Box<dyn Fix>> {
     let mut schedule = Schedule::read(args)?;
     let mut unknown = args.peek().is_some_and(|w| w.unknown);
@@ -99,7 +102,7 @@ fn build(args: &mut Args, cx: &BuildCx, weight: bool) -> Result<Box<dyn Fix>> {
     if lo >= hi && !unknown {
         return fail(Code::BAD_VALUE, span, format!("hi must be above lo: {hi} is not above {lo}"));
     }
-    let inner = args.integer_from(1, "the number of bins")? as usize;
+    let inner = args.count("the number of bins", BYTES_PER_BIN)?;
     let mut words: Vec<&Word> = vec![];
     while let Some(word) = args.peek().filter(|w| {
         Input::attribute(&w.text).is_some() || ["c_", "f_", "v_"].iter().any(|p| w.text.starts_with(p))

@@ -188,7 +188,12 @@ impl Fix for Declared {
         if args.eat("virial") {
             self.virial = args.flag("virial")?;
         } else if args.eat("vector") {
-            self.length = args.integer_from(0, "how many values the program sets")? as usize;
+            self.length = match args.eat("0") {
+                true => 0,
+                false => {
+                    args.count("the number of values that the program sets", 4.0 * size_of::<f64>() as f64)?
+                }
+            };
         } else {
             return super::no_option(args);
         }

@@ -80,6 +80,9 @@ fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
     Ok(())
 }
 
+/// What a column takes besides its numbers: its name, here and where columns are kept.
+const BYTES_PER_NAME: f64 = 200.0;
+
 /// The columns of one name, as `d_heat` or `d2_heat/1`.
 fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Result<Vec<String>> {
     if [TEMPERATURE.text(), HEATFLOW.text()].contains(&word.text.as_str()) {
@@ -98,8 +101,9 @@ fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Res
         return Err(d.help("write i_NAME, d_NAME, i2_NAME N, d2_NAME N, temperature or heatflow").into());
     };
     let several = prefix.contains('2');
-    let count = if several { args.integer_from(1, "the number of columns")? } else { 1 };
-    let key = |k: i64| if several { format!("{}/{k}", word.text) } else { word.text.clone() };
+    let each = BYTES_PER_NAME + size_of::<f64>() as f64 * cx.world.n() as f64;
+    let count = if several { args.count("the number of columns", each)? } else { 1 };
+    let key = |k: usize| if several { format!("{}/{k}", word.text) } else { word.text.clone() };
     free(word, cx, before, &key(1))?;
     Ok((1..=count).map(key).collect())
 }

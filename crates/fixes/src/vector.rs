@@ -114,7 +114,7 @@ impl Fix for Declared {
             let grow = |list: &mut Vec<f64>| {
                 list.extend(&row);
                 if let Some(most) = most
-                    && list.len() > most * cols
+                    && list.len() > most.saturating_mul(cols)
                 {
                     list.drain(..cols);
                 }

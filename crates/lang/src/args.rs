@@ -3,6 +3,7 @@
 use super::command::{Command, Word};
 use super::reference::{Param, ValueRef};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
+use perigrain_base::memory;
 
 /// A cursor over a command's words.
 #[derive(Clone, Debug)]
@@ -160,6 +161,19 @@ impl<'a> Args<'a> {
             return Ok(k.max(least));
         }
         fail(Code::BAD_VALUE, span, format!("{what} must be at least {least}, not {k}"))
+    }
+
+    /// Takes how many there are to be of what needs so many bytes each: a whole number of at least 1, for which there is room.
+    ///
+    /// # Errors
+    /// As `integer_from`, and for numbers that do not fit into the memory.
+    pub fn count(&mut self, what: &str, bytes: f64) -> Result<usize> {
+        let (span, word) = (self.here(), self.peek_text());
+        let count = self.integer_from(1, what)?;
+        match memory::lacking(count as f64 * bytes, &format!("{word} as {what}")) {
+            Some(d) => Err(d.at(span).into()),
+            None => Ok(usize::try_from(count).unwrap_or(usize::MAX)),
+        }
     }
 
     /// Takes a switch: `yes on true` or `no off false`.

@@ -149,6 +149,60 @@ fn images(far: f64, period: &Periods) -> [i32; 3] {
     })
 }
 
+/// What a search would find, told before it is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Forecast {
+    /// About how many pairs, where particles lie evenly.
+    pub pairs: f64,
+    /// The longest reach, skin and sizes with it [length].
+    pub reach: f64,
+    /// How many images of the box that goes into along each axis, to one side.
+    pub images: [f64; 3],
+}
+
+impl Forecast {
+    /// More images than this to one side are not looked into.
+    pub const MOST_IMAGES: f64 = 127.0;
+
+    /// How many images of the box are reached into in all.
+    pub fn all_images(&self) -> f64 {
+        self.images.map(|n| 2.0 * n + 1.0).into_iter().product()
+    }
+}
+
+/// How many pairs [`pairs`] would find.
+pub fn forecast(v: &View, wanted: &Wanted, skin: f64) -> Forecast {
+    let classes = classes(v, wanted);
+    let mean =
+        |c: &Class| c.members.iter().map(|&m| v.radius(m as usize)).sum::<f64>() / c.members.len() as f64;
+    let mut out = Forecast::default();
+    for (k, a) in classes.iter().enumerate() {
+        for b in &classes[k..] {
+            let Some(reach) = wanted.get(a.kind, b.kind) else { continue };
+            let far = cutoff(reach, skin, a.largest, b.largest);
+            if far > out.reach {
+                out.reach = far;
+                out.images = v.period.heights().map(|l| if l > 0.0 { (far / l).ceil() } else { 0.0 });
+            }
+            let (lo, hi) = extent(v.x, a.members.iter().chain(&b.members).copied());
+            let likely = cutoff(reach, skin, mean(a), mean(b));
+            // The share of all pairs that are within reach, in a box that repeats more than all of them.
+            let along = |d: usize| match v.period.length[d] {
+                l if l > 0.0 => 2.0 * likely / l,
+                _ if hi[d] - lo[d] > 2.0 * likely => 2.0 * likely / (hi[d] - lo[d]),
+                _ => 1.0,
+            };
+            let share = SPHERE * along(0) * along(1) * along(2);
+            let orders = if std::ptr::eq(a, b) { 0.5 } else { 1.0 };
+            out.pairs += orders * a.members.len() as f64 * b.members.len() as f64 * share;
+        }
+    }
+    out
+}
+
+/// The volume of a sphere in the cube around it, π/6.
+const SPHERE: f64 = std::f64::consts::FRAC_PI_6;
+
 /// How far apart two particles of these radii may be.
 fn cutoff(reach: Reach, skin: f64, ri: f64, rj: f64) -> f64 {
     skin + match reach {

@@ -218,6 +218,13 @@ impl Log {
         self.inner().flush()
     }
 
+    /// A text for the file alone, with which the program ends at once: the log is left as it is where another thread writes it.
+    pub fn last_words(&self, text: &str) {
+        if let Ok(mut inner) = self.0.try_lock() {
+            let _ = inner.record(text).and_then(|()| inner.flush());
+        }
+    }
+
     fn inner(&self) -> MutexGuard<'_, Inner> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

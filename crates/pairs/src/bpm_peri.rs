@@ -8,6 +8,7 @@ use perigrain_base::math::vec3::dot;
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_styles::near::room_for_pairs;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
@@ -110,10 +111,11 @@ struct Repulsion {
 
 impl Repulsion {
     /// Looks for pairs after a rebuild, and leaves out who is joined whenever bonds have changed.
-    fn update(&mut self, w: &World, t: &Tick, range: f64) {
+    fn update(&mut self, w: &World, t: &Tick, range: f64) -> Result<()> {
         if t.setup || self.held != Some(w.rebuild.generation) {
             let mut wanted = Wanted::new(w.types);
             self.law.table.keys().for_each(|(a, b)| wanted.set(*a, *b, Reach::Fixed(range)));
+            room_for_pairs(w, &wanted, w.settings.neighbor.skin)?;
             self.near = near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::excluded(w));
             (self.held, self.joined) = (Some(w.rebuild.generation), None);
         }
@@ -123,6 +125,7 @@ impl Repulsion {
             self.list = self.near.iter().filter(|q| !joined(q)).copied().collect();
             self.joined = Some(w.bonds.changes);
         }
+        Ok(())
     }
 }
 
@@ -140,7 +143,7 @@ impl Op for Repulsion {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let range = CONTACT * w.lattice.spacing[0];
-        self.update(w, t, range);
+        self.update(w, t, range)?;
         let n = w.n();
         let Some(key) = w.columns.property(*VOLUME_PROPERTY) else {
             return fail(Code::LOST, self.span, "the property d_vfrac is gone");

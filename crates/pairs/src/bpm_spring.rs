@@ -7,6 +7,7 @@ use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_styles::near::room_for_pairs;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
@@ -127,19 +128,21 @@ struct Repulsion {
 
 impl Repulsion {
     /// The list, as it stands: made anew, or with the pairs that bonds have freed.
-    fn renew(&mut self, w: &World, t: &Tick) {
+    fn renew(&mut self, w: &World, t: &Tick) -> Result<()> {
         let now = (w.rebuild.generation, w.bonds.changes);
         if !t.setup && self.made == Some(now) {
-            return;
+            return Ok(());
         }
         let skin = w.settings.neighbor.skin;
         let freed = self.made.filter(|_| !t.setup).and_then(|(since, _)| w.rebuild.only_parted(since));
         if let Some(pairs) = freed {
             admit(w, pairs, &self.wanted, &Allowed::new(w), &mut self.list);
         } else {
+            room_for_pairs(w, &self.wanted, skin)?;
             self.list = near(w, built_at(w), &self.wanted, skin, &Allowed::new(w));
         }
         self.made = Some(now);
+        Ok(())
     }
 }
 
@@ -169,7 +172,7 @@ impl Op for Repulsion {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let period = w.periods();
-        self.renew(w, t);
+        self.renew(w, t)?;
         if self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
             self.law = self.said.adapted(w);

@@ -1,11 +1,15 @@
 //! What styles may know while a line of the deck is read, and what acts may use while they act.
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
+use perigrain_base::memory;
 use perigrain_lang::{Param, RefKind, ValueRef, Word};
 use perigrain_world::{Compat, GroupId, Key, Offers, Region, World};
 use std::cell::RefCell;
 
 use super::Wants;
+
+/// The word of one value of a range, and what reads it.
+const BYTES_PER_VALUE: f64 = 200.0;
 
 /// What kind of thing a line refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -339,6 +343,9 @@ impl BuildCx<'_> {
         }
         if lo < 1 || lo > hi || hi > all {
             return wrong(format!("`{range}` is no range from 1 to {all}"));
+        }
+        if let Some(d) = memory::lacking((hi - lo) as f64 * BYTES_PER_VALUE, &format!("`{range}`")) {
+            return Err(d.at(word.span).into());
         }
         Ok((lo..=hi).map(|k| Word { text: format!("{head}[{k}]{tail}"), ..word.clone() }).collect())
     }

@@ -1,9 +1,11 @@
 //! Pairs of particles within a distance of each other, and clusters of them.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::cformat::general;
 use perigrain_base::math::forest::find;
 use perigrain_base::math::periods::Periods;
-use perigrain_neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
+use perigrain_base::memory::lacking;
+use perigrain_neigh::list::{Forecast, Pair, Reach, View, Wanted, difference, forecast, pairs};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Bond, GroupId, World};
 
@@ -38,7 +40,39 @@ pub fn one_image(w: &World, cutoff: f64, at: Span) -> Result<()> {
         .into())
 }
 
-fn every_type(w: &World, reach: Reach) -> Wanted {
+/// Refuses a search for pairs that do not fit into the memory, or that meet in more images of the box than are looked into.
+///
+/// # Errors
+/// What is needed, and what is free.
+pub fn room_for_pairs(w: &World, wanted: &Wanted, skin: f64) -> Result<()> {
+    let p = &w.particles;
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    let found = forecast(&view, wanted, skin);
+    let images = found.images.iter().any(|n| *n > 0.0);
+    let into = match images {
+        true => {
+            format!(", which reaches into {} images of the periodic box,", general(found.all_images(), 3))
+        }
+        false => String::new(),
+    };
+    let within = format!("within {}{into}", general(found.reach, 4));
+    let help = "take a shorter distance or a larger box, or let its faces not repeat (`boundary f f f`)";
+    if found.images.iter().any(|n| *n > Forecast::MOST_IMAGES) {
+        let text = format!("neighbours {within} would be too many to count");
+        return Err(Diagnostic::error(Code::TOO_LARGE, None, text).help(help).into());
+    }
+    let what = format!("about {} pairs of neighbours {within}", general(found.pairs, 3));
+    match lacking(found.pairs * BYTES_PER_PAIR, &what) {
+        Some(d) => Err(d.help(help).into()),
+        None => Ok(()),
+    }
+}
+
+/// What a pair takes while it is searched and sorted.
+const BYTES_PER_PAIR: f64 = 48.0;
+
+/// Pairs of all types that reach so far.
+pub fn every_type(w: &World, reach: Reach) -> Wanted {
     let mut wanted = Wanted::new(w.types);
     for a in 1..=w.types as u16 {
         (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));

@@ -188,8 +188,8 @@ codes! {
     NOT_FINITE = 202, "numbers out of control",
         "A position, velocity or force is no longer finite: the time step is too long for the stiffness, or particles overlap heavily.",
 "velocity all set 1e10 0 0\ntimestep 1e300\nrun 3", "velocity all set 1 0 0\ntimestep 1e-8\nrun 3";
-    TOO_LARGE = 203, "scene does not fit",
-        "The forecast says that memory will not suffice.",
+    TOO_LARGE = 203, "memory does not suffice",
+        "What a count asks for, in a deck, in a file or of a packed file, needs more memory than is free: on the machine, under the limits of the process (`ulimit -v`) or of its container, or by `-limit memory`. It is forecast where a forecast can be made, and refused before it is asked for.",
         "units si\natom_style sphere\nlattice sc 1e-6\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box", "units si\natom_style sphere\nlattice sc 0.1\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box";
     RUNAWAY = 206, "energy out of control",
         "Particles move ten times as fast as waves with more than a million times the energy that the run began with, or no fix does work and there is a million times as much energy all the same: it was made from nothing, by a time step that is too long or by particles that overlap heavily. `thermo_modify energy ignore` lets such a run go on; under `compat lammps` it is a warning.",

@@ -93,6 +93,11 @@ impl Sources {
         self.0.get(id.0 as usize).map(AsRef::as_ref)
     }
 
+    /// The text with this id, to keep.
+    pub fn keep(&self, id: FileId) -> Option<Arc<Source>> {
+        self.0.get(id.0 as usize).cloned()
+    }
+
     /// Line and column (both from 1, column in characters) of a span's start.
     pub fn place(&self, span: Span) -> (usize, usize) {
         let Some(source) = self.get(span.file) else { return (0, 0) };

@@ -23,10 +23,14 @@ struct Pool {
 /// Room on the stack of each thread [bytes]: loops compiled without optimisation need some megabytes.
 pub const STACK: usize = 16 << 20;
 
+/// More threads than this are not started, however many are asked for: results are the same.
+const MOST: usize = 1024;
+
 /// Sets the number of threads for everything that follows; 0 means all cores. Returns what was obtained:
 /// one thread if the system grants no more.
 pub fn set_threads(n: usize) -> usize {
     let n = if n == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { n };
+    let n = n.min(MOST);
     let pool = if n > 1 {
         rayon::ThreadPoolBuilder::new().num_threads(n).stack_size(STACK).build().ok()
     } else {

@@ -37,6 +37,17 @@ impl Mode {
 }
 
 impl Mesh {
+    /// About how many particles come.
+    pub fn expected(&self) -> f64 {
+        let area = |t: &Triangle| 0.5 * length(cross(sub(t[1], t[0]), sub(t[2], t[0])));
+        let of = |t: &Triangle| match self.mode {
+            // Of a triangle that is halved again and again, the corners stand sqrt(area / 1.2) from the centre or a little less.
+            Mode::Bisect(threshold) => (area(t) / (1.2 * threshold * threshold)).max(1.0),
+            Mode::Quasi(density) => area(t) * density,
+        };
+        self.triangles.iter().map(of).sum()
+    }
+
     /// The particles inside the box.
     pub fn places(&self, m: &Maker) -> Vec<New> {
         let mut found = vec![];
@@ -130,6 +141,7 @@ pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
     let word = a.expect("the name of a file of triangles")?;
     let mesh = |triangles| Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 };
     let Some(read) = triangles::read(word, cx)? else { return Ok((mesh(vec![]), vec![])) };
+    triangles::doubt_size(word, &read.triangles, cx);
     let kind = match read.format {
         Format::Stl(true) => "binary ",
         Format::Stl(false) => "text ",

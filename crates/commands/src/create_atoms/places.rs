@@ -127,7 +127,8 @@ impl Place {
     pub fn expected(&self, world: &World, domain: &Domain) -> f64 {
         const SAMPLES: usize = 16;
         let region = match self {
-            Place::Single { .. } | Place::Mesh(_) => return 1.0,
+            Place::Single { .. } => return 1.0,
+            Place::Mesh(mesh) => return mesh.expected(),
             Place::Random { count, .. } => return *count as f64,
             Place::Pack(pack) => return pack.expected(domain),
             Place::Lattice { region, .. } => region.as_ref(),

@@ -274,8 +274,11 @@ impl<'a> Reader<'a> {
         let count = self.data.header.atoms;
         let layout = columns(style);
         self.data.particles.style = style;
-        self.data.particles.reserve(count);
-        self.data.lines.reserve_exact(count);
+        // A row has two bytes for each column at least: a header may promise more than the file can hold.
+        let rest = self.lines.text().len() - self.lines.position().min(self.lines.text().len());
+        let room = count.min(rest / (2 * layout.len()).max(1) + 1);
+        self.data.particles.reserve(room);
+        self.data.lines.reserve_exact(room);
         self.rows("Atoms", title, count, |r, line| r.atom(line, &layout))?;
         let tags = &self.data.particles.tag;
         match twice(tags) {

@@ -1,8 +1,7 @@
 //! A data file as text: lines without comments, words with places, numbers.
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span, fail, unseen};
-use perigrain_base::gate;
-use perigrain_base::stop;
+use perigrain_base::{gate, memory, stop};
 use perigrain_lang::Word;
 use perigrain_out::binary;
 use perigrain_world::{Promise, World};
@@ -20,10 +19,9 @@ pub fn load_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     if path.extension().is_some_and(|e| e == "gz") {
         // A small file may be packed from a huge one.
         let unpacked = stop::Heeding(flate2::read::MultiGzDecoder::new(file));
-        unpacked.take(u64::from(u32::MAX)).read_to_end(&mut bytes)?;
+        memory::read_all(unpacked.take(u64::from(u32::MAX)), &mut bytes)?;
     } else {
-        bytes.reserve_exact(file.metadata().map_or(0, |m| m.len() as usize).saturating_add(1));
-        std::io::BufReader::new(file).read_to_end(&mut bytes)?;
+        memory::read_file(file, &mut bytes)?;
     }
     if bytes.len() > u32::MAX as usize - 1 {
         return Err(odd("it is larger than 4 GB"));
@@ -107,8 +105,8 @@ fn seek<T>(
             Err(e) => drop(trouble.get_or_insert(e)),
         }
     }
-    if let Some(e) = trouble.as_ref().filter(|e| gate::code(e) == Code::NOT_ALLOWED) {
-        return fail(Code::NOT_ALLOWED, word.span, format!("the {what} `{name}` cannot be read: {e}"));
+    if let Some(e) = trouble.as_ref().filter(|e| gate::final_word(e)) {
+        return fail(gate::code(e), word.span, format!("the {what} `{name}` cannot be read: {e}"));
     }
     if promised.anything {
         return Err(unseen(word.span, name));

@@ -153,14 +153,17 @@ impl File {
         }
         self.notes.0.extend(under_heading(lines, &name)?);
         let count = if name == "Bonds" { self.bonds } else { self.t.count };
+        // Before room is made for them: a header may promise more than the file holds.
+        let mut ahead = *lines;
+        let have = (0..count).take_while(|_| ahead.take().is_some_and(|l| !l.is_blank())).count();
+        if have < count {
+            let text = format!("the section {name} has {have} lines, the header promises {count}");
+            return fail(Code::INCOMPLETE, title.span(), text);
+        }
         self.make_room(&name);
         let mut there = vec![false; count];
-        for have in 0..count {
-            let Some(line) = lines.peek().filter(|l| !l.is_blank()) else {
-                let text = format!("the section {name} has {have} lines, the header promises {count}");
-                return fail(Code::INCOMPLETE, title.span(), text);
-            };
-            lines.take();
+        for _ in 0..count {
+            let Some(line) = lines.take() else { break };
             self.row(&name, &line, &mut there)?;
         }
         self.seen.push(name);

@@ -17,12 +17,15 @@ struct Said {
     subs: Option<(Vec<usize>, Span)>,
 }
 
+/// What a level keeps, without forces of particles.
+const BYTES_PER_LEVEL: f64 = 1000.0;
+
 /// Reads what follows `respa`; also gives the lines that tell which forces act where.
 ///
 /// # Errors
 /// Every mistake in the line.
 pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
-    let count = a.integer_from(1, "the number of levels")? as usize;
+    let count = a.count("the number of levels", BYTES_PER_LEVEL)?;
     let (mut loops, mut all) = (vec![], 1i64);
     for k in 1..count {
         let span = a.here();

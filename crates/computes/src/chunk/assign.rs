@@ -3,6 +3,7 @@
 use super::bins::{Layers, Shells};
 use super::words::{Discard, Ids, Spec, What};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::memory;
 use perigrain_styles::Reading;
 use perigrain_styles::common::orthogonal;
 use perigrain_world::{Domain, Key, Numbers, Region, Slot, World};
@@ -247,9 +248,15 @@ impl Task<'_> {
         let (spec, layers) = (self.spec, &layout.layers);
         match &spec.what {
             What::Bins(axes) => {
-                let mut bin = 0;
+                let mut bin = 0usize;
                 for (a, l) in axes.iter().zip(layers) {
-                    bin = bin * l.count + a.layer(l, along(a.dim), spec.discard, lammps)?;
+                    // Of too many bins there is no number: `count` refuses them.
+                    bin = bin.saturating_mul(l.count).saturating_add(a.layer(
+                        l,
+                        along(a.dim),
+                        spec.discard,
+                        lammps,
+                    )?);
                 }
                 Some(bin)
             }
@@ -257,7 +264,7 @@ impl Task<'_> {
             What::Cylinder(a, s) => {
                 let axial = a.layer(&layers[0], along(a.dim), spec.discard, lammps)?;
                 let ring = layout.of(s).shell(d, round(), spec.pbc, spec.discard)?;
-                Some(ring * layers[0].count + axial)
+                Some(ring.saturating_mul(layers[0].count).saturating_add(axial))
             }
             _ => None,
         }
@@ -269,17 +276,21 @@ impl Task<'_> {
         let d = w.domain()?;
         let bins = self.bins(d)?;
         let layers = bins.layers;
-        let all: usize = match &spec.what {
-            What::Type => w.types,
-            What::Molecule | What::Value(_) => raw.iter().fold(1.0, |a: f64, b| a.max(*b)) as usize,
-            What::Bins(axes) => layers[..axes.len()].iter().map(|l| l.count).product(),
-            What::Sphere(s) => s.count,
-            What::Cylinder(_, s) => layers[0].count * s.count,
+        let all: f64 = match &spec.what {
+            What::Type => w.types as f64,
+            What::Molecule | What::Value(_) => raw.iter().fold(1.0, |a: f64, b| a.max(*b)),
+            What::Bins(axes) => layers[..axes.len()].iter().map(|l| l.count as f64).product(),
+            What::Sphere(s) => s.count as f64,
+            What::Cylinder(_, s) => layers[0].count as f64 * s.count as f64,
         };
-        if all > MOST && !spec.compress {
+        if all > MOST as f64 && !spec.compress {
             let text =
                 format!("{all} chunks are too many: `compress yes` leaves out those without particles");
             return fail(Code::BAD_VALUE, self.span, text);
+        }
+        if all > MOST_NUMBERS {
+            let text = format!("{all:e} chunks cannot be numbered");
+            return fail(Code::TOO_LARGE, self.span, text);
         }
         let mut used = vec![];
         if spec.compress {
@@ -287,9 +298,12 @@ impl Task<'_> {
             used.sort_by(f64::total_cmp);
             used.dedup();
         }
-        let mut n = if spec.compress { used.len() } else { all };
+        let mut n = if spec.compress { used.len() } else { all as usize };
         if let Some(l) = spec.limit {
             n = if l.exact { l.n } else { n.min(l.n) };
+        }
+        if let Some(d) = memory::lacking(n as f64 * BYTES_PER_CHUNK, &format!("{n} chunks")) {
+            return Err(d.at(self.span).into());
         }
         Ok(Layout { n, used, ..bins })
     }
@@ -386,6 +400,12 @@ impl Task<'_> {
 fn whole(a: f64) -> f64 {
     if a.is_nan() { 0.0 } else { a.trunc() + 0.0 }
 }
+
+/// Sums, means and rows of a chunk in what reads it.
+const BYTES_PER_CHUNK: f64 = 100.0;
+
+/// Chunks beyond this have no numbers of their own as doubles.
+const MOST_NUMBERS: f64 = 9e15;
 
 /// More chunks than this are a mistake (a particle id without `compress`, say).
 const MOST: usize = 100_000_000;

@@ -10,7 +10,7 @@ use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Newcomer, admit};
 use perigrain_world::Fields;
 use perigrain_world::field::{RADIUS, X};
-use perigrain_world::{Numbers, SlotId, World};
+use perigrain_world::{Numbers, SlotId, World, memory};
 
 /// Pours.
 pub struct Rain {
@@ -82,6 +82,8 @@ impl Rain {
         account.next = (account.done < fix.count).then_some(first);
         account.store(w, key);
         if let Some(left) = fix.count.checked_sub(account.done).filter(|n| *n > 0) {
+            // A batch of minute spheres may be more than any memory holds.
+            memory::forecast(w, batch.min(left) as f64).map_err(|e| e.at(span))?;
             let last = first + ((left - 1) / batch) as i64 * every;
             log.line(&format!("Particle insertion: {batch} every {every} steps, {left} by step {last}"))?;
         }

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
 use perigrain_contact::driver::Rules;
 use perigrain_neigh::list::{Reach, Wanted};
+use perigrain_styles::near::room_for_pairs;
 use perigrain_world::World;
 
 /// In more images than this grains do not meet each other, and are not looked for.
@@ -44,7 +45,7 @@ pub fn refuse_giants(w: &World, wanted: &Wanted, skin: f64) -> Result<()> {
                 .into());
         }
     }
-    Ok(())
+    room_for_pairs(w, wanted, skin)
 }
 
 /// The largest radius of each type (index type − 1).

@@ -27,6 +27,9 @@ pub struct Info {
     pub centred: bool,
 }
 
+/// What is kept of each layer of voxels besides one slice [byte].
+const BYTES_PER_LAYER: f64 = 64.0;
+
 impl Info {
     /// The lower corner of the image, its voxels having these edges.
     pub fn corner(&self, spacing: [f64; 3]) -> [f64; 3] {
@@ -48,9 +51,15 @@ impl Info {
                 fail(Code::BAD_FILE, word.span, format!("{text} cannot be"))
             }
             Some(_) => {
-                let slice = 40.0 * self.size[0] as f64 * self.size[1] as f64;
-                perigrain_world::memory::lacking(slice, "one slice of the image")
-                    .map_or(Ok(()), |d| Err(d.at(word.span).into()))
+                let [nx, ny, nz] = self.size.map(|n| n as f64);
+                let slice = perigrain_world::memory::lacking(40.0 * nx * ny, "one slice of the image");
+                let all = || {
+                    perigrain_world::memory::lacking(
+                        BYTES_PER_LAYER * (nx + ny + nz),
+                        "an image of so many layers",
+                    )
+                };
+                slice.or_else(all).map_or(Ok(()), |d| Err(d.at(word.span).into()))
             }
         }
     }

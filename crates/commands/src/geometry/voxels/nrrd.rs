@@ -52,8 +52,24 @@ pub fn open(w: &World, word: &Word) -> Result<Box<dyn Image>> {
             (beside, 0)
         }
     };
+    if !header.packed {
+        whole_slices(&path, start, &header, word)?;
+    }
     let reader = from(&path, start, header.packed).map_err(|e| unreadable(&path, word, &e))?;
     Ok(Box::new(Nrrd { header, word: word.clone(), path, start, reader, bytes: vec![], slice: 0 }))
+}
+
+/// Checks that a file which is not packed holds all slices, before room is made for them.
+fn whole_slices(path: &Path, start: u64, header: &Header, word: &Word) -> Result<()> {
+    let length =
+        gate::open(path).and_then(|file| file.metadata()).map_err(|e| unreadable(path, word, &e))?.len();
+    let [nx, ny, nz] = header.info.size;
+    let slices = length.saturating_sub(start) / (nx as u64 * ny as u64 * header.kind.size() as u64).max(1);
+    if slices < nz as u64 {
+        let end = std::io::ErrorKind::UnexpectedEof.into();
+        return Err(cut_off(&path.display().to_string(), [slices as usize, nz], word, &end));
+    }
+    Ok(())
 }
 
 /// The header, and where what follows its blank line begins.

@@ -1,0 +1,196 @@
+//! The allocator of the program: memory that is not there, or beyond `-limit memory`, ends it with a message instead of an abort.
+
+use crate::diag::{Code, Diagnostic, FileId, Source, Span};
+use crate::gate;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::exit;
+use std::sync::atomic::{AtomicBool, AtomicIsize, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock, RwLock};
+
+/// Pieces of this size and more are compared with the memory that the machine has left [byte].
+const LARGE: usize = 64 << 20;
+/// Under a limit, pieces of this size and more are compared with what the process has [byte].
+const NOTABLE: usize = 1 << 20;
+/// Of a limit, this part is left for what the allocator keeps beside the pieces that are asked for.
+const MARGIN: f64 = 0.05;
+
+/// Bytes that may be held, counted from when the limit was set.
+static MOST: AtomicIsize = AtomicIsize::new(isize::MAX);
+/// Bytes held, counted from when the limit was set.
+static HELD: AtomicIsize = AtomicIsize::new(0);
+/// The program is being ended.
+static ENDING: AtomicBool = AtomicBool::new(false);
+/// What says the last words.
+static SPEAKER: OnceLock<Speaker> = OnceLock::new();
+/// The text of the deck that is read now.
+static TEXT: RwLock<Option<Arc<Source>>> = RwLock::new(None);
+/// The bytes of the line that is worked off now: first, and one past the last.
+static LINE: AtomicU64 = AtomicU64::new(0);
+
+/// Shows a message to people.
+type Speaker = Box<dyn Fn(Diagnostic) + Send + Sync>;
+
+thread_local! {
+    /// This thread says the last words: it gets memory whatever the limit.
+    static SPEAKING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The system's allocator behind a fence. Without a limit a piece of memory costs one look at a number more.
+pub struct Fence;
+
+// SAFETY: all pieces are the system's, of the layouts that were asked for; what is refused never comes back to the caller.
+unsafe impl GlobalAlloc for Fence {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        admit(layout.size());
+        // SAFETY: the caller's promise.
+        given(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        admit(layout.size());
+        // SAFETY: the caller's promise.
+        given(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn dealloc(&self, piece: *mut u8, layout: Layout) {
+        back(layout.size());
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(piece, layout) }
+    }
+
+    unsafe fn realloc(&self, piece: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        match size.checked_sub(layout.size()) {
+            Some(more) => admit(more),
+            None => back(layout.size() - size),
+        }
+        // SAFETY: the caller's promise.
+        given(unsafe { System.realloc(piece, layout, size) }, size)
+    }
+}
+
+/// Lets a piece pass, or ends the program.
+#[inline]
+fn admit(size: usize) {
+    let most = MOST.load(Ordering::Relaxed);
+    if most != isize::MAX || size >= LARGE {
+        look(size, most);
+    }
+}
+
+#[cold]
+fn look(size: usize, most: isize) {
+    if most == isize::MAX {
+        if super::free::bytes().is_some_and(|free| size as f64 > free) {
+            refuse(size);
+        }
+        return;
+    }
+    let size_too = isize::try_from(size).unwrap_or(isize::MAX);
+    let held = HELD.fetch_add(size_too, Ordering::Relaxed).saturating_add(size_too);
+    if held > most || (size >= NOTABLE && gate::memory_of_limit().is_some_and(|left| size as f64 > left)) {
+        refuse(size);
+    }
+}
+
+/// Takes note of a piece that is given back.
+#[inline]
+fn back(size: usize) {
+    if MOST.load(Ordering::Relaxed) != isize::MAX {
+        HELD.fetch_sub(size as isize, Ordering::Relaxed);
+    }
+}
+
+/// A piece as the system gave it; where it gave none, the program ends.
+#[inline]
+fn given(piece: *mut u8, size: usize) -> *mut u8 {
+    if piece.is_null() {
+        refuse(size);
+    }
+    piece
+}
+
+/// Ends the program with a message, unless it is this thread that says it.
+#[cold]
+fn refuse(size: usize) {
+    if SPEAKING.get() {
+        return;
+    }
+    if ENDING.swap(true, Ordering::SeqCst) {
+        loop {
+            std::thread::park();
+        }
+    }
+    SPEAKING.set(true);
+    // What goes wrong while the words are said must not leave an allocator by unwinding.
+    let _ = catch_unwind(AssertUnwindSafe(|| {
+        let said = placed(message(size as f64));
+        match SPEAKER.get() {
+            Some(speaker) => speaker(said),
+            None => eprintln!("error[{}]: {}", said.code, said.message),
+        }
+    }));
+    exit(1);
+}
+
+fn message(bytes: f64) -> Diagnostic {
+    let asked = super::size(bytes);
+    match gate::limits() {
+        Some(limits) => {
+            let text = format!(
+                "-safe: {asked} more would be too many megabytes of memory, {} are allowed",
+                limits.memory
+            );
+            Diagnostic::error(Code::NOT_ALLOWED, None, text).help("`-limit memory MB` allows more")
+        }
+        None => {
+            let free =
+                super::room().map_or(String::new(), |free| format!("; {} are free", super::size(free)));
+            Diagnostic::error(Code::TOO_LARGE, None, format!("{asked} of memory more are needed here{free}"))
+        }
+    }
+}
+
+/// With the line that is worked off.
+fn placed(mut said: Diagnostic) -> Diagnostic {
+    if let Ok(text) = TEXT.try_read()
+        && let Some(text) = &*text
+    {
+        let line = LINE.load(Ordering::Relaxed);
+        said.span = Some(Span { file: FileId::BROUGHT, start: (line >> 32) as u32, end: line as u32 });
+        said.text = Some(text.clone());
+    }
+    said
+}
+
+/// Says which text the next lines are of.
+pub fn reads(text: Arc<Source>) {
+    if let Ok(mut now) = TEXT.write() {
+        *now = Some(text);
+    }
+}
+
+/// Says which line of the text is worked off.
+#[inline]
+pub fn at(line: Span) {
+    LINE.store(u64::from(line.start) << 32 | u64::from(line.end), Ordering::Relaxed);
+}
+
+/// Says what shows the message with which the fence ends the program; only the first one counts.
+pub fn speaks(speaker: impl Fn(Diagnostic) + Send + Sync + 'static) {
+    let _ = SPEAKER.set(Box::new(speaker));
+}
+
+/// From now on the program may have so many bytes in all.
+pub(crate) fn limit(bytes: f64) {
+    let left = bytes * (1.0 - MARGIN) - super::resident().unwrap_or(0.0);
+    HELD.store(0, Ordering::Relaxed);
+    MOST.store(left.max(0.0) as isize, Ordering::Relaxed);
+}
+
+/// Bytes that a limit leaves by the count of the fence.
+pub(crate) fn limited() -> Option<f64> {
+    let most = MOST.load(Ordering::Relaxed);
+    (most != isize::MAX).then(|| (most.saturating_sub(HELD.load(Ordering::Relaxed))).max(0) as f64)
+}

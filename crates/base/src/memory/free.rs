@@ -1,0 +1,65 @@
+//! What memory the machine, the process' own limits (`ulimit -v`, `prlimit`) and a container leave; all of it as the system tells it.
+
+use std::fs::read_to_string;
+use std::path::Path;
+
+/// Bytes that can still be asked for, where the system tells.
+pub fn bytes() -> Option<f64> {
+    [
+        machine(),
+        of_process("Max address space", "VmSize:"),
+        of_process("Max data size", "VmData:"),
+        container(),
+    ]
+    .into_iter()
+    .flatten()
+    .reduce(f64::min)
+}
+
+/// Bytes that the program has, where the system tells.
+pub fn resident() -> Option<f64> {
+    kilobytes("/proc/self/status", "VmRSS:")
+}
+
+/// What the machine has left, swap space with it.
+fn machine() -> Option<f64> {
+    let swap = kilobytes("/proc/meminfo", "SwapFree:").unwrap_or(0.0);
+    Some(kilobytes("/proc/meminfo", "MemAvailable:")? + swap)
+}
+
+/// What a limit of the process leaves of what it counts.
+fn of_process(limit: &str, used: &str) -> Option<f64> {
+    let text = read_to_string("/proc/self/limits").ok()?;
+    let most =
+        text.lines().find_map(|l| l.strip_prefix(limit))?.split_whitespace().next()?.parse::<f64>().ok()?;
+    Some((most - kilobytes("/proc/self/status", used)?).max(0.0))
+}
+
+/// What the narrowest of the groups of processes around this one leaves (cgroups, second version).
+fn container() -> Option<f64> {
+    let text = read_to_string("/proc/self/cgroup").ok()?;
+    let own = text.lines().find_map(|l| l.strip_prefix("0::/"))?;
+    let root = Path::new("/sys/fs/cgroup");
+    let group = root.join(own);
+    group.ancestors().take_while(|folder| folder.starts_with(root)).filter_map(left_in).reduce(f64::min)
+}
+
+/// What a group of processes may still have; files that it holds in memory make room.
+fn left_in(folder: &Path) -> Option<f64> {
+    let number = |file: &str| read_to_string(folder.join(file)).ok()?.trim().parse::<f64>().ok();
+    let most = number("memory.max")?;
+    let text = read_to_string(folder.join("memory.stat")).unwrap_or_default();
+    let of = |name: &str| {
+        text.lines().find_map(|l| l.strip_prefix(name)?.trim().parse::<f64>().ok()).unwrap_or(0.0)
+    };
+    let files = of("active_file ") + of("inactive_file ");
+    Some((most - number("memory.current")? + files).max(0.0))
+}
+
+/// A number of kilobytes behind a name, in bytes.
+fn kilobytes(file: &str, name: &str) -> Option<f64> {
+    let text = read_to_string(file).ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix(name))?;
+    let kilobytes: f64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kilobytes * 1024.0)
+}
