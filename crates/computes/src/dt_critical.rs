@@ -37,7 +37,8 @@ impl Style for DtCritical {
                    holds particles fast makes the true limit longer still; dashpots make it shorter.\n\n\
                    `dem particle`: the least √(m/k) and √(I/k_r) over all that touch, k from the normal and tangential \
                    stiffness of its contacts with others as they are now (Hartmann et al., equation 43). Two free grains \
-                   would stand 1.4 times, a held one 2 times that. Contacts with walls count too; those of hybrid \
+                   would stand 1.4 times, a held one 2 times that; contacts askew to the axes, strong dashpots and springs of rolling and \
+                   twisting may stand less, and the step is never longer than these allow. Contacts with walls count too; those of hybrid \
                    particles count here, with their mass.\n\n\
                    `bonds`: of particles that bond styles `harmonic` and `bpm/*` (but `bpm/peri`: `pd`) join, displacements and rotations, \
                    with the stiffnesses that the deck's lines say and directions as they are. `local` bounds ω² by twice the largest eigenvalue \
