@@ -20,12 +20,18 @@ impl Session {
         let to_come = self.to_come();
         let deck = Deck { to_come: &to_come, ..self.said() };
         let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()));
-        let pairs: Vec<Scales> = pairs.map(|p| p.scales(&self.world, deck)).collect();
+        let styles: Vec<&dyn Pair> = pairs.collect();
+        let pairs: Vec<Scales> = styles.iter().map(|p| p.scales(&self.world, deck)).collect();
         let line = self.graph.lines.latest("timestep");
         let place = line.map_or(span, |n| n.span);
         self.check_contacts(place, &pairs, deck, found);
         self.check_bonds(span, place, found);
-        let own = |(k, p): (usize, &Scales)| Some((p.stable_step?, self.step_of(k)));
+        let own = |(k, p): (usize, &Scales)| {
+            let (sure, dt) = (p.sure_step?, self.step_of(k));
+            // The exact limit is asked for where the estimate is exceeded.
+            let limit = if dt > sure { styles[k].limit(&self.world) } else { None };
+            Some((limit.unwrap_or(sure), dt))
+        };
         let steps = pairs.iter().enumerate().filter_map(own);
         let worst = steps.reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
         let Some((limit, dt)) = worst else { return };
@@ -36,7 +42,7 @@ impl Session {
         let text = format!("{whose} {dt:e} is longer than peridynamic bonds allow: about {limit:.2e}");
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
-                .help("beyond √(ρ/(π c δ²)) the shortest waves grow from step to step (Silling & Askari 2005, section 6)")
+                .help("beyond their limit (of bonds √(ρ/(π c δ²)) is a safe one: Silling & Askari 2005, section 6) the shortest waves grow from step to step")
                 .help(remedy),
         );
     }
@@ -52,7 +58,7 @@ impl Session {
         let to_come = self.to_come();
         let deck = Deck { to_come: &to_come, ..self.said() };
         let pairs = g.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref())).map(|p| p.scales(w, deck));
-        let own = pairs.flat_map(|p| [p.stable_step.map(|s| 0.8 * s), p.contact_time.map(|c| 0.05 * c)]);
+        let own = pairs.flat_map(|p| [p.sure_step.map(|s| 0.8 * s), p.contact_time.map(|c| 0.05 * c)]);
         let walls = g.fixes.iter().map(|f| f.fix.contact_time(w, deck).map(|c| 0.05 * c));
         own.chain(walls).flatten().reduce(f64::min).map(|longest| longest / w.clock.dt)
     }

@@ -88,7 +88,11 @@ impl Session {
         let node = self.graph.pair.as_ref()?;
         let mut parts = node.pair.parts();
         parts.push(node.pair.as_ref());
-        parts.into_iter().filter_map(|p| p.scales(&self.world, Deck::default()).stable_step).reduce(f64::min)
+        let own = |p: &dyn perigrain_styles::Pair| {
+            let known = || p.scales(&self.world, Deck::default()).sure_step;
+            p.limit(&self.world).or_else(known)
+        };
+        parts.into_iter().filter_map(own).reduce(f64::min)
     }
 
     /// Refuses fixes that move solids in a way that knows no short steps.

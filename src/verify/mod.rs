@@ -40,6 +40,8 @@ pub const DECKS: &[(&str, &str)] = decks![
     "peridynamics/elastic_wave",
     "peridynamics/bar_wave",
     "peridynamics/tension",
+    "peridynamics/beam_frequency",
+    "peridynamics/breaking_after_flow",
     "peridynamics/plate_impact",
     "peridynamics/kalthoff_winkler",
     "peridynamics/mode_one",

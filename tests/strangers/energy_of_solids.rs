@@ -23,6 +23,20 @@ fn breaking_after_flow_sets_energy_free() {
 }
 
 #[test]
+fn a_step_beyond_the_limit_of_a_free_state_based_block_is_warned_about() {
+    // Measured: the block stands 5.3e-7 and flies apart at 5.7e-7.
+    for dt in ["5.7e-7", "6.1e-7", "6.5e-7"] {
+        let printed = text(&run("lps_limit.in", &["-var", "dt", dt]));
+        assert!(
+            printed.contains("PG0121") && printed.contains("is longer than peridynamic bonds allow"),
+            "{printed}"
+        );
+    }
+    let printed = text(&run("lps_limit.in", &["-var", "dt", "4.0e-7"]));
+    assert!(!printed.contains("PG0121"), "{printed}");
+}
+
+#[test]
 fn torn_families_have_no_stress() {
     let printed = text(&run("torn_families.in", &[]));
     let found = numbers(&printed, "TORN");

@@ -85,6 +85,8 @@ pub struct Scales {
     pub cutoff: Option<f64>,
     /// The longest time step that is stable, by the style's own estimate [time units]; `None` if it cannot tell.
     pub stable_step: Option<f64>,
+    /// The same, no longer than the limit of any body of such particles, whatever its shape.
+    pub sure_step: Option<f64>,
     /// How long the shortest contact of grains lasts [time units]; `None` if there are none.
     pub contact_time: Option<f64>,
 }
@@ -137,6 +139,11 @@ pub trait Pair: DynClone + Send {
     /// How far its forces reach and how fast they change.
     fn scales(&self, _w: &World, _deck: Deck) -> Scales {
         Scales::default()
+    }
+
+    /// The longest stable step of solids as they stand, where an estimate is far below it and it can be found soon [time].
+    fn limit(&self, _w: &World) -> Option<f64> {
+        None
     }
 
     /// `peri_modify …` and the like: options by command name.

@@ -224,7 +224,7 @@ impl Pair for Declared {
         let cutoff = probes.iter().filter_map(|(_, p)| p.cutoff(w)).reduce(f64::max);
         let rules = self.tables(w.types, w.settings.compat).ok();
         let contact_time = rules.and_then(|(rules, _)| durations::between_grains(w, &rules, deck));
-        Scales { cutoff, contact_time, stable_step: None }
+        Scales { cutoff, contact_time, ..Scales::default() }
     }
 
     fn check(&self, cx: &BuildCx) {

@@ -28,10 +28,11 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_peri::calibration::constants;
 use perigrain_peri::families::{
-    BondWeights, FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable,
-    VolumeRule,
+    BondWeights, Families, FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff,
+    PmbTable, VolumeRule,
 };
 use perigrain_plan::Op;
+use perigrain_styles::peri_view::view;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::{Region, World};
@@ -75,6 +76,9 @@ enum Calibrate {
     Bulk,
     Young,
 }
+
+/// Up to so many particles the exact limit of a step is looked for where the estimate is exceeded: it takes as long as some 60 steps.
+const MOST_LOOKED_AT: usize = 50_000;
 
 /// Starts a style: particles must have volumes.
 fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair>> {
@@ -378,7 +382,14 @@ impl Pair for Solid {
             Some((0.61 * m.bulk + 6.6 * m.shear) / (shortest * shortest))
         };
         let ftm2v = w.settings.units.constants().ftm2v;
-        let step = |i: u16| {
+        let surely = |i: u16| match self.law.kind.bond_based() {
+            true => stiffest(i),
+            false => {
+                let horizons = (1..=types).filter_map(|j| self.table.get(i, j)).map(|p| p.horizon);
+                Some(self.law.of(i).fastest(horizons.reduce(f64::min)?))
+            }
+        };
+        let step = |i: u16, stiffest: &dyn Fn(u16) -> Option<f64>| {
             let own = self.materials.density(i);
             let stiffer = scatter::stiffest(w, i);
             let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { deck.density })?;
@@ -386,8 +397,33 @@ impl Pair for Solid {
         };
         let cutoff = self.table.iter().map(|c| c.horizon).reduce(f64::max);
         let [finest, widest] = bond_weights::spacings(self, w);
-        let stable_step = (1..=types).filter_map(step).reduce(f64::min).map(|t| finest * t);
-        Scales { cutoff: cutoff.map(|c| widest * c), stable_step, contact_time: None }
+        let least = |stiffest: &dyn Fn(u16) -> Option<f64>| {
+            (1..=types).filter_map(|i| step(i, stiffest)).reduce(f64::min).map(|t| finest * t)
+        };
+        let (stable_step, sure_step) = (least(&stiffest), least(&surely));
+        Scales { cutoff: cutoff.map(|c| widest * c), stable_step, sure_step, contact_time: None }
+    }
+
+    fn limit(&self, w: &World) -> Option<f64> {
+        if self.law.kind.bond_based() || w.n() == 0 || w.n() > MOST_LOOKED_AT {
+            return None;
+        }
+        let (view, p) = (view(w).ok()?, &w.particles);
+        let mut law = self.law.clone();
+        law.shared_or_apart(None).ok()?;
+        let built = match &*w.families {
+            Some(_) => None,
+            None => Some(Families::build_of(&view, &self.table, self.options(w), law).ok()?),
+        };
+        let families = built.as_ref().or(w.families.as_ref())?;
+        let density =
+            |i: usize| self.materials.density(p.kind[i]).or(p.density.get(i).copied()).unwrap_or(0.0);
+        let mass: Vec<f64> = match self.unit() {
+            ForceUnit::Newton => (0..p.len()).map(|i| density(i) * p.volume[i]).collect(),
+            ForceUnit::Density => p.mass.to_vec(),
+        };
+        let square = families.largest_eigenvalue(&view, &mass, w.settings.units.constants().ftm2v)?;
+        Some(2.0 / square.sqrt())
     }
 
     fn check(&self, cx: &BuildCx) {

@@ -70,6 +70,21 @@ pub struct Moduli {
     pub peak: f64,
 }
 
+impl Moduli {
+    /// Steps of length √(ρ/this) are stable for a state-based body of this horizon, whatever its shape [pressure/length²].
+    ///
+    /// The exact limit of the cubic lattice is 1.48 Δx/√(K/ρ) at ν = 0.25 and 3.39 at 0.48 for a horizon of 3.015 Δx (Bloch waves, weights
+    /// of LAMMPS), but free bodies vibrate faster: a particle at an edge has a small weighted volume, and a dilatation that its own
+    /// displacement changes. The numbers cover rods of 2 × 2 particles, plates, blocks and jittered points, horizons of 2 to 4 spacings and all
+    /// weights (`tests/families/limits.rs`); large blocks stand steps 1.5 (ν = 0.25) to 1.8 times (0.48) as long.
+    pub fn fastest(&self, horizon: f64) -> f64 {
+        (FASTEST[0] * self.bulk + FASTEST[1] * self.shear) / (horizon * horizon)
+    }
+}
+
+/// See [`Moduli::fastest`].
+const FASTEST: [f64; 2] = [11.4, 19.6];
+
 /// What bonds do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum LawKind {

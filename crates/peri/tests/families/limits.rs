@@ -47,6 +47,45 @@ fn infinite_lattices_have_the_limits_of_bloch_waves() {
     }
 }
 
+/// A free body of `n` points about one apart, off their sites by `jitter` at most.
+fn body(
+    n: [i32; 3],
+    jitter: f64,
+    nu: f64,
+    (volume, influence): (VolumeRule, Influence),
+    horizon: f64,
+) -> Scene {
+    let mut s = bar(n, false, LawKind::Lps, Layout::List, volume, horizon);
+    s.bounds = Bounds { lo: [-90.0; 3], hi: [90.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
+    for i in 0..s.x.len() {
+        let off = |k: usize| {
+            (2.0 * (12.9898 * i as f64 + 78.233 * k as f64).sin() * 43758.5453).rem_euclid(2.0) - 1.0
+        };
+        s.x[i] = std::array::from_fn(|k| s.x[i][k] + jitter * off(k));
+        s.x0[i] = s.x[i];
+    }
+    s.law.influence = influence;
+    s.law.moduli[0].shear = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu);
+    s.setup();
+    s
+}
+
+#[test]
+fn estimates_of_state_based_bodies_lie_below_the_limit() {
+    let mut closest = f64::INFINITY;
+    for (horizon, nu) in [2.015, 4.015].into_iter().flat_map(|h| [0.0, 0.25, 0.48].map(|nu| (h, nu))) {
+        for weights in [(VolumeRule::Lammps, Influence::Inverse), (VolumeRule::Full, Influence::Gaussian)] {
+            for (n, jitter) in [([9, 2, 2], 0.0), ([6, 5, 4], 0.3)] {
+                let s = body(n, jitter, nu, weights, horizon);
+                let ratio = limit(&s) * s.law.moduli[0].fastest(horizon).sqrt();
+                assert!(ratio > 1.0, "{horizon} {nu} {weights:?} {n:?}: {ratio}");
+                closest = closest.min(ratio);
+            }
+        }
+    }
+    assert!(closest < 1.1, "the estimate need not be shorter than that: {closest}");
+}
+
 /// The largest energy over the first one within `steps` steps of `part` times the exact limit.
 fn growth(law: LawKind, layout: Layout, part: f64, steps: usize) -> f64 {
     let mut s = bar([6, 6, 6], false, law, layout, VolumeRule::Lammps, 3.015);
