@@ -346,10 +346,8 @@ impl Session {
         self.world.parts.changed &= outcome.is_err();
         self.ran |= outcome.is_ok();
         // Before fixes put back what they have changed for the run: that is to go on.
-        let saved = match &outcome {
-            Ok((o, _)) if o.interrupted || self.is_out_of_time() => self.save_early(&mut plan),
-            _ => Ok(()),
-        };
+        let early = outcome.as_ref().is_ok_and(|(o, _)| o.interrupted || self.is_out_of_time());
+        let saved = if early { self.save_early(&mut plan) } else { Ok(()) };
         let finished = plan.finish(&mut self.world);
         self.world.fall_back();
         self.notes.append(std::mem::take(&mut self.world.parts.notes));

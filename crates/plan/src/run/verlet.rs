@@ -163,11 +163,8 @@ pub(super) fn steps(
             // A step whose first half is made is made as it was begun.
             if !plan.begun() {
                 ended = ended.or_else(|| Early::asked(w));
-                if ended.is_some() {
-                    w.clock.last = if w.clock.step == first { first } else { w.clock.step + 1 };
-                    if w.clock.step == first {
-                        break;
-                    }
+                if ended.is_some() && !Early::one_more(w, first) {
+                    break;
                 }
             }
             let _names_are_known = Acting::op();
@@ -234,6 +231,13 @@ impl Early {
             return Some(Self::Interrupted);
         }
         w.settings.ends_at(w.clock.step).then_some(Self::TimedOut)
+    }
+
+    /// Makes the step to come the last one; `false` where none is made yet, and the run is over as it stands.
+    fn one_more(w: &mut World, first: i64) -> bool {
+        let some = w.clock.step > first;
+        w.clock.last = w.clock.step + i64::from(some);
+        some
     }
 }
 
