@@ -8,6 +8,7 @@ mod free;
 
 use crate::diag::{Code, Diagnostic};
 use crate::gate;
+use crate::stop::Heeding;
 pub use fence::{Fence, at, reads, speaks};
 pub(crate) use fence::{limit, limited};
 use std::fs::File;
@@ -58,7 +59,7 @@ pub fn read_all(reader: impl Read, bytes: &mut Vec<u8>) -> Result<()> {
     let ready = bytes.capacity() - bytes.len();
     // Half of the room: a piece that grows may lie beside the one that it has grown from.
     let most = (room().map_or(f64::INFINITY, |room| room / 2.0) + ready as f64).min(u64::MAX as f64) as u64;
-    let read = reader.take(most).read_to_end(bytes)? as u64;
+    let read = Heeding(reader).take(most).read_to_end(bytes)? as u64;
     if read == most {
         let text =
             format!("what is in it does not fit into the {} of memory that are free", size(most as f64));

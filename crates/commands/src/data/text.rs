@@ -18,7 +18,7 @@ pub fn load_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = vec![];
     if path.extension().is_some_and(|e| e == "gz") {
         // A small file may be packed from a huge one.
-        let unpacked = stop::Heeding(flate2::read::MultiGzDecoder::new(file));
+        let unpacked = flate2::read::MultiGzDecoder::new(file);
         memory::read_all(unpacked.take(u64::from(u32::MAX)), &mut bytes)?;
     } else {
         memory::read_file(file, &mut bytes)?;
