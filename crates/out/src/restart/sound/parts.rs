@@ -49,7 +49,8 @@ pub fn particles(w: &World) -> Outcome {
     ] {
         must(!triples.as_flattened().iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
-    for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past()), ("density", p.density.past())] {
+    // A density that was never told is none.
+    for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past())] {
         must(!all.iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
     must(!p.quat.past().as_flattened().iter().any(|x| x.is_nan()), "an orientation is no number")?;

@@ -18,7 +18,7 @@ const QUADRATIC: f64 = 0.1;
 const SAME_IN_LAMMPS: f64 = 1e-8;
 /// Forces along the line below this are none, in LAMMPS as they stand, else beside the force at its start.
 const NOTHING: f64 = 1e-28;
-/// Falls of energy below this part of the first one expected are rounding.
+/// Falls of energy below this part of the first one looked for are rounding: some forty halvings.
 const ROUNDING: f64 = 1e-14;
 
 /// A direction and where it starts.
