@@ -34,7 +34,7 @@ impl HowTo {
     /// Its text as a terminal shows it: no pictures, links as their words.
     pub fn text(&self) -> String {
         let lines = self.page.lines().filter(|line| !line.starts_with("!["));
-        lines.fold(String::new(), |text, line| text + &without_links(line) + "\n")
+        without_links(&lines.fold(String::new(), |text, line| text + line + "\n"))
     }
 
     /// Whether it has each of the words, in lower case.
@@ -44,13 +44,13 @@ impl HowTo {
     }
 }
 
-/// `[words](place)` as the words.
-fn without_links(line: &str) -> String {
+/// `[words](place)` as the words, which may go on in the next line.
+fn without_links(text: &str) -> String {
     let mut out = String::new();
-    let mut rest = line;
+    let mut rest = text;
     while let Some((before, link)) = rest.split_once('[') {
         let parts = link.split_once("](").and_then(|(words, more)| Some((words, more.split_once(')')?.1)));
-        match parts.filter(|(words, _)| !words.contains('[')) {
+        match parts.filter(|(words, _)| !words.contains('[') && !words.contains("\n\n")) {
             Some((words, after)) => {
                 out += before;
                 out += words;
@@ -85,6 +85,6 @@ mod tests {
             assert!(howto.question().ends_with('?'), "{}", howto.name);
             assert!(!howto.text().contains(".md)"), "{}", howto.text());
         }
-        assert_eq!(without_links("a [`b`](c.md), `x[1]` and [d](e) f"), "a `b`, `x[1]` and d f");
+        assert_eq!(without_links("a [`b`](c.md), `x[1]` and [d\nd](e) f"), "a `b`, `x[1]` and d\nd f");
     }
 }
