@@ -93,7 +93,7 @@ pub fn doubt_size(file: &Word, placed: &[Triangle], cx: &BuildCx) {
     let (size, other) = if times > 1.0 { (times, "large") } else { (1.0 / times, "small") };
     let text = format!("the mesh `{}` is {} times as {other} as the box", file.text, about(size));
     let help =
-        format!("did you mean `scale {}`? its numbers count in the deck's unit of length", general(scale, 3));
+        format!("did you mean `scale {}`? its numbers count in the deck's unit of length", general(scale, 9));
     cx.note(Diagnostic::warning(Code::SUSPICIOUS, file.span, text).help(help));
 }
 
