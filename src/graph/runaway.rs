@@ -271,7 +271,8 @@ impl Op for Look {
             let reads = if self.closed { V | MASS | KIND | TYPE_MASS | TALLY } else { V };
             return About { when, ..About::new("energy watch", Stage::Output, Needs::new().read(reads)) };
         }
-        let tally = if self.solids { TALLY } else { Fields::NONE };
+        // Whether energies are numbers is asked of every scene that is left to itself.
+        let tally = if self.solids || self.closed { TALLY } else { Fields::NONE };
         let reads = X | V | OMEGA | RADIUS | MASS | KIND | TYPE_MASS | MASK | TAG | X0 | tally;
         let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | LISTS | MOLECULE | TRAVEL;
         let needs = Needs::new().read(reads | lists).write(FACTS);
