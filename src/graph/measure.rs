@@ -1,9 +1,11 @@
 //! Group functions of formulas: `count(all)`, `vcm(ball,x)`, `bound(all,zmax,box)` and their kin.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::par;
+use perigrain_commands::momentum::rotation;
 use perigrain_lang::Word;
+use perigrain_styles::matter::{own_inertia, solid};
 use perigrain_world::{GroupId, Key, Region, World};
 
 /// The names of all group functions.
@@ -189,12 +191,17 @@ impl Members<'_> {
         (square / mass).sqrt()
     }
 
-    /// Angular momentum about the centre of mass.
+    /// Angular momentum about the centre of mass, spins of spheres included.
     pub fn angmom(&self) -> [f64; 3] {
         let c = self.xcm();
         self.total(|i| {
             let (x, v) = (self.unfolded(i), self.w.particles.v[i]);
-            cross(sub(x, c), v).map(|a| a * self.m(i))
+            let way = cross(sub(x, c), v).map(|a| a * self.m(i));
+            if !solid(self.w) {
+                return way;
+            }
+            let (own, omega) = (own_inertia(self.w, i, self.m(i)), self.w.particles.omega[i]);
+            [0, 1, 2].map(|d| way[d] + own * omega[d])
         })
     }
 
@@ -203,14 +210,15 @@ impl Members<'_> {
         self.total(|i| cross(sub(self.unfolded(i), c), self.w.particles.f[i]))
     }
 
-    /// Inertia tensor of the point masses about the centre of mass.
+    /// Inertia tensor about the centre of mass, of points or of solid spheres.
     pub fn inertia(&self) -> Matrix3<f64> {
         let c = self.xcm();
         let entry = |a: usize, b: usize| {
             self.sum(|i| {
                 let d = sub(self.unfolded(i), c);
                 let square = if a == b { d[0] * d[0] + d[1] * d[1] + d[2] * d[2] } else { 0.0 };
-                self.m(i) * (square - d[a] * d[b])
+                let own = if a == b && solid(self.w) { own_inertia(self.w, i, self.m(i)) } else { 0.0 };
+                self.m(i) * (square - d[a] * d[b]) + own
             })
         };
         let (xx, yy, zz) = (entry(0, 0), entry(1, 1), entry(2, 2));
@@ -220,8 +228,9 @@ impl Members<'_> {
 
     /// Angular velocity of the rigid body with the same angular momentum.
     pub fn omega(&self) -> [f64; 3] {
-        let l = Vector3::from(self.angmom());
-        self.inertia().try_inverse().map_or([0.0; 3], |inverse| (inverse * l).into())
+        let i = self.inertia();
+        let rows = [0, 1, 2].map(|a| [i[(a, 0)], i[(a, 1)], i[(a, 2)]]);
+        rotation(rows, self.angmom(), self.w.settings.lammps())
     }
 }
 

@@ -55,7 +55,7 @@ impl Members {
         for a in 0..3 {
             inertia[(a + 1) % 3][a] = inertia[a][(a + 1) % 3];
         }
-        let omega = rotation(inertia, l);
+        let omega = rotation(inertia, l, w.settings.lammps());
         for (v, r) in v.iter_mut().zip(&arms) {
             *v = sub(*v, cross(omega, *r));
         }
@@ -91,11 +91,16 @@ pub fn temperature(w: &World, members: &Members, v: &[Vec3]) -> f64 {
     sum * (c.mvv2e / (freedom * c.boltz))
 }
 
-/// Angular velocity ω with I ω = L. A body on a line has no rotation about it: small moments are left out.
-pub fn rotation(inertia: [[f64; 3]; 3], l: Vec3) -> Vec3 {
+/// Angular velocity ω with I ω = L. A body on a line has no rotation about it: moments below a millionth of the largest are left out.
+///
+/// LAMMPS (`lammps`) asks for that where the determinant is below 1e-6 alone, whatever the unit, and inverts what heavy bodies on a line leave
+/// of it by rounding.
+pub fn rotation(inertia: [[f64; 3]; 3], l: Vec3, lammps: bool) -> Vec3 {
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia;
     let determinant = xx * yy * zz + xy * yz * xz + xz * xy * yz - xx * yz * yz - xy * xy * zz - xz * yy * xz;
-    if determinant > 1e-6 {
+    let largest = xx.max(yy).max(zz);
+    let least = if lammps { 1e-6 } else { f64::max(1e-6, 1e-6 * largest * largest * largest) };
+    if determinant > least {
         let rows = [
             [yy * zz - yz * yz, -(xy * zz - xz * yz), xy * yz - xz * yy],
             [-(xy * zz - yz * xz), xx * zz - xz * xz, -(xx * yz - xz * xy)],

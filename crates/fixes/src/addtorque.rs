@@ -112,9 +112,10 @@ impl Turn {
             [l[0], l[1], l[2], xx, yy, zz, -m * x * y, -m * y * z, -m * x * z]
         });
         let inertia = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        let omega = rotation(inertia, l);
+        let lammps = w.settings.lammps();
+        let omega = rotation(inertia, l, lammps);
         let spin = inertia.map(|row| dot(row, omega));
-        Self { centre, omega, alpha: rotation(inertia, sub(torque, cross(omega, spin))) }
+        Self { centre, omega, alpha: rotation(inertia, sub(torque, cross(omega, spin)), lammps) }
     }
 }
 

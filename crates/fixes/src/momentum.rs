@@ -144,7 +144,8 @@ impl Declared {
                 -m * x * z,
             ]
         });
-        let omega = rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], [lx, ly, lz]);
+        let lammps = w.settings.lammps();
+        let omega = rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], [lx, ly, lz], lammps);
         let edges = w.edges();
         let (x, image) = (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.image));
         change(w, self.group, |i, v| {

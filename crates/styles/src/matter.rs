@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::par;
 use perigrain_plan::Tick;
-use perigrain_world::{AtomStyle, GroupId, Key, Region, SlotId, Vectors, World};
+use perigrain_world::{AtomStyle, Compat, GroupId, Key, Region, SlotId, Vectors, World};
 
 /// The mass of each particle: its own where the atom style has one, else its type's.
 #[derive(Clone, Copy)]
@@ -36,6 +36,21 @@ impl<'a> Masses<'a> {
             }
         }
     }
+}
+
+/// I / (m R²) of a solid sphere.
+const SPHERE: f64 = 0.4;
+
+/// Whether spheres count with their own inertia and spin where moments of several particles are added up; LAMMPS 22Jul2025 takes them for
+/// points.
+pub fn solid(w: &World) -> bool {
+    w.particles.style.sphere && w.settings.compat != Compat::Lammps2025
+}
+
+/// The moment of inertia of particle `i`, of mass `m`, about its own centre [mass length²].
+pub fn own_inertia(w: &World, i: usize, m: f64) -> f64 {
+    let r = w.particles.radius[i];
+    SPHERE * m * r * r
 }
 
 /// Checks that every particle has a mass.

@@ -36,7 +36,8 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     - sequences of steps, each the next one after the present: `stride(x,y,z)` `stride2(x,y,z,a,b,c)` `stagger(x,y)` \
     `logfreq(x,y,z)` `logfreq2(x,y,z)` `logfreq3(x,y,z)`.\n\n\
     **Groups**: `count(g)` `mass(g)` `ke(g)` `gyration(g)`; with a direction `xcm(g,x)` `vcm(g,x)` `fcm(g,x)` \
-    `angmom(g,x)` `torque(g,x)` `omega(g,x)`; `inertia(g,xx)` (xx yy zz xy yz xz); `bound(g,xmin)` (xmin xmax ymin ymax \
+    `angmom(g,x)` `torque(g,x)` `omega(g,x)`; `inertia(g,xx)` (xx yy zz xy yz xz), in which spheres count with 2/5 m R² and their spins \
+    (points under `-compat lammps/2025`); `bound(g,xmin)` (xmin xmax ymin ymax \
     zmin zmax). A region as last argument counts only the group's particles in it, as in `count(plate,notch)`; its open faces \
     are closed here ([region](region.md)).\n\n\
     **Particles**: `id type mass radius x y z vx vy vz fx fy fz omegax omegay omegaz` are values per particle in an \

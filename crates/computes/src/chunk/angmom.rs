@@ -5,6 +5,7 @@ use super::moments::Rows;
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::matter::solid;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -20,7 +21,8 @@ impl Style for AngmomChunk {
             summary: "Angular momentum of each chunk about its centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m r × v over the particles of the chunk that are in the \
                    group, with r from their centre of mass and positions unwrapped across periodic faces, in mass distance velocity \
-                   units. The spin of spheres is left out, as in LAMMPS. chunkID names a `compute chunk/atom`.",
+                   units. Spheres add 2/5 m R² ω of their own spin (LAMMPS since 2026; in 22Jul2025, and under `compat lammps/2025`, \
+                   they are points). chunkID names a `compute chunk/atom`.",
             example: "compute cc all chunk/atom type\ncompute l all angmom/chunk cc",
         }
     }
@@ -31,6 +33,6 @@ impl ComputeStyle for AngmomChunk {
         let chunks = ChunkRef::read(args, cx)?;
         args.finish()?;
         let (id, group) = (cx.id.to_string(), cx.group);
-        Ok(Box::new(Rows { id, group, chunks, columns: 3, of: |_, m| m.angular_momentum().concat() }))
+        Ok(Box::new(Rows { id, group, chunks, columns: 3, of: |w, m| m.angular_momentum(solid(w)).concat() }))
     }
 }

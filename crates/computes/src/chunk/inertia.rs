@@ -5,6 +5,7 @@ use super::moments::Rows;
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::matter::solid;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -20,8 +21,8 @@ impl Style for InertiaChunk {
             summary: "Inertia tensor of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 6 columns xx, yy, zz, xy, yz, xz: Σ m (r² δ_ab − r_a r_b) over the \
                    particles of the chunk that are in the group, with r from their centre of mass and positions unwrapped across \
-                   periodic faces, in mass distance² units. Particles count as points, as in LAMMPS: what spheres have by themselves \
-                   is left out. chunkID names a `compute chunk/atom`.",
+                   periodic faces, in mass distance² units. Spheres add 2/5 m R² of their own (LAMMPS since 2026; in 22Jul2025, and \
+                   under `compat lammps/2025`, they are points). chunkID names a `compute chunk/atom`.",
             example: "compute cc all chunk/atom type\ncompute i all inertia/chunk cc",
         }
     }
@@ -32,6 +33,6 @@ impl ComputeStyle for InertiaChunk {
         let chunks = ChunkRef::read(args, cx)?;
         args.finish()?;
         let (id, group) = (cx.id.to_string(), cx.group);
-        Ok(Box::new(Rows { id, group, chunks, columns: 6, of: |_, m| m.inertia().concat() }))
+        Ok(Box::new(Rows { id, group, chunks, columns: 6, of: |w, m| m.inertia(solid(w)).concat() }))
     }
 }

@@ -3,12 +3,12 @@
 use super::{ChunkRef, Chunks, sums};
 use crate::Compute;
 use perigrain_base::diag::Result;
-use perigrain_base::math::vec3::{Vec3, cross, sub};
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::matter::{Masses, check_masses, unwrapped};
+use perigrain_styles::matter::{Masses, check_masses, own_inertia, solid, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{SealCx, Shape};
-use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
+use perigrain_world::field::{BOX, F, Fields, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// Some particles in chunks.
@@ -41,13 +41,14 @@ impl<'w> Members<'w> {
         })
     }
 
-    /// The inertia tensor of each chunk's points about its centre, xx yy zz xy yz xz [mass distance²].
-    pub fn inertia(&self) -> Vec<[f64; 6]> {
-        self.sums(|_, m, [x, y, z]| {
+    /// The inertia tensor of each chunk about its centre, xx yy zz xy yz xz [mass distance²]: of points, or of spheres that are `solid`.
+    pub fn inertia(&self, solid: bool) -> Vec<[f64; 6]> {
+        self.sums(|i, m, [x, y, z]| {
+            let own = if solid { own_inertia(self.w, i, m) } else { 0.0 };
             [
-                m * (y * y + z * z),
-                m * (x * x + z * z),
-                m * (x * x + y * y),
+                m * (y * y + z * z) + own,
+                m * (x * x + z * z) + own,
+                m * (x * x + y * y) + own,
                 -(m * x * y),
                 -(m * y * z),
                 -(m * x * z),
@@ -55,9 +56,15 @@ impl<'w> Members<'w> {
         })
     }
 
-    /// The angular momentum of each chunk's points about its centre [mass distance velocity].
-    pub fn angular_momentum(&self) -> Vec<Vec3> {
-        self.sums(|i, m, d| cross(d, self.w.particles.v[i].map(|v| v * m)))
+    /// The angular momentum of each chunk about its centre [mass distance velocity]: of points, or of spheres that are `solid` and spin.
+    pub fn angular_momentum(&self, solid: bool) -> Vec<Vec3> {
+        self.sums(|i, m, d| {
+            let way = cross(d, self.w.particles.v[i].map(|v| v * m));
+            if !solid {
+                return way;
+            }
+            add(way, scale(own_inertia(self.w, i, m), self.w.particles.omega[i]))
+        })
     }
 }
 
@@ -107,10 +114,11 @@ impl Compute for Rows {
         let (me, span) = (self.clone(), cx.span());
         check_masses(cx.world(), span)?;
         let (chunks, kind) = (self.chunks.seal(cx, stage, when)?, self.chunks.kind);
+        let spheres = if solid(cx.world()) { OMEGA | RADIUS } else { Fields::NONE };
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
-            X | V | F | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
+            X | V | F | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS | spheres,
             move |w, _, out| {
                 let rows = (me.of)(w, &Members::new(w, me.group, Chunks::of(w, chunks, kind)));
                 out.chunks = me.chunks.varying();

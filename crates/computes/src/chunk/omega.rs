@@ -6,6 +6,7 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::Args;
+use perigrain_styles::matter::solid;
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::World;
 
@@ -22,8 +23,8 @@ impl Style for OmegaChunk {
             summary: "Angular velocity of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: the ω with I ω = L, I and L being the chunk's inertia tensor \
                    and angular momentum (compute inertia/chunk, angmom/chunk), in radians per time. About axes whose moment is \
-                   smaller than a millionth of the largest nothing turns where det I is below 10⁻⁶, as in LAMMPS: chunks of one particle \
-                   and about the line through two. chunkID names a `compute chunk/atom`.",
+                   smaller than a millionth of the largest nothing turns: chunks of one particle \
+                   and about the line through two (LAMMPS, and `compat lammps`, asks for that where det I is below 10⁻⁶ alone). chunkID names a `compute chunk/atom`.",
             example: "compute cc all chunk/atom type\ncompute w all omega/chunk cc",
         }
     }
@@ -38,9 +39,12 @@ impl ComputeStyle for OmegaChunk {
     }
 }
 
-fn omega(_w: &World, m: &Members) -> Vec<f64> {
-    let turning = m.inertia().into_iter().zip(m.angular_momentum());
-    let all =
-        turning.map(|([xx, yy, zz, xy, yz, xz], l)| rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], l));
+fn omega(w: &World, m: &Members) -> Vec<f64> {
+    let lammps = w.settings.lammps();
+    // LAMMPS has mended the other two alone.
+    let solid = solid(w) && !lammps;
+    let turning = m.inertia(solid).into_iter().zip(m.angular_momentum(solid));
+    let all = turning
+        .map(|([xx, yy, zz, xy, yz, xz], l)| rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], l, lammps));
     all.flatten().collect()
 }
