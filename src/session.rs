@@ -21,6 +21,7 @@ mod limits;
 mod measuring;
 mod minimizing;
 mod options;
+mod orientations;
 mod overlaps;
 mod overlay;
 mod planning;

@@ -34,6 +34,7 @@ impl Session {
         self.check_masses(span, &mut found);
         if moves {
             self.check_integrators(span, &mut found);
+            self.check_orientations(&mut found);
             self.check_step(span, &mut found);
             self.checked_step = Some(self.world.clock.dt);
             self.check_overlaps(span, &mut found);
@@ -251,7 +252,7 @@ impl Session {
     /// No integrator at all, and two on one particle.
     fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
         let moving: Vec<_> =
-            self.graph.fixes.iter().filter(|f| f.fix.facts(&self.world).integrates).collect();
+            self.graph.fixes.iter().filter(|f| f.fix.facts(&self.world).integrates()).collect();
         if moving.is_empty() && !(self.checking() && self.fixless) {
             found.push(
                 Diagnostic::warning(Code::NO_MOTION, span, "no fix moves any particle")

@@ -105,7 +105,7 @@ impl Session {
         if self.ran && !w.parts.changed && self.checked_step == Some(whole) {
             return;
         }
-        let integrated = self.graph.fixes.iter().filter(|f| f.fix.facts(w).integrates);
+        let integrated = self.graph.fixes.iter().filter(|f| f.fix.facts(w).integrates());
         let bits = integrated.fold(0, |bits, f| bits | f.group.bit());
         let moves = |i: usize| w.particles.mask[i] & bits != 0;
         // What is wrong with bonds is said when the run is set up.

@@ -101,7 +101,7 @@ impl Session {
         let p = &self.world.particles;
         let moves = |f: &&crate::graph::FixNode| {
             let takes_over =
-                (f.fix.facts(&self.world).integrates && !KNOWN.contains(&f.style)) || f.style == "aveforce";
+                (f.fix.facts(&self.world).integrates() && !KNOWN.contains(&f.style)) || f.style == "aveforce";
             takes_over && (0..p.len()).any(|i| p.mask[i] & f.group.bit() != 0 && solid(i))
         };
         match self.graph.fixes.iter().find(moves) {

@@ -8,10 +8,8 @@ use perigrain_lang::{Args, Param};
 use perigrain_styles::common::{
     self, axis, bad_keyword, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
 };
-use perigrain_styles::matter;
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
-use perigrain_world::GroupId;
-use perigrain_world::region::turned;
+use perigrain_world::{GroupId, Turn};
 
 /// The command.
 pub struct DisplaceAtoms;
@@ -29,7 +27,9 @@ impl Style for DisplaceAtoms {
             text: "`move` takes numbers or variables. `ramp` moves by DLO where the coordinate is CLO, by DHI where it is \
                    CHI, linearly between and constant beyond. `random` moves by up to ±DX, ±DY, ±DZ, each particle by \
                    numbers that belong to its place, as in LAMMPS. `rotate` turns by THETA degrees about the axis through P \
-                   along R, particles unwrapped across periodic faces. Distances are in lattice spacings unless `units box` \
+                   along R, particles unwrapped across periodic faces; orientations of `bpm/sphere` particles turn along, and so do the springs of \
+                   contacts between two of them (not under `compat lammps`), while velocities, spins and what holds particles to places in space \
+                   (`fix move`, `fix spring/self`, `compute displace/atom`) stay as they are. Distances are in lattice spacings unless `units box` \
                    is said. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
             example: "displace_atoms ball move 0 0 -0.001 units box",
         }
@@ -153,12 +153,10 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
             }
         }
         Motion::Rotate { point, axis, angle } => {
-            let point = [0, 1, 2].map(|d| spacing[d] * point[d]);
-            for &i in &members {
-                cx.world.particles.x[i] =
-                    turned(matter::unwrapped(cx.world, i), point, *axis, (*angle).into());
-                cx.world.particles.image.set(i, [0; 3]);
-            }
+            let turn = Turn::new([0, 1, 2].map(|d| spacing[d] * point[d]), *axis, *angle);
+            let rolls = cx.values.rolls(cx.world);
+            let mask = cx.world.particles.mask.clone();
+            cx.world.carry(&turn, &rolls, |i| mask[i] & group.bit() != 0);
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
-use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter};
+use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter, rigid_bodies};
 use perigrain_world::bonds::ascending;
 use perigrain_world::index::Index;
 use perigrain_world::{Bond, Domain, memory};
@@ -22,7 +22,8 @@ impl Style for Replicate {
             syntax: "replicate NX NY NZ [bond/periodic]",
             summary: "Repeats the scene along the edges of its box.",
             text: "The box grows to NX, NY, NZ times its lengths, and each particle gets a copy in each repetition, with \
-                   everything that belongs to it; bonds join the copies of one repetition, and molecules get new IDs. \
+                   everything that belongs to it, places that it is held to or counts its way from moved along (`fix move`, `fix spring/self`, \
+                   `compute displace/atom`); contacts begin anew, and rigid bodies too; bonds join the copies of one repetition, and molecules get new IDs. \
                    Bonds through a periodic face then span a whole repetition, which a warning counts: with `bond/periodic` each joins the nearest copies, so that \
                    a bonded crystal goes on through all repetitions. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
                    fastest in ids). It must come before the first run of a scene with peridynamic bonds.",
@@ -139,13 +140,16 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
     let memory = std::mem::take(&mut world.bonds.memory);
     world.contacts.values_mut().for_each(|c| *c = Default::default());
     world.wall_contacts.values_mut().for_each(|c| *c = Default::default());
+    rigid_bodies::forget(world);
     world.gather(&from);
-    let p = &mut world.particles;
     for copy in 0..copies {
         let place = [copy / (ny * nz), copy / nz % ny, copy % nz];
         let offset = joints.offset(place);
         let shift = edges.shift(place.map(|k| k as f64));
         let number = (place[2] * ny * nx + place[1] * nx + place[0]) as u32;
+        let at = copy as usize * n;
+        world.shift_copies(at..at + n, shift);
+        let p = &mut world.particles;
         let moved = |ends: [u32; 2]| joints.ends(&index, ends, place);
         world.bonds.list.extend(bonds.iter().map(|b| Bond { ends: moved(b.ends), ..*b }));
         world.bonds.special.extend(special.iter().map(|p| ascending(moved(*p))));
@@ -156,15 +160,12 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
             ([a.min(b), a.max(b)], if a < b { *q } else { [q[0], -q[1], -q[2], -q[3]] })
         }));
         for (k, old) in joints.places.iter().enumerate() {
-            let i = copy as usize * n + k;
+            let i = at + k;
             p.tag[i] += offset;
             if let Some(m) = p.molecule.get_mut(i).filter(|m| **m > 0) {
                 *m += number * molecules;
             }
             let (mut x, mut image) = ([0, 1, 2].map(|d| old[d] + shift[d]), [0; 3]);
-            if let Some(x0) = p.x0.get_mut(i) {
-                *x0 = [0, 1, 2].map(|d| x0[d] + shift[d]);
-            }
             domain.wrap(&mut x, &mut image);
             p.x[i] = x;
             p.image.set(i, image);

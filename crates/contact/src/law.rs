@@ -414,6 +414,11 @@ impl Granular {
         }
     }
 
+    /// Where the rolling displacement begins in what a contact remembers.
+    pub fn rolls_at(&self) -> Option<usize> {
+        (self.rolling.memory() > 0).then(|| self.before_turning())
+    }
+
     /// How many numbers stand before those of the normal law, which are the same seen from j: at least the three that are
     /// not.
     #[inline(always)]

@@ -71,7 +71,7 @@ mod window;
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, ValueRef};
-pub use perigrain_styles::fix::{Facts, Fix, FixStyle, Minimizing, no_option};
+pub use perigrain_styles::fix::{Facts, Fix, FixStyle, Minimizing, Moves, no_option};
 use perigrain_styles::{BuildCx, Shape};
 
 /// Every fix style.

@@ -4,8 +4,9 @@ use super::elapsed::Elapsed;
 use super::lineforce::direction;
 use super::nve::half_step;
 use super::path::{Path, Readings};
-use super::{Facts, Fix, FixStyle};
+use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::math::body::Quat;
 use perigrain_base::math::vec3::{add, sub};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param, ValueRef};
@@ -14,8 +15,8 @@ use perigrain_styles::common::{number_or_null, param_or_null, scales, units_latt
 use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, Key, Numbers, SlotId, Vectors, World};
+use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, QUAT, SLOTS, TYPE_MASS, V, X};
+use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, SlotId, Vectors, World};
 use std::f64::consts::PI;
 
 /// The style.
@@ -33,7 +34,7 @@ impl Style for Move {
             summary: "Moves particles on a prescribed path, whatever the forces on them.",
             text: "With t the time since the fix was declared and x0 the position then (unwrapped): `linear` is \
                    x = x0 + V t, v = V; `wiggle` is x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period; `rotate` turns \
-                   the particles about the axis R through P, right-handed, and gives spheres the angular velocity ω; \
+                   the particles about the axis R through P, right-handed, orientations (`bpm/sphere`) included, and gives spheres the angular velocity ω; the other motions leave orientations as they are; \
                    `transrot` is `rotate` about an axis that flies at V. `variable`: displacements from x0 and velocities by \
                    equal- or atom-style variables; without a displacement the velocity moves the particle, without a velocity \
                    the velocity stays. Where a component is `NULL` (for `variable`: both) it is integrated as by fix nve. V, A \
@@ -89,7 +90,8 @@ impl FixStyle for Move {
             Path::Variables(..) => {}
         }
         let key = Key::new(&format!("move/{}", cx.id));
-        Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group, path }))
+        let turn = Grip::new(&format!("{key}/turn"));
+        Ok(Box::new(Declared { id: cx.id.to_string(), key, turn, group: cx.group, path }))
     }
 }
 
@@ -128,16 +130,27 @@ fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef
 struct Declared {
     id: String,
     key: Numbers,
+    /// How particles lay when they started.
+    turn: Grip,
     group: GroupId,
     path: Path,
 }
 
 impl Declared {
-    /// Remembers where particles of the group that are not known yet would have started.
+    /// Remembers where particles of the group that are not known yet would have started, and how they would have lain.
     fn capture(&self, w: &mut World) {
-        let key = self.key;
+        let (key, bit) = (self.key, self.group.bit());
         let now = Elapsed::load(w, key).now();
         keep_places(w, key.of(), self.group, |w, i| self.path.start(unwrapped(w, i), now));
+        let Some(turned) = self.turned(w, now) else { return };
+        let new = |i: &usize| w.particles.mask[*i] & bit != 0 && !self.turn.holds(w, *i);
+        let new: Vec<usize> = (0..w.n()).filter(new).collect();
+        new.into_iter().for_each(|i| self.turn.take(w, i, turned));
+    }
+
+    /// How the path has turned particles at time `t`, if it turns them and they have orientations.
+    fn turned(&self, w: &World, t: f64) -> Option<Quat> {
+        self.path.turn(t).filter(|_| w.particles.style.oriented)
     }
 }
 
@@ -152,6 +165,7 @@ impl Fix for Declared {
     fn remove(&self, w: &mut World) {
         w.memo.remove(self.key);
         w.columns.remove(self.key);
+        self.turn.drop(w);
     }
 
     fn welcome(&self, w: &mut World) {
@@ -159,7 +173,7 @@ impl Fix for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (group, path, key, span) = (self.group, self.path.clone(), self.key, cx.span());
+        let (group, path, key, span, me) = (self.group, self.path.clone(), self.key, cx.span(), self.clone());
         let free = path.given().map(|g| !g);
         if free.contains(&true) {
             check_masses(cx.world(), span)?;
@@ -176,15 +190,19 @@ impl Fix for Declared {
         }
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} move", self.id);
+        let lie = if self.turned(cx.world(), 0.0).is_some() { QUAT } else { Fields::NONE };
         let access = Needs::new()
             .read(F | MASS | MASK | BOX | COLUMNS | SLOTS | TYPE_MASS | KIND)
-            .write(X | V | OMEGA | SLOTS)
+            .write(X | V | OMEGA | SLOTS | lie)
             .keep(MEMO);
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access, move |w, t| {
             if t.setup {
                 show_starts(w, key.of(), slot, t);
             } else {
-                advance(w, group, &path, &readings, key, t);
+                let time = advance(w, group, &path, &readings, key, t);
+                if let Some(turned) = me.turned(w, time) {
+                    me.turn.turn(&mut w.particles.quat, &w.columns, |_| Some(turned));
+                }
             }
             Ok(())
         });
@@ -205,11 +223,16 @@ impl Fix for Declared {
     }
 
     fn facts(&self, w: &World) -> Facts {
-        let free = self.path.given().contains(&false) && !w.settings.lammps();
-        let needs_whole_steps = free.then_some(
+        let free = self.path.given().contains(&false);
+        let needs_whole_steps = (free && !w.settings.lammps()).then_some(
             "its free components would feel the forces of the outermost level alone, as they do in LAMMPS",
         );
-        Facts { integrates: true, needs_whole_steps, ..Facts::default() }
+        let moves = match (self.path.spin(), free) {
+            (Some(_), _) => Moves::Turns,
+            (None, true) => Moves::Freely,
+            (None, false) => Moves::Prescribed,
+        };
+        Facts { moves, needs_whole_steps, ..Facts::default() }
     }
 }
 
@@ -221,8 +244,8 @@ fn show_starts(w: &mut World, key: Vectors, slot: SlotId, t: &Tick) {
     out.atom.extend(w.columns.get_vector(key).unwrap_or_default().as_flattened());
 }
 
-/// The path's positions and velocities at this step; free components kicked and drifted.
-fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: Numbers, t: &Tick) {
+/// The path's positions and velocities at this step, whose time it returns; free components kicked and drifted.
+fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: Numbers, t: &Tick) -> f64 {
     let mut elapsed = Elapsed::load(w, key);
     elapsed.follow(t.step, t.dt);
     elapsed.store(w, key);
@@ -232,7 +255,7 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
     let periods = w.periods();
     let (lengths, tilted) = (periods.length, periods.tilted());
     if w.columns.get_vector(key.of()).is_none() {
-        return;
+        return time;
     }
     let (mut places, mut velocities) =
         (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.v));
@@ -277,6 +300,7 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
             *omega = spin;
         }
     }
+    time
 }
 
 /// Second half kick of the free components.

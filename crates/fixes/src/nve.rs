@@ -1,7 +1,7 @@
 //! fix nve: velocity Verlet at constant energy.
 
 use super::kick;
-use super::{Facts, Fix, FixStyle};
+use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
@@ -68,7 +68,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { integrates: true, ..Facts::default() }
+        Facts { moves: Moves::Freely, ..Facts::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! fix nve/limit: velocity Verlet that lets no particle go farther than a limit in one step.
 
 use super::nve::half_step;
-use super::{Facts, Fix, FixStyle};
+use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::dot;
 use perigrain_base::par;
@@ -134,7 +134,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { integrates: true, ..Facts::default() }
+        Facts { moves: Moves::Freely, ..Facts::default() }
     }
 }
 

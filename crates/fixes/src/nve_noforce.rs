@@ -1,6 +1,6 @@
 //! fix nve/noforce: particles fly on, whatever the forces on them.
 
-use super::{Facts, Fix, FixStyle};
+use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_lang::Args;
@@ -56,7 +56,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { integrates: true, ..Facts::default() }
+        Facts { moves: Moves::Prescribed, ..Facts::default() }
     }
 }
 

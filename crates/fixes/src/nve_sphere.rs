@@ -1,7 +1,7 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
 use super::kick::{self as kicks, Turning};
-use super::{Facts, Fix, FixStyle};
+use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
@@ -30,7 +30,7 @@ impl Style for NveSphere {
             syntax: "fix ID group nve/sphere [disc]",
             summary: "Moves and turns the group's spheres by velocity Verlet.",
             text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). `disc`, \
-                   for flat scenes, takes I = 1/2 m R². Every particle of the group needs a radius. `update dipole` is refused as \
+                   for flat scenes, takes I = 1/2 m R². Orientations stay as they are: spheres with bonds that bend and twist need `fix nve/bpm/sphere`. Every particle of the group needs a radius. `update dipole` is refused as \
                    LAMMPS refuses it where particles have no dipole: no particle in perigrain has one.",
             example: "fix 1 all nve/sphere",
         }
@@ -108,7 +108,8 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { integrates: true, ..Facts::default() }
+        let moves = if self.turning.oriented { Moves::Turns } else { Moves::Freely };
+        Facts { moves, ..Facts::default() }
     }
 }
 

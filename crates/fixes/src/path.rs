@@ -1,5 +1,6 @@
 //! Prescribed paths of particles for fix move: straight, swinging, turning, or as variables say.
 
+use perigrain_base::math::body::{Quat, turn};
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use perigrain_lang::{Param, ValueRef};
 use perigrain_styles::Reading;
@@ -106,6 +107,14 @@ impl Path {
         let side = cross(*axis, arm);
         let turned = add(scale(cos, arm), scale(sin, side));
         (add(add(*point, along), turned), turned)
+    }
+
+    /// How particles have turned at time `t`, if the path turns them.
+    pub fn turn(&self, t: f64) -> Option<Quat> {
+        match self {
+            Path::Turn { axis, omega, .. } => Some(turn(*axis, omega * t)),
+            _ => None,
+        }
     }
 
     /// The angular velocity that the path gives to spheres.

@@ -12,7 +12,7 @@ mod pass;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
-use super::{Facts, Fix, FixStyle, no_option};
+use super::{Facts, Fix, FixStyle, Moves, no_option};
 use bodies::Split;
 use gravity::Weight;
 use mold::Mold;
@@ -27,10 +27,10 @@ use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
-    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TAG, TALLY, TORQUE,
-    TRAVEL, TYPE_MASS, V, X,
+    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, QUAT, RADIUS, SLOTS, TAG, TALLY,
+    TORQUE, TRAVEL, TYPE_MASS, V, X,
 };
-use perigrain_world::{Fields, GroupId, Key, Numbers, Template, Vectors, World};
+use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, Template, Vectors, World};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
 const COLUMNS: usize = 15;
@@ -55,7 +55,7 @@ impl Style for Rigid {
                    those of the particles, spheres being solid; overlaps count twice. Forces and torques on a body are the \
                    sums of those on its particles. The centre moves by velocity Verlet, the orientation by Richardson's \
                    steps of the quaternion at constant angular momentum (bodies in space whose smallest moment is less than a thousandth \
-                   of the largest by the exact rotations of `fix rigid/nve`: Richardson's steps let them tumble, as they do in LAMMPS); places, velocities and spins of the particles follow. \
+                   of the largest by the exact rotations of `fix rigid/nve`: Richardson's steps let them tumble, as they do in LAMMPS); places, velocities, spins and orientations of the particles follow. \
                    No other fix may move them, and contacts inside a body are left out with `neigh_modify exclude`.\n\n\
                    `force M off off on` and `torque M …` turn components of the sum off for bodies M (a number or range, `1*3`). Bodies are set up from their particles \
                    when a run begins after something has changed; with `reinit no` only once, so that what was done to the particles \
@@ -246,6 +246,8 @@ struct Keys {
     place: Vectors,
     /// What bodies have beyond their particles: see [`BODY_ENERGY`](perigrain_world::BODY_ENERGY).
     energy: Numbers,
+    /// How they lie as seen from there, where they have orientations.
+    turn: Grip,
 }
 
 impl Keys {
@@ -254,8 +256,9 @@ impl Keys {
         let [virial, mass, energy] =
             ["virial", "contact mass", "body energy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
         let (body, place) = (body_column(style, id), Key::new(&format!("{style}/{id}/place")));
+        let turn = Grip::new(&format!("{style}/{id}/turn"));
         let virials = ["virial xx", "virial xy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
-        Self { bodies, virial, virials, body, mass, place, energy }
+        Self { bodies, virial, virials, body, mass, place, energy, turn }
     }
 }
 
@@ -340,6 +343,7 @@ impl Fix for Declared {
         [keys.bodies, keys.virial, keys.energy].into_iter().for_each(|key| drop(w.memo.remove(key)));
         [keys.body, keys.mass].into_iter().for_each(|key| w.columns.remove(key));
         [keys.place, keys.virials[0], keys.virials[1]].into_iter().for_each(|key| w.columns.remove(key));
+        keys.turn.drop(w);
     }
 
     fn shape(&self) -> Shape {
@@ -357,6 +361,8 @@ impl Fix for Declared {
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} {}", self.id, self.style);
+        // Orientations, where particles have them.
+        let lie = if cx.world().particles.style.oriented { QUAT } else { Fields::NONE };
         let (me, mut seen) = (self.clone(), None);
         let bodies = StepOp::new(
             name.clone(),
@@ -364,7 +370,18 @@ impl Fix for Declared {
             Needs::new()
                 .read(if self.casts() { TAG } else { Fields::NONE })
                 .read(
-                    X | V | OMEGA | MASS | LISTS | MASK | KIND | RADIUS | BOX | MOLECULE | IMAGE | TYPE_MASS,
+                    X | V
+                        | OMEGA
+                        | MASS
+                        | LISTS
+                        | MASK
+                        | KIND
+                        | RADIUS
+                        | BOX
+                        | MOLECULE
+                        | IMAGE
+                        | TYPE_MASS
+                        | lie,
                 )
                 .keep(MEMO | field::COLUMNS),
             move |w, t| {
@@ -399,7 +416,7 @@ impl Fix for Declared {
                         | IMAGE
                         | KIND,
                 )
-                .write(X | V | OMEGA | SLOTS)
+                .write(X | V | OMEGA | SLOTS | lie)
                 .keep(MEMO | field::COLUMNS)
         };
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
@@ -456,7 +473,7 @@ impl Fix for Declared {
 
     fn facts(&self, _: &World) -> Facts {
         Facts {
-            integrates: true,
+            moves: Moves::Turns,
             needs_whole_steps: Some(
                 "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
             ),

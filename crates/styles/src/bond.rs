@@ -116,6 +116,11 @@ pub trait BondForce: DynClone + Send + Sync {
         Some(Swing { stiffness, ..Swing::default() })
     }
 
+    /// Whether bonds of a type bend and twist with the orientations of their ends, which then have to follow spins.
+    fn turns(&self, _kind: u16) -> bool {
+        false
+    }
+
     /// Whether bonds of a type may break, after which the pair style acts between their ends.
     fn may_break(&self, _kind: u16) -> bool {
         false

@@ -30,11 +30,25 @@ pub enum Minimizing {
     Acts,
 }
 
+/// How a fix moves particles, and what becomes of their orientations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Moves {
+    /// It moves none.
+    #[default]
+    None,
+    /// As forces want, with orientations that follow spins.
+    Turns,
+    /// As forces want, while orientations stay: not for ends of bonds that bend and twist.
+    Freely,
+    /// On a path of its own, without turning them.
+    Prescribed,
+}
+
 /// What a fix tells of itself.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// It moves the particles of its group (two such fixes on one particle draw a warning).
-    pub integrates: bool,
+    /// How it moves the particles of its group (two fixes that move one particle draw a warning).
+    pub moves: Moves,
     /// It counts on the steps going on one by one, so that `reset_timestep` is refused beside it, as in LAMMPS.
     pub counts_steps: bool,
     /// It works in orthogonal boxes alone.
@@ -63,6 +77,13 @@ pub struct Facts {
     pub pull: Option<Pull>,
     /// It does not act by itself: its acceleration is there for others.
     pub disabled: bool,
+}
+
+impl Facts {
+    /// Whether it moves particles.
+    pub fn integrates(&self) -> bool {
+        self.moves != Moves::None
+    }
 }
 
 /// A declared fix. A failing `fix_modify` changes nothing: it works on a copy.

@@ -223,6 +223,8 @@ pub struct Copy {
     pub which: usize,
     /// Its particles.
     pub places: Vec<Vec3>,
+    /// How it is turned.
+    pub turn: Quat,
     /// The velocity of all of them.
     pub v: Vec3,
 }
@@ -233,7 +235,7 @@ impl Molecules {
         let one = stream.uniform();
         let which = self.shares.iter().position(|sum| one <= *sum).unwrap_or(self.set.len() - 1);
         let q = any_turn(|| stream.uniform(), flat, self.axis);
-        Copy { which, places: self.set[which].turned(x, q), v: [0.0; 3] }
+        Copy { which, places: self.set[which].turned(x, q), turn: q, v: [0.0; 3] }
     }
 
     /// The radii of a copy's particles.
@@ -287,7 +289,7 @@ impl Molecules {
             if u32::try_from(t.count).ok().and_then(|n| numbers.tag.checked_add(n)).is_none() {
                 return fail(Code::TOO_LARGE, None, "more particles than there are ids");
             }
-            w.insert_molecule(t, &copy.places, &mut numbers);
+            w.insert_molecule(t, &copy.places, copy.turn, &mut numbers);
             let p = &mut w.particles;
             p.v[start..].fill(copy.v);
             p.mask[start..].iter_mut().for_each(|m| *m |= group.bit());

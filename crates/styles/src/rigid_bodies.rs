@@ -74,6 +74,13 @@ pub fn bodies(w: &World, key: Numbers) -> Vec<Body> {
     kept.map_or(vec![], |m| m.chunks_exact(WIDTH).map(Body::of).collect())
 }
 
+/// Forgets all bodies: the next run makes them anew of the particles that there are.
+pub fn forget(w: &mut World) {
+    let own = |name: &str| name.starts_with("rigid");
+    w.memo.retain(|key| !own(key.text()));
+    drop(w.columns.split_off(|name| !own(name)));
+}
+
 /// The column with the number of each particle's body, from 1; 0 for none.
 pub fn body_column(style: &str, id: &str) -> Numbers {
     Key::new(&format!("{style}/{id}/body"))

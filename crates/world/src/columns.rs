@@ -1,5 +1,6 @@
 //! Named per-particle columns beyond the core ones: they follow every reordering and deletion.
 
+use super::moving::Under;
 use super::named::{self, Constant, Key, Named, Numbers, Vectors};
 use std::borrow::Cow;
 
@@ -21,6 +22,35 @@ pub static PLASTIC_BEGUN: Constant<Vec<f64>> = Constant::new("mdr/begun");
 
 /// How the names of the columns begin that keep forces and torques of levels of steps between steps.
 pub const LEVEL: &str = "level/";
+
+/// What becomes of vector columns where particles are moved as one piece, by how their names begin and end. Scalar columns hold numbers
+/// that no turn changes.
+const UNDER: &[(&str, &str, Under)] = &[
+    // Where particles began their prescribed path, and how they lay as seen from it.
+    ("move/", "/turn", Under::Nothing),
+    ("move/", "", Under::Anchor),
+    ("spring/self/", "", Under::Anchor),
+    // Where computes count the way of particles from.
+    ("compute ", " origin", Under::Anchor),
+    ("compute ", " velocity", Under::Record),
+    ("store/local/", "/first", Under::Anchor),
+    // Places and orientations by the axes of rigid bodies.
+    ("rigid", "/place", Under::Nothing),
+    ("rigid", "/turn", Under::Nothing),
+    ("rigid", "/virial xx", Under::Anew),
+    ("rigid", "/virial xy", Under::Anew),
+    ("external/", "", Under::Anew),
+    ("langevin/", "", Under::Anew),
+    (LEVEL, "", Under::Anew),
+    ("ledger/", "", Under::Anew),
+    ("calibrate ", "", Under::Record),
+];
+
+/// What becomes of the vector column of this name where particles are moved as one piece; `None` of one that no line of the table knows.
+pub fn under(name: &str) -> Option<Under> {
+    let fits = |(begin, end, _): &&(&str, &str, Under)| name.starts_with(begin) && name.ends_with(end);
+    UNDER.iter().find(fits).map(|(.., under)| *under)
+}
 
 /// The columns that keep what a level of steps has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,8 +91,23 @@ impl Columns {
     }
 
     /// The vector column of this name, made of zeros for `n` particles if it is new.
+    ///
+    /// # Panics
+    ///
+    /// Debug builds panic where nothing says what becomes of a column of this name as particles are moved.
     pub fn vector(&mut self, key: Vectors, n: usize) -> &mut Vec<[f64; 3]> {
-        self.vectors.get_or(key, || vec![[0.0; 3]; n])
+        self.vectors.get_or(key, || {
+            debug_assert!(
+                under(key.text()).is_some(),
+                "columns::UNDER does not say what a turn does to `{key}`"
+            );
+            vec![[0.0; 3]; n]
+        })
+    }
+
+    /// The vector columns with their names, to be changed.
+    pub fn vectors_mut(&mut self) -> impl Iterator<Item = (Vectors, &mut Vec<[f64; 3]>)> {
+        self.vectors.iter_mut()
     }
 
     /// The column behind a deck's `i_NAME`, `d_NAME`, `i2_NAME[k]`, `d2_NAME[k]`, `temperature` or `heatflow` (fix

@@ -1,6 +1,7 @@
 //! Contact history by pair: what grains remember while they touch each other or a wall.
 
-use super::named::{Constant, Named};
+use super::named::{Constant, Key, Named};
+use perigrain_base::math::vec3::Vec3;
 
 /// Contacts of the last step in the order of their keys, with what each remembers.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -43,7 +44,43 @@ pub fn turn_plastic(history: &mut [f64]) {
     (0..half).for_each(|k| history.swap(k, half + k));
 }
 
+/// Where contacts between particles of two types, kept under this name, keep their rolling displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rolls {
+    /// The name.
+    pub of: Key<Contacts>,
+    /// The types, the lower one first.
+    pub types: [u16; 2],
+    /// The first of its three numbers.
+    pub at: usize,
+}
+
 impl Contacts {
+    /// Turns what contacts remember as vectors of space: the displacement (or force) across the normal, the first three numbers, and the
+    /// rolling displacement. `types` are those of both particles, if both are turned.
+    pub fn turn(
+        &mut self,
+        own: Key<Contacts>,
+        rolls: &[Rolls],
+        types: impl Fn([u32; 2]) -> Option<[u16; 2]>,
+        turn: impl Fn(Vec3) -> Vec3,
+    ) {
+        // What plastic grains remember has no direction.
+        if own == *PLASTIC || self.width < 3 {
+            return;
+        }
+        for (key, row) in self.keys.iter().zip(self.history.chunks_exact_mut(self.width)) {
+            let Some([a, b]) = types(*key) else { continue };
+            let pair = [a.min(b), a.max(b)];
+            let rolling = rolls.iter().find(|r| r.of == own && r.types == pair).map(|r| r.at);
+            for at in [Some(0), rolling].into_iter().flatten() {
+                if let Some(spring) = row.get_mut(at..at + 3).and_then(|three| three.first_chunk_mut::<3>()) {
+                    *spring = turn(*spring);
+                }
+            }
+        }
+    }
+
     /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: those that were there keep their
     /// history, new ones start with zeros, others are forgotten. `spare` is room that is used again.
     pub fn carry(&mut self, keys: &[[u32; 2]], width: usize, spare: &mut Vec<f64>) {

@@ -1,89 +1,92 @@
 //! The fields of a scene by name: what ops state that they read and write, as sets.
 
+use super::moving::Under;
 use std::fmt;
 
 /// A set of fields of a [`World`](super::World); each constant of this module is a set of one.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Fields(u64);
 
-/// The fields in the order in which sets name them.
+/// The fields in the order in which sets name them, each with what becomes of it where particles are moved as one piece.
 macro_rules! fields {
-    ($($(#[$doc:meta])* $name:ident $word:literal;)*) => {
+    ($($(#[$doc:meta])* $name:ident $word:literal $under:ident;)*) => {
         #[allow(non_camel_case_types, clippy::upper_case_acronyms)]
         enum Place { $($name),* }
         $($(#[$doc])* pub const $name: Fields = Fields(1 << Place::$name as u64);)*
         /// All fields with their names.
         pub const FIELDS: &[(Fields, &str)] = &[$(($name, $word)),*];
+        /// All fields with what becomes of each where particles are moved as one piece.
+        pub const UNDER: &[(Fields, Under)] = &[$(($name, Under::$under)),*];
     };
 }
 
 fields! {
     /// Positions [length]; owned by the particles, as all down to [`DENSITY`].
-    X "x";
+    X "x" Place;
     /// Velocities [length/time].
-    V "v";
+    V "v" Motion;
     /// Forces (force densities of peridynamic particles in LAMMPS' convention).
-    F "f";
+    F "f" Anew;
     /// Angular velocities [1/time].
-    OMEGA "omega";
+    OMEGA "omega" Motion;
     /// Torques [force·length].
-    TORQUE "torque";
+    TORQUE "torque" Anew;
     /// Orientations, unit quaternions.
-    QUAT "quat";
+    QUAT "quat" Orientation;
     /// Radii [length].
-    RADIUS "radius";
+    RADIUS "radius" Nothing;
     /// Masses of particles, or densities of peridynamic ones.
-    MASS "mass";
+    MASS "mass" Nothing;
     /// Types, from 1.
-    KIND "type";
+    KIND "type" Nothing;
     /// Group bits.
-    MASK "mask";
+    MASK "mask" Nothing;
     /// How often each particle has crossed periodic faces.
-    IMAGE "image";
+    IMAGE "image" Place;
     /// Volumes of peridynamic particles [length³].
-    VOLUME "volume";
+    VOLUME "volume" Nothing;
     /// Positions at creation [length].
-    X0 "x0";
+    X0 "x0" Anchor;
     /// Identities, from 1.
-    TAG "id";
+    TAG "id" Nothing;
     /// Molecule IDs.
-    MOLECULE "molecule";
+    MOLECULE "molecule" Nothing;
     /// Densities as the deck set them [mass/length³].
-    DENSITY "density";
+    DENSITY "density" Nothing;
     /// The order of creation while particles stand in the order of space.
-    RANK "rank";
+    RANK "rank" Nothing;
     /// Masses of types; owned by `mass`.
-    TYPE_MASS "type_mass";
+    TYPE_MASS "type_mass" Nothing;
     /// Columns of fixes and computes, each owned by the one that made it.
-    COLUMNS "columns";
+    COLUMNS "columns" Columns;
     /// Small state of fixes, by `kind/ID`.
-    MEMO "memo";
+    MEMO "memo" Nothing;
     /// What fixes set internal variables to.
-    CONTROLS "controls";
+    CONTROLS "controls" Nothing;
     /// Values of computes, fixes and variables.
-    SLOTS "slots";
+    SLOTS "slots" Anew;
     /// The box.
-    BOX "box";
+    BOX "box" Nothing;
     /// Named volumes and how they move.
-    REGIONS "regions";
+    REGIONS "regions" Nothing;
     /// Bonds between particles by their ids; owned by `bond_style`.
-    BONDS "bonds";
+    BONDS "bonds" Nothing;
     /// Peridynamic bonds; owned by the pair style of solids.
-    FAMILIES "families";
+    FAMILIES "families" Nothing;
     /// What touching grains remember; owned by the pair style of grains.
-    CONTACTS "contacts";
+    CONTACTS "contacts" Springs;
     /// What grains touching walls remember; owned by the walls.
-    WALL_CONTACTS "wall_contacts";
+    WALL_CONTACTS "wall_contacts" Anchor;
     /// Energy and virial of the present step.
-    TALLY "tally";
+    TALLY "tally" Anew;
     /// When neighbour lists were made anew, and where everybody was then.
-    LISTS "lists";
+    LISTS "lists" Anew;
     /// How far particles may have gone in this run [length].
-    TRAVEL "travel";
+    TRAVEL "travel" Nothing;
     /// Step, time and step size; whoever acts may read it.
-    CLOCK "clock";
+    CLOCK "clock" Nothing;
     /// Facts that styles leave for each other and for the log.
-    FACTS "facts";
+    FACTS "facts" Nothing;
 }
 
 impl Fields {

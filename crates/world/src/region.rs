@@ -6,7 +6,7 @@ mod outline;
 mod shape;
 mod surface;
 
-pub use motion::{Motion, Turn, Variable, turned};
+pub use motion::{Angle, Motion, Turn, Variable, turned};
 pub use perigrain_mesh::Near as FacetNear;
 pub use shape::{Shape, across};
 pub use surface::{Look, Near};

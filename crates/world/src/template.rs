@@ -92,9 +92,11 @@ impl Numbering {
 }
 
 impl World {
-    /// Puts a copy of a template with its bonds at these places, which are wrapped into the box, and counts on. Which pairs count as
-    /// bonded (`bonds.find_special`) and the length of other columns are for the caller to settle after the last copy.
-    pub fn insert_molecule(&mut self, t: &Template, at: &[[f64; 3]], numbers: &mut Numbering) {
+    /// Puts a copy of a template with its bonds at these places, which are wrapped into the box and turned by `q` as its matter is, and
+    /// counts on. Which pairs count as bonded (`bonds.find_special`) and the length of other columns are for the caller to settle after the
+    /// last copy.
+    pub fn insert_molecule(&mut self, t: &Template, at: &[[f64; 3]], q: Quat, numbers: &mut Numbering) {
+        let start = self.n();
         let masses = if self.particles.style.own_mass() { t.sphere_masses() } else { None };
         let first = numbers.tag;
         for (k, x) in at.iter().enumerate() {
@@ -117,6 +119,7 @@ impl World {
                 *slot = numbers.molecule + t.molecules.get(k).copied().unwrap_or(1);
             }
         }
+        self.lay(start, q);
         for (kind, ends) in &t.bonds {
             self.bonds.push(Bond::new(i32::from(*kind), ends.map(|k| first + k)));
         }

@@ -84,7 +84,7 @@ impl Copies {
         }
         for new in places {
             let q = new.turn.unwrap_or_else(|| self.turn(&mut stream, flat));
-            w.insert_molecule(t, &self.at(new.x, q), &mut numbers);
+            w.insert_molecule(t, &self.at(new.x, q), q, &mut numbers);
         }
         if !t.bonds.is_empty() {
             w.bonds.find_special();

@@ -3,8 +3,7 @@
 use super::Declared;
 use super::mold::Mold;
 use perigrain_base::diag::{Code, Result, Span, fail};
-use perigrain_base::math::body::Quat;
-use perigrain_base::math::body::{apply, axes, from_axes, principal};
+use perigrain_base::math::body::{Quat, apply, axes, from_axes, principal};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_styles::matter::{Masses, unwrapped};
 use perigrain_styles::rigid_bodies::Body;
@@ -129,6 +128,7 @@ impl Declared {
     /// Makes bodies of particles that have come since.
     pub fn adopt(&self, w: &mut World, span: Span) -> Result<()> {
         if matches!(self.split, Split::Single | Split::Groups(_)) {
+            self.hold_members(w);
             return Ok(());
         }
         let body = w.columns.get_scalar(self.keys.body).unwrap_or_default();
@@ -136,7 +136,21 @@ impl Declared {
         if !list.is_empty() {
             self.enter(w, &list, self.mold.as_ref().filter(|mold| mold.gives()), |_| None);
         }
+        self.hold_members(w);
         Ok(())
+    }
+
+    /// Keeps how members lie that nobody has asked before: those of restart files that know no orientations of members.
+    fn hold_members(&self, w: &mut World) {
+        if !w.particles.style.oriented {
+            return;
+        }
+        let bodies = self.load(w);
+        let number = w.columns.get_scalar(self.keys.body).unwrap_or_default();
+        let body = |i: usize| bodies.get((number.get(i).copied().unwrap_or(0.0) as usize).wrapping_sub(1));
+        let new = (0..w.n()).filter(|&i| !self.keys.turn.holds(w, i));
+        let new: Vec<(usize, Quat)> = new.filter_map(|i| Some((i, body(i)?.q))).collect();
+        new.into_iter().for_each(|(i, q)| self.keys.turn.take(w, i, q));
     }
 
     /// Makes bodies; `before` tells how the body was turned that a particle belonged to.
@@ -169,12 +183,15 @@ impl Declared {
         members.iter().for_each(|&i| column[i] = mass);
     }
 
-    /// Keeps where particles are as seen from the body.
+    /// Keeps where particles are as seen from the body, and how they lie.
     pub fn place(&self, w: &mut World, body: &Body, members: &[usize]) {
         let (n, axes) = (w.n(), axes(body.q));
         for &i in members {
             let d = sub(unwrapped(w, i), body.x);
             w.columns.vector(self.keys.place, n)[i] = apply(&axes, d);
+            if w.particles.style.oriented {
+                self.keys.turn.take(w, i, body.q);
+            }
         }
     }
 

@@ -167,7 +167,7 @@ impl Declared {
         w.memo.insert(crew.keys.bodies, kept);
     }
 
-    /// Velocities and spins of the particles from those of their bodies, places too where they `move`; where it is
+    /// Velocities and spins of the particles from those of their bodies, places and orientations too where they are `moving`; where it is
     /// asked for, half the virial of the forces that hold the bodies together.
     fn follow(&self, w: &mut World, t: &Tick, crew: &Crew, moving: bool, tally: bool) -> Held {
         let half = half(w, t);
@@ -189,8 +189,20 @@ impl Declared {
         let (total, farthest) = came.unwrap_or_default();
         if moving {
             w.travel.went(farthest.sqrt());
+            self.turn_members(w, crew);
         }
         Held { total, atoms }
+    }
+
+    /// Orientations of the particles as those of their bodies are now.
+    fn turn_members(&self, w: &mut World, crew: &Crew) {
+        if !w.particles.style.oriented {
+            return;
+        }
+        let (rows, _) = w.memo.get(crew.keys.bodies).map_or(&[][..], Vec::as_slice).as_chunks::<WIDTH>();
+        let number = w.columns.get_scalar(crew.keys.body).unwrap_or_default();
+        let body = |i: usize| Some(Body::of(rows.get((*number.get(i)? as usize).wrapping_sub(1))?).q);
+        crew.keys.turn.turn(&mut w.particles.quat, &w.columns, body);
     }
 
     /// Velocities and spins of the particles as their bodies have them now, outside of a run.

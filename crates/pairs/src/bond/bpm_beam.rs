@@ -189,6 +189,10 @@ impl BondForce for Declared {
         Some(self.law.stiffness(&line.coeffs, line.radius.of(radii), length))
     }
 
+    fn turns(&self, kind: u16) -> bool {
+        self.types.contains_key(&kind)
+    }
+
     fn may_break(&self, kind: u16) -> bool {
         self.coeffs(kind).is_some_and(|k| k.strength != [f64::INFINITY; 2])
     }

@@ -202,6 +202,10 @@ impl BondForce for Declared {
         Some(Stiffness { normal: k.normal / per, shear: k.shear / per, ..k })
     }
 
+    fn turns(&self, kind: u16) -> bool {
+        self.types.contains_key(&kind)
+    }
+
     fn may_break(&self, kind: u16) -> bool {
         self.options.breaks && self.types.contains_key(&kind)
     }

@@ -119,6 +119,10 @@ impl BondForce for Declared {
         }
     }
 
+    fn turns(&self, kind: u16) -> bool {
+        self.user(kind).is_some_and(|sub| sub.turns(kind))
+    }
+
     fn may_break(&self, kind: u16) -> bool {
         self.user(kind).is_some_and(|sub| sub.may_break(kind))
     }

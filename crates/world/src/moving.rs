@@ -1,0 +1,269 @@
+//! What becomes of each field where particles are moved as one piece, and the functions that move them by that rule.
+//!
+//! [`field`](super::field) says of each field, [`columns::under`] of each named column, what a motion of matter does to it. Whatever moves
+//! particles as a whole keeps to that: [`World::carry`] where they are put elsewhere between two runs, [`Grip`] where something holds
+//! them while it moves, [`World::lay`] where they are made, [`World::shift_copies`] where a scene is repeated. `docs/decisions/movers.md` has the
+//! table.
+
+use super::columns::{self, Columns};
+use super::contacts::{Contacts, Rolls};
+use super::named::Key;
+use super::region::{Angle, turned};
+use super::{Named, Numbers, Particles, Vectors, World};
+use perigrain_base::math::body::{Quat, after, back, normalized, turn, turned as vector_turned};
+use perigrain_base::math::vec3::{Vec3, add};
+use perigrain_base::par;
+
+/// What moving matter as one piece does to a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Under {
+    /// Nothing: a number, a state of the whole scene, or a vector by axes that the particle itself carries.
+    Nothing,
+    /// Where a particle is: moved and turned.
+    Place,
+    /// How the matter of a particle lies in space: turned.
+    Orientation,
+    /// What pairs remember as vectors of space: turned where both particles are moved.
+    Springs,
+    /// How fast a particle moves and spins: whatever moves particles step by step sets it, and where they are put elsewhere between two
+    /// runs it stays as the deck has it.
+    Motion,
+    /// Computed anew before anything reads it as that of the new place.
+    Anew,
+    /// Where something holds a particle or counts its way from: stays where particles are moved through space, and goes along where
+    /// space with all in it is copied.
+    Anchor,
+    /// Values of one moment, kept as they were then.
+    Record,
+    /// Columns by name: see [`columns::under`].
+    Columns,
+}
+
+/// A turn about an axis through a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    point: Vec3,
+    axis: Vec3,
+    angle: Angle,
+    quat: Quat,
+}
+
+impl Turn {
+    /// By an angle [rad] about an axis of unit length.
+    pub fn new(point: Vec3, axis: Vec3, angle: f64) -> Self {
+        Self { point, axis, angle: angle.into(), quat: turn(axis, angle) }
+    }
+
+    /// A place after it.
+    pub fn place(&self, x: Vec3) -> Vec3 {
+        turned(x, self.point, self.axis, self.angle)
+    }
+
+    /// A vector after it.
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        vector_turned(self.quat, v)
+    }
+
+    /// An orientation after it.
+    pub fn orientation(&self, q: Quat) -> Quat {
+        after(self.quat, q)
+    }
+}
+
+impl World {
+    /// Puts the particles for which `moved` holds elsewhere as one piece, with all that has a direction and belongs to their matter; how
+    /// they move stays as it is. `rolls`: where contacts keep rolling displacements. LAMMPS leaves springs of contacts as they were, and
+    /// so does `compat lammps`.
+    pub fn carry(&mut self, turn: &Turn, rolls: &[Rolls], moved: impl Fn(usize) -> bool) {
+        let members: Vec<usize> = (0..self.n()).filter(|&i| moved(i)).collect();
+        let edges = self.edges();
+        let springs = !self.settings.lammps();
+        // Every part of a scene is named here, so that none can be added without a word about what a turn does to it.
+        let World {
+            particles,
+            columns,
+            contacts,
+            // `Under::Anchor`: walls stay where they are, and springs against them lie in walls.
+            wall_contacts: _,
+            // `Under::Nothing`: lengths, and vectors that the ends of bonds carry.
+            bonds: _,
+            // `Under::Nothing`: lengths and numbers; places at rest are compared with the present ones, whichever way these are turned.
+            families: _,
+            cracks: _,
+            // `Under::Anew`.
+            slots: _,
+            tally: _,
+            rebuild: _,
+            travel: _,
+            // Of no particle.
+            clock: _,
+            settings: _,
+            domain: _,
+            groups: _,
+            lattice: _,
+            regions: _,
+            types: _,
+            type_mass: _,
+            memo: _,
+            controls: _,
+            templates: _,
+            materials: _,
+            properties: _,
+            folder: _,
+            read_files: _,
+            parts: _,
+        } = self;
+        if springs {
+            turn_springs(contacts, particles, turn, rolls, &members);
+        }
+        particles.carry(turn, &members, |image| edges.shift(image.map(f64::from)));
+        columns.carry(turn, &members);
+    }
+
+    /// Lets the particles from `first` on, which have just been made, lie as `q` turns them. Molecules of LAMMPS are made as if nothing had
+    /// turned them, and so they are under `compat lammps`.
+    pub fn lay(&mut self, first: usize, q: Quat) {
+        if self.settings.lammps() || !self.particles.style.oriented {
+            return;
+        }
+        for own in &mut self.particles.quat[first..] {
+            *own = after(q, *own);
+        }
+    }
+
+    /// Moves what the particles `of` are held to, or count their way from, by `shift`: they are copies of others that far away.
+    pub fn shift_copies(&mut self, of: std::ops::Range<usize>, shift: Vec3) {
+        let start = self.particles.x0.get_mut(of.clone()).into_iter().flatten();
+        start.for_each(|x| *x = add(*x, shift));
+        self.columns.shift(of, shift);
+    }
+}
+
+impl Particles {
+    /// Turns the members: see [`World::carry`]; `crossed` is how far away an image is.
+    fn carry(&mut self, turn: &Turn, members: &[usize], crossed: impl Fn([i32; 3]) -> Vec3) {
+        // Every column is named, as above.
+        let Particles {
+            x,
+            image,
+            quat,
+            // `Under::Motion`.
+            v: _,
+            omega: _,
+            // `Under::Anew`.
+            f: _,
+            torque: _,
+            // `Under::Anchor`.
+            x0: _,
+            // `Under::Nothing`.
+            style: _,
+            tag: _,
+            kind: _,
+            mask: _,
+            mass: _,
+            radius: _,
+            volume: _,
+            density: _,
+            molecule: _,
+            rank: _,
+        } = self;
+        for &i in members {
+            x[i] = turn.place(add(x[i], crossed(image[i])));
+            image.set(i, [0; 3]);
+        }
+        if !quat.is_empty() {
+            members.iter().for_each(|&i| quat[i] = turn.orientation(quat[i]));
+        }
+    }
+}
+
+impl Columns {
+    /// Turns what the members keep in columns: see [`World::carry`].
+    fn carry(&mut self, turn: &Turn, members: &[usize]) {
+        for (key, column) in self.vectors_mut() {
+            match columns::under(key.text()) {
+                Some(Under::Place) => members.iter().for_each(|&i| column[i] = turn.place(column[i])),
+                Some(Under::Springs) => members.iter().for_each(|&i| column[i] = turn.vector(column[i])),
+                _ => {}
+            }
+        }
+    }
+
+    /// Moves what belongs to a place in space: see [`World::shift_copies`].
+    fn shift(&mut self, of: std::ops::Range<usize>, shift: Vec3) {
+        let held = |name| matches!(columns::under(name), Some(Under::Anchor | Under::Place));
+        for (_, column) in self.vectors_mut().filter(|(key, _)| held(key.text())) {
+            column[of.clone()].iter_mut().for_each(|x| *x = add(*x, shift));
+        }
+    }
+}
+
+/// Turns the springs of contacts between two members, across the normal and against rolling.
+fn turn_springs(
+    contacts: &mut Named<Contacts>,
+    particles: &Particles,
+    turn: &Turn,
+    rolls: &[Rolls],
+    members: &[usize],
+) {
+    if contacts.values().all(Contacts::is_empty) {
+        return;
+    }
+    let mut kinds: Vec<(u32, u16)> = members.iter().map(|&i| (particles.tag[i], particles.kind[i])).collect();
+    kinds.sort_unstable();
+    let kind = |tag: u32| kinds.binary_search_by_key(&tag, |(t, _)| *t).ok().map(|k| kinds[k].1);
+    for (key, c) in contacts.iter_mut() {
+        c.turn(key, rolls, |[a, b]| Some([kind(a)?, kind(b)?]), |v| turn.vector(v));
+    }
+}
+
+/// How particles lie as seen from what holds them, in columns of one name: the real part of a quaternion and the others. All four are zero
+/// for those that nothing holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Grip {
+    real: Numbers,
+    others: Vectors,
+}
+
+impl Grip {
+    /// Under this name.
+    pub fn new(name: &str) -> Self {
+        Self { real: Key::new(name), others: Key::new(name) }
+    }
+
+    /// Whether it holds particle `i`.
+    pub fn holds(self, w: &World, i: usize) -> bool {
+        self.of(&w.columns, i).is_some()
+    }
+
+    /// Takes hold of particle `i` as it lies now, `holder` being how that lies which holds it.
+    pub fn take(self, w: &mut World, i: usize, holder: Quat) {
+        let (n, [real, others @ ..]) = (w.n(), after(back(holder), w.particles.quat[i]));
+        w.columns.scalar(self.real, n)[i] = real;
+        w.columns.vector(self.others, n)[i] = others;
+    }
+
+    /// Lets go of everything.
+    pub fn drop(self, w: &mut World) {
+        w.columns.remove(self.real);
+        w.columns.remove(self.others);
+    }
+
+    /// Turns the particles that are held with what holds them, as `holder` says of each.
+    pub fn turn(self, quat: &mut [Quat], columns: &Columns, holder: impl Fn(usize) -> Option<Quat> + Sync) {
+        par::each(quat, |first, quat| {
+            for (k, quat) in quat.iter_mut().enumerate() {
+                if let Some((own, holder)) = self.of(columns, first + k).zip(holder(first + k)) {
+                    *quat = normalized(after(holder, own));
+                }
+            }
+        });
+    }
+
+    fn of(self, columns: &Columns, i: usize) -> Option<Quat> {
+        let real = *columns.get_scalar(self.real)?.get(i)?;
+        let [a, b, c] = *columns.get_vector(self.others)?.get(i)?;
+        let own = [real, a, b, c];
+        (own != [0.0; 4]).then_some(own)
+    }
+}
