@@ -73,6 +73,8 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("bond_break.rs", "v", "only beside a ledger"),
     ("langevin.rs", "rank", "only where grains stand in the order of space"),
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
+    ("damping_cundall.rs", "slots", "only with `scale v_name`"),
+    ("fixes/src/deform.rs", "id", "only where peridynamic bonds cross faces"),
 ];
 
 /// The ops that put particles elsewhere, by file. `tests/strangers/movers.rs` holds what each does to whatever has a direction: an op that

@@ -184,7 +184,7 @@ mod tests {
                 assert!(case.deck.lines().any(defines), "{}: {words:?}", case.name);
             }
         }
-        assert_eq!(heads::chosen::<Case>(DECKS, "OBLIQUE").unwrap().len(), 1);
+        assert_eq!(heads::chosen::<Case>(DECKS, "OBLIQUE_I").unwrap().len(), 1);
         assert!(Case::read("x", "#| title = \"t\"\n").is_err());
     }
 }

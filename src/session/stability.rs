@@ -28,8 +28,12 @@ impl Session {
         self.check_bonds(span, place, found);
         let own = |(k, p): (usize, &Scales)| {
             let (sure, dt) = (p.sure_step?, self.step_of(k));
-            // The exact limit is asked for where the estimate is exceeded.
-            let limit = if dt > sure { styles[k].limit(&self.world) } else { None };
+            if dt <= sure {
+                return Some((sure, dt));
+            }
+            // The exact limit is asked for where the estimate is exceeded. A deck that is only looked at has no bodies to ask: what a whole
+            // lattice stands is said of it, so that no deck is warned about that a run finds right.
+            let limit = styles[k].limit(&self.world).or(p.stable_step);
             Some((limit.unwrap_or(sure), dt))
         };
         let steps = pairs.iter().enumerate().filter_map(own);

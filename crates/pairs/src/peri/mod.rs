@@ -78,7 +78,7 @@ enum Calibrate {
 }
 
 /// Up to so many particles the exact limit of a step is looked for where the estimate is exceeded: it takes as long as some 60 steps.
-const MOST_LOOKED_AT: usize = 50_000;
+const MOST_LOOKED_AT: usize = 2_000_000;
 
 /// Starts a style: particles must have volumes.
 fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair>> {
