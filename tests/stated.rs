@@ -74,6 +74,8 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("langevin.rs", "rank", "only where grains stand in the order of space"),
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
     ("damping_cundall.rs", "slots", "only with `scale v_name`"),
+    ("granular/force.rs", "facts", "only where plastic grains overlap deeply"),
+    ("graph/welcome.rs", "v mask", "only where molecules that come are bodies"),
     ("fixes/src/deform.rs", "id", "only where peridynamic bonds cross faces"),
 ];
 

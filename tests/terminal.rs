@@ -219,7 +219,7 @@ fn a_window_may_change_its_size() {
     let deck = format!("{GRAINS}thermo 20000\nrun 1000000000\n");
     let told = "in.deck -threads 1 & read seen; stty cols 41; read seen; kill $!; wait";
     let mut p = start(folder.path(), 120, &deck, told, &[]);
-    let mut text = p.exp_string(" s left").unwrap();
+    let mut text = p.exp_string(" left").unwrap();
     let wide = text.lines().last().unwrap_or_default().to_string();
     assert!(wide.contains(" steps/s") && width(&wide) > 40, "{wide}");
     p.send_line("seen").unwrap();

@@ -78,7 +78,9 @@ fn what_2026_has_mended_at_grazed_walls() {
     let [speed, spin] = after(&["-compat", "lammps/2025"]);
     assert!(near(speed, 4.00309970609842, SAME) && near(spin, 7.72337986811442e-07, SAME));
     // As `pair_style gran/hooke/history` and perigrain have it.
-    assert_eq!(after(&["-compat", "lammps"]), after(&[]));
+    // Without compat the end of the contact, where its dashpot pulls, has no friction: 1e-5 of the speed, 6e-5 of the spin.
+    let (theirs, ours) = (after(&["-compat", "lammps"]), after(&[]));
+    assert!((0..2).all(|k| near(theirs[k], ours[k], 1e-4)), "{theirs:?} {ours:?}");
 }
 
 #[test]
@@ -151,10 +153,9 @@ fn grains_that_roll_cross_periodic_faces_unchanged() {
     // the grain that crosses turn their sign, those of its partner do not. Nor is that reproduced.
     for switches in [&[][..], &["-compat", "lammps/2025"]] {
         let [inside, crossing] = ["3", "5.005"].map(|at| spin(at, switches));
-        assert!(
-            near(inside[1], 0.2902314821871, SAME) && near(inside[2], 0.1451157410935, SAME),
-            "{inside:?}"
-        );
+        // Without compat the end of the contact, where its dashpot pulls, has no friction: LAMMPS' number is another there.
+        let lammps = near(inside[1], 0.2902314821871, SAME) && near(inside[2], 0.1451157410935, SAME);
+        assert_eq!(lammps, !switches.is_empty(), "{inside:?}");
         // Places differ by rounding, some 1e-15 of an overlap of 0.02.
         assert!(inside.iter().zip(crossing).all(|(a, b)| (a - b).abs() < 1e-11), "{inside:?} {crossing:?}");
     }

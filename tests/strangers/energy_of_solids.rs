@@ -97,7 +97,7 @@ fn softening_and_plastic_bonds_have_corrected_surfaces_and_own_horizons() {
     let vars = ["-var", "style", "pmb/softening", "-var", "horizon", "own", "-var", "ft", "2.5e7"];
     let printed = text(&run("softening_corrected.in", &vars));
     assert!(
-        printed.contains("would snap back") && printed.contains("let no horizon be longer than 3.960e-3"),
+        printed.contains("would snap back") && printed.contains("let no horizon be longer than 3.9604e-3"),
         "{printed}"
     );
 }

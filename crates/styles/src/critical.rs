@@ -135,7 +135,7 @@ impl Held {
     fn step(&self, mass: f64, inertia: Option<f64>) -> f64 {
         let most = |k: Vec3| k.into_iter().fold(0.0, f64::max);
         let root = |inertia: f64, k: f64| if k > 0.0 { (inertia / k).sqrt() } else { f64::INFINITY };
-        let largest = |tensor: [f64; 6]| principal(tensor).0[0].max(0.0);
+        let largest = |tensor: [f64; 6]| principal(tensor).0.into_iter().fold(0.0, f64::max);
         let of = |k: usize| {
             let turning = inertia.map_or(0.0, |i| largest(self.spinning[k]) / i);
             (largest(self.going[k]) / mass).max(turning)
@@ -177,7 +177,8 @@ pub fn grains(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<f64> {
     for (i, held) in held.iter().enumerate() {
         let mass = true_mass(w, &masses, i) / ftm2v;
         // Particles of solids do not turn.
-        let inertia = solid(w, i).is_none().then(|| 0.4 * mass * p.radius[i] * p.radius[i]);
+        let radius = p.radius.get(i).filter(|_| solid(w, i).is_none());
+        let inertia = radius.map(|r| 0.4 * mass * r * r);
         least = least.min(held.step(mass, inertia));
     }
     Ok(least)

@@ -29,7 +29,7 @@ impl ScaleBar {
         let unit =
             self.units.iter().rev().find(|(e, _)| length >= 0.999 * 10f64.powi(*e)).or(self.units.first());
         let (exponent, name) = unit.copied().unwrap_or((0, ""));
-        let number = general(length / 10f64.powi(exponent), 3);
+        let number = general(length / 10f64.powi(exponent), 6);
         Some((length, format!("{number} {name}").trim_end().to_string()))
     }
 

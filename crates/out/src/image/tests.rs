@@ -79,9 +79,10 @@ fn what_large_spheres_hide_is_not_drawn_and_nothing_else_is_missing() {
             for px in 0..300 {
                 let depth = raster.discs.iter().map(|d| d.depth(px as f32 + 0.5, y as f32 + 0.5));
                 let most = depth.fold(f32::NEG_INFINITY, f32::max);
-                // Another order of the same operations rounds depths of some hundred pixels otherwise.
+                // Another order of the same operations rounds otherwise, most at the rim of a sphere, where a depth is the root of a small
+                // difference: 4e-4 measured.
                 let seen = raster.depth(px, y);
-                assert!(seen == most || (seen - most).abs() < 2e-4, "{px} {y}: {seen} {most}");
+                assert!(seen == most || (seen - most).abs() < 1e-3, "{px} {y}: {seen} {most}");
             }
         }
     }
