@@ -143,6 +143,7 @@ syntax match perigrain_fix_style /\vaveforce\S@!/ contained
 syntax match perigrain_fix_style /\vbalance\S@!/ contained
 syntax match perigrain_fix_style /\vbond\/break\S@!/ contained
 syntax match perigrain_fix_style /\vcontroller\S@!/ contained
+syntax match perigrain_fix_style /\vdamping\/cundall\S@!/ contained
 syntax match perigrain_fix_style /\vdeform\S@!/ contained
 syntax match perigrain_fix_style /\vdeform\/pressure\S@!/ contained
 syntax match perigrain_fix_style /\vdeposit\S@!/ contained
@@ -207,6 +208,7 @@ syntax match perigrain_compute_style /\vcom\S@!/ contained
 syntax match perigrain_compute_style /\vcom\/chunk\S@!/ contained
 syntax match perigrain_compute_style /\vcontact\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vcoord\/atom\S@!/ contained
+syntax match perigrain_compute_style /\vcount\/type\S@!/ contained
 syntax match perigrain_compute_style /\vcrack\S@!/ contained
 syntax match perigrain_compute_style /\vdamage\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vdilatation\/atom\S@!/ contained
@@ -278,6 +280,7 @@ syntax match perigrain_dump_style /\vcustom\/gz\S@!/ contained
 syntax match perigrain_dump_style /\vimage\S@!/ contained
 syntax match perigrain_dump_style /\vlocal\S@!/ contained
 syntax match perigrain_dump_style /\vlocal\/gz\S@!/ contained
+syntax match perigrain_dump_style /\vmovie\S@!/ contained
 syntax match perigrain_dump_style /\vvtk\S@!/ contained
 syntax match perigrain_dump_style /\vxyz\S@!/ contained
 syntax match perigrain_dump_style /\vxyz\/gz\S@!/ contained
