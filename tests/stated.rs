@@ -45,7 +45,11 @@ const SPARED: &[(&str, &str, &str)] = &[
     ),
     ("fixes/src/evaporate.rs", "x mask", "only where its time has come"),
     ("graph/dynamic.rs", "x regions", "only groups by region look at places"),
-    ("graph/welcome.rs", "box columns image x", "only where particles come during a run"),
+    (
+        "graph/welcome.rs",
+        "box columns image x v quat mask memo radius mass",
+        "only where particles come during a run, and by what takes note of them",
+    ),
     ("granular/mdr.rs", "tally", "only where virials are asked for"),
     ("bpm_peri/op.rs", "v", "only where bonds are damped"),
     // `tests/scripts/good` uses these, in processes of their own.

@@ -12,7 +12,6 @@ use perigrain_lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word}
 use perigrain_plan::{Op, Stage, StepPlan, Tick, When};
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BondForce, Flow, Motion, Reading, SealCx, Values};
-use perigrain_world::contacts::Rolls;
 use perigrain_world::named::Acting;
 use perigrain_world::{Domain, Face, SlotId, World};
 use std::collections::BTreeMap;
@@ -431,10 +430,6 @@ impl Values for DeckValues<'_> {
         let Some(node) = &self.graph.pair else { return Ok(vec![]) };
         let found = node.pair.probes(w, false).map_err(|e| e.at(node.span))?;
         Ok(found.into_iter().map(|(_, probe)| probe).collect())
-    }
-
-    fn rolls(&self, w: &World) -> Vec<Rolls> {
-        self.graph.pair.as_ref().map_or(vec![], |node| node.pair.rolls(w))
     }
 
     fn bonds(&self) -> Option<Box<dyn BondForce>> {

@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{Compute, Fix, SealCx};
 use perigrain_world::World;
-use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, MASK, V, X};
+use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, MASK, MASS, MEMO, QUAT, RADIUS, V, X};
 
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {
@@ -30,11 +30,8 @@ struct Welcome {
 
 impl Op for Welcome {
     fn about(&self) -> About {
-        About::new(
-            "welcome",
-            Stage::Exchange,
-            Needs::new().read(BOX | X | V | MASK | IMAGE | LISTS).keep(COLUMNS),
-        )
+        let noted = BOX | X | V | QUAT | IMAGE | MASK | RADIUS | MASS;
+        About::new("welcome", Stage::Exchange, Needs::new().read(noted | MEMO | LISTS).keep(COLUMNS))
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {

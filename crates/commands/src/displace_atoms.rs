@@ -9,6 +9,7 @@ use perigrain_styles::common::{
     self, axis, bad_keyword, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
 };
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::contacts::Rolls;
 use perigrain_world::{GroupId, Turn};
 
 /// The command.
@@ -154,7 +155,9 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
         }
         Motion::Rotate { point, axis, angle } => {
             let turn = Turn::new([0, 1, 2].map(|d| spacing[d] * point[d]), *axis, *angle);
-            let rolls = cx.values.rolls(cx.world);
+            // Without coefficients nothing touches yet.
+            let probes = cx.values.probes(cx.world).unwrap_or_default();
+            let rolls: Vec<Rolls> = probes.iter().flat_map(|probe| probe.rolls()).collect();
             let mask = cx.world.particles.mask.clone();
             cx.world.carry(&turn, &rolls, |i| mask[i] & group.bit() != 0);
         }

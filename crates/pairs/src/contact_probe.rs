@@ -7,12 +7,12 @@ use super::shared::{admit, built_at, find_frozen, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
-use perigrain_contact::driver::{Grains, Rules, Sweep};
+use perigrain_contact::driver::{Grains, Rule, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, Springs};
 use perigrain_world::columns::TEMPERATURE;
-use perigrain_world::contacts::Contacts;
+use perigrain_world::contacts::{Contacts, Rolls};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, World};
 
@@ -148,6 +148,12 @@ impl ContactProbe {
 impl Probe for ContactProbe {
     fn name(&self) -> &'static str {
         self.key.text()
+    }
+
+    fn rolls(&self) -> Vec<Rolls> {
+        let own =
+            |(types, rule): ([u16; 2], &Rule)| Some(Rolls { of: self.key, types, at: rule.law.rolls_at()? });
+        self.rules.pairs().filter_map(own).collect()
     }
 
     fn own(&self) -> usize {

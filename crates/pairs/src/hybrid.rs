@@ -7,7 +7,6 @@ use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style, lammps};
 use perigrain_world::World;
-use perigrain_world::contacts::Rolls;
 use std::collections::BTreeMap;
 
 /// `hybrid`: one sub-style per pair of types.
@@ -224,10 +223,6 @@ impl Pair for Declared {
             all.extend(self.limited(k, w.types).probes(w, false)?.into_iter().map(|(_, probe)| (k, probe)));
         }
         Ok(all)
-    }
-
-    fn rolls(&self, w: &World) -> Vec<Rolls> {
-        (0..self.subs.len()).flat_map(|k| self.limited(k, w.types).rolls(w)).collect()
     }
 
     fn scales(&self, w: &World, deck: Deck) -> Scales {

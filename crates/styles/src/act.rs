@@ -5,7 +5,6 @@ use crate::probe::Probe;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Source, Span};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Command, Param, ValueRef, Word};
-use perigrain_world::contacts::Rolls;
 use perigrain_world::{GroupId, World};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -43,10 +42,6 @@ pub trait Values {
     /// What is missing in the scene.
     fn probes(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
         Ok(vec![])
-    }
-    /// Where contacts of the pair style in force keep what they remember of rolling.
-    fn rolls(&self, _w: &World) -> Vec<Rolls> {
-        vec![]
     }
     /// The bond style in force.
     fn bonds(&self) -> Option<Box<dyn BondForce>> {

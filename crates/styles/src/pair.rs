@@ -7,7 +7,6 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_world::World;
-use perigrain_world::contacts::Rolls;
 
 /// Type pairs (i ≤ j, from 1) that a `pair_coeff` line speaks of.
 pub type TypePairs = [(u16, u16)];
@@ -135,11 +134,6 @@ pub trait Pair: DynClone + Send {
     /// What is missing in the scene.
     fn probes(&self, _w: &World, _bonds: bool) -> Result<ByPart<dyn Probe>> {
         Ok(vec![])
-    }
-
-    /// Where its contacts keep what they remember of rolling.
-    fn rolls(&self, _w: &World) -> Vec<Rolls> {
-        vec![]
     }
 
     /// How far its forces reach and how fast they change.

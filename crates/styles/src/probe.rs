@@ -3,6 +3,7 @@
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{SIX, Vec3, dot, length, scale, sub};
 use perigrain_world::World;
+use perigrain_world::contacts::Rolls;
 
 /// How many numbers of its own a pair style may give to each pair.
 pub const OWN: usize = 14;
@@ -122,6 +123,11 @@ pub trait Probe: Send {
     /// the force can give back; `None` where the style says nothing of it.
     fn pressed(&self, _types: [u16; 2], _overlap: f64, _curvature: f64) -> Option<[f64; 3]> {
         None
+    }
+
+    /// Where contacts keep what they remember of rolling.
+    fn rolls(&self) -> Vec<Rolls> {
+        vec![]
     }
 
     /// What all contacts hold: energy of overlaps and of tangential springs [energy].

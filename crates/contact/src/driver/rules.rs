@@ -56,6 +56,13 @@ impl Rules {
         self.table[b * self.types + a] = Some(rule);
     }
 
+    /// All rules, each with its types, the lower one first.
+    pub fn pairs(&self) -> impl Iterator<Item = ([u16; 2], &Rule)> {
+        let last = self.types as u16;
+        let types = (1..=last).flat_map(move |a| (a..=last).map(move |b| [a, b]));
+        types.filter_map(|types| Some((types, self.get(types[0], types[1])?)))
+    }
+
     /// The rule of two types.
     #[inline]
     pub fn get(&self, a: u16, b: u16) -> Option<&Rule> {

@@ -17,8 +17,7 @@ use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::contacts::Rolls;
-use perigrain_world::{Compat, Key, World};
+use perigrain_world::{Compat, World};
 use std::collections::BTreeMap;
 
 /// What LAMMPS does wrong in which models, and whether the LAMMPS of 2026 has mended it.
@@ -208,17 +207,6 @@ impl Pair for Declared {
         }
         let types = cx.world().types;
         Ok(vec![(0, Box::new(Force::new(self.name, rules, wanted, types, press)))])
-    }
-
-    fn rolls(&self, w: &World) -> Vec<Rolls> {
-        let Ok((rules, _)) = self.tables(w.types, w.settings.compat) else { return vec![] };
-        let last = w.types as u16;
-        let pairs = (1..=last).flat_map(|a| (a..=last).map(move |b| [a, b]));
-        let own = |types: [u16; 2]| {
-            let at = rules.get(types[0], types[1])?.law.rolls_at()?;
-            Some(Rolls { of: Key::new(self.name), types, at })
-        };
-        pairs.filter_map(own).collect()
     }
 
     fn probes(&self, w: &World, _bonds: bool) -> Result<ByPart<dyn Probe>> {
