@@ -104,7 +104,8 @@ const BOOK: [&str; 2] = [
      - [Decisions: threads and memory](decisions/threads.md)\n\
      - [Decisions: adding laws](decisions/adding-laws.md)\n\
      - [Decisions: dependencies](decisions/dependencies.md)\n\
-     - [Decisions: what strangers hit](decisions/strangers.md)\n",
+     - [Decisions: what strangers hit](decisions/strangers.md)\n\
+     - [Decisions: what moves particles as a whole](decisions/movers.md)\n",
 ];
 
 /// The book's table of contents: every page once.

@@ -66,7 +66,7 @@ fn rows(style: &str, dt: f64, steps: u32) -> Vec<Vec<f64>> {
     assert!(well, "{text}");
     let lines = text.lines().skip_while(|l| !l.trim_start().starts_with("Time")).skip(1);
     let rows: Vec<Vec<f64>> = lines
-        .map_while(|l| l.split_whitespace().map(|a| a.parse().ok()).collect::<Option<Vec<f64>>>())
+        .filter_map(|l| l.split_whitespace().map(|a| a.parse().ok()).collect::<Option<Vec<f64>>>())
         .filter(|row| row.len() == 8)
         .collect();
     assert_eq!(rows.len(), 11, "{text}");
