@@ -95,7 +95,7 @@ pub(crate) fn true_mass(w: &World, masses: &[f64], i: usize) -> f64 {
     }
 }
 
-/// The step that two ends of contacts stand who swing against each other [time]: the largest Δt with Δt² a + 2 Δt b ≤ 4.
+/// The longest stable step of two ends of contacts that swing against each other [time]: the largest Δt with Δt² a + 2 Δt b ≤ 4.
 pub(crate) fn damped_limit(a: f64, b: f64) -> f64 {
     4.0 / (b + (b * b + 4.0 * a).sqrt())
 }

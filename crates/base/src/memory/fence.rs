@@ -26,7 +26,7 @@ static ENDING: AtomicBool = AtomicBool::new(false);
 static SPEAKER: OnceLock<Speaker> = OnceLock::new();
 /// The text of the deck that is read now.
 static TEXT: RwLock<Option<Arc<Source>>> = RwLock::new(None);
-/// The bytes of the line that is worked off now: first, and one past the last.
+/// The bytes of the line that runs now: first, and one past the last.
 static LINE: AtomicU64 = AtomicU64::new(0);
 
 /// Shows a message to people.
@@ -152,7 +152,7 @@ fn message(bytes: f64) -> Diagnostic {
     }
 }
 
-/// With the line that is worked off.
+/// With the line that runs.
 fn placed(mut said: Diagnostic) -> Diagnostic {
     if let Ok(text) = TEXT.try_read()
         && let Some(text) = &*text
@@ -171,7 +171,7 @@ pub fn reads(text: Arc<Source>) {
     }
 }
 
-/// Says which line of the text is worked off.
+/// Says which line of the text runs.
 #[inline]
 pub fn at(line: Span) {
     LINE.store(u64::from(line.start) << 32 | u64::from(line.end), Ordering::Relaxed);

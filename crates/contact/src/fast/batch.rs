@@ -326,7 +326,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             // SAFETY: the caller's promise.
             let (g, force, [own, other]) =
                 unsafe { (self.geometry_of(at), self.force.at(group), self.torque.at(group)) };
-            // SAFETY: each contact has its row of memory, which nobody else has now.
+            // SAFETY: each contact has a row of memory of its own, which no other thread touches now.
             let row = unsafe { std::slice::from_raw_parts(self.past[at], W) };
             // Where nothing was stored the row may be that of an earlier contact.
             let lasts = row[W - 1] > cx.now - 0.5;
