@@ -106,11 +106,11 @@ fn progress_is_that_of_the_whole_deck() {
     let folder = tempfile::tempdir().unwrap();
     // So many runs that each is shorter than the pause between two lines, and all together longer.
     let deck = format!(
-        "{GRAINS}thermo 100000\nvariable k loop 2000\nlabel again\nrun 300 post no\nnext k\njump SELF again\n"
+        "{GRAINS}thermo 100000\nvariable k loop 700\nlabel again\nrun 300 post no\nnext k\njump SELF again\n"
     );
     let text = shown(folder.path(), 120, &deck, PLAIN, &[]);
     let lines: Vec<&str> = text.split("\x1b[2K").collect();
-    let bars: Vec<&&str> = lines.iter().filter(|l| l.contains(" of 600,000 steps, ")).collect();
+    let bars: Vec<&&str> = lines.iter().filter(|l| l.contains(" of 210,000 steps, ")).collect();
     assert!(!bars.is_empty(), "{text}");
     let bar = bars[bars.len() - 1].lines().last().unwrap();
     assert!(
@@ -120,19 +120,19 @@ fn progress_is_that_of_the_whole_deck() {
     let none = ["0/0", " of 0 steps", "of this run"];
     assert!(none.iter().all(|word| !text.contains(word)), "{text}");
     // A loop that asks the clock ends in sight, perhaps earlier.
-    let until = "if \"$t < 0.0006 && $(ke) < 1\" then \"jump SELF again\"";
-    let deck = format!("{GRAINS}thermo 0\nvariable t equal time\nlabel again\nrun 300000 post no\n{until}\n");
+    let until = "if \"$t < 0.00016 && $(ke) < 1\" then \"jump SELF again\"";
+    let deck = format!("{GRAINS}thermo 0\nvariable t equal time\nlabel again\nrun 80000 post no\n{until}\n");
     let text = shown(folder.path(), 120, &deck, PLAIN, &[]);
-    assert!(text.contains(" of up to 600,000 steps, "), "{text}");
+    assert!(text.contains(" of up to 160,000 steps, "), "{text}");
     // How often a loop comes that hangs on a run nobody knows: the bar is that of the run.
     let deck = format!(
-        "{GRAINS}thermo 0\nlabel again\nrun 400000 post no\nif \"$(ke) < 2e-8\" then \"jump SELF again\"\n"
+        "{GRAINS}thermo 0\nlabel again\nrun 120000 post no\nif \"$(ke) < 2e-8\" then \"jump SELF again\"\n"
     );
     let text = shown(folder.path(), 120, &deck, PLAIN, &[]);
-    assert!(text.contains(" of 400,000 steps") && !text.contains(" of 800,000"), "{text}");
+    assert!(text.contains(" of 120,000 steps") && !text.contains(" of 240,000"), "{text}");
     // A terminal that cannot take a line back gets none.
     let text = shown(folder.path(), 120, &deck, PLAIN, &[("TERM", "dumb")]);
-    assert!(!text.contains('\x1b') && text.contains("400,000 steps in "), "{text}");
+    assert!(!text.contains('\x1b') && text.contains("120,000 steps in "), "{text}");
 }
 
 #[test]

@@ -164,7 +164,7 @@ fn a_closed_cloud_only_loses_energy() {
     // Verlet's energy of an oscillator swings by (ω dt)²/8 of it to both sides: ω² = kn/m̄ = 2 kn for what is in
     // contacts, ω² = bowl for the rest.
     let swing = |omega_sq: f64, energy: f64| 2.0 * omega_sq * dt * dt / 8.0 * energy;
-    for _ in 0..250 {
+    for _ in 0..100 {
         cloud.step(STEPS / 250);
         let now = energy(&mut cloud);
         let granted = swing(2.0 * kn, before[1] + now[1]) + swing(bowl, before[0]);

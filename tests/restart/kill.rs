@@ -66,7 +66,7 @@ fn random(seed: &mut u64) -> u64 {
 
 #[test]
 fn what_a_killed_run_leaves_is_whole_and_goes_on() {
-    let kills: u32 = std::env::var("PERIGRAIN_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
+    let kills: u32 = std::env::var("PERIGRAIN_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
     let whole = tempfile::tempdir().unwrap();
     let began = Instant::now();
     finish(whole.path(), "in.deck", "log.deck");

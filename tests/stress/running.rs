@@ -95,9 +95,10 @@ impl Task<'_> {
                 (measures(&o.said), o.code, o.said)
             }
             How::Order => {
-                let [a, b, c] = ["1", "2", "4"].map(|n| self.state(&[("halve", n)], 1));
-                let (coarse, fine) = (apart(&a.0, &b.0, [1.0; 9]), apart(&b.0, &c.0, [1.0; 9]));
-                (one("order", (coarse / fine).log2()), Some(0), a.1)
+                let [a, b, c, d] = ["1", "2", "4", "8"].map(|n| self.state(&[("halve", n)], 1));
+                let (coarse, fine) = (apart(&a.0, &b.0, [1.0; 9]), apart(&c.0, &d.0, [1.0; 9]));
+                // Over two halvings: where friction begins or ends within a step, the coefficient of one swings.
+                (one("order", 0.5 * (coarse / fine).log2()), Some(0), a.1)
             }
             How::Mirror => {
                 let [a, b] = ["1", "-1"].map(|m| self.state(&[("mirror", m)], 1));

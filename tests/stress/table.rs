@@ -51,7 +51,7 @@ pub enum How {
     Run,
     /// Once; it must be refused, by words that the case gives.
     Refused,
-    /// In steps of 1, 1/2 and 1/4: `order`.
+    /// In steps of 1, 1/2, 1/4 and 1/8: `order`, the mean of two halvings.
     Order,
     /// The scene and its image in a mirror: `mirror`.
     Mirror,

@@ -256,8 +256,8 @@ fn short_steps_through_a_young_contact_end_where_long_ones_do() {
             let m = model(material(1.0e8, eta, NU), damping, friction);
             let [long, middle, short] =
                 [5e-7, 1e-7, 1e-8].map(|dt| spin_of_a_glancing_impact(m.law(Compat::Perigrain), dt));
-            // First order in time. With tsuji 3.8e-4 to 4.7e-4 and a fifth of it while friction went on where the dashpot pulls; that it ends
-            // there is one more kink within a step: 1.03e-3 and 1.8e-4. Less with the others.
+            // First order in time, most with tsuji: 1.03e-3 and 1.8e-4, as under `limit_damping` to the last bit. Half of that where
+            // friction went on while the dashpot pulled, as in LAMMPS. Less with the others.
             let off = [long, middle].map(|spin| (spin / short - 1.0).abs());
             assert!(off[0] < 1.1e-3 && off[1] < 2e-4, "{damping:?} {kind:?}: {off:?}");
         }
