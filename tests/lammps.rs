@@ -40,7 +40,7 @@ fn check(deck: &str) {
     let golden_state = read(&stored(&format!("golden/{deck}.final.csv")));
 
     let mut by_layout = vec![];
-    for layout in layouts(deck) {
+    for &layout in layouts(deck) {
         let first = Variant { layout, threads: "1", rest: "full", portable: false };
         let base = run(deck, first);
         let context = |what: &str| format!("{deck}, layout {layout}, {what}");

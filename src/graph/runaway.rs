@@ -193,7 +193,7 @@ impl Look {
         let tallied = !self.solids || w.tally.step == Some(t.step);
         let strain = if self.solids { w.tally.pair.abs() } else { 0.0 };
         if self.probes.is_empty() {
-            return Ok(tallied.then(|| kinetic + strain));
+            return Ok(tallied.then_some(kinetic + strain));
         }
         if t.unchanged
             && let Some(budget) = w.parts.budget
@@ -204,7 +204,7 @@ impl Look {
         for probe in &mut self.probes {
             held += probe.held(w)?.iter().sum::<f64>();
         }
-        w.parts.budget = tallied.then(|| kinetic + strain + held);
+        w.parts.budget = tallied.then_some(kinetic + strain + held);
         Ok(w.parts.budget)
     }
 

@@ -118,8 +118,8 @@ impl Session {
         self.interrupted = true;
         let place = self.place_of(line).unwrap_or_default();
         self.options.log.line(&format!("Interrupted in {place}: this line is not done, and none follows"))?;
-        let details = told.iter().filter(|d| !d.help.is_empty());
-        details.map(|d| self.options.log.line(&format!("  {}; {}", d.message, d.help.join("; ")))).collect()
+        let mut details = told.iter().filter(|d| !d.help.is_empty());
+        details.try_for_each(|d| self.options.log.line(&format!("  {}; {}", d.message, d.help.join("; "))))
     }
 
     /// The file and row of a line that was not typed.

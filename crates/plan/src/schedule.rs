@@ -266,8 +266,8 @@ impl StepPlan {
     /// The first op's that fails, with the place of its command.
     pub fn part(&mut self, w: &mut World) -> Result<()> {
         let t = Tick { ending: true, ..Tick::between_runs(&w.clock) };
-        let saving = self.ops.iter_mut().filter(|p| p.about.at_parting);
-        saving.map(|p| p.alone(w, &t, &mut Stopwatch::all(), |op, w| op.run(w, &t))).collect()
+        let mut saving = self.ops.iter_mut().filter(|p| p.about.at_parting);
+        saving.try_for_each(|p| p.alone(w, &t, &mut Stopwatch::all(), |op, w| op.run(w, &t)))
     }
 
     /// Runs what acts at the end of steps at the first tick of a run without motion: those that act in no setup too.

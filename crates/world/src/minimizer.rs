@@ -114,7 +114,7 @@ impl Default for Fire {
 }
 
 /// The choices of `min_style` and `min_modify`; the numbers of a new scene are LAMMPS' own.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Minimizer {
     /// The algorithm.
     pub style: MinStyle,
@@ -140,17 +140,5 @@ impl Minimizer {
     /// Whether `min_modify` has changed something.
     pub fn modified(&self) -> bool {
         *self != Self { style: self.style, ..Self::default() }
-    }
-}
-
-impl Default for Minimizer {
-    fn default() -> Self {
-        Self {
-            style: MinStyle::default(),
-            dmax: None,
-            line: LineSearch::default(),
-            norm: ForceNorm::default(),
-            fire: Fire::default(),
-        }
     }
 }

@@ -65,7 +65,7 @@ impl Raster {
             cut.fetch_or(asked, Ordering::Relaxed);
             asked
         };
-        let strips = make(height.div_ceil(TILE), |row| bins.strip(&discs, row, width, height, &ends));
+        let strips = make(height.div_ceil(TILE), |row| bins.strip(&discs, row, width, height, ends));
         Self { discs, projection, width, height, strips, cut: cut.into_inner() }
     }
 

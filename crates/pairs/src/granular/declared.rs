@@ -20,8 +20,11 @@ use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::{Compat, World};
 use std::collections::BTreeMap;
 
+/// Whether a model is one of those that LAMMPS does wrong.
+type HasFault = fn(&Model) -> bool;
+
 /// What LAMMPS does wrong in which models, and whether the LAMMPS of 2026 has mended it.
-const FAULTS: [(fn(&Model) -> bool, &str, bool); 3] = [
+const FAULTS: [(HasFault, &str, bool); 3] = [
     (|m| m.damping == Damping::Tsuji, "damping tsuji without its factor √2", true),
     (Model::slides_loosely, "springs of contacts that forget the contact radius when they slide", true),
     (

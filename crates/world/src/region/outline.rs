@@ -160,7 +160,7 @@ fn belt(low: &[Vec3], high: &[Vec3]) -> Vec<Triangle> {
 fn ball(center: Vec3, half: Vec3) -> Vec<Triangle> {
     let ring = |j: usize| -> Vec<Vec3> {
         let (sin, cos) = (PI * j as f64 / POLES as f64).sin_cos();
-        let sin = if j % POLES == 0 { 0.0 } else { sin };
+        let sin = if j.is_multiple_of(POLES) { 0.0 } else { sin };
         let corner = |k: usize| {
             let angle = TAU * k as f64 / AROUND as f64;
             let unit = [sin * angle.cos(), sin * angle.sin(), -cos];
