@@ -31,8 +31,8 @@ pub fn begin(s: &mut Sealer) {
 }
 
 /// After a fix, if it has changed forces.
-pub fn mark(s: &mut Sealer, f: &FixNode, ops: &[Stage]) {
-    if !ops.contains(&Stage::PostForce) {
+pub fn mark(s: &mut Sealer, f: &FixNode, changed: [bool; 2]) {
+    if changed == [false; 2] {
         return;
     }
     let channel = match f.style {
@@ -42,7 +42,7 @@ pub fn mark(s: &mut Sealer, f: &FixNode, ops: &[Stage]) {
     };
     let access = Needs::new().read(F | TORQUE).keep(COLUMNS);
     let op = StepOp::new(format!("ledger of fix {}", f.id), Stage::PostForce, access, move |w, t| {
-        ledger::mark(w, t, channel);
+        ledger::mark(w, t, channel, changed);
         Ok(())
     });
     s.add(vec![op.boxed()], f.span);
@@ -72,7 +72,10 @@ pub fn end(s: &mut Sealer) -> Result<()> {
     Ok(())
 }
 
-/// The stages of some ops.
-pub fn stages(ops: &[Box<dyn Op>]) -> Vec<Stage> {
-    ops.iter().map(|op| op.about().stage).collect()
+/// Whether some ops change forces, and torques, after those of pairs.
+pub fn changes(ops: &[Box<dyn Op>]) -> [bool; 2] {
+    let late = ops.iter().map(|op| op.about()).filter(|about| about.stage == Stage::PostForce);
+    late.fold([false; 2], |[force, torque], about| {
+        [force | about.needs.changes(F), torque | about.needs.changes(TORQUE)]
+    })
 }

@@ -247,10 +247,10 @@ impl Session {
         for (f, _) in all.collect::<Vec<_>>() {
             s.at_fix(f.span, f.level, f.group.bit());
             let ops = f.fix.ops(&mut s)?;
-            let stages = ledger::stages(&ops);
+            let changed = ledger::changes(&ops);
             s.add(ops, f.span);
             if booked {
-                ledger::mark(&mut s, f, &stages);
+                ledger::mark(&mut s, f, changed);
             }
         }
         s.at(span);

@@ -2,7 +2,7 @@
 
 mod grains;
 mod rules;
-pub(crate) mod told;
+mod told;
 
 pub use grains::{DEEP, Grains, NO_BODY};
 pub use rules::{Average, Curvature, Rule, Rules};

@@ -270,6 +270,12 @@ impl Granular {
         [self.normal.push(g, self.normal.radius(g), &mut memory).force, held]
     }
 
+    /// The elastic and cohesive force along the normal, of one contact or of lanes; `history` may move on with it.
+    #[inline(always)]
+    pub(crate) fn push<R: Real>(&self, g: &Geometry<R>, history: &mut [R]) -> R {
+        self.normal.push(g, self.normal.radius(g), &mut history[self.before_normal()..]).force
+    }
+
     /// Whether what the contact takes is not given back.
     pub fn flows(&self) -> bool {
         self.normal.flows()

@@ -306,14 +306,15 @@ impl Loop for FastLoop {
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         self.fast.run(
             &s.grains(),
-            Sums { force: &mut f, torque: &mut torque, heat: None },
+            Sums { force: &mut f, torque: &mut torque, heat: None, deeds: None },
             step,
             false,
             false,
         );
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         let (temperatures, mut heat) = (s.temperatures(), vec![0.0; s.x.len()]);
-        let sums = Sums { force: &mut f, torque: &mut torque, heat: Some((&temperatures, &mut heat)) };
+        let heat = Some((&temperatures[..], &mut heat[..]));
+        let sums = Sums { force: &mut f, torque: &mut torque, heat, deeds: None };
         let virial = self.fast.run(&s.grains(), sums, step, true, true);
         Got { f, torque, heat, contacts: self.fast.contacts(), virial }
     }

@@ -2,11 +2,11 @@
 
 use crate::probe::Probe;
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_base::math::vec3::{Vec3, dot, sub};
+use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
-use perigrain_world::contacts::PairTouch;
+use perigrain_world::contacts::PairDeeds;
 use perigrain_world::{BODY_ENERGY, Constant, Named, World};
 
 /// What does work on particles besides their mutual forces.
@@ -76,26 +76,24 @@ struct Pairs {
 impl Pairs {
     /// At the present velocities.
     fn now(w: &World, step: i64) -> Self {
-        let told = w.parts.pair_touches.iter().flat_map(Named::values).filter(|told| told.step == step);
-        told.fold(Self::default(), |sum, told| sum.plus(Self::of_list(w, &told.list)))
+        let told = w.parts.pair_deeds.iter().flat_map(Named::values).filter(|told| told.step == step);
+        told.fold(Self::default(), |sum, told| sum.plus(Self::of_style(w, told)))
     }
 
-    fn of_list(w: &World, list: &[PairTouch]) -> Self {
+    fn of_style(w: &World, told: &PairDeeds) -> Self {
         let p = &w.particles;
         let chunk = |range: std::ops::Range<usize>| {
-            list[range].iter().fold(Self::default(), |sum, c| {
-                let [i, j] = c.ends.map(|k| k as usize);
-                let v = sub(p.v[i], p.v[j]);
-                let turning = dot(c.torques[0], p.omega[i]) + dot(c.torques[1], p.omega[j]);
+            range.fold(Self::default(), |sum, i| {
                 sum.plus(Self {
-                    damping: -dot(c.damping, v),
-                    across: -dot(c.across, v) - turning,
-                    pressing: -dot(c.pressing, v),
-                    held: c.held,
+                    damping: -dot(told.damping[i], p.v[i]),
+                    across: -dot(told.across[i], p.v[i]) - dot(told.torque[i], p.omega[i]),
+                    pressing: -dot(told.pressing[i], p.v[i]),
+                    held: 0.0,
                 })
             })
         };
-        par::reduce(list.len(), chunk, Self::plus).unwrap_or_default()
+        let sum = par::reduce(p.len().min(told.damping.len()), chunk, Self::plus).unwrap_or_default();
+        Self { held: told.held, ..sum }
     }
 
     fn plus(self, more: Self) -> Self {
@@ -206,7 +204,7 @@ pub fn open(w: &mut World) -> Result<()> {
     }
     w.bonds.counts_losses |= w.memo.contains(*BOOK);
     w.parts.wall_touches.get_or_insert_default();
-    w.parts.pair_touches.get_or_insert_default();
+    w.parts.pair_deeds.get_or_insert_default();
     Ok(())
 }
 
@@ -225,7 +223,7 @@ fn of_bodies(w: &World) -> [f64; 3] {
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
     w.parts.wall_touches = None;
-    w.parts.pair_touches = None;
+    w.parts.pair_deeds = None;
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 
@@ -240,16 +238,8 @@ pub fn begin(w: &mut World, t: &Tick) {
     if !w.bonds.counts_losses {
         w.bonds.counts_losses = true;
     }
-    let n = w.n();
-    for key in FORCES.iter().chain(&TORQUES) {
-        let column = w.columns.vector(**key, n);
-        column.clear();
-        column.resize(n, [0.0; 3]);
-    }
-    remember(w);
-}
-
-fn remember(w: &mut World) {
+    // Of channels that nothing adds to in this step there are none.
+    FORCES.iter().chain(&TORQUES).for_each(|key| w.columns.remove(**key));
     let n = w.n();
     for (key, now) in BEFORE.iter().zip([&w.particles.f, &w.particles.torque]) {
         let column = w.columns.vector(**key, n);
@@ -259,23 +249,32 @@ fn remember(w: &mut World) {
     }
 }
 
-/// After a fix has changed forces.
-pub fn mark(w: &mut World, t: &Tick, channel: Channel) {
+/// After a fix has changed forces, torques or both.
+pub fn mark(w: &mut World, t: &Tick, channel: Channel, changed: [bool; 2]) {
     if t.unchanged {
         return;
     }
     let n = w.n();
     for (keys, k) in [(&FORCES, 0), (&TORQUES, 1)] {
-        let key = *keys[channel as usize];
-        let mut sum = std::mem::take(w.columns.vector(key, n));
         let now = if k == 0 { &w.particles.f } else { &w.particles.torque };
-        let before = w.columns.get_vector(*BEFORE[k]).unwrap_or(&[]);
-        for ((sum, now), before) in sum.iter_mut().zip(now).zip(before) {
-            (0..3).for_each(|d| sum[d] += now[d] - before[d]);
+        // Torques may have no rows.
+        if !changed[k] || now.len() != n {
+            continue;
         }
+        let key = *keys[channel as usize];
+        let known = w.columns.get_vector(key).map(<[Vec3]>::to_vec);
+        let before = w.columns.vector(*BEFORE[k], n);
+        let sum = match known {
+            None => now.iter().zip(&*before).map(|(now, before)| sub(*now, *before)).collect(),
+            Some(mut sum) => {
+                let rows = sum.iter_mut().zip(now.iter().zip(&*before));
+                rows.for_each(|(sum, (now, before))| *sum = add(*sum, sub(*now, *before)));
+                sum
+            }
+        };
+        before.clone_from(now);
         *w.columns.vector(key, n) = sum;
     }
-    remember(w);
 }
 
 /// What forces and masses of a particle are to be multiplied with to be true ones.

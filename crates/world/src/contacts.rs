@@ -197,30 +197,33 @@ pub struct WallTouch {
     pub flows: bool,
 }
 
-/// What the contacts of a pair style did at a step, as the ledger of energy books it.
+/// What the contacts of a pair style did at a step beside the elastic forces of overlaps, as the ledger of energy books it: sums by
+/// particle, since power is force times velocity.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct PairTouches {
+pub struct PairDeeds {
     /// When.
     pub step: i64,
-    /// Each contact.
-    pub list: Vec<PairTouch>,
+    /// Damping along the normals [force].
+    pub damping: Vec<[f64; 3]>,
+    /// What acts across them [force].
+    pub across: Vec<[f64; 3]>,
+    /// Torques.
+    pub torque: Vec<[f64; 3]>,
+    /// The elastic and cohesive forces of laws that flow [force].
+    pub pressing: Vec<[f64; 3]>,
+    /// What overlaps of laws that flow hold [energy].
+    pub held: f64,
 }
 
-/// What two touching particles do to each other beside the elastic force of their overlap.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PairTouch {
-    /// Which particles.
-    pub ends: [u32; 2],
-    /// Damping along the normal, on the first [force].
-    pub damping: [f64; 3],
-    /// What acts across the normal, on the first [force].
-    pub across: [f64; 3],
-    /// Torques on both.
-    pub torques: [[f64; 3]; 2],
-    /// Of a law that flows, its elastic and cohesive force on the first; else zero [force].
-    pub pressing: [f64; 3],
-    /// And what its overlap holds [energy].
-    pub held: f64,
+impl PairDeeds {
+    /// Nothing yet, of `n` particles.
+    pub fn begin(&mut self, n: usize, step: i64) {
+        (self.step, self.held) = (step, 0.0);
+        for sums in [&mut self.damping, &mut self.across, &mut self.torque, &mut self.pressing] {
+            sums.clear();
+            sums.resize(n, [0.0; 3]);
+        }
+    }
 }
 
 /// The last look at how contacts are pressed, and at the step they stand.

@@ -179,7 +179,7 @@ pub struct Parts {
     /// Contacts with each wall at the last step, by the fix's ID; nothing where nobody keeps a ledger of energy.
     pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
     /// The same of the contacts of each pair style.
-    pub pair_touches: Option<Named<contacts::PairTouches>>,
+    pub pair_deeds: Option<Named<contacts::PairDeeds>>,
     /// All energy of a scene of grains as the run began, where nothing does work on it.
     pub budget: Option<f64>,
     /// What walls look like, by the fix's ID.

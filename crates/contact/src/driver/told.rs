@@ -1,37 +1,29 @@
 //! What contacts of grains tell the ledger of energy: what they do beside their elastic forces.
 
 use super::{Grains, Rules, Sweep};
-use crate::{Geometry, Granular, Wrench};
-use perigrain_base::math::vec3::{dot, scale, sub};
-use perigrain_world::contacts::{Contacts, PairTouch};
-
-/// A contact as the ledger books it; `history` is what it remembers after it has acted, `share` the part of the law's force that
-/// counts.
-pub(crate) fn touch(
-    ends: [u32; 2],
-    (law, share): (&Granular, f64),
-    g: &Geometry,
-    history: &[f64],
-    w: &Wrench,
-) -> PairTouch {
-    let [push, held] = law.pressing(g, history).map(|a| share * a);
-    let (central, pressing) = (dot(w.force, g.normal), if law.flows() { push } else { 0.0 });
-    PairTouch {
-        ends,
-        damping: scale(central - push, g.normal),
-        across: sub(w.force, scale(central, g.normal)),
-        torques: [w.torque_i, w.torque_j],
-        pressing: scale(pressing, g.normal),
-        held,
-    }
-}
+use perigrain_base::math::vec3::{add, dot, scale, sub};
+use perigrain_world::contacts::{Contacts, PairDeeds};
 
 impl Sweep {
-    /// Adds the contacts of the last evaluation with what they do; `memory` is that of this evaluation.
-    pub fn tell(&self, grains: &Grains, rules: &Rules, memory: &Contacts, all: &mut Vec<PairTouch>) {
+    /// Adds what the contacts of the last evaluation did; `memory` is that of this evaluation.
+    pub fn tell(&self, grains: &Grains, rules: &Rules, memory: &Contacts, all: &mut PairDeeds) {
         self.each(grains, rules, memory, |c| {
-            let ends = [c.pair.i, c.pair.j];
-            all.push(touch(ends, (c.law, c.share), &c.geometry, c.history, c.wrench));
+            let (i, j, n) = (c.pair.i as usize, c.pair.j as usize, c.geometry.normal);
+            let [push, held] = c.law.pressing(&c.geometry, c.history).map(|a| c.share * a);
+            let central = dot(c.wrench.force, n);
+            let damping = scale(central - push, n);
+            let across = sub(c.wrench.force, scale(central, n));
+            for (sums, force) in [(&mut all.damping, damping), (&mut all.across, across)] {
+                sums[i] = add(sums[i], force);
+                sums[j] = sub(sums[j], force);
+            }
+            all.torque[i] = add(all.torque[i], c.wrench.torque_i);
+            all.torque[j] = add(all.torque[j], c.wrench.torque_j);
+            if c.law.flows() {
+                all.pressing[i] = add(all.pressing[i], scale(push, n));
+                all.pressing[j] = sub(all.pressing[j], scale(push, n));
+                all.held += held;
+            }
         });
     }
 }

@@ -4,10 +4,10 @@ use super::Alike;
 use super::found::Found;
 use super::lists::{FILL, Short, Slab};
 use super::sweep::Cx;
-use crate::driver::told::touch;
-use crate::{Geometry, Granular, Motion, Wrench};
+use crate::{Geometry, Granular, Motion};
 use perigrain_base::math::lanes::{Lanes, load_rows, place, store_rows};
-use perigrain_base::math::vec3::SIX;
+use perigrain_base::math::vec3::{SIX, Vec3, dot, scale, sub};
+use perigrain_base::par;
 use rooms::{Outgoing, Room};
 use sizes::{Sizes, beside_frozen, geometry, reduced, too_deep};
 use std::mem::MaybeUninit;
@@ -45,6 +45,8 @@ pub(super) struct Batch<V, const N: usize> {
     force: Room<Outgoing<N>>,
     /// On i and on j, each about its centre [force × length].
     torque: Room<[Outgoing<N>; 2]>,
+    /// Of the force on i, damping along the normal and what acts across it, where the ledger of energy asks [force].
+    deeds: Room<[Outgoing<N>; 2]>,
 }
 
 impl<V: Lanes<N>, const N: usize> Batch<V, N> {
@@ -79,6 +81,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             mass,
             force: Room::new(),
             torque: Room::new(),
+            deeds: Room::new(),
         }
     }
 
@@ -164,9 +167,6 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             if cx.heat.is_some() {
                 self.add_heat(cx, law, count);
             }
-            if cx.tells {
-                self.tell::<W>(cx, law, count, slab);
-            }
             for group in 0..count / N {
                 for lane in 0..N {
                     self.add(cx, group, lane);
@@ -174,6 +174,12 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             }
             for lane in 0..count % N {
                 self.add(cx, count / N, lane);
+            }
+            if let Some(deeds) = &cx.deeds {
+                self.tell(deeds, count);
+                if law.flows() {
+                    self.tell_flow::<W>(cx, &deeds[2], law, count, slab);
+                }
             }
         }
     }
@@ -253,6 +259,14 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
             self.force.put(group, Outgoing::of(wrench.force));
             self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
+            if cx.deeds.is_some() {
+                // The force of the law once more, from what it remembers now.
+                let (mut now, n) = (history, g.normal);
+                let central = dot(wrench.force, n);
+                let damping = scale(central - law.push(g, &mut now[..memory]), n);
+                let across = sub(wrench.force, scale(central, n));
+                self.deeds.put(group, [Outgoing::of(damping), Outgoing::of(across)]);
+            }
             if !cx.store {
                 return;
             }
@@ -277,6 +291,22 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let [own, other] = self.torque.at(group);
             own.add::<V::Pair>(t, lane, i);
             other.add::<V::Pair>(t, lane, j);
+        }
+    }
+
+    /// Adds what the first contacts did to the sums of the ledger of energy.
+    #[inline(always)]
+    unsafe fn tell(&self, deeds: &[par::Shared<Vec3>; 3], count: usize) {
+        let (damping, across): (*mut f64, *mut f64) = (deeds[0].as_ptr().cast(), deeds[1].as_ptr().cast());
+        for at in 0..count {
+            let (group, lane) = (at / N, at % N);
+            // SAFETY: passed on; all of them have acted.
+            unsafe {
+                let (i, j) = (*self.i.get_unchecked(at), *self.j.get_unchecked(at));
+                let [along, beside] = self.deeds.at(group);
+                along.act::<V::Pair>(damping, lane, i, j);
+                beside.act::<V::Pair>(across, lane, i, j);
+            }
         }
     }
 
@@ -316,24 +346,35 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Lets the first contacts, which must have acted, tell the ledger of energy what they do: in plain numbers and out of line, as
-    /// with heat.
+    /// Adds the elastic forces of a law that flows, and what its contacts hold, of the first ones, which must have acted: in plain
+    /// numbers and out of line, as with heat.
     #[inline(never)]
-    unsafe fn tell<const W: usize>(&self, cx: &Cx, law: &Granular, count: usize, slab: &mut Slab) {
+    unsafe fn tell_flow<const W: usize>(
+        &self,
+        cx: &Cx,
+        pressing: &par::Shared<Vec3>,
+        law: &Granular,
+        count: usize,
+        slab: &mut Slab,
+    ) {
         let none = [0.0; W];
         for at in 0..count {
-            let (group, lane) = (at / N, at % N);
-            // SAFETY: the caller's promise.
-            let (g, force, [own, other]) =
-                unsafe { (self.geometry_of(at), self.force.at(group), self.torque.at(group)) };
-            // SAFETY: each contact has a row of memory of its own, which no other thread touches now.
-            let row = unsafe { std::slice::from_raw_parts(self.past[at], W) };
-            // Where nothing was stored the row may be that of an earlier contact.
-            let lasts = row[W - 1] > cx.now - 0.5;
-            let history = if lasts { &row[..law.memory()] } else { &none[..law.memory()] };
-            let [force, torque_i, torque_j] = [force, own, other].map(|v| v.numbers(lane));
-            let w = Wrench { force, torque_i, torque_j };
-            slab.told.push(touch([self.i[at], self.j[at]], (law, 1.0), &g, history, &w));
+            // SAFETY: the caller's promise: each contact has a row of memory and two grains of its own, which no other thread touches
+            // now.
+            unsafe {
+                let g = self.geometry_of(at);
+                let row = std::slice::from_raw_parts(self.past[at], W);
+                // Where nothing was stored the row may be that of an earlier contact.
+                let lasts = row[W - 1] > cx.now - 0.5;
+                let history = if lasts { &row[..law.memory()] } else { &none[..law.memory()] };
+                let [push, held] = law.pressing(&g, history);
+                slab.held += held;
+                let (i, j) = (self.i[at] as usize, self.j[at] as usize);
+                for d in 0..3 {
+                    (*pressing.as_ptr().add(i))[d] += push * g.normal[d];
+                    (*pressing.as_ptr().add(j))[d] -= push * g.normal[d];
+                }
+            }
         }
     }
 

@@ -7,7 +7,6 @@ use perigrain_base::math::form::InLanes;
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS};
 use perigrain_base::par;
 use perigrain_neigh::slabs::{HERE, Run, Slabs};
-use perigrain_world::contacts::PairTouch;
 use std::sync::{Mutex, PoisonError};
 
 /// Lists are filled up to multiples of the most pairs that are looked at at a time.
@@ -74,15 +73,15 @@ pub struct Slab {
     pub deep: bool,
     /// How many contacts there were in the last evaluation.
     pub touching: usize,
-    /// What each of them did, where the ledger of energy asks.
-    pub told: Vec<PairTouch>,
+    /// What overlaps of laws that flow hold, where the ledger of energy asks [energy].
+    pub held: f64,
 }
 
 impl Slab {
     /// What an evaluation has found so far.
     pub(super) fn found(&mut self, virial: [f64; 6], deep: bool, touching: usize) {
         (self.virial, self.deep, self.touching) = (virial, deep, touching);
-        self.told.clear();
+        self.held = 0.0;
     }
 }
 

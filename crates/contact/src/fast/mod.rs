@@ -32,7 +32,7 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_neigh::list::small;
 use perigrain_neigh::slabs::{Slabs, edges};
-use perigrain_world::contacts::{Contacts, PairTouch};
+use perigrain_world::contacts::Contacts;
 use upkeep::Upkeep;
 
 /// Lists of so many grains keep their room when they are made anew.
@@ -121,6 +121,8 @@ pub struct Sums<'a> {
     pub torque: &'a mut [Vec3],
     /// Temperatures and, to be added to, the heat that flows into each grain [energy/time].
     pub heat: Option<(&'a [f64], &'a mut [f64])>,
+    /// For the ledger of energy: damping along the normals, what acts across them, and the elastic forces of laws that flow.
+    pub deeds: Option<[&'a mut [Vec3]; 3]>,
 }
 
 /// What all grains have in common: nobody looks it up for each of them.
@@ -189,8 +191,6 @@ pub struct Fast {
     due: Vec<usize>,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
-    /// Whether contacts tell what they do, for the ledger of energy: see [`Fast::told`].
-    pub tells: bool,
     /// Of the pairs that were the first to overlap too far, the one of smallest ids, and by which part of its radius.
     pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
@@ -227,7 +227,6 @@ impl Fast {
             width,
             due: vec![],
             book: None,
-            tells: false,
             deep: None,
             spare: vec![],
             spare_per_list: Default::default(),
@@ -427,9 +426,9 @@ impl Fast {
         }
     }
 
-    /// What each contact of the last evaluation did, if they were to tell; in the same order for any number of threads.
-    pub fn told(&self) -> impl Iterator<Item = &PairTouch> {
-        self.lists.iter().flat_map(|list| &list.told)
+    /// What overlaps of laws that flow held in the last evaluation, if contacts were to tell [energy].
+    pub fn held(&self) -> f64 {
+        self.lists.iter().map(|list| list.held).sum()
     }
 
     /// Pairs in long lists and in short ones.

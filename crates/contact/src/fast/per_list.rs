@@ -60,7 +60,13 @@ impl Fast {
         };
         p.done += 1;
         let [force, torque] = wrench;
-        self.sweep(grains, Sums { force, torque, heat: None }, p.step, (p.store, false), Some(k));
+        self.sweep(
+            grains,
+            Sums { force, torque, heat: None, deeds: None },
+            p.step,
+            (p.store, false),
+            Some(k),
+        );
         if self.deep.is_none() && self.lists[k].deep {
             let found = self.find_deep(grains, &self.lists[k..k + 1]);
             p.deep = p.deep.into_iter().chain(found).min_by_key(|(ids, _)| *ids);

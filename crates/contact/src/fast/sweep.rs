@@ -35,8 +35,8 @@ pub(super) struct Cx<'a> {
     pub now: f64,
     pub store: bool,
     pub virial: bool,
-    /// Whether contacts tell what they do.
-    pub tells: bool,
+    /// Where contacts tell what they do: damping, what acts across, and the elastic forces of laws that flow.
+    pub deeds: Option<[par::Shared<'a, Vec3>; 3]>,
     /// Whether some grains are frozen.
     pub frozen: bool,
     /// How far apart surfaces of grains that stick together can be [length].
@@ -89,7 +89,7 @@ impl<'a> Drift<'a> {
 impl Cx<'_> {
     /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in the same order.
     fn joins(&self) -> bool {
-        self.laws.distinct.len() == 1 && !self.virial && !self.tells
+        self.laws.distinct.len() == 1 && !self.virial
     }
 
     /// Where grains are.
@@ -149,7 +149,7 @@ impl Fast {
             now: self.now,
             store,
             virial,
-            tells: self.tells,
+            deeds: sums.deeds.map(|deeds| deeds.map(par::Shared::new)),
             frozen: !self.signed.is_empty(),
             span: self.span,
             drift: drift.as_ref(),

@@ -7,6 +7,7 @@ use super::mdr::Press;
 use super::reach::{reaching, refuse_giants};
 use perigrain_base::diag::Result;
 use perigrain_base::math::periods::Periods;
+use perigrain_base::math::vec3::sub;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
@@ -15,7 +16,7 @@ use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_world::Fields;
-use perigrain_world::contacts::{Contacts, Deep, PairTouch, PairTouches};
+use perigrain_world::contacts::{Contacts, Deep, PairDeeds};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
@@ -156,18 +157,26 @@ impl Force {
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let mut heat = Heating::take(w, &self.rules);
+        let mut deeds = begin_deeds(w, t, self.key);
+        let before = deeds.as_ref().map(|_| torque.to_vec());
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
         let grains = Grains { mass, v, omega, ..grains(w, period, &[], &self.frozen)? };
         if anew {
             fast.weigh(&grains);
         }
         let heating = heat.as_mut().map(|heat| (&heat.temperature[..], &mut heat.flow[..]));
-        let sums = Sums { force: &mut f, torque: &mut torque, heat: heating };
-        fast.tells = w.parts.pair_touches.is_some();
+        let told =
+            deeds.as_mut().map(|all| [&mut all.damping[..], &mut all.across[..], &mut all.pressing[..]]);
+        let sums = Sums { force: &mut f, torque: &mut torque, heat: heating, deeds: told };
         let virial = fast.run(&grains, sums, step, store, t.virial);
         let deep = fast.deep;
         (w.particles.f, w.particles.torque) = (f, torque);
-        tell(w, t, self.key, |all| all.extend(fast.told()));
+        if let Some((mut all, before)) = deeds.zip(before) {
+            let rows = all.torque.iter_mut().zip(&*w.particles.torque).zip(&before);
+            rows.for_each(|((own, now), before)| *own = sub(*now, *before));
+            all.held = fast.held();
+            keep_deeds(w, self.key, all);
+        }
         if let Some(heat) = heat {
             heat.give(w);
         }
@@ -190,7 +199,7 @@ impl Force {
         (period, store, anew): (Periods, bool, bool),
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
-        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_touches.is_none();
+        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_deeds.is_none();
         let alone = self.lent.is_none();
         let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_list());
         let Some(fast) = fast else { return Ok(false) };
@@ -254,6 +263,7 @@ impl Force {
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let manner =
             Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
+        let deeds = begin_deeds(w, t, self.key);
         let (plain, press) = (&mut self.plain, &mut self.press);
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
         let grains = Grains { mass, v, omega, ..grains(w, period, &plain.body, &self.frozen)? };
@@ -263,10 +273,10 @@ impl Force {
             press.act(&grains, &plain.sweep, &mut memory, manner);
         }
         plain.sweep.act(&grains, &self.rules, &mut memory, step);
-        let mut told = vec![];
-        if w.parts.pair_touches.is_some() {
-            plain.sweep.tell(&grains, &self.rules, &memory, &mut told);
-        }
+        let told = deeds.map(|mut all| {
+            plain.sweep.tell(&grains, &self.rules, &memory, &mut all);
+            all
+        });
         // Plastic grains are made for deep contacts.
         let deep = if press.is_none() { plain.sweep.deep(&grains) } else { None };
         let kept = match press {
@@ -282,7 +292,9 @@ impl Force {
             heat.give(w);
         }
         report(w, t, deep);
-        tell(w, t, self.key, |all| all.append(&mut told));
+        if let Some(all) = told {
+            keep_deeds(w, self.key, all);
+        }
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             let part = plain.sweep.virial(&w.particles.x, &period);
@@ -430,17 +442,24 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
     })
 }
 
-/// Tells the ledger of energy, where there is one, what contacts did.
-fn tell(w: &mut World, t: &Tick, key: Key<Contacts>, add: impl FnOnce(&mut Vec<PairTouch>)) {
+/// Room for what contacts tell the ledger of energy, where there is one.
+fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>) -> Option<PairDeeds> {
     // To open what nobody keeps is to write.
-    if w.parts.pair_touches.is_none() {
-        return;
+    if w.parts.pair_deeds.is_none() {
+        return None;
     }
-    let Some(all) = &mut w.parts.pair_touches else { return };
-    let told = all.get_or(key.of(), PairTouches::default);
-    told.step = t.step;
-    told.list.clear();
-    add(&mut told.list);
+    let n = w.n();
+    let all = w.parts.pair_deeds.as_mut()?;
+    let mut own = std::mem::take(all.get_or(key.of(), PairDeeds::default));
+    own.begin(n, t.step);
+    Some(own)
+}
+
+/// Gives the ledger what they told.
+fn keep_deeds(w: &mut World, key: Key<Contacts>, own: PairDeeds) {
+    if let Some(all) = &mut w.parts.pair_deeds {
+        all.insert(key.of(), own);
+    }
 }
 
 /// Keeps the first grains that were seen too deep in each other.
