@@ -3,7 +3,7 @@
 use super::node::NodeId;
 use perigrain_base::diag::{FileId, Span};
 use perigrain_styles::{Use, UseKind};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The three kinds of node that keep LAMMPS' imperative order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,11 +43,22 @@ impl Node {
         Self { role, provides, text, span, uses: vec![], settles: vec![], turn: 0, gone: false }
     }
 
-    /// Whether forces may follow the variables it names: all that declares or acts without a name of its own, and what is
-    /// between variables and forces.
+    /// Whether forces may follow the variables it names: all that declares without a name of its own but for tables and dumps, and what
+    /// is between variables and forces. What acts has taken a variable's value when it acted, as `if` and `print` have.
     fn leads_to_forces(&self) -> bool {
-        let between = [UseKind::Fix, UseKind::Variable, UseKind::Region, UseKind::Group];
-        self.provides.as_ref().is_none_or(|p| between.contains(&p.kind))
+        let between = [UseKind::Fix, UseKind::Region, UseKind::Group];
+        match &self.provides {
+            Some(name) => between.contains(&name.kind),
+            None => {
+                let command = self.text.split_whitespace().next().unwrap_or_default();
+                self.role == Role::Declare && !["thermo", "thermo_style", "dump_modify"].contains(&command)
+            }
+        }
+    }
+
+    /// The variable it defines.
+    fn variable(&self) -> Option<&str> {
+        self.provides.as_ref().filter(|p| p.kind == UseKind::Variable).map(|p| p.name.as_str())
     }
 
     /// The positive number said for a fact.
@@ -62,6 +73,18 @@ type Place = (FileId, u32, u32);
 
 fn place(span: Span) -> Place {
     (span.file, span.start, span.end)
+}
+
+/// Counts a name once more, or once less.
+fn tally(counts: &mut BTreeMap<String, usize>, name: &str, more: bool) {
+    if more {
+        *counts.entry(name.to_owned()).or_default() += 1;
+    } else if let Some(count) = counts.get_mut(name) {
+        *count -= 1;
+        if *count == 0 {
+            counts.remove(name);
+        }
+    }
 }
 
 /// The smallest and the largest of some positive numbers.
@@ -85,6 +108,8 @@ pub struct Record {
     providers: BTreeMap<Use, Vec<usize>>,
     /// How many nodes that lead to forces name a variable.
     followed: BTreeMap<String, usize>,
+    /// In how many definitions of other variables a variable is named.
+    within: BTreeMap<String, BTreeMap<String, usize>>,
     /// What has been settled, with the numbers said.
     settled: BTreeMap<&'static str, Option<Extremes>>,
     /// The latest turn that may have changed particles.
@@ -167,17 +192,18 @@ impl Record {
     /// Counts the variables that a node names, or no longer.
     fn count(&mut self, k: usize, more: bool) {
         let node = &self.nodes[k];
-        if node.gone || !node.leads_to_forces() {
+        if node.gone {
             return;
         }
         for u in node.uses.iter().filter(|u| u.kind == UseKind::Variable) {
-            if more {
-                *self.followed.entry(u.name.clone()).or_default() += 1;
-            } else if let Some(count) = self.followed.get_mut(&u.name) {
-                *count -= 1;
-                if *count == 0 {
-                    self.followed.remove(&u.name);
+            if let Some(other) = node.variable() {
+                let others = self.within.entry(u.name.clone()).or_default();
+                tally(others, other, more);
+                if others.is_empty() {
+                    self.within.remove(&u.name);
                 }
+            } else if node.leads_to_forces() {
+                tally(&mut self.followed, &u.name, more);
             }
         }
     }
@@ -234,7 +260,15 @@ impl Record {
 
     /// Whether some fix or the pair style depends on this variable, directly or through variables, regions and groups.
     pub fn forces_use_variable(&self, name: &str) -> bool {
-        self.followed.contains_key(name)
+        let (mut seen, mut left) = (BTreeSet::from([name]), vec![name]);
+        while let Some(name) = left.pop() {
+            if self.followed.contains_key(name) {
+                return true;
+            }
+            let others = self.within.get(name).into_iter().flat_map(BTreeMap::keys);
+            left.extend(others.map(String::as_str).filter(|other| seen.insert(*other)));
+        }
+        false
     }
 
     /// Whether some act has settled a fact.
@@ -322,6 +356,28 @@ mod tests {
         }
         assert!(r.forces_use_variable("a") && r.forces_use_variable("b"));
         assert_eq!(r.nodes().len(), 1);
+    }
+
+    #[test]
+    fn variables_lead_to_forces_through_others_that_do() {
+        let mut r = Record::default();
+        let variable = |id: &str| name(UseKind::Variable, id);
+        r.add(line(0, Some(variable("force")), "variable force", &[variable("share")]), 1);
+        r.add(line(10, Some(variable("share")), "variable share", &[variable("part")]), 1);
+        r.add(
+            line(20, Some(variable("shown")), "variable shown", &[variable("first"), variable("shown")]),
+            1,
+        );
+        let mut asks = line(30, None, "if", &[variable("shown")]);
+        asks.role = Role::Act;
+        r.add(asks, 1);
+        r.add(line(35, None, "thermo_style", &[variable("shown")]), 1);
+        assert!(["force", "share", "part", "shown", "first"].iter().all(|v| !r.forces_use_variable(v)));
+        r.add(line(40, Some(name(UseKind::Fix, "f")), "fix f", &[variable("force")]), 1);
+        assert!(["force", "share", "part"].iter().all(|v| r.forces_use_variable(v)));
+        assert!(["shown", "first"].iter().all(|v| !r.forces_use_variable(v)));
+        r.delete(&name(UseKind::Fix, "f"));
+        assert!(!r.forces_use_variable("part"));
     }
 
     #[test]
