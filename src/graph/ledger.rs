@@ -2,7 +2,7 @@
 
 use super::node::FixNode;
 use super::seal::Sealer;
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Result, Span};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::SealCx;
 use perigrain_styles::ledger::{self, Channel};
@@ -30,22 +30,58 @@ pub fn begin(s: &mut Sealer) {
     s.add(vec![op.boxed()], span);
 }
 
-/// After a fix, if it has changed forces.
-pub fn mark(s: &mut Sealer, f: &FixNode, changed: [bool; 2]) {
-    if changed == [false; 2] {
-        return;
+/// Fixes of one channel one behind the other, whose forces are told apart from others' together.
+#[derive(Default)]
+pub struct Marks {
+    waiting: Option<Mark>,
+}
+
+struct Mark {
+    channel: Channel,
+    /// Whether they change forces, and torques.
+    changed: [bool; 2],
+    ids: Vec<String>,
+    span: Span,
+}
+
+impl Marks {
+    /// Before the ops of a fix: those of another channel that wait get theirs.
+    pub fn before(&mut self, s: &mut Sealer, f: &FixNode, changed: [bool; 2]) {
+        if changed != [false; 2] && self.waiting.as_ref().is_some_and(|m| m.channel != channel(f)) {
+            self.set(s);
+        }
     }
-    let channel = match f.style {
+
+    /// After a fix, if it changes forces.
+    pub fn after(&mut self, f: &FixNode, changed: [bool; 2]) {
+        if changed == [false; 2] {
+            return;
+        }
+        let none = || Mark { channel: channel(f), changed: [false; 2], ids: vec![], span: f.span };
+        let mark = self.waiting.get_or_insert_with(none);
+        (0..2).for_each(|k| mark.changed[k] |= changed[k]);
+        mark.ids.push(f.id.clone());
+    }
+
+    /// Puts what waits into the plan.
+    pub fn set(&mut self, s: &mut Sealer) {
+        let Some(Mark { channel, changed, ids, span }) = self.waiting.take() else { return };
+        let access = Needs::new().read(F | TORQUE).keep(COLUMNS);
+        let name = format!("ledger of fix {}", ids.join(", "));
+        let op = StepOp::new(name, Stage::PostForce, access, move |w, t| {
+            ledger::mark(w, t, channel, changed);
+            Ok(())
+        });
+        s.add(vec![op.boxed()], span);
+    }
+}
+
+fn channel(f: &FixNode) -> Channel {
+    match f.style {
         "gravity" => Channel::Gravity,
         style if style.starts_with("wall/") => Channel::Walls,
         _ => Channel::Imposed,
-    };
-    let access = Needs::new().read(F | TORQUE).keep(COLUMNS);
-    let op = StepOp::new(format!("ledger of fix {}", f.id), Stage::PostForce, access, move |w, t| {
-        ledger::mark(w, t, channel, changed);
-        Ok(())
-    });
-    s.add(vec![op.boxed()], f.span);
+    }
 }
 
 /// At the end of a step.
@@ -55,20 +91,28 @@ pub fn mark(s: &mut Sealer, f: &FixNode, changed: [bool; 2]) {
 pub fn end(s: &mut Sealer) -> Result<()> {
     let equations = |f: &&FixNode| ["nve", "nve/sphere", "nve/bpm/sphere"].contains(&f.style);
     let free = s.graph().fixes.iter().filter(equations).fold(0, |bits, f| bits | f.group.bit());
-    let mut probes = s.probes()?;
-    s.ask_energy(&When::First);
-    s.ask_atom_energy(&When::First);
-    let access = Needs::new()
-        .read(F | TORQUE | TAG | MOLECULE | BOX | BONDS | LISTS | TRAVEL | FACTS | CONTACTS | TALLY | X0)
-        .read(
-            X | V | OMEGA | RADIUS | MASS | KIND | CONTACTS | MASK | COLUMNS | FAMILIES | VOLUME | TYPE_MASS,
-        )
+    let every = Needs::new()
+        .read(V | OMEGA | F | TORQUE | RADIUS | MASS | TYPE_MASS | VOLUME | KIND | MASK)
+        .read(COLUMNS | FAMILIES | BONDS | FACTS)
         .keep(MEMO);
-    let op = StepOp::new("ledger", Stage::FinalIntegrate, access, move |w, t| {
-        ledger::account(w, t, &mut probes, free)
+    let op = StepOp::new("ledger", Stage::FinalIntegrate, every, move |w, t| {
+        ledger::account(w, t, free);
+        Ok(())
     });
     let span = s.span();
     s.add(vec![op.in_setup(true).boxed()], span);
+    let mut probes = s.probes()?;
+    let ends = When::First.or(When::Last);
+    s.ask_energy(&ends);
+    s.ask_atom_energy(&ends);
+    let all = Needs::new()
+        .read(X | X0 | V | OMEGA | RADIUS | MASS | TYPE_MASS | VOLUME | KIND | MASK | TAG | MOLECULE)
+        .read(COLUMNS | FAMILIES | BONDS | CONTACTS | TALLY | LISTS | BOX | TRAVEL | FACTS)
+        .keep(MEMO);
+    let op = StepOp::new("ledger of the run", Stage::FinalIntegrate, all, move |w, t| {
+        ledger::balance(w, t, &mut probes)
+    });
+    s.add(vec![op.when(ends).in_setup(true).boxed()], span);
     Ok(())
 }
 

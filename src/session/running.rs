@@ -244,15 +244,16 @@ impl Session {
         }
         crate::graph::dynamic::seal(&mut s)?;
         let all = s.facts().filter(|(_, facts)| !minimizing || facts.minimizing == Minimizing::Acts);
+        let mut marks = ledger::Marks::default();
         for (f, _) in all.collect::<Vec<_>>() {
             s.at_fix(f.span, f.level, f.group.bit());
             let ops = f.fix.ops(&mut s)?;
-            let changed = ledger::changes(&ops);
+            let changed = if booked { ledger::changes(&ops) } else { [false; 2] };
+            marks.before(&mut s, f, changed);
             s.add(ops, f.span);
-            if booked {
-                ledger::mark(&mut s, f, changed);
-            }
+            marks.after(f, changed);
         }
+        marks.set(&mut s);
         s.at(span);
         if booked {
             ledger::end(&mut s)?;

@@ -6,6 +6,7 @@ mod bonds;
 mod energy_of_contacts;
 mod energy_of_solids;
 mod interrupts;
+mod ledger;
 mod meshes;
 mod movers;
 mod pages;

@@ -31,7 +31,7 @@ impl Style for DtGuard {
                    What is put out belongs to good blocks only. A run makes its number of steps, so that it covers less time \
                    when steps became shorter (`fix halt` with the variable `time` ends at a time). The tolerance must leave room \
                    for the errors of dashpots, friction and breaking bonds, which are of first order in the step: some per \
-                   cent. The ledger costs a second evaluation of contacts in each step, a block a copy of the scene.",
+                   cent. A block costs a copy of the scene.",
             example: "fix g all dt/guard 20 0.05 shrink 0.5 recover 10",
         }
     }

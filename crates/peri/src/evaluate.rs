@@ -124,6 +124,8 @@ impl Families {
             damaged: vec![false; n],
             near: NearPairs::default(),
             released: 0.0,
+            trailing: 0.0,
+            late: 0.0,
             heat: 0.0,
             relaxing: None,
             counts_losses: false,
@@ -277,6 +279,7 @@ impl Families {
         mut tallied: Option<&mut PeriTally>,
     ) {
         self.welcome(view);
+        self.late = 0.0;
         let cell = &self.cell(view);
         if self.before != Edges::from(periods(&view.bounds)) {
             // Images have come nearer to each other.

@@ -8,7 +8,9 @@ use crate::lanes::isa::Isa;
 use crate::law::freed::Freed;
 
 impl Families {
-    /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after.
+    /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after. The force of a broken bond
+    /// has been computed and acts in the first half of the next step still: it takes what the bond would have gained in that time, half
+    /// of what it has gained in the last step, to second order.
     pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
         if !self.counts_losses {
             return self.break_bonds::<K>(view, cell);
@@ -20,11 +22,31 @@ impl Families {
         if self.scratch.ends.is_empty() {
             return;
         }
-        let after = self.living_energy::<K>(view, cell);
-        self.exchange(&mut alive, &mut listed, &mut freed);
-        let before = self.living_energy::<K>(view, cell);
-        self.exchange(&mut alive, &mut listed, &mut freed);
-        self.released += before - after;
+        let mut fall = |bonds: &mut Self| {
+            let after = bonds.living_energy::<K>(view, cell);
+            bonds.exchange(&mut alive, &mut listed, &mut freed);
+            let before = bonds.living_energy::<K>(view, cell);
+            bonds.exchange(&mut alive, &mut listed, &mut freed);
+            before - after
+        };
+        self.swap_places();
+        let earlier = fall(self);
+        self.swap_places();
+        let now = fall(self);
+        let trailing = 0.5 * (now - earlier);
+        self.released += now;
+        self.trailing += trailing;
+        self.late = now + trailing;
+    }
+
+    /// Puts the places of the last step that advanced in the place of the present ones, and back.
+    fn swap_places(&mut self) {
+        self.lattices.iter_mut().for_each(|body| body.u.swap(0, 1));
+        let list = &mut self.list;
+        list.record
+            .iter_mut()
+            .zip(&mut list.last)
+            .for_each(|(record, last)| std::mem::swap(&mut record.u, last));
     }
 
     /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the

@@ -37,9 +37,10 @@ static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 /// How many powers the ledger follows.
 const POWERS: usize = 7;
 /// How many numbers the book has.
-const NUMBERS: usize = 2 * POWERS + 16;
-/// How many those of restart files before contacts of particles told what they do.
-const FORMER_NUMBERS: usize = NUMBERS - 4;
+const NUMBERS: usize = 2 * POWERS + 17;
+/// How many those of older restart files: before a ledger knew what was missing at the end of a run, and before contacts of particles
+/// told what they do.
+const FORMER_NUMBERS: [usize; 2] = [NUMBERS - 1, NUMBERS - 5];
 
 /// The channels' sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,7 +52,7 @@ struct Book {
     work: [f64; POWERS],
     /// Kinetic energy of driven particles at the last step, and what has come in besides forces.
     driven: [f64; 2],
-    /// Residual less energies, at the last opening.
+    /// What the residual is to be, less what the sums say, when the last run began.
     base: f64,
     /// What flow has taken so far, and what laws that flow held at the last opening less what had gone into them.
     flow: [f64; 2],
@@ -59,6 +60,8 @@ struct Book {
     walls: Walls,
     /// What contacts of particles do.
     pairs: Pairs,
+    /// The residual at the end of the last run, from which the next one goes on.
+    left: f64,
 }
 
 /// What contacts of particles with each other do at a step: the forces that acted, at the velocities of the step's end. Their
@@ -83,14 +86,13 @@ impl Pairs {
     fn of_style(w: &World, told: &PairDeeds) -> Self {
         let p = &w.particles;
         let chunk = |range: std::ops::Range<usize>| {
-            range.fold(Self::default(), |sum, i| {
-                sum.plus(Self {
-                    damping: -dot(told.damping[i], p.v[i]),
-                    across: -dot(told.across[i], p.v[i]) - dot(told.torque[i], p.omega[i]),
-                    pressing: -dot(told.pressing[i], p.v[i]),
-                    held: 0.0,
-                })
-            })
+            let mut sum = Self::default();
+            for i in range {
+                sum.damping -= dot(told.damping[i], p.v[i]);
+                sum.across -= dot(told.across[i], p.v[i]) + dot(told.torque[i], p.omega[i]);
+                sum.pressing -= told.pressing.get(i).map_or(0.0, |f| dot(*f, p.v[i]));
+            }
+            sum
         };
         let sum = par::reduce(p.len().min(told.damping.len()), chunk, Self::plus).unwrap_or_default();
         Self { held: told.held, ..sum }
@@ -162,7 +164,7 @@ impl Walls {
 
 impl Book {
     fn read(w: &World) -> Option<Self> {
-        let m = w.memo.get(*BOOK).filter(|m| [NUMBERS, FORMER_NUMBERS].contains(&m.len()))?;
+        let m = w.memo.get(*BOOK).filter(|m| m.len() == NUMBERS || FORMER_NUMBERS.contains(&m.len()))?;
         let powers = |k: usize| std::array::from_fn(|i| m[k + i]);
         let rest = &m[2 * POWERS..];
         Some(Self {
@@ -173,6 +175,7 @@ impl Book {
             flow: [rest[3], rest[4]],
             walls: Walls::of(std::array::from_fn(|i| rest[5 + i])),
             pairs: Pairs::of(std::array::from_fn(|i| rest.get(12 + i).copied().unwrap_or(0.0))),
+            left: rest.get(16).copied().unwrap_or(0.0),
         })
     }
 
@@ -183,6 +186,7 @@ impl Book {
         m.extend(self.flow);
         m.extend(self.walls.numbers());
         m.extend(self.pairs.numbers());
+        m.push(self.left);
         w.memo.insert(*BOOK, m);
     }
 }
@@ -262,16 +266,15 @@ pub fn mark(w: &mut World, t: &Tick, channel: Channel, changed: [bool; 2]) {
             continue;
         }
         let key = *keys[channel as usize];
-        let known = w.columns.get_vector(key).map(<[Vec3]>::to_vec);
+        let known = w.columns.get_vector(key).is_some();
+        let mut sum = if known { std::mem::take(w.columns.vector(key, n)) } else { Vec::with_capacity(n) };
         let before = w.columns.vector(*BEFORE[k], n);
-        let sum = match known {
-            None => now.iter().zip(&*before).map(|(now, before)| sub(*now, *before)).collect(),
-            Some(mut sum) => {
-                let rows = sum.iter_mut().zip(now.iter().zip(&*before));
-                rows.for_each(|(sum, (now, before))| *sum = add(*sum, sub(*now, *before)));
-                sum
-            }
-        };
+        let changes = now.iter().zip(&*before).map(|(now, before)| sub(*now, *before));
+        if known {
+            sum.iter_mut().zip(changes).for_each(|(sum, change)| *sum = add(*sum, change));
+        } else {
+            sum.extend(changes);
+        }
         before.clone_from(now);
         *w.columns.vector(key, n) = sum;
     }
@@ -285,21 +288,28 @@ fn scale(w: &World, i: usize) -> f64 {
     if dense { w.volumes()[i] } else { 1.0 }
 }
 
+/// Twice the kinetic energies of a particle, straight and turning [mass velocity²].
+fn twice_kinetic(w: &World, masses: &super::matter::Masses, i: usize) -> [f64; 2] {
+    let p = &w.particles;
+    let m = scale(w, i) * masses.get(i);
+    let inertia = match p.omega.get(i) {
+        Some(o) => 0.4 * m * p.radius[i] * p.radius[i] * dot(*o, *o),
+        None => 0.0,
+    };
+    [m * dot(p.v[i], p.v[i]), inertia]
+}
+
 /// The kinetic energies of a scene [energy].
-fn kinetic(w: &World, who: impl Fn(usize) -> bool + Sync) -> [f64; 2] {
-    let (p, masses) = (&w.particles, super::matter::Masses::of(w));
+fn kinetic(w: &World) -> [f64; 2] {
+    let masses = super::matter::Masses::of(w);
     let half = 0.5 * w.settings.units.constants().mvv2e;
     let chunk = |range: std::ops::Range<usize>| {
-        range.filter(|&i| who(i)).fold([0.0; 2], |[straight, turning], i| {
-            let m = scale(w, i) * masses.get(i);
-            let inertia = match p.omega.get(i) {
-                Some(o) => 0.4 * m * p.radius[i] * p.radius[i] * dot(*o, *o),
-                None => 0.0,
-            };
-            [straight + m * dot(p.v[i], p.v[i]), turning + inertia]
+        range.fold([0.0; 2], |[straight, turning], i| {
+            let [along, around] = twice_kinetic(w, &masses, i);
+            [straight + along, turning + around]
         })
     };
-    par::reduce(p.len(), chunk, |a, b| [a[0] + b[0], a[1] + b[1]]).unwrap_or_default().map(|e| half * e)
+    par::reduce(w.n(), chunk, |a, b| [a[0] + b[0], a[1] + b[1]]).unwrap_or_default().map(|e| half * e)
 }
 
 /// What contacts of all pair styles hold.
@@ -312,26 +322,63 @@ fn held(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<[f64; 2]> {
     Ok(sum)
 }
 
+/// What forces do at a step, and how driven particles move.
+#[derive(Clone, Copy, Debug, Default)]
+struct Powers {
+    /// Of the forces of each channel.
+    channels: [f64; 3],
+    /// Of all forces on driven particles.
+    driven: f64,
+    /// Twice the kinetic energies of driven particles, straight and turning.
+    moving: [f64; 2],
+}
+
+impl Powers {
+    /// At the present velocities; `free` are the bits of groups that equations of motion move.
+    fn now(w: &World, free: u32) -> Self {
+        let (p, masses) = (&w.particles, super::matter::Masses::of(w));
+        let columns = |keys: &[Constant<Vec<Vec3>>; 3]| {
+            [0, 1, 2].map(|k| w.columns.get_vector(*keys[k]).filter(|column| column.len() == p.len()))
+        };
+        let (forces, torques) = (columns(&FORCES), columns(&TORQUES));
+        let turns =
+            |torque: Option<&Vec3>, i: usize| torque.zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
+        let chunk = |range: std::ops::Range<usize>| {
+            let mut sum = Self::default();
+            for k in 0..3 {
+                let Some(force) = forces[k] else { continue };
+                let torque = torques[k];
+                sum.channels[k] = range.clone().fold(0.0, |sum, i| {
+                    sum + (scale(w, i) * dot(force[i], p.v[i]) + turns(torque.map(|t| &t[i]), i))
+                });
+            }
+            for i in range.filter(|i| p.mask[*i] & free == 0) {
+                sum.driven += scale(w, i) * dot(p.f[i], p.v[i]) + turns(p.torque.get(i), i);
+                let [straight, turning] = twice_kinetic(w, &masses, i);
+                sum.moving = [sum.moving[0] + straight, sum.moving[1] + turning];
+            }
+            sum
+        };
+        par::reduce(p.len(), chunk, Self::plus).unwrap_or_default()
+    }
+
+    fn plus(self, more: Self) -> Self {
+        Self {
+            channels: std::array::from_fn(|k| self.channels[k] + more.channels[k]),
+            driven: self.driven + more.driven,
+            moving: [self.moving[0] + more.moving[0], self.moving[1] + more.moving[1]],
+        }
+    }
+}
+
 /// At the end of a step: work by the trapezoidal rule over the powers of two steps. `free` are the bits of groups that
 /// equations of motion move; all others are driven. The first step opens the book, as does every step before which a
 /// deck has changed the scene.
-///
-/// # Errors
-/// What is missing in the scene.
-pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32) -> Result<()> {
-    let p = &w.particles;
-    let power = |k: usize| {
-        let force = w.columns.get_vector(*FORCES[k]).unwrap_or(&[]);
-        let torque = w.columns.get_vector(*TORQUES[k]).unwrap_or(&[]);
-        let turns = |i: usize| torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
-        par::sum(p.len().min(force.len()), |i| scale(w, i) * dot(force[i], p.v[i]) + turns(i))
-    };
-    let held = |i: usize| p.mask[i] & free == 0;
-    let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
-    let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
+pub fn account(w: &mut World, t: &Tick, free: u32) {
+    let powers = Powers::now(w, free);
     let [own, spin, weight] = of_bodies(w);
     // Rigid bodies are driven: what moves them besides forces is nothing, whatever their masses are.
-    let driven = par::sum(p.len(), forces) + weight;
+    let driven = powers.driven + weight;
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();
     // Where nothing has changed since the last run contacts have nothing new to tell.
@@ -342,21 +389,17 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let pressing = pairs.pressing + walls.pressing;
     let damping = pairs.damping + walls.damping + w.bonds.power.iter().sum::<f64>();
     let across = pairs.across + walls.across;
+    let [by_walls, by_gravity, imposed] = powers.channels;
     // What contacts with walls take they hold or turn into heat: work is what walls do by moving.
-    let now = [power(0) - walls.taken, power(1) + weight, power(2), damping, across, driven, pressing];
-    let bodies = 0.5 * w.settings.units.constants().mvv2e * (own + spin);
-    let moving = kinetic(w, held).iter().sum::<f64>() + bodies;
+    let now = [by_walls - walls.taken, by_gravity + weight, imposed, damping, across, driven, pressing];
+    let half = 0.5 * w.settings.units.constants().mvv2e;
+    let moving = powers.moving.map(|e| half * e).iter().sum::<f64>() + half * (own + spin);
     let springs = pairs.held + walls.held;
     if t.setup || known.is_none() {
         (book.power, book.driven[0]) = (now, moving);
-        book.base = 0.0;
         book.flow[1] = book.flow[0] + springs - book.work[6];
         book.write(w);
-        if w.tally.step == Some(t.step) {
-            book.base = -sheet(w, probes)?.residual();
-            book.write(w);
-        }
-        return Ok(());
+        return;
     }
     let half = 0.5 * t.dt;
     let done: [f64; POWERS] = std::array::from_fn(|k| half * (book.power[k] + now[k]));
@@ -366,6 +409,22 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     // What moves driven particles against the forces on them.
     book.driven[1] += moving - book.driven[0] - done[5];
     (book.power, book.driven[0]) = (now, moving);
+    book.write(w);
+}
+
+/// Where a run begins and ends: the residual at the end of the last one is what the next begins with, for what a deck has changed
+/// in between is nothing that is missing.
+///
+/// # Errors
+/// What is missing in the scene.
+pub fn balance(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>]) -> Result<()> {
+    let Some(mut book) = Book::read(w).filter(|_| w.tally.step == Some(t.step)) else { return Ok(()) };
+    if t.setup {
+        let now = sheet(w, probes)?.residual();
+        book.base += book.left - now;
+    } else {
+        book.left = sheet(w, probes)?.residual();
+    }
     book.write(w);
     Ok(())
 }
@@ -413,7 +472,7 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
         return fail(Code::WRONG_ORDER, None, text);
     }
     let book = Book::read(w).unwrap_or_default();
-    let [straight, turning] = kinetic(w, |_| true);
+    let [straight, turning] = kinetic(w);
     let [own, spin, _] = of_bodies(w).map(|e| 0.5 * w.settings.units.constants().mvv2e * e);
     let mut strain = vec![0.0; w.types];
     for (i, energy) in w.tally.atom.iter().enumerate().take(w.n()) {
@@ -421,7 +480,8 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
     }
     let contacts = held(w, probes)?;
     let bonds = strain.iter().sum::<f64>() + w.tally.bond;
-    let released = w.bonds.released + w.families.as_ref().map_or(0.0, |f| f.released);
+    // Solids break after their energies have been tallied: what broke in this very step is strain still.
+    let released = w.bonds.released + w.families.as_ref().map_or(0.0, |f| f.released + f.trailing - f.late);
     let [walls, gravity, imposed, damping, across, ..] = book.work;
     let [normal, springs] = [0, 1].map(|k| contacts[k] + book.walls.stored[k]);
     let channels = [

@@ -209,20 +209,23 @@ pub struct PairDeeds {
     pub across: Vec<[f64; 3]>,
     /// Torques.
     pub torque: Vec<[f64; 3]>,
-    /// The elastic and cohesive forces of laws that flow [force].
+    /// The elastic and cohesive forces of laws that flow; empty where none does [force].
     pub pressing: Vec<[f64; 3]>,
     /// What overlaps of laws that flow hold [energy].
     pub held: f64,
 }
 
 impl PairDeeds {
-    /// Nothing yet, of `n` particles.
-    pub fn begin(&mut self, n: usize, step: i64) {
+    /// Nothing yet, of `n` particles; whether a law `flows`.
+    pub fn begin(&mut self, n: usize, step: i64, flows: bool) {
         (self.step, self.held) = (step, 0.0);
         for sums in [&mut self.damping, &mut self.across, &mut self.torque, &mut self.pressing] {
             sums.clear();
+        }
+        for sums in [&mut self.damping, &mut self.across, &mut self.torque] {
             sums.resize(n, [0.0; 3]);
         }
+        self.pressing.resize(if flows { n } else { 0 }, [0.0; 3]);
     }
 }
 

@@ -89,7 +89,9 @@ impl<'a> Drift<'a> {
 impl Cx<'_> {
     /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in the same order.
     fn joins(&self) -> bool {
-        self.laws.distinct.len() == 1 && !self.virial
+        // What contacts that flow hold is a sum by list.
+        let by_list = self.virial || (self.deeds.is_some() && self.laws.distinct.iter().any(Granular::flows));
+        self.laws.distinct.len() == 1 && !by_list
     }
 
     /// Where grains are.

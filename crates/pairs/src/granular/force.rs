@@ -157,7 +157,7 @@ impl Force {
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let mut heat = Heating::take(w, &self.rules);
-        let mut deeds = begin_deeds(w, t, self.key);
+        let mut deeds = begin_deeds(w, t, self.key, &self.rules);
         let before = deeds.as_ref().map(|_| torque.to_vec());
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
         let grains = Grains { mass, v, omega, ..grains(w, period, &[], &self.frozen)? };
@@ -263,7 +263,7 @@ impl Force {
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let manner =
             Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
-        let deeds = begin_deeds(w, t, self.key);
+        let deeds = begin_deeds(w, t, self.key, &self.rules);
         let (plain, press) = (&mut self.plain, &mut self.press);
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
         let grains = Grains { mass, v, omega, ..grains(w, period, &plain.body, &self.frozen)? };
@@ -443,7 +443,7 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
 }
 
 /// Room for what contacts tell the ledger of energy, where there is one.
-fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>) -> Option<PairDeeds> {
+fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairDeeds> {
     // To open what nobody keeps is to write.
     if w.parts.pair_deeds.is_none() {
         return None;
@@ -451,7 +451,7 @@ fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>) -> Option<PairDeeds>
     let n = w.n();
     let all = w.parts.pair_deeds.as_mut()?;
     let mut own = std::mem::take(all.get_or(key.of(), PairDeeds::default));
-    own.begin(n, t.step);
+    own.begin(n, t.step, rules.any(|r| r.law.flows()));
     Some(own)
 }
 

@@ -400,6 +400,13 @@ pub struct Families {
     /// Energy of bonds where they broke, as far as it was counted [energy].
     #[serde(default)]
     pub released: f64,
+    /// What the last forces of broken bonds have taken from motion since, as far as it was counted [energy].
+    #[serde(default)]
+    pub trailing: f64,
+    /// The part of both that is of bonds which broke after the forces of the last evaluation, in whose energies they still count
+    /// [energy].
+    #[serde(default)]
+    pub late: f64,
     /// What relaxing and flowing bonds have turned into heat, as far as it was counted [energy].
     #[serde(default)]
     pub heat: f64,
