@@ -278,6 +278,18 @@ fn the_suite_writes_its_page_and_a_lammps_stands_beside() {
     assert_eq!(bench(at, &["-suite", "-lammps", "no/lmp"]).status.code(), Some(2));
 }
 
+#[test]
+fn rows_of_bonds_bend_as_rods_to_second_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let o = bench(at, &["-suite", "-only", "bonded_wave", "-markdown", "page.md"]);
+    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    let csv = "bench.suite/bonded_wave/bench.csv";
+    let orders: Vec<f64> = column(at, csv, "frequency, Hz_order_N").into_iter().flatten().collect();
+    // 2.11 and 1.96, in steps of three lengths.
+    assert!(orders.len() == 6 && orders.iter().all(|p| (p - 2.0).abs() < 0.2), "{orders:?}");
+}
+
 /// A program that answers as LAMMPS does, or fails.
 #[cfg(unix)]
 fn lammps(folder: &Path, fails: bool) -> String {

@@ -32,6 +32,9 @@ pub const DECKS: &[(&str, &str)] = decks![
     "oblique_ledger",
     "heap_ledger",
     "cantilever",
+    "bonded_wave",
+    "running_crack",
+    "shear_flow",
 ];
 
 /// A case.

@@ -45,6 +45,7 @@ pub const DECKS: &[(&str, &str)] = decks![
     "peridynamics/plate_impact",
     "peridynamics/kalthoff_winkler",
     "peridynamics/mode_one",
+    "peridynamics/running_crack",
     "bonded/one_bond",
     "bonded/one_state",
     "bonded/free_pair",
