@@ -285,7 +285,7 @@ fn rows_of_bonds_bend_as_rods_to_second_order() {
     let o = bench(at, &["-suite", "-only", "bonded_wave", "-markdown", "page.md"]);
     assert_eq!(o.status.code(), Some(0), "{}", said(&o));
     let csv = "bench.suite/bonded_wave/bench.csv";
-    let orders: Vec<f64> = column(at, csv, "frequency, Hz_order_N").into_iter().flatten().collect();
+    let orders: Vec<f64> = column(at, csv, "frequency_order_N").into_iter().flatten().collect();
     // 2.11 and 1.96, in steps of three lengths.
     assert!(orders.len() == 6 && orders.iter().all(|p| (p - 2.0).abs() < 0.2), "{orders:?}");
 }
