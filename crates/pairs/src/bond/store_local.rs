@@ -88,7 +88,8 @@ impl Store {
     /// Takes note of bonds that have broken, told by the places of their ends, that of the lower ID first.
     pub fn keep(&self, w: &mut World, step: i64, broken: &[[usize; 2]]) {
         let p = &w.particles;
-        let first = w.columns.get_vector(self.first).unwrap_or(&[]);
+        // Read only where it is stated: see `reads`.
+        let first = if self.looks_back() { w.columns.get_vector(self.first).unwrap_or(&[]) } else { &[] };
         let middle = |list: &[[f64; 3]], [a, b]: [usize; 2], k: usize| {
             list.get(a).zip(list.get(b)).map_or(0.0, |(a, b)| 0.5 * (a[k] + b[k]))
         };
