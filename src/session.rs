@@ -405,7 +405,7 @@ impl Session {
             .map_err(|e| checking::with_origins(belongs::told(self.sources.adopt(e), cmd).at(cmd.span), cmd))
     }
 
-    /// The line that is worked off now, for the message of memory that is not there.
+    /// The line that runs now, which a message on missing memory names.
     fn say_where(&mut self, line: Span) {
         if self.read_from.replace(line.file) != Some(line.file)
             && let Some(text) = self.sources.keep(line.file)

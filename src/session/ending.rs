@@ -157,7 +157,7 @@ impl Session {
             plan.part(&mut self.world)?;
         }
         let text = self.place_of(line).map_or("Interrupted".into(), |place| {
-            format!("Interrupted behind {place}: no further line is worked off")
+            format!("Interrupted behind {place}: no further line runs")
         });
         self.options.log.line(&text)
     }

@@ -359,7 +359,7 @@ fn wrong(name: &str, under: Under, before: &World, now: &World, lines: &str) -> 
         ("contacts", Under::Springs) => !acts || springs_turned(before, now, q),
         ("columns", Under::Columns) => columns_right(before, now),
         ("x0", Under::Anchor) => new.x0 == old.x0,
-        // There are no walls here, and what is made anew is nobody's before that.
+        // There are no walls here, and what is made anew has no state before that.
         ("wall_contacts", Under::Anchor) | (_, Under::Anew) => true,
         ("radius", Under::Nothing) => new.radius == old.radius,
         ("mass", Under::Nothing) => new.mass == old.mass,

@@ -42,7 +42,7 @@ impl Style for RunStyleCommand {
                 way of that step, and while springs stick no energy is made; LAMMPS, and `compat lammps`, takes its length times \
                 the velocity at its end, which makes energy where bonds swing in the shorter steps. Refused with the reason: rigid bodies, `fix move` with \
                 free components, energy/ledger, dt/guard and plastic grains (`mdr`).\n\n\
-                `staggered`: `timestep` is the long step. Contacts, walls and body forces kick everybody by half a long step \
+                `staggered`: `timestep` is the long step. Contacts, walls and body forces kick all particles by half a long step \
                 at both of its ends; in between solids make m velocity-Verlet steps under their bonds alone. Momentum is \
                 conserved, contacts go by the way of the long step; with m = 1 the bits are those of `verlet`. `m auto` (the default) takes the fewest short steps \
                 that stay within 0.8 of the solids' stable step, and looks again when the step changes. `respa 2 m hybrid \

@@ -252,7 +252,7 @@ impl Inner {
     fn record(&mut self, line: &str) -> Result<()> {
         let Some((_, file)) = &mut self.file else { return Ok(()) };
         let mut outcome = writeln!(file, "{line}");
-        // Whoever looks into the file sees each row of a slow run, and what is left when the program is killed; loops of a
+        // The file shows each row of a slow run at once, and keeps it when the program is killed; loops of a
         // deck that echo a million lines need not wait for the system at each.
         if outcome.is_ok() && self.handed.elapsed() >= RARELY {
             outcome = file.flush();

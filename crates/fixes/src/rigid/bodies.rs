@@ -140,7 +140,7 @@ impl Declared {
         Ok(())
     }
 
-    /// Keeps how members lie that nobody has asked before: those of restart files that know no orientations of members.
+    /// Keeps the orientation of members that have none yet: those of restart files that store no orientations of members.
     fn hold_members(&self, w: &mut World) {
         if !w.particles.style.oriented {
             return;

@@ -444,7 +444,7 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
 
 /// Room for what contacts tell the ledger of energy, where there is one.
 fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairDeeds> {
-    // To open what nobody keeps is to write.
+    // Opening a memory that does not exist writes it.
     if w.parts.pair_deeds.is_none() {
         return None;
     }

@@ -64,7 +64,7 @@ impl Path {
         *w.columns.vector(self.key, n) = sum;
     }
 
-    /// The way over the length of the step: those who moved in it as in one piece (`whole`) keep their velocity to the bit.
+    /// The way over the length of the step: particles that moved in it as in one piece (`whole`) keep their velocity to the bit.
     pub fn end(self, w: &mut World, dt: f64, whole: impl Fn(u16) -> bool) -> Vectors {
         let n = w.n();
         let mut mean = std::mem::take(w.columns.vector(self.key, n));

@@ -1,7 +1,7 @@
 //! Steps of two lengths: bonds of peridynamic solids in short ones, contacts and everything else in long ones.
 //!
 //! The impulse scheme of two levels (physics.md 1.9, `kick`; Hartmann et al. 2022 with the hybrid particles' second
-//! drift taken out): slow forces kick everybody by half a long step at both of its ends, between which solids make
+//! drift taken out): slow forces kick all particles by half a long step at both of its ends, between which solids make
 //! `m` velocity-Verlet steps under their bonds alone. Symplectic, and momentum is conserved. Where grains are the
 //! faster ones, bonds act at every m-th step, with m times their force.
 
