@@ -136,7 +136,7 @@ fn spheres_on_a_wall_follow_the_branches_one_by_one_and_together() {
         for count in [2, 7] {
             let radius = vec![RADII[0]; count];
             let (still, tag) = (vec![[0.0; 3]; count], (1..=count as u32).collect::<Vec<_>>());
-            let floor = Planes { axis: 2, lo: Some(0.0), hi: None, velocity: [0.0; 3], nearer: false };
+            let floor = Planes { axis: 2, lo: Some(0.0), hi: None, velocity: [[0.0; 3]; 2], nearer: false };
             let (mut sweep, mut memory) = (WallSweep::default(), Contacts::default());
             let mut exact = Branches::new(numbers, RADII[0]);
             let mut largest = 0.0_f64;

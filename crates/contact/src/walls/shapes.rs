@@ -12,8 +12,8 @@ pub struct Planes {
     pub lo: Option<f64>,
     /// Where they are.
     pub hi: Option<f64>,
-    /// How they move.
-    pub velocity: Vec3,
+    /// How each of them moves.
+    pub velocity: [Vec3; 2],
     /// Of two planes only the nearer one acts, as LAMMPS has it.
     pub nearer: bool,
 }
@@ -36,7 +36,13 @@ impl Planes {
                 let mut normal = [0.0; 3];
                 // What is beyond the plane is pushed on, as from its other side (LAMMPS).
                 normal[self.axis] = if height < 0.0 { -sign } else { sign };
-                out.push(Near { part, normal, distance, radius: 0.0, velocity: self.velocity });
+                out.push(Near {
+                    part,
+                    normal,
+                    distance,
+                    radius: 0.0,
+                    velocity: self.velocity[part as usize],
+                });
             }
         };
         match (self.lo.map(|lo| x - lo), self.hi.map(|hi| -(x - hi))) {

@@ -46,7 +46,7 @@ impl Scene {
 const STEP: Advance = Advance { dt: 1e-3, history: true };
 
 fn floor() -> Planes {
-    Planes { axis: 2, lo: Some(0.0), hi: None, velocity: [0.0; 3], nearer: false }
+    Planes { axis: 2, lo: Some(0.0), hi: None, velocity: [[0.0; 3]; 2], nearer: false }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! fix wall/gran: planes across an axis, or a cylinder about z, on which grains lean.
 
+use super::planes::{Followed, Pair};
 use super::words::{self, KEYWORDS};
 use super::{Common, Declared, Form, Surface, needs_spheres, not_across_periodic};
 use crate::elapsed::Elapsed;
@@ -7,8 +8,8 @@ use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::walls::{Planes, Tube, Wall};
 use perigrain_lang::Args;
-use perigrain_plan::Tick;
-use perigrain_styles::common::{axis, number_or_null};
+use perigrain_plan::{Stage, Tick};
+use perigrain_styles::common::axis;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{INFINITE, Region, Shape};
 use perigrain_world::{Face, Key, Numbers, Outline, World};
@@ -33,11 +34,15 @@ impl Style for WallGran {
             text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r the \
                 distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and + outside. \
                 MODELS are those of `pair_coeff … granular` and describe a grain on this wall (for `hertz/material` two \
-                bodies of that material). `lo` or `hi` is `NULL` where there is one plane only; with two, a grain that is \
+                bodies of that material). `lo` and `hi` are numbers or equal-style variables `v_name`, or one of them `NULL` where there is one plane only; with two, a grain that is \
                 larger than the gap feels both (LAMMPS, and perigrain under `-compat lammps`: only the nearer one). Places \
                 are in box units; the box may not be periodic across a wall.\n\n\
                 `wiggle`: the wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared. `shear`: it \
                 moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.\n\n\
+                A plane whose place is a variable stands where its value says in each step, for a piston that moves as it likes. Its \
+                velocity, which damping and friction see, is the change since the step before over the time step, none in the \
+                first step; each of two planes has its own. `shear` and `wiggle` in the plane come on top; `wiggle` across it is refused. A lower \
+                plane that does not stay below the upper one ends the run. LAMMPS has this since July 2026.\n\n\
                 `contacts` offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, \
                 its radius, and with a model of heat the heat that flows into the particle as a ninth. `temperature` is that of the wall, a number or an \
                 equal-style variable, and belongs to a model of heat: h π a² (T_wall − T) flows into a grain (`heat area h`), or 2 k a (T_wall − T).\n\n\
@@ -70,9 +75,7 @@ impl FixStyle for WallGran {
                 "wiggle" => {
                     let at = args.here();
                     let axis = axis(args, "direction of the motion")?;
-                    if matches!(form.place, Place::Tube(_)) && axis != 2 {
-                        return fail(Code::BAD_VALUE, at, "a cylinder about z can wiggle along z only");
-                    }
+                    form.may_wiggle(axis, at)?;
                     let amplitude = args.number("the amplitude")?;
                     form.motion =
                         Some(Motion::Wiggle(axis, amplitude, 2.0 * PI / args.positive("the period")?));
@@ -80,7 +83,7 @@ impl FixStyle for WallGran {
                 "shear" => {
                     let at = args.here();
                     let axis = axis(args, "direction of the motion")?;
-                    if matches!(form.place, Place::Planes(across, ..) if across == axis) {
+                    if matches!(&form.place, Place::Planes(pair) if pair.axis == axis) {
                         return fail(Code::BAD_VALUE, at, "a plane cannot shear along its normal");
                     }
                     form.motion = Some(Motion::Shear(axis, args.number("the velocity")?));
@@ -96,10 +99,10 @@ impl FixStyle for WallGran {
 }
 
 /// Where the wall stands.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Place {
     /// Across an axis.
-    Planes(usize, Option<f64>, Option<f64>),
+    Planes(Pair),
     /// About z, its radius.
     Tube(f64),
 }
@@ -113,7 +116,7 @@ enum Motion {
     Shear(usize, f64),
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Flat {
     place: Place,
     motion: Option<Motion>,
@@ -122,9 +125,9 @@ struct Flat {
 fn wall(args: &mut Args, cx: &BuildCx) -> Result<(Flat, Span)> {
     let word = args.expect("the wall: xplane yplane zplane or zcylinder")?;
     let (place, axes): (_, &[usize]) = match word.text.as_str() {
-        "xplane" => (planes(0, args)?, &[0]),
-        "yplane" => (planes(1, args)?, &[1]),
-        "zplane" => (planes(2, args)?, &[2]),
+        "xplane" => (Place::Planes(Pair::read(0, args, cx)?), &[0]),
+        "yplane" => (Place::Planes(Pair::read(1, args, cx)?), &[1]),
+        "zplane" => (Place::Planes(Pair::read(2, args, cx)?), &[2]),
         "zcylinder" => (Place::Tube(args.positive("the radius of the cylinder")?), &[0, 1]),
         "region" => {
             let d = Diagnostic::error(Code::UNKNOWN_STYLE, word.span, "a region is a wall of another fix");
@@ -136,26 +139,29 @@ fn wall(args: &mut Args, cx: &BuildCx) -> Result<(Flat, Span)> {
     Ok((Flat { place, motion: None }, word.span))
 }
 
-fn planes(axis: usize, args: &mut Args) -> Result<Place> {
-    let span = args.here();
-    let lo = number_or_null(args, "the lower plane")?;
-    let hi = number_or_null(args, "the upper plane")?;
-    match (lo, hi) {
-        (None, None) => fail(Code::BAD_VALUE, span, "one of the two planes must have a place"),
-        (Some(a), Some(b)) if a >= b => {
-            fail(Code::BAD_VALUE, span, format!("the lower plane {a} lies not below the upper one {b}"))
-        }
-        _ => Ok(Place::Planes(axis, lo, hi)),
-    }
-}
-
 impl Flat {
+    /// Refuses to wiggle along an axis along which this wall cannot.
+    fn may_wiggle(&self, axis: usize, at: Span) -> Result<()> {
+        match &self.place {
+            Place::Tube(_) if axis != 2 => {
+                fail(Code::BAD_VALUE, at, "a cylinder about z can wiggle along z only")
+            }
+            Place::Planes(pair) if pair.axis == axis && pair.follows() => {
+                let text = "a plane that follows a variable cannot wiggle across itself";
+                let d = Diagnostic::error(Code::CONFLICT, at, text);
+                Err(d.help("let the variable wiggle: `v + A*(1-cos(2*PI*time/period))`").into())
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Warns of walls that no grain will ever meet.
     fn warn(&self, cx: &BuildCx, span: Span) {
         let Some(d) = &*cx.world.domain else { return };
         let fixed = |axis: usize, side: usize| d.boundary.0[axis][side] == Face::Fixed;
-        let text = match self.place {
-            Place::Planes(a, lo, hi) => {
+        let text = match &self.place {
+            Place::Planes(pair) => {
+                let (a, [lo, hi]) = (pair.axis, pair.fixed());
                 let beyond = lo.is_some_and(|p| p < d.lo[a] && fixed(a, 0))
                     || hi.is_some_and(|p| p > d.hi[a] && fixed(a, 1));
                 let name = ["x", "y", "z"][a];
@@ -164,6 +170,7 @@ impl Flat {
                 })
             }
             Place::Tube(r) => {
+                let r = *r;
                 let far = |lo: f64, hi: f64| lo.abs().max(hi.abs());
                 let near = |lo: f64, hi: f64| if lo > 0.0 { lo } else { (-hi).max(0.0) };
                 let corner = far(d.lo[0], d.hi[0]).hypot(far(d.lo[1], d.hi[1]));
@@ -186,38 +193,36 @@ impl Form for Flat {
 
     fn declare(&self, w: &mut World, key: Numbers) {
         w.memo.remove(key);
+        super::forget(w, key);
         Elapsed::load(w, key).store(w, key);
     }
 
     fn outline(&self) -> Outline {
-        let place = self.place;
+        let radius = match &self.place {
+            Place::Planes(pair) => return pair.outline(),
+            Place::Tube(radius) => *radius,
+        };
         Outline::new(move |w| {
             let Some(bounds) = w.domain.as_ref().map(perigrain_world::Domain::bounds) else { return vec![] };
-            let mut found = vec![];
-            let mut add = |shape, open| {
-                found.extend(Region { open, ..Region::inside(shape) }.outline(bounds));
-            };
-            match place {
-                Place::Planes(axis, lo, hi) => {
-                    let mut normal = [0.0; 3];
-                    normal[axis] = 1.0;
-                    for at in [lo, hi].into_iter().flatten() {
-                        add(Shape::Plane { point: normal.map(|n| n * at), normal }, 0);
-                    }
-                }
-                Place::Tube(radius) => {
-                    let (lo, hi) = (-INFINITE, INFINITE);
-                    add(Shape::Cylinder { axis: 2, center: [0.0; 2], radius, lo, hi }, 0);
-                }
-            }
-            found
+            let (lo, hi) = (-INFINITE, INFINITE);
+            let tube = Region::inside(Shape::Cylinder { axis: 2, center: [0.0; 2], radius, lo, hi });
+            tube.outline(bounds)
         })
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
         self.tell_beyond(fix, cx)?;
+        let stands = match &self.place {
+            Place::Planes(pair) => {
+                // Plastic grains ask for their walls before any forces.
+                let stage = if fix.is_plastic() { Stage::PreForce } else { Stage::PostForce };
+                Stands::Planes(pair.seal(cx, stage, Key::new(&format!("{}/planes", fix.key(Self::STYLE))))?)
+            }
+            Place::Tube(radius) => Stands::Tube(*radius),
+        };
         Ok(Box::new(Running {
-            form: *self,
+            stands,
+            motion: self.motion,
             key: fix.key(Self::STYLE),
             outline: Key::new(&fix.id),
             offset: 0.0,
@@ -230,7 +235,8 @@ impl Form for Flat {
 impl Flat {
     /// Tells of grains that stand on the far side of a plane: it would push them out.
     fn tell_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
-        let Place::Planes(axis, lo, hi) = self.place else { return Ok(()) };
+        let Place::Planes(pair) = &self.place else { return Ok(()) };
+        let (axis, [lo, hi]) = (pair.axis, pair.fixed());
         let p = &cx.world().particles;
         let beyond = |i: &usize| {
             let x = p.x[*i][axis];
@@ -246,9 +252,17 @@ impl Flat {
     }
 }
 
+/// Where the wall stands during a run.
+enum Stands {
+    Planes(Followed),
+    /// About z, its radius.
+    Tube(f64),
+}
+
 /// The wall during a run.
 struct Running {
-    form: Flat,
+    stands: Stands,
+    motion: Option<Motion>,
     key: Numbers,
     outline: Key<Outline>,
     /// How far it has moved along its motion's axis.
@@ -257,9 +271,9 @@ struct Running {
     spin: f64,
 }
 
-impl Surface for Running {
-    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
-        let Some(motion) = self.form.motion else { return Ok(0.0) };
+impl Running {
+    /// How far its motion takes it since the last call.
+    fn go(&mut self, motion: Motion, w: &mut World, t: &Tick) -> f64 {
         let mut elapsed = Elapsed::load(w, self.key);
         if !t.setup {
             elapsed.follow(t.step, t.dt);
@@ -268,7 +282,7 @@ impl Surface for Running {
         let lammps = (t.step as f64 - elapsed.origin) * t.dt;
         let time = if w.settings.lammps() { lammps } else { elapsed.now() };
         let before = self.offset;
-        match (motion, self.form.place) {
+        match (motion, &self.stands) {
             (Motion::Wiggle(axis, amplitude, omega), _) => {
                 self.offset = amplitude - amplitude * (omega * time).cos();
                 self.velocity[axis] = amplitude * omega * (omega * time).sin();
@@ -276,33 +290,57 @@ impl Surface for Running {
                     outline.pose.shift[axis] = self.offset;
                 }
             }
-            (Motion::Shear(axis @ (0 | 1), speed), Place::Tube(_)) => {
+            (Motion::Shear(axis @ (0 | 1), speed), Stands::Tube(_)) => {
                 self.spin = speed;
                 // LAMMPS lets a turning cylinder fly along the axis that names the turning, too.
                 self.velocity[axis] = if w.settings.lammps() { speed } else { 0.0 };
             }
             (Motion::Shear(axis, speed), _) => self.velocity[axis] = speed,
         }
-        Ok((self.offset - before).abs())
+        (self.offset - before).abs()
+    }
+}
+
+impl Surface for Running {
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
+        let mut way = 0.0;
+        if let Stands::Planes(planes) = &mut self.stands {
+            let (gone, look) = planes.follow(w, t)?;
+            way += gone;
+            if let (Some(look), Some(outline)) = (look, w.parts.outlines.get_mut(self.outline)) {
+                *outline = look;
+            }
+        }
+        Ok(way + self.motion.map_or(0.0, |motion| self.go(motion, w, t)))
     }
 
     fn stands(&self) -> bool {
-        self.form.motion.is_none()
+        let still = match &self.stands {
+            Stands::Planes(planes) => planes.stand(),
+            Stands::Tube(_) => true,
+        };
+        still && self.motion.is_none()
     }
 
     fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
         let velocity = self.velocity;
-        match self.form.place {
-            Place::Planes(axis, lo, hi) => {
-                let along = matches!(self.form.motion, Some(Motion::Wiggle(a, ..)) if a == axis);
+        match &self.stands {
+            Stands::Planes(planes) => {
+                let axis = planes.axis;
+                let along = matches!(self.motion, Some(Motion::Wiggle(a, ..)) if a == axis);
                 let by = if along { self.offset } else { 0.0 };
                 let nearer = w.settings.lammps();
-                let [lo, hi] = [lo, hi].map(|p| p.map(|p| p + by));
-                see(&Planes { axis, lo, hi, velocity, nearer });
+                let [lo, hi] = planes.at.map(|p| p.map(|p| p + by));
+                let across = |k: usize| {
+                    let mut velocity = velocity;
+                    velocity[axis] += planes.velocity[k];
+                    velocity
+                };
+                see(&Planes { axis, lo, hi, velocity: [across(0), across(1)], nearer });
             }
-            Place::Tube(radius) => {
+            Stands::Tube(radius) => {
                 let lammps = w.settings.lammps();
-                see(&Tube { radius, velocity, spin: self.spin, lammps });
+                see(&Tube { radius: *radius, velocity, spin: self.spin, lammps });
             }
         }
     }

@@ -4,6 +4,7 @@ pub mod gran;
 pub mod mesh;
 mod op;
 mod peace;
+mod planes;
 mod plastic;
 pub mod region;
 mod words;
@@ -11,6 +12,7 @@ mod words;
 use super::Fix;
 use super::window::forget;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_contact::normal::plastic_grain;
 use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::Param;
 use perigrain_pairs::contact::durations;
@@ -78,6 +80,11 @@ impl Common {
     /// Columns of the values by particle.
     fn columns(&self) -> usize {
         op::COLUMNS + usize::from(self.temperature.is_some())
+    }
+
+    /// Whether it is a wall for plastic grains.
+    fn is_plastic(&self) -> bool {
+        plastic_grain(&self.material.model.normal).is_some()
     }
 
     /// Where small state of the fix is kept in the world.

@@ -1,0 +1,173 @@
+//! Planes of fix wall/gran: where they stand, and how they follow variables.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Param};
+use perigrain_plan::{Stage, Tick, When};
+use perigrain_styles::common::param_or_null;
+use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_world::region::{Region, Shape};
+use perigrain_world::{Numbers, Outline, World};
+
+/// A lower and an upper plane across one axis, as a deck names them.
+#[derive(Clone)]
+pub struct Pair {
+    /// Across which axis.
+    pub axis: usize,
+    /// Where they are; `None` (NULL) where there is none.
+    places: [Option<Param>; 2],
+    span: Span,
+}
+
+/// The words for them in messages.
+const NAMES: [&str; 2] = ["lower", "upper"];
+
+impl Pair {
+    /// Takes `lo hi`: numbers, variables, or NULL for one of them.
+    ///
+    /// # Errors
+    /// Two NULLs, planes in the wrong order, unknown variables.
+    pub fn read(axis: usize, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let mut places = [None, None];
+        for (place, name) in places.iter_mut().zip(NAMES) {
+            *place = param_or_null(args, &format!("the {name} plane"))?;
+            if let Some(place) = place {
+                cx.param(place, false)?;
+            }
+        }
+        let pair = Self { axis, places, span };
+        match (&pair.places, pair.fixed()) {
+            ([None, None], _) => fail(Code::BAD_VALUE, span, "one of the two planes must have a place"),
+            (_, [Some(a), Some(b)]) if a >= b => fail(Code::BAD_VALUE, span, disordered(a, b)),
+            _ => Ok(pair),
+        }
+    }
+
+    /// The places that are numbers.
+    pub fn fixed(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|k| match self.places[k] {
+            Some(Param::Number(at)) => Some(at),
+            _ => None,
+        })
+    }
+
+    /// Whether one of them follows a variable.
+    pub fn follows(&self) -> bool {
+        self.places.iter().any(|place| matches!(place, Some(Param::Ref(_))))
+    }
+
+    /// The planes of a run, whose variables are fresh at `stage`; `key`: where their last places are remembered.
+    ///
+    /// # Errors
+    /// A variable that is gone.
+    pub fn seal(&self, cx: &mut dyn SealCx, stage: Stage, key: Numbers) -> Result<Followed> {
+        let mut places = [None; 2];
+        for (reading, place) in places.iter_mut().zip(&self.places) {
+            *reading = place.as_ref().map(|p| cx.param(p, stage, &When::Always)).transpose()?;
+        }
+        let (axis, span, follows) = (self.axis, self.span, self.follows());
+        Ok(Followed { axis, places, follows, key, span, at: self.fixed(), velocity: [0.0; 2] })
+    }
+
+    /// What those look like that stand where a number says.
+    pub fn outline(&self) -> Outline {
+        drawn(self.axis, self.fixed())
+    }
+}
+
+/// What is wrong with a lower plane that is not below the upper one.
+fn disordered(lo: f64, hi: f64) -> String {
+    format!("the lower plane {lo} lies not below the upper one {hi}")
+}
+
+/// Planes at these places, as pictures show them.
+fn drawn(axis: usize, places: [Option<f64>; 2]) -> Outline {
+    Outline::new(move |w| {
+        let Some(bounds) = w.domain.as_ref().map(perigrain_world::Domain::bounds) else { return vec![] };
+        let mut normal = [0.0; 3];
+        normal[axis] = 1.0;
+        let plane = |at: f64| Region::inside(Shape::Plane { point: normal.map(|n| n * at), normal });
+        places.into_iter().flatten().flat_map(|at| plane(at).outline(bounds)).collect()
+    })
+}
+
+/// The planes during a run.
+pub struct Followed {
+    /// Across which axis.
+    pub axis: usize,
+    places: [Option<Reading>; 2],
+    follows: bool,
+    /// Step, places and velocities of the last call are remembered here: those of planes that follow.
+    key: Numbers,
+    span: Span,
+    /// Where they are.
+    pub at: [Option<f64>; 2],
+    /// How fast they move along their normal.
+    pub velocity: [f64; 2],
+}
+
+/// How much is remembered: the step, two places, two velocities.
+const KEPT: usize = 5;
+
+impl Followed {
+    /// Whether they stand for the whole run.
+    pub fn stand(&self) -> bool {
+        !self.follows
+    }
+
+    /// Puts them where their variables say, with the velocity of the way since the step before (as LAMMPS does, none in the
+    /// first step); the longer of the ways that they have gone since the last call, and what they look like where they have.
+    ///
+    /// # Errors
+    /// Variables that are no place, or in the wrong order.
+    pub fn follow(&mut self, w: &mut World, t: &Tick) -> Result<(f64, Option<Outline>)> {
+        if !self.follows {
+            return Ok((0.0, None));
+        }
+        let now = self.places.map(|place| place.map(|p| p.get(w)));
+        self.check(now, t)?;
+        let kept = w.memo.get(self.key).and_then(|m| <[f64; KEPT]>::try_from(&m[..]).ok());
+        let step = t.step as f64;
+        self.velocity = match kept {
+            // The setup of a run goes on with what the last step has seen.
+            Some([last, .., lower, upper]) if last == step => [lower, upper],
+            Some([last, lo, hi, ..]) if last + 1.0 == step => {
+                [(now[0], lo), (now[1], hi)].map(|(now, was)| now.map_or(0.0, |now| (now - was) / t.dt))
+            }
+            _ => [0.0; 2],
+        };
+        let [lo, hi] = now.map(Option::unwrap_or_default);
+        w.memo.insert(self.key, vec![step, lo, hi, self.velocity[0], self.velocity[1]]);
+        let before = std::mem::replace(&mut self.at, now);
+        // A plane that was nowhere yet has come from far away.
+        let way = |k: usize| match (now[k], before[k]) {
+            (Some(now), Some(before)) => (now - before).abs(),
+            (Some(_), None) => f64::INFINITY,
+            (None, _) => 0.0,
+        };
+        let moved = now != before;
+        Ok((way(0).max(way(1)), moved.then(|| drawn(self.axis, now))))
+    }
+
+    /// Refuses planes at no place, and those that have passed through each other.
+    fn check(&self, now: [Option<f64>; 2], t: &Tick) -> Result<()> {
+        let step = t.step;
+        for (at, name) in now.into_iter().zip(NAMES) {
+            if at.is_some_and(|at| !at.is_finite()) {
+                let text = format!(
+                    "the place of the {name} plane has become {} in step {step}",
+                    at.unwrap_or(f64::NAN)
+                );
+                return fail(Code::BAD_VALUE, self.span, text);
+            }
+        }
+        let [Some(lo), Some(hi)] = now else { return Ok(()) };
+        if lo < hi {
+            return Ok(());
+        }
+        let text = format!("{} in step {step}", disordered(lo, hi));
+        Err(Diagnostic::error(Code::BAD_VALUE, self.span, text)
+            .help("the variables let the planes pass through each other: two fixes may do so")
+            .into())
+    }
+}
