@@ -6,7 +6,7 @@ use super::window::forget;
 use super::{Fix, FixStyle};
 use coefficients::Follows;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{COLUMNS, LISTS, MASK, MASS, MEMO, RADIUS, SLOTS};
@@ -25,10 +25,11 @@ impl Style for Adapt {
             syntax: "fix ID group adapt N atom diameter|diameter/disc v_name | pair STYLE COEFFICIENT I J v_name | \
                      bond STYLE COEFFICIENT I v_name … [scale yes|no] [reset yes|no] [mass yes|no]",
             summary: "Lets the diameter of spheres or coefficients of forces follow variables during a run.",
-            text: "The equal-style variables are evaluated in the setup of a run and at multiples of N (N = 0: in the setup only). \
-                   Several changes can be written one after another; of `atom`, one.\n\n\
+            text: "The variables are evaluated in the setup of a run and at multiples of N (N = 0: in the setup only). They are equal-style, and for \
+                   `atom` atom-style as well (LAMMPS 22Jul2025 has none of these): a value for each particle. Several changes can be written one after another; of `atom`, one.\n\n\
                    `atom`: the value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
-                   diameter it had at first (each change multiplies the present one by the new factor over the last). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
+                   diameter it had at first (each change multiplies the present one by the new factor over the last; a particle that comes later \
+                   begins with the factor that is in force, and with an atom-style variable with 1). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
                    of a disc with `diameter/disc`; `mass no` keeps the mass. Neighbour lists are made anew before particles have grown by a quarter of the skin \
                    (LAMMPS' are not, nor under `compat lammps`: there the skin must be as wide as what they grow by). After `reset yes` LAMMPS' masses are wrong in the next run; \
                    perigrain's are those of before.\n\n\
@@ -50,6 +51,7 @@ impl FixStyle for Adapt {
             id: cx.id.to_string(),
             factor: Key::new(&format!("adapt/{}/factor", cx.id)),
             columns: ["radius", "mass"].map(|what| Key::new(&format!("adapt/{}/{what}", cx.id))),
+            factors: Key::new(&format!("adapt/{}/factors", cx.id)),
             group: cx.group,
             every,
             size: None,
@@ -112,7 +114,7 @@ fn size(args: &mut Args, cx: &BuildCx) -> Result<Size> {
         let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");
         return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
     }
-    Ok(Size { variable: variable(args, cx)?, disc: what == "diameter/disc" })
+    Ok(Size { variable: variable(args, true, cx)?, disc: what == "diameter/disc" })
 }
 
 /// The diameter of particles.
@@ -123,11 +125,12 @@ struct Size {
     disc: bool,
 }
 
-fn variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+/// Takes `v_name`, an equal-style variable or where particles may differ an atom-style one.
+fn variable(args: &mut Args, per_atom: bool, cx: &BuildCx) -> Result<ValueRef> {
     let word = args.expect("the variable v_name")?;
     match ValueRef::parse(&word.text, word.span)? {
         Some(r) if r.kind == RefKind::Variable => {
-            cx.value(&r, false)?;
+            cx.param(&Param::Ref(r.clone()), per_atom)?;
             Ok(r)
         }
         _ => fail(Code::WRONG_KIND, word.span, format!("a variable v_name is needed, not `{}`", word.text)),
@@ -141,6 +144,8 @@ struct Declared {
     factor: Numbers,
     /// The columns that hold radii and masses before a run.
     columns: [Numbers; 2],
+    /// The column of the last factors where each particle has its own; 0 where it has had none.
+    factors: Numbers,
     group: GroupId,
     every: i64,
     size: Option<Size>,
@@ -166,13 +171,14 @@ impl Size {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
+        w.columns.remove(self.factors);
         w.memo.insert(self.factor, vec![1.0]);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
         forget(w, self.key());
-        self.columns.into_iter().for_each(|c| w.columns.remove(c));
+        self.columns.into_iter().chain([self.factors]).for_each(|c| w.columns.remove(c));
     }
 
     fn welcome(&self, w: &mut World) {
@@ -207,6 +213,63 @@ impl Fix for Declared {
     }
 }
 
+/// What a variable says: one number for all, or one for each particle.
+enum Values {
+    One(f64),
+    Each(Vec<f64>),
+}
+
+impl Values {
+    fn of(reading: &Reading, w: &World) -> Self {
+        if reading.per_atom() { Self::Each(reading.list(w)) } else { Self::One(reading.get(w)) }
+    }
+
+    fn get(&self, i: usize) -> f64 {
+        match self {
+            Self::One(value) => *value,
+            Self::Each(values) => values[i],
+        }
+    }
+}
+
+impl Change {
+    /// Refuses what is no size.
+    fn check(&self, values: &Values, w: &World, t: &Tick) -> Result<()> {
+        let (p, bit) = (&w.particles, self.fix.group.bit());
+        let wrong = |value: f64| !(value > 0.0 && value.is_finite());
+        let (value, whose) = match values {
+            Values::One(value) if wrong(*value) => (*value, String::new()),
+            Values::One(_) => return Ok(()),
+            Values::Each(all) => {
+                let first = (0..all.len()).find(|&i| p.mask[i] & bit != 0 && wrong(all[i]));
+                let Some(i) = first else { return Ok(()) };
+                (all[i], format!(" for particle {}", p.tag[i]))
+            }
+        };
+        let variable = &self.size.variable;
+        let text = format!("`{variable}` is {value}{whose} at step {}: no size of particles", t.step);
+        fail(Code::BAD_VALUE, variable.span, text)
+    }
+
+    /// By what the radii change: the new factors over the last ones, which they then are.
+    fn factors(&self, values: &Values, w: &mut World) -> Values {
+        match values {
+            Values::One(new) => {
+                let last = w.memo.insert(self.fix.factor, vec![*new]).and_then(|m| m.first().copied());
+                Values::One(new / last.unwrap_or(1.0))
+            }
+            Values::Each(new) => {
+                let last = w.columns.scalar(self.fix.factors, new.len());
+                let ratio = |(last, new): (&mut f64, &f64)| {
+                    let before = std::mem::replace(last, *new);
+                    new / if before == 0.0 { 1.0 } else { before }
+                };
+                Values::Each(last.iter_mut().zip(new).map(ratio).collect())
+            }
+        }
+    }
+}
+
 /// Gives the particles their present size, and the old one back at the end.
 struct Change {
     name: String,
@@ -231,12 +294,9 @@ impl Op for Change {
         if t.unchanged {
             return Ok(());
         }
-        let (value, fix, n) = (self.value.get(w), &self.fix, w.n());
-        if !(value > 0.0 && value.is_finite()) {
-            let variable = &self.size.variable;
-            let text = format!("`{variable}` is {value} at step {}: no size of particles", t.step);
-            return fail(Code::BAD_VALUE, variable.span, text);
-        }
+        let values = Values::of(&self.value, w);
+        let (fix, n) = (&self.fix, w.n());
+        self.check(&values, w, t)?;
         let [radius, mass] = fix.columns;
         if t.setup && fix.reset && !w.memo.contains(radius) {
             let (radii, masses) = (w.particles.radius.clone(), w.particles.mass.clone());
@@ -244,10 +304,13 @@ impl Op for Change {
             *w.columns.scalar(mass, n) = masses.to_vec();
             w.memo.insert(radius, vec![]);
         }
-        let before = w.memo.insert(fix.factor, vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
+        let factors = fix.scale.then(|| self.factors(&values, w));
         let (p, mut most) = (&mut w.particles, 0.0_f64);
         for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
-            let new = if fix.scale { p.radius[i] * (value / before) } else { 0.5 * value };
+            let new = match &factors {
+                Some(factors) => p.radius[i] * factors.get(i),
+                None => 0.5 * values.get(i),
+            };
             if fix.mass && p.radius[i] > 0.0 {
                 let density = p.mass[i] / self.size.space(p.radius[i]);
                 p.mass[i] = density * self.size.space(new);
@@ -270,6 +333,7 @@ impl Op for Change {
         (*w.particles.radius, *w.particles.mass) = (radii, masses);
         w.columns.remove(radius);
         w.columns.remove(mass);
+        w.columns.remove(self.fix.factors);
         w.memo.insert(self.fix.factor, vec![1.0]);
         w.touch();
         Ok(())
@@ -319,6 +383,7 @@ mod tests {
             "1 pair lj/cut epsilon 1 1 v_d",
             "1 atom diameter v_d scale maybe",
             "1 atom diameter v_d foo",
+            "1 atom diameter c_d",
         ] {
             assert!(b.fix(&Adapt, words).is_err(), "{words}");
         }

@@ -52,7 +52,7 @@ pub fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
         let d = Diagnostic::error(Code::BAD_VALUE, span, "these types name no pair i ≤ j");
         return Err(d.help("write the smaller type first").into());
     }
-    Ok(Follows { coefficients, variable: variable(args, cx)?, style: style.clone() })
+    Ok(Follows { coefficients, variable: variable(args, false, cx)?, style: style.clone() })
 }
 
 impl Follows {
