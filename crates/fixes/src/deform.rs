@@ -11,7 +11,7 @@ use lean::Lean;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::{scales, units_lattice};
+use perigrain_styles::common::{check_flat, scales, units_lattice};
 use perigrain_styles::near::{bonds_across, bonds_fit};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
@@ -48,6 +48,8 @@ impl Style for Deform {
                    edge less, at the next rebuild of lists: another box of the same lattice, in which everybody is where it was. `remap x` (default) stretches the positions of the group's \
                    particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
                    of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
+                   In a flat scene `z` changes the length that the box has along z, and no particle; it must go on holding the plane z = 0. (LAMMPS, \
+                   and perigrain under `-compat lammps`, lets `remap x` move particles out of the plane where its faces do not lie alike on both sides of it.) \
                    A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Where peridynamic bonds \
                    cross a periodic face, its edge may change with `remap x` and `flip no` alone: the body is strained evenly with the box, \
                    from the state at the first run. \
@@ -113,7 +115,12 @@ fn read(args: &mut Args, cx: &BuildCx, controls: Option<Controls>) -> Result<Dec
             "x" | "y" | "z" => {
                 let d = ["x", "y", "z"].iter().position(|n| *n == word.text).unwrap_or(0);
                 check_faces(cx, word, d)?;
-                fix.motions[d] = Some(motion(args, cx, fix.controls.is_some())?);
+                let span = args.here();
+                let motion = motion(args, cx, fix.controls.is_some())?;
+                if d == 2 && cx.world.settings.two_dimensional && matches!(motion, Motion::Pressed(_)) {
+                    return fail(Code::CONFLICT, span, "no pressure steers a flat scene along z");
+                }
+                fix.motions[d] = Some(motion);
                 any = true;
             }
             "xy" | "xz" | "yz" => {
@@ -157,9 +164,6 @@ const WORDS: [&str; 9] = ["x", "y", "z", "xy", "xz", "yz", "remap", "flip", "uni
 /// Refuses dimensions whose faces follow the particles.
 fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
     let Some(domain) = &*cx.world.domain else { return Ok(()) };
-    if cx.world.settings.two_dimensional && d == 2 {
-        return fail(Code::CONFLICT, word.span, "a flat scene cannot be deformed along z");
-    }
     if domain.boundary.0[d].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
         let text = format!("the faces of `{}` follow the particles: no fix can move them", word.text);
         return Err(Diagnostic::error(Code::CONFLICT, word.span, text)
@@ -433,6 +437,8 @@ impl Op for Move {
         tell(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
         let flow = shape.flow(&self.tracks, &self.leans, (w, self.group), t.setup);
         let Shape { lo, hi, tilt, .. } = shape;
+        // Particles of a flat scene stay in their plane.
+        let flat = w.settings.two_dimensional && !w.settings.lammps();
         if self.remap == Remap::Velocities
             && let Some(domain) = &mut *w.domain
         {
@@ -458,6 +464,7 @@ impl Op for Move {
         let Some(domain) = &mut *w.domain else { return Ok(()) };
         let before = domain.clone();
         let (from, length) = (domain.lo, domain.lengths());
+        check_flat(domain.boundary, (lo[2], hi[2]), flat)?;
         (domain.lo, domain.hi) = (lo, hi);
         if domain.tilt.is_some() {
             domain.tilt = Some(tilt);
@@ -476,13 +483,17 @@ impl Op for Move {
         if self.remap == Remap::Positions && (before.tilted() || domain.tilted()) {
             let (p, bit) = (&mut w.particles, self.group.bit());
             for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
+                let z = x[2];
                 *x = domain.at(before.fractions(x));
+                if flat {
+                    x[2] = z;
+                }
             }
         } else if self.remap == Remap::Positions {
             let (p, bit) = (&mut w.particles, self.group.bit());
             for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
                 // Where in the box, then there in the new one: dimensions that stay keep their bits.
-                for d in (0..3).filter(|&d| self.tracks[d].moves()) {
+                for d in (0..if flat { 2 } else { 3 }).filter(|&d| self.tracks[d].moves()) {
                     x[d] = (x[d] - from[d]) / length[d] * (hi[d] - lo[d]) + lo[d];
                 }
             }
