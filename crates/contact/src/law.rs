@@ -1,7 +1,7 @@
 //! The granular law: normal, damping, tangential, rolling and twisting models, mixed for a pair of types.
 
 use super::normal::{Force, Push, geometric};
-use super::slider::Look;
+use super::slider::{Look, Sync};
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
@@ -9,7 +9,7 @@ use super::{
     split_velocity,
 };
 use perigrain_base::math::real::Real;
-use perigrain_base::math::vec3::{add, cross, scale, sub};
+use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 use perigrain_world::Compat;
 
 /// Where the tangential force takes hold of the spheres.
@@ -43,6 +43,8 @@ pub struct Model {
     pub limit_damping: bool,
     /// Lever arms of the tangential force.
     pub arm: Arm,
+    /// `synchronized_verlet`: springs turn with the normal of the middle of the step.
+    pub synchronized: bool,
 }
 
 /// Two models of different kinds cannot be mixed: which words differ.
@@ -76,6 +78,7 @@ impl Model {
             heat: Heat::None,
             limit_damping: false,
             arm: Arm::Middle,
+            synchronized: false,
         }
     }
 
@@ -108,7 +111,7 @@ impl Model {
     }
 
     /// The law for a pair of types of which only the like pairs were given, by LAMMPS' rules: geometric means,
-    /// moduli as E* and G*, `limit_damping` if either has it.
+    /// moduli as E* and G*, `limit_damping` and `synchronized_verlet` if either has it.
     ///
     /// # Errors
     /// When the models are not of one kind.
@@ -145,7 +148,13 @@ impl Model {
         let normals = [&self.normal, &other.normal];
         let normal = self.normal.force(&other.normal);
         let twisting = self.twisting.mixed(&other.twisting);
+        let sync = match compat {
+            _ if !(self.synchronized || other.synchronized) => Sync::Off,
+            Compat::Lammps2025 => Sync::Lammps2025,
+            _ => Sync::Both,
+        };
         let spring = self.tangential.spring(&other.tangential, normals, (self.damping, eta), mixed, compat);
+        let spring = Spring { sync, ..spring };
         let by_radius = normal.by_radius()
             || self.damping.by_radius()
             || spring.by_radius()
@@ -195,6 +204,20 @@ pub struct Granular {
     rubs_pulling: bool,
     /// Whose faults it has.
     compat: Compat,
+}
+
+/// The normals and velocities that a contact goes by.
+struct Way<R> {
+    /// Along whose normal forces act.
+    acts: Geometry<R>,
+    /// The normals of springs, in the middle of the step and at its end.
+    n: [Vec3<R>; 2],
+    /// The one at the end of the step.
+    end: Vec3<R>,
+    /// Velocity along the normal.
+    v_n: R,
+    /// Velocity across that of the middle.
+    v_across: Vec3<R>,
 }
 
 /// A loop over contacts of one law.
@@ -307,6 +330,12 @@ impl Granular {
         let form = self.damping.form(a, push.secant, g.mass);
 
         let (v_n, v_across) = split_velocity(g, i, j);
+        let mut way = Way { acts: *g, n: [g.normal; 2], end: g.normal, v_n, v_across };
+        if self.spring.sync != Sync::Off {
+            way = self.synchronized(g, i, j, step.dt);
+        }
+        let Way { acts: g, n, end, v_n, v_across } = &way;
+        let v_n = *v_n;
         let mut normal_force = push.force - form * self.damping_constant * v_n;
         if self.limit_damping {
             normal_force = normal_force.most(zero);
@@ -321,9 +350,9 @@ impl Granular {
 
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
         let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
-        let slip = sub(v_across, cross(spin, g.normal));
+        let slip = sub(*v_across, cross(spin, n[0]));
         let (own, rest) = history.split_at_mut(self.before_turning());
-        let friction = self.spring.force(g.normal, a, form, slip, carried, own, step);
+        let friction = self.spring.force(*n, a, form, slip, carried, own, step);
 
         let lever = cross(friction, g.normal);
         let mut w = Wrench {
@@ -332,9 +361,31 @@ impl Granular {
             torque_j: scale(self.arm(g, 1), lever),
         };
         if self.rolling.memory() + self.twisting.memory() > 0 {
-            self.turn(g, i, j, [a, form, carried], rest, step, &mut w);
+            let omega = sub(i.spin, j.spin);
+            self.turn(g, [n[0], *end], omega, [a, form, carried], rest, step, &mut w);
         }
         w
+    }
+
+    /// What a contact whose springs are synchronized goes by: in the middle of the step, when the velocities were as they are, its
+    /// normal was along d − ½ v dt (Vyas et al. 2025). Slip is across that one, and the spring turns with it. Forces act along
+    /// the normal where grains are: LAMMPS lets them act along the one of the middle as well, which brakes grains that roll about each other
+    /// though nothing rubs, and gives them an angular momentum.
+    #[inline(always)]
+    fn synchronized<R: Real>(&self, g: &Geometry<R>, i: &Motion<R>, j: &Motion<R>, dt: f64) -> Way<R> {
+        let apart = scale(g.radii[0] + g.radii[1] - g.overlap, g.normal);
+        let half = scale(g.overlap.like(0.5 * dt), sub(i.velocity, j.velocity));
+        let middle = sub(apart, half);
+        let middle = scale(g.overlap.like(1.0) / length(middle), middle);
+        let then = Geometry { normal: middle, ..*g };
+        let (v_then, v_across) = split_velocity(&then, i, j);
+        if self.compat.lammps() {
+            let classic =
+                matches!(self.spring.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
+            let end = if classic { middle } else { g.normal };
+            return Way { acts: then, n: [middle, end], end: g.normal, v_n: v_then, v_across };
+        }
+        Way { acts: *g, n: [middle, g.normal], end: g.normal, v_n: split_velocity(g, i, j).0, v_across }
     }
 
     /// Makes a contact forget the radius from which its spring shrinks as it unloads: the spring has shrunk already.
@@ -398,11 +449,12 @@ impl Granular {
         let same = self.damping == damping
             && self.spring.kind == kind
             && self.arm == arm
-            && self.spring.look == Look::First;
+            && self.spring.look == Look::First
+            && self.spring.sync == Sync::Off;
         (same && plain).then_some(Self {
             normal,
             damping,
-            spring: Spring { kind, look: Look::First, ..self.spring },
+            spring: Spring { kind, look: Look::First, sync: Sync::Off, ..self.spring },
             rolling: Rolling::None,
             twisting: Twisting::None,
             arm,
@@ -446,22 +498,21 @@ impl Granular {
     fn turn<R: Real>(
         &self,
         g: &Geometry<R>,
-        i: &Motion<R>,
-        j: &Motion<R>,
+        n: [Vec3<R>; 2],
+        omega: Vec3<R>,
         [a, form, carried]: [R; 3],
         history: &mut [R],
         step: Advance,
         w: &mut Wrench<R>,
     ) {
-        let omega = sub(i.spin, j.spin);
         let (roll, rest) = history.split_at_mut(self.rolling.memory());
         if self.rolling != Rolling::None {
-            let torque = self.rolling.torque(g, omega, carried, roll, step);
+            let torque = self.rolling.torque(g, (n, self.spring.sync), omega, carried, roll, step);
             w.torque_i = add(w.torque_i, torque);
             w.torque_j = sub(w.torque_j, torque);
         }
         if let Some(angle) = rest.first_mut().filter(|_| self.twisting != Twisting::None) {
-            let about = perigrain_base::math::vec3::dot(omega, g.normal);
+            let about = dot(omega, g.normal);
             let size =
                 self.twisting.torque(&self.spring, [a, form], about, carried, angle, step, self.compat);
             let torque = scale(size, g.normal);

@@ -34,11 +34,27 @@ pub enum Look {
     },
 }
 
+/// Where the normal that turns a spring is from (`synchronized_verlet`, Vyas et al. 2025).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sync {
+    /// The end of the step.
+    Off,
+    /// Its middle, as the velocities that move the spring on; then the spring is turned on into the plane of its end. The dashpot does
+    /// not turn.
+    Spring,
+    /// The same, and the dashpot turns.
+    Both,
+    /// The same, but what a spring that slides is shortened by is a dashpot that does not turn, as LAMMPS 22Jul2025 has it.
+    Lammps2025,
+}
+
 /// One contact's spring, dashpot and limit in the tangent plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Slider<R> {
-    /// The normal.
-    pub n: Vec3<R>,
+    /// The normal in the middle of the step (where springs are synchronized) and at its end.
+    pub n: [Vec3<R>; 2],
+    /// Whether these differ.
+    pub sync: Sync,
     /// k [force/length].
     pub stiffness: R,
     /// The stiffness by which a spring that slides is shortened: k, but where LAMMPS is wrong.
@@ -58,11 +74,9 @@ impl<R: Real> Slider<R> {
     /// it slides (Luding 2008, eq. 20).
     #[inline(always)]
     pub fn force(&self, xi: &mut Vec3<R>, memory: Memory, step: Advance) -> Vec3<R> {
-        if step.history {
-            self.advance(xi, memory, step.dt);
-        }
         let zero = self.limit.like(0.0);
-        let drag = scale(-self.damping, self.v);
+        let v = if step.history { self.advance(xi, memory, step.dt) } else { self.v };
+        let drag = scale(-self.damping, v);
         let by_force = memory == Memory::Force;
         let trial = if by_force { add(drag, *xi) } else { sub(drag, scale(self.stiffness, *xi)) };
         let size = length(trial);
@@ -79,7 +93,8 @@ impl<R: Real> Slider<R> {
         let inverse = zero.like(1.0) / (size * slack);
         let along = slack * inverse;
         let sliding = scale(R::choose(stretched, self.limit * along, zero), trial);
-        let mut elastic = sub(sliding, drag);
+        let unturned = self.sync == Sync::Lammps2025;
+        let mut elastic = sub(sliding, if unturned { scale(-self.damping, self.v) } else { drag });
         if self.capped {
             // Along the sliding direction a drag beyond the limit leaves the spring at rest; across it all of the drag counts, so that
             // what slid gives the same force when it is looked at once more.
@@ -117,23 +132,39 @@ impl<R: Real> Slider<R> {
         choose::<R>(drags, felt, choose::<R>(stiffens, felt, other))
     }
 
-    /// What is remembered, turned with the normal and moved on.
+    /// What is remembered, turned with the normal and moved on; the velocity that the dashpot resists.
     #[inline(always)]
-    fn advance(&self, xi: &mut Vec3<R>, memory: Memory, dt: f64) {
+    fn advance(&self, xi: &mut Vec3<R>, memory: Memory, dt: f64) -> Vec3<R> {
         let dt = self.limit.like(dt);
+        let [middle, end] = self.n;
         if memory == Memory::Projected {
             *xi = add(*xi, scale(dt, self.v));
-            *xi = sub(*xi, scale(dot(*xi, self.n), self.n));
-            return;
+            *xi = sub(*xi, scale(dot(*xi, end), end));
+            return self.v;
         }
-        let tilt = dot(*xi, self.n);
+        self.turn(xi, middle, memory);
+        let rate = if memory == Memory::Force { -(self.stiffness * dt) } else { dt };
+        *xi = add(*xi, scale(rate, self.v));
+        if self.sync == Sync::Off {
+            return self.v;
+        }
+        let tilted = self.turn(xi, end, memory);
+        if self.sync == Sync::Spring {
+            return self.v;
+        }
+        choose::<R>(tilted, into_plane(self.v, end, dot(self.v, end)), self.v)
+    }
+
+    /// Turns what is remembered into the plane across `n` where it leans out of it; where it does.
+    #[inline(always)]
+    fn turn(&self, xi: &mut Vec3<R>, n: Vec3<R>, memory: Memory) -> R::Mask {
+        let tilt = dot(*xi, n);
         let force = if memory == Memory::Force { tilt.abs() } else { tilt.abs() * self.stiffness };
         let tilted = force.above(self.limit * TILT);
         if R::any(tilted) {
-            *xi = choose::<R>(tilted, into_plane(*xi, self.n, tilt), *xi);
+            *xi = choose::<R>(tilted, into_plane(*xi, n, tilt), *xi);
         }
-        let rate = if memory == Memory::Force { -(self.stiffness * dt) } else { dt };
-        *xi = add(*xi, scale(rate, self.v));
+        tilted
     }
 }
 

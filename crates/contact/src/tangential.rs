@@ -2,7 +2,7 @@
 
 use super::damping::Damping;
 use super::normal::{effective_shear, effective_young, geometric};
-use super::slider::{Look, Memory, Slider};
+use super::slider::{Look, Memory, Slider, Sync};
 use super::{Advance, Normal};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, length, scale};
@@ -164,6 +164,7 @@ impl Tangential {
             loose,
             capped: !compat.lammps() && damping > 0.0 && self.kind.stiffens() && !form.by_radius(),
             look: Look::First,
+            sync: Sync::Off,
         }
     }
 }
@@ -198,6 +199,8 @@ pub struct Spring {
     pub capped: bool,
     /// Whether a contact is looked at once more.
     pub look: Look,
+    /// Whether it turns in two halves of the step.
+    pub sync: Sync,
 }
 
 impl Spring {
@@ -247,11 +250,11 @@ impl Spring {
     }
 
     /// The tangential force on i, at most `mu` times `carried`, the normal force that counts for friction; `a`: radius
-    /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity.
+    /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity, `n` as in [`Slider`].
     #[inline(always)]
     pub fn force<R: Real>(
         &self,
-        n: Vec3<R>,
+        n: [Vec3<R>; 2],
         a: R,
         form: R,
         v: Vec3<R>,
@@ -281,7 +284,8 @@ impl Spring {
                     }
                 }
                 let slack = if self.loose { a.like(self.stiffness) } else { stiffness };
-                let slider = Slider { n, stiffness, slack, damping, capped: self.capped, limit, v };
+                let slider =
+                    Slider { n, sync: self.sync, stiffness, slack, damping, capped: self.capped, limit, v };
                 if let Look::Again { setup } = self.look {
                     return slider.again(xi, setup);
                 }

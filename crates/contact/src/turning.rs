@@ -1,7 +1,7 @@
 //! Resistance to rolling and twisting: a spring, a dashpot and a slider for the difference of spins.
 
 use super::normal::geometric;
-use super::slider::{Memory, Slider};
+use super::slider::{Memory, Slider, Sync};
 use super::tangential::Spring;
 use super::{Advance, Geometry};
 use perigrain_base::math::real::Real;
@@ -71,11 +71,13 @@ impl Rolling {
     }
 
     /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω the difference of spins, at most
-    /// `mu` times the normal force `carried` at the arm R̄; its opposite acts on j.
+    /// `mu` times the normal force `carried` at the arm R̄; its opposite acts on j. `n` as in [`Slider`], and the arm's direction is
+    /// the normal of `g`.
     #[inline(always)]
     pub fn torque<R: Real>(
         &self,
         g: &Geometry<R>,
+        (n, sync): ([Vec3<R>; 2], Sync),
         omega: Vec3<R>,
         carried: R,
         history: &mut [R],
@@ -83,9 +85,10 @@ impl Rolling {
     ) -> Vec3<R> {
         let Rolling::Sds(c) = self else { return [carried.like(0.0); 3] };
         let like = |x: f64| carried.like(x);
-        let v = scale(g.curvature, cross(omega, g.normal));
+        let v = scale(g.curvature, cross(omega, n[0]));
         let slider = Slider {
-            n: g.normal,
+            n,
+            sync: if sync == Sync::Off { sync } else { Sync::Spring },
             stiffness: like(c.stiffness),
             slack: like(c.stiffness),
             damping: like(c.damping),

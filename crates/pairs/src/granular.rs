@@ -48,7 +48,7 @@ impl PairStyle for GranularStyle {
 }
 
 const SYNTAX: &str = "pair_style granular [cutoff]\n\
-    pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [heat …] [limit_damping] \
+    pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [heat …] [limit_damping] [synchronized_verlet] \
     [cutoff C] [average none|particle|body] [curvature both|impactor] [arms middle|point]\n\
     normal: {normals}\n\
     damping: none | velocity | mass_velocity | viscoelastic | tsuji | coeff_restitution | mdr 1|2\n\
@@ -101,6 +101,11 @@ const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each othe
     most mu times the normal force, acts only as a torque with arm R̄. `twisting`: the same for the spin \
     about the normal; `marshall` takes k_t a²/2, x_gamma η a²/2 and 2/3 a mu of the tangential model \
     (k_t before any factor a).\n\n\
+    `synchronized_verlet` (Vyas et al. 2025, doi 10.1016/j.cpc.2025.109524): slip is what the velocities of the middle of the step make across \
+    the normal of that moment, and springs, those against rolling too, are turned into its plane and from there into that of the end of the step. Without the word \
+    the normal is that of the end throughout, so that small grains between ones that are more than three times as large creep and stick. \
+    For `tangential linear_nohistory` there is nothing to turn. LAMMPS, and perigrain under `-compat lammps`, lets all forces act along the \
+    normal of the middle, which brakes grains that roll about each other though nothing rubs; by default they act along that of the end.\n\n\
     Without dashpot and slider, laws whose stiffness follows the area of contact make energy, here as in LAMMPS: `mindlin`, \
     `mindlin_classic` and `mindlin/force` where contacts unload with a spring across them, `twisting marshall` where they change \
     while the spring is wound up. `mindlin_rescale` and `twisting sds` do not ([Stability](../stability.md) has figures).\n\n\

@@ -44,7 +44,7 @@ pub const MDR: Style = Style {
            `psi_b` (0 … 1; 0: never) the grain grows no more, and the mean approach of all its planes \
            squeezes it with the bulk modulus E/(3 (1−2ν)). A contact that reaches through a third grain pushes less. All \
            grains have the same numbers; walls too, but for `gamma`, and LAMMPS wants those of fix wall/gran/region. \
-           `damping mdr` alone goes with it: η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2 (`1`), or η = e \
+           `damping none` or `damping mdr` goes with it: η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2 (`1`), or η = e \
            (`2`). Friction takes a = √(R̄ δ) as everywhere. Decks can read `d_Ro` (first radius), `d_Velas`, \
            `d_Acon1` (area of contact), `d_psi`, `d_eps_bar`, `d_sigmaxx` `…yy` `…zz` (mean stress, also `…xy` `…xz` `…yz`) and others of LAMMPS' \
            names by compute property/atom, dump or formula. Heat, `average` and `curvature` do not go with it. Large overlaps are what it is made for.",

@@ -169,6 +169,10 @@ pub fn common(cx: &BuildCx, material: Material) -> Common {
     if material.model.damping == Damping::Tsuji {
         cx.fault(material.span, "damping tsuji without its factor √2", true);
     }
+    if material.model.synchronized {
+        let fault = "synchronized_verlet whose forces act along the normal of the middle of the step";
+        cx.fault(material.span, fault, false);
+    }
     if material.model.slides_loosely() {
         let fault =
             "springs of walls with history that hang on the contact radius, and lose it when they slide";

@@ -8,10 +8,11 @@ use perigrain_contact::{Arm, Damping, Friction, Heat, Model, Normal, Rolling, Sd
 use perigrain_lang::{Args, Word};
 
 /// Keywords after the normal model.
-const KEYWORDS: [&str; 10] = [
+const KEYWORDS: [&str; 11] = [
     "tangential",
     "damping",
     "limit_damping",
+    "synchronized_verlet",
     "rolling",
     "twisting",
     "heat",
@@ -29,7 +30,7 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
     let first = args.expect("the normal model")?;
     let normal = normal(first, args)?;
     let mut tangential = None;
-    let mut limit = None;
+    let (mut limit, mut synchronized) = (None, None);
     let mut c = Coeff {
         model: Model::new(normal, Damping::default(), Tangential::SMOOTH),
         average: Average::None,
@@ -44,6 +45,7 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
             "tangential" => tangential = Some(self::tangential(&normal, args)?),
             "damping" => c.model.damping = damping(args)?,
             "limit_damping" => limit = Some(word.span),
+            "synchronized_verlet" => synchronized = Some(word.span),
             "rolling" => c.model.rolling = rolling(args)?,
             "twisting" => c.model.twisting = twisting(args)?,
             "heat" => c.model.heat = heat(args)?,
@@ -81,6 +83,8 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
     };
     c.model.tangential = tangential;
     c.model.limit_damping = limit.is_some();
+    c.model.synchronized = synchronized.is_some();
+    check_synchrony(&c.model, synchronized)?;
     check_mdr(first, &c)?;
     check_restitution(first, &c.model)?;
     check_cohesion(first, &c.model, limit)?;
@@ -198,22 +202,33 @@ fn heat(args: &mut Args) -> Result<Heat> {
     }
 }
 
-/// `mdr` goes with its own damping, that damping with nothing else.
+/// `mdr` goes with its own damping or none, that damping with nothing else.
 fn check_mdr(normal: &Word, c: &Coeff) -> Result<()> {
     let own = matches!(c.model.damping, Damping::Mdr | Damping::MdrConstant);
+    let suits = own || c.model.damping == Damping::None;
     let text = match (c.model.normal.in_grains(), own) {
-        (true, false) => "the normal model mdr goes with `damping mdr` alone",
-        (true, true)
+        (true, _) if !suits => "the normal model mdr goes with `damping mdr` or `none`",
+        (true, _)
             if c.average != Average::None || c.curvature != Curvature::Both || c.model.arm == Arm::Point =>
         {
             "the normal model mdr knows no `average`, no `curvature` and no `arms point`"
         }
-        (true, true) | (false, false) => return Ok(()),
+        (true, _) | (false, false) => return Ok(()),
         (false, true) => "damping mdr goes with the normal model mdr alone",
     };
     Err(Diagnostic::error(Code::CONFLICT, normal.span, text)
-        .help("write `mdr E nu Y gamma psi_b e … damping mdr 1`")
+        .help("write `mdr E nu Y gamma psi_b e … damping mdr 1`, or `damping none`")
         .into())
+}
+
+/// `synchronized_verlet` is about springs across the normal, as in LAMMPS.
+fn check_synchrony(model: &Model, synchronized: Option<Span>) -> Result<()> {
+    let Some(span) = synchronized.filter(|_| model.tangential.kind == Friction::LinearNohistory) else {
+        return Ok(());
+    };
+    let text = "synchronized_verlet turns springs, and `tangential linear_nohistory` has none";
+    let d = Diagnostic::error(Code::CONFLICT, span, text);
+    Err(d.help("leave the word out, or take `linear_history` or one of the `mindlin` models").into())
 }
 
 /// Where the damping model reads `eta` as a coefficient of restitution, it must be one.

@@ -24,8 +24,13 @@ use std::collections::BTreeMap;
 type HasFault = fn(&Model) -> bool;
 
 /// What LAMMPS does wrong in which models, and whether the LAMMPS of 2026 has mended it.
-const FAULTS: [(HasFault, &str, bool); 3] = [
+const FAULTS: [(HasFault, &str, bool); 4] = [
     (|m| m.damping == Damping::Tsuji, "damping tsuji without its factor √2", true),
+    (
+        |m| m.synchronized,
+        "synchronized_verlet whose forces act along the normal of the middle of the step",
+        false,
+    ),
     (Model::slides_loosely, "springs of contacts that forget the contact radius when they slide", true),
     (
         |m| m.twisting != Twisting::None,
