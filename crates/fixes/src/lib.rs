@@ -14,6 +14,7 @@ mod aveforce;
 mod balance;
 mod bins;
 mod bond_break;
+mod bond_create;
 mod components;
 mod controller;
 mod crowd;
@@ -65,8 +66,10 @@ mod viscous;
 mod viscous_nonlinear;
 mod viscous_sphere;
 mod wall;
-mod wall_harmonic;
+mod wall_flat;
+mod wall_law;
 mod wall_reflect;
+mod wall_region;
 mod window;
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -88,6 +91,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &aveforce::AveForce,
     &balance::Balance,
     &bond_break::BondBreak,
+    &bond_create::BondCreate,
     &controller::Controller,
     &damping_cundall::DampingCundall,
     &deform::Deform,
@@ -137,8 +141,14 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &wall::gran::WallGran,
     &wall::region::WallGranRegion,
     &wall::mesh::WallMesh,
-    &wall_harmonic::WallHarmonic,
+    &wall_flat::COLLOID,
+    &wall_flat::HARMONIC,
+    &wall_flat::LJ1043,
+    &wall_flat::LJ126,
+    &wall_flat::LJ93,
+    &wall_flat::MORSE,
     &wall_reflect::WallReflect,
+    &wall_region::WallRegion,
 ];
 
 /// Takes the region after the keyword `region`.

@@ -22,6 +22,30 @@ pub fn all_within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool
     pairs(&view, &every_type(w, reach), 0.0, keep)
 }
 
+/// Pairs of particles of two types closer than `reach` that `keep` lets pass, in the order of their ids, whatever keeps them apart: their
+/// places, that of the lower id first, and the square of the distance of their nearest images.
+pub fn of_types(
+    w: &World,
+    types: [u16; 2],
+    reach: f64,
+    keep: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<([usize; 2], f64)> {
+    let p = &w.particles;
+    let mut wanted = Wanted::new(w.types);
+    wanted.set(types[0], types[1], Reach::Fixed(reach));
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &[], period: w.periods() };
+    let mut list: Vec<([usize; 2], f64)> = vec![];
+    for q in pairs(&view, &wanted, 0.0, keep).iter().filter(|q| q.i != q.j) {
+        let (d, ends) = (view.difference(q), [q.i as usize, q.j as usize]);
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        match list.last_mut().filter(|last| last.0 == ends) {
+            Some(last) => last.1 = last.1.min(square),
+            None => list.push((ends, square)),
+        }
+    }
+    list
+}
+
 /// Refuses a distance beyond which a particle would meet several images of another one: pairs are counted once.
 ///
 /// # Errors

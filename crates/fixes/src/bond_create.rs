@@ -1,0 +1,287 @@
+//! fix bond/create: bonds between particles that have come close.
+
+mod choice;
+
+use super::{Fix, FixStyle};
+use choice::{Count, chosen};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::math::rng::Marsaglia;
+use perigrain_lang::Args;
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_styles::common::{bond_type, fraction, marsaglia_seed};
+use perigrain_styles::matter::publish;
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, COLUMNS, KIND, LISTS, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
+use perigrain_world::{Bond, GroupId, Key, Numbers, World};
+
+/// The style.
+pub struct BondCreate;
+
+impl Style for BondCreate {
+    fn name(&self) -> &'static str {
+        "bond/create"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group bond/create N itype jtype R bondtype [iparam MAX newtype] [jparam MAX newtype] [prob P SEED] \
+                     [molecule off|inter|intra]",
+            summary: "Makes bonds between particles that have come close.",
+            text: "At multiples of N, after particles have moved and before forces act, each particle of type itype of the group looks for the nearest one of type \
+                   jtype of the group within R (distance units) that it may be bonded to, and the other way round; two that have chosen each other get a \
+                   bond of that type, so that no particle gets more than one at a time. Of equal distances that to the pair with the lower IDs counts. \
+                   Pairs that are bonded already are left out, and those that `neigh_modify exclude` or two weights 0 of `special_bonds` keep out of neighbour lists \
+                   (with the default weights those two or three bonds apart).\n\n\
+                   `iparam`, `jparam`: a particle of type itype, jtype that has MAX bonds of the type gets no more (0: no limit, the default), \
+                   and when it has reached MAX it becomes one of type newtype. Where both types are one both are the same. `prob`: only where a random number is below P, that of the end with the \
+                   lower ID; the numbers are LAMMPS' where particles are created in the order of their IDs and not sorted (`atom_modify sort 0 0`). \
+                   `molecule inter`, `intra`: only between, only within molecules.\n\n\
+                   Pair forces between the ends cease at once, as `special_bonds` says, and bond forces begin in the same step. Bonds of `bpm/*` styles are at rest as they are made: length and axis \
+                   are those of this step. A style whose rest length is a coefficient (`harmonic`) sets the energy free that it has at that distance. LAMMPS also needs a pair \
+                   style that reaches as far as R; perigrain does not. Angles and dihedrals (`atype`, `dtype`, `itype`) are refused. LAMMPS counts bonds \
+                   when the first run begins and adds those it makes, so that one that has broken counts on: so it is under `-compat lammps` alone.\n\n\
+                   Vector of 2 (intensive): how many it made when it last looked, and in all; a second run, or one from a restart file, counts on.",
+            example: "units lj\natom_style bond\nregion b block 0 6 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
+                      create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
+                      bond_style harmonic\nbond_coeff 1 5.0 1.0\nvelocity all create 1.0 4928\nfix 1 all nve\n\
+                      fix glue all bond/create 10 1 1 1.2 1 iparam 1 1 jparam 1 1\n\
+                      thermo_style custom step bonds f_glue[2]\nrun 100",
+        }
+    }
+}
+
+const KEYWORDS: [&str; 8] = ["iparam", "jparam", "prob", "molecule", "atype", "dtype", "itype", "aconstrain"];
+
+impl FixStyle for BondCreate {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        if !cx.world.particles.style.bonded {
+            let text = "fix bond/create needs particles with bonds";
+            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+            return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+        }
+        let every = args.integer_from(1, "the number of steps N")?;
+        let types = [particle_type(args, cx)?, particle_type(args, cx)?];
+        let range = args.non_negative("the distance R within which bonds are made")?;
+        let kind = bond_type(args, cx.world.bonds.types)?;
+        let limits = types.map(|becomes| Limit { most: 0, becomes });
+        let rule = Rule { group: cx.group, types, range, kind, limits, molecules: Molecules::Off };
+        let key = |what: &str| Key::new(&format!("bond/create/{}{what}", cx.id));
+        let mut fix = Declared {
+            id: cx.id.to_string(),
+            key: key(""),
+            counts: key("/counts"),
+            every,
+            rule,
+            chance: None,
+            span: cx.span,
+        };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "iparam" => fix.rule.limits[0] = limit(args, cx)?,
+                "jparam" => fix.rule.limits[1] = limit(args, cx)?,
+                "prob" => fix.chance = Some((fraction(args)?, marsaglia_seed(args)?)),
+                "molecule" => fix.rule.molecules = molecules(args, cx)?,
+                "atype" | "dtype" | "itype" | "aconstrain" => {
+                    let text = format!("`{}` is about angles, which perigrain has not", word.text);
+                    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+                    return Err(d
+                        .help("leave it out; `bond_style bpm/rotational` and `bpm/beam` bend")
+                        .into());
+                }
+                _ => return Err(args.unknown(word, &KEYWORDS)),
+            }
+        }
+        if types[0] == types[1] && fix.rule.limits[0] != fix.rule.limits[1] {
+            let d = Diagnostic::error(
+                Code::CONFLICT,
+                cx.span,
+                "itype and jtype are one, and iparam is not jparam",
+            );
+            return Err(d.help("give both the same numbers").into());
+        }
+        Ok(Box::new(fix))
+    }
+}
+
+fn particle_type(args: &mut Args, cx: &BuildCx) -> Result<u16> {
+    let span = args.here();
+    let k = args.integer_from(1, "a type of particles")?;
+    match u16::try_from(k) {
+        Ok(kind) if usize::from(kind) <= cx.world.types => Ok(kind),
+        _ => fail(
+            Code::BAD_VALUE,
+            span,
+            format!("there are {} types of particles, no type {k}", cx.world.types),
+        ),
+    }
+}
+
+fn limit(args: &mut Args, cx: &BuildCx) -> Result<Limit> {
+    let most = args.integer_from(0, "the largest number of bonds")?;
+    Ok(Limit { most: usize::try_from(most).unwrap_or(usize::MAX), becomes: particle_type(args, cx)? })
+}
+
+fn molecules(args: &mut Args, cx: &BuildCx) -> Result<Molecules> {
+    let span = args.here();
+    let which = match args.choice("value of molecule", &["off", "inter", "intra"])? {
+        "off" => return Ok(Molecules::Off),
+        "inter" => Molecules::Between,
+        _ => Molecules::Within,
+    };
+    if !cx.world.particles.style.molecules {
+        let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene belong to no molecules");
+        return Err(d.help("`atom_style bond` or `fix … property/atom mol` has them").into());
+    }
+    Ok(which)
+}
+
+/// How many bonds a particle may have, and what it then becomes.
+#[derive(Clone, Copy, PartialEq)]
+struct Limit {
+    /// No limit where it is 0.
+    most: usize,
+    becomes: u16,
+}
+
+/// Whether molecules count.
+#[derive(Clone, Copy, PartialEq)]
+enum Molecules {
+    Off,
+    Between,
+    Within,
+}
+
+/// Which bonds are made.
+#[derive(Clone)]
+struct Rule {
+    group: GroupId,
+    types: [u16; 2],
+    range: f64,
+    /// Type of the bonds.
+    kind: u16,
+    limits: [Limit; 2],
+    molecules: Molecules,
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    /// How many were made when it last looked and in all, and where its random stream stands.
+    key: Numbers,
+    /// The column in which LAMMPS' counts of bonds stand.
+    counts: Numbers,
+    every: i64,
+    rule: Rule,
+    /// With which probability, and the seed.
+    chance: Option<(f64, u32)>,
+    span: Span,
+}
+
+impl Declared {
+    /// Whether some particle may become one of another type.
+    fn changes_types(&self) -> bool {
+        let becomes =
+            |k: usize| self.rule.limits[k].most > 0 && self.rule.limits[k].becomes != self.rule.types[k];
+        becomes(0) || becomes(1)
+    }
+
+    /// Makes bonds between these particles.
+    fn join(&self, w: &mut World, ends: &[[usize; 2]], mut count: Count) {
+        for pair in ends {
+            let tags = perigrain_world::bonds::ascending(pair.map(|i| w.particles.tag[i]));
+            w.bonds.push(Bond::new(i32::from(self.rule.kind), tags));
+            if let Err(at) = w.bonds.special.binary_search(&tags) {
+                w.bonds.special.insert(at, tags);
+            }
+            for &i in pair {
+                count.0[i] += 1;
+                let own = w.particles.kind[i];
+                let limit = self.rule.limits[usize::from(own != self.rule.types[0])];
+                if limit.most > 0 && count.0[i] == limit.most && limit.becomes != own {
+                    w.particles.kind[i] = limit.becomes;
+                }
+            }
+        }
+        // Bonded pairs leave the lists, and what lists know of types is new.
+        w.rebuild.due = true;
+        if self.changes_types() {
+            w.rebuild.roster += 1;
+        }
+        if w.settings.lammps() {
+            let n = w.n();
+            *w.columns.scalar(self.counts, n) = count.0.iter().map(|k| *k as f64).collect();
+        }
+    }
+
+    /// How many bonds of the type each particle has.
+    fn count(&self, w: &mut World) -> Count {
+        let n = w.n();
+        if w.settings.lammps() {
+            return Count(w.columns.scalar(self.counts, n).iter().map(|k| *k as usize).collect());
+        }
+        Count::of(w, self.rule.kind)
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.columns.remove(self.counts);
+        let mut memory = vec![0.0, 0.0];
+        memory.extend(self.chance.iter().flat_map(|(_, seed)| Marsaglia::new(*seed).stand()));
+        w.memo.insert(self.key, memory);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(self.key);
+        w.columns.remove(self.counts);
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        if self.changes_types() && cx.world().families.is_some() {
+            let text = "points of peridynamic solids keep their types while a run goes on";
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, self.span, text);
+            return Err(d.help("let `newtype` be the type they have").into());
+        }
+        let (me, key, slot) = (self.clone(), self.key, cx.slot(&format!("f_{}", self.id)));
+        let known = move |w: &World| -> [f64; 2] {
+            w.memo.get(key).and_then(|m| m.first_chunk().copied()).unwrap_or_default()
+        };
+        let w = cx.world();
+        let counts = known(w).to_vec();
+        w.slots.get_mut(slot).vector = counts;
+        if w.settings.lammps() && w.columns.get_scalar(self.counts).is_none() {
+            let (count, n) = (Count::of(w, self.rule.kind), w.n());
+            *w.columns.scalar(self.counts, n) = count.0.iter().map(|k| *k as f64).collect();
+        }
+        let mut access = Needs::new().read(X | BOX | TAG | MASK | KIND | MOLECULE);
+        access = access.write(BONDS | LISTS | SLOTS).keep(MEMO | COLUMNS);
+        if self.changes_types() {
+            access = access.write(KIND);
+        }
+        let act = move |w: &mut World, t: &Tick| {
+            let [_, all] = known(w);
+            let stand = w.memo.get(key).and_then(|m| m.get(2..)).unwrap_or_default().to_vec();
+            let mut stream = me.chance.and_then(|(p, _)| Some((p, Marsaglia::resumed(&stand)?)));
+            let count = me.count(w);
+            let ends = chosen(w, &me.rule, &count, stream.as_mut());
+            if !ends.is_empty() {
+                me.join(w, &ends, count);
+            }
+            let made = [ends.len() as f64, all + ends.len() as f64];
+            let rest = stream.iter().flat_map(|(_, stream)| stream.stand());
+            w.memo.insert(key, made.into_iter().chain(rest).collect());
+            publish(w, slot, t, 0.0, &made);
+            Ok(())
+        };
+        let op = StepOp::new(format!("fix {} bond/create", self.id), Stage::PostIntegrate, access, act);
+        Ok(vec![op.when(When::Every(self.every)).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 2, ..Shape::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Which pairs of particles fix bond/create joins.
+
+use super::{Molecules, Rule};
+use perigrain_base::math::rng::Marsaglia;
+use perigrain_styles::near::of_types;
+use perigrain_world::index::Index;
+use perigrain_world::{Allowed, World};
+
+/// How many bonds of the fix's type each particle has.
+pub struct Count(pub Vec<usize>);
+
+impl Count {
+    /// As they are now.
+    pub fn of(w: &World, kind: u16) -> Self {
+        let (mut count, index) = (vec![0; w.n()], Index::new(&w.particles.tag));
+        for bond in w.bonds.list.iter().filter(|b| b.kind == i32::from(kind)) {
+            for i in bond.ends.into_iter().filter_map(|id| index.find(id, &w.particles.tag)) {
+                count[i] += 1;
+            }
+        }
+        Self(count)
+    }
+}
+
+/// Two particles that may be joined: their places, the lower ID first, and the square of their distance.
+struct Candidate {
+    ends: [usize; 2],
+    square: f64,
+}
+
+/// The pairs to join, each particle in one at most, in the order of their IDs.
+pub fn chosen(
+    w: &World,
+    rule: &Rule,
+    count: &Count,
+    chance: Option<&mut (f64, Marsaglia)>,
+) -> Vec<[usize; 2]> {
+    let list = candidates(w, rule, count);
+    if list.is_empty() {
+        return vec![];
+    }
+    // For each particle the nearest of its partners, by its place in the list.
+    let mut nearest = vec![usize::MAX; w.n()];
+    for (k, pair) in list.iter().enumerate() {
+        for i in pair.ends {
+            if nearest[i] == usize::MAX || pair.square < list[nearest[i]].square {
+                nearest[i] = k;
+            }
+        }
+    }
+    let both = |(k, pair): &(usize, &Candidate)| pair.ends.iter().all(|i| nearest[*i] == *k);
+    let eligible = list.iter().enumerate().filter(both).map(|(_, pair)| pair.ends);
+    let Some((p, stream)) = chance.filter(|(p, _)| *p < 1.0) else { return eligible.collect() };
+    let drawn = draw(w, &nearest, stream);
+    eligible.filter(|[lower, _]| drawn[*lower] < *p).collect()
+}
+
+/// A random number for each particle that has a partner, in the order of their IDs.
+fn draw(w: &World, nearest: &[usize], stream: &mut Marsaglia) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..w.n()).filter(|i| nearest[*i] != usize::MAX).collect();
+    order.sort_unstable_by_key(|i| w.particles.tag[*i]);
+    let mut drawn = vec![0.0; w.n()];
+    order.into_iter().for_each(|i| drawn[i] = stream.uniform());
+    drawn
+}
+
+/// Pairs that are near enough, of the right types, that have room for another bond and have none to each other, by their IDs.
+fn candidates(w: &World, rule: &Rule, count: &Count) -> Vec<Candidate> {
+    let p = &w.particles;
+    let [a, b] = rule.types;
+    let allowed = Allowed::excluded(w);
+    let room = |i: usize, k: usize| rule.limits[k].most == 0 || count.0[i] < rule.limits[k].most;
+    let keep = |i: usize, j: usize| {
+        // As LAMMPS has it, the first particle is asked for itype first.
+        let sides = if (p.kind[i], p.kind[j]) == (a, b) { [0, 1] } else { [1, 0] };
+        let members = p.mask[i] & p.mask[j] & rule.group.bit() != 0;
+        members && room(i, sides[0]) && room(j, sides[1]) && suits(w, rule, [i, j]) && allowed.pair(i, j)
+    };
+    let found = of_types(w, rule.types, rule.range, &keep).into_iter();
+    let mut list: Vec<Candidate> = found.map(|(ends, square)| Candidate { ends, square }).collect();
+    leave_bonded(w, &mut list);
+    list
+}
+
+/// Whether molecules let them be joined.
+fn suits(w: &World, rule: &Rule, [i, j]: [usize; 2]) -> bool {
+    let of = |i: usize| w.particles.molecule.get(i).copied().unwrap_or_default();
+    match rule.molecules {
+        Molecules::Off => true,
+        Molecules::Between => of(i) != of(j),
+        Molecules::Within => of(i) == of(j),
+    }
+}
+
+/// Takes out pairs that are bonded, and those two or three bonds apart that weights keep out of neighbour lists.
+fn leave_bonded(w: &World, list: &mut Vec<Candidate>) {
+    if list.is_empty() || w.bonds.special.is_empty() {
+        return;
+    }
+    let weights = w.bonds.weights;
+    let zero = |apart: usize| weights.lj[apart - 1] == 0.0 && weights.coul[apart - 1] == 0.0;
+    let partners = Partners::new(w);
+    list.retain(|pair| match partners.apart(pair.ends) {
+        None => true,
+        Some(1) => false,
+        Some(apart) => !zero(apart),
+    });
+}
+
+/// Who is bonded to whom, by places.
+struct Partners {
+    starts: Vec<u32>,
+    all: Vec<u32>,
+}
+
+impl Partners {
+    fn new(w: &World) -> Self {
+        let index = Index::new(&w.particles.tag);
+        let ends: Vec<[usize; 2]> = w
+            .bonds
+            .special
+            .iter()
+            .filter_map(|ids| {
+                let [a, b] = ids.map(|id| index.find(id, &w.particles.tag));
+                Some([a?, b?])
+            })
+            .collect();
+        let mut starts = vec![0; w.n() + 1];
+        ends.iter().flatten().for_each(|i| starts[i + 1] += 1);
+        (1..starts.len()).for_each(|k| starts[k] += starts[k - 1]);
+        let (mut next, mut all) = (starts.clone(), vec![0; 2 * ends.len()]);
+        for [a, b] in ends {
+            for (from, to) in [(a, b), (b, a)] {
+                all[next[from] as usize] = to as u32;
+                next[from] += 1;
+            }
+        }
+        Self { starts, all }
+    }
+
+    fn of(&self, i: u32) -> &[u32] {
+        let i = i as usize;
+        &self.all[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+
+    /// How many bonds apart two particles are, if at most three.
+    fn apart(&self, [a, b]: [usize; 2]) -> Option<usize> {
+        let (a, b) = (a as u32, b as u32);
+        let (near, far) = (self.of(a), self.of(b));
+        if near.contains(&b) {
+            return Some(1);
+        }
+        if near.iter().any(|m| far.contains(m)) {
+            return Some(2);
+        }
+        near.iter().any(|m| self.of(*m).iter().any(|n| far.contains(n))).then_some(3)
+    }
+}

@@ -1,0 +1,406 @@
+//! fix wall/harmonic, wall/lj93 and their like: flat walls that push and pull without friction.
+
+use super::faces::{Face, Spot, check};
+use super::wall_law::{Law, NAMES, formula, numbers};
+use super::{Facts, Fix, FixStyle, Minimizing};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Param};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_styles::common::{scales, units_lattice, variable_param};
+use perigrain_styles::matter::{Chosen, change_forces, publish, sum};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{F, Fields, MASK, RADIUS, SLOTS, TALLY, X};
+use perigrain_world::{GroupId, World};
+use std::sync::LazyLock;
+
+/// A style, `wall/` and the name of the law of this number.
+pub struct FlatWall(usize);
+
+/// A half-space of points of a 12-6 law.
+pub static LJ93: FlatWall = FlatWall(0);
+/// Points of a 12-6 law.
+pub static LJ126: FlatWall = FlatWall(1);
+/// Layers of a lattice.
+pub static LJ1043: FlatWall = FlatWall(2);
+/// A half-space for spheres.
+pub static COLLOID: FlatWall = FlatWall(3);
+/// Springs.
+pub static HARMONIC: FlatWall = FlatWall(4);
+/// A well of two exponentials.
+pub static MORSE: FlatWall = FlatWall(5);
+
+/// The names of the styles.
+const STYLES: [&str; 6] =
+    ["wall/lj93", "wall/lj126", "wall/lj1043", "wall/colloid", "wall/harmonic", "wall/morse"];
+
+/// Their syntax, text and example.
+static PAGES: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| NAMES.iter().map(|law| page(law)).collect());
+
+fn page(law: &str) -> [String; 3] {
+    let words = numbers(law).join(" ");
+    let syntax = format!(
+        "fix ID group wall/{law} xlo|xhi|ylo|yhi|zlo|zhi EDGE|place {words} cutoff … [units lattice|box] [pbc yes|no]"
+    );
+    let text = format!(
+        "A particle of the group whose centre is at a distance r < cutoff from a wall feels the force −dE/dr away from it, with {}; the energy \
+         is shifted to 0 at the cutoff. {} \
+         Up to six walls, each named by the face on whose side it stands: `zlo` pushes upwards, `zhi` downwards. The place is `EDGE` (the \
+         face of the box when the fix is declared: it does not move with the box), a number, or `v_name` of an equal-style variable; so are \
+         the numbers of the law (from a variable not negative); variables are evaluated each step. Places, numbers or variables, are in \
+         lattice spacings unless `units box`; other distances are not. A particle at the wall or behind it ends the run. Faces of a wall's \
+         direction must not be periodic unless `pbc yes`; distances are not taken across them.\n\n\
+         Scalar (extensive): the energy of all walls; `fix_modify ID energy yes` adds it to the potential energy. Vector (extensive): the \
+         force on each wall in the order in which they were named, negative where it is pushed downwards. `fix_modify ID virial yes` adds \
+         Σ F r to the virial of pressures across each wall. `fix wall/region` has the same laws for regions. `fld yes` is for LAMMPS' \
+         lubrication styles and refused.",
+        formula(law),
+        if law == "colloid" {
+            "A sphere that touches the wall ends the run."
+        } else {
+            "Sizes of spheres do not count."
+        },
+    );
+    let numbers = match law {
+        "morse" => "1.0e-6 2000.0 0.001",
+        "harmonic" => "1.0e6 0.0",
+        _ => "1.0e-6 0.001",
+    };
+    [syntax, text, format!("fix soft grains wall/{law} zlo -0.004 {numbers} 0.003 units box")]
+}
+
+impl Style for FlatWall {
+    fn name(&self) -> &'static str {
+        STYLES[self.0]
+    }
+    fn doc(&self) -> Doc {
+        let [syntax, text, example] = &PAGES[self.0];
+        Doc { syntax, summary: "Flat walls that push and pull particles without friction.", text, example }
+    }
+}
+
+const KEYWORDS: &[&str] = &["xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "units", "fld", "pbc"];
+
+impl FixStyle for FlatWall {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let law = NAMES[self.0];
+        if law == "colloid" && !cx.world.particles.style.sphere {
+            let text = "fix wall/colloid needs particles with a radius";
+            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+            return Err(d.help("put `atom_style sphere` at the top of the deck").into());
+        }
+        let (mut faces, mut pushes, mut lattice, mut through) = (vec![], vec![], true, false);
+        while let Some(word) = args.next() {
+            if let Some(face) = Face::read(word, &faces, args, cx)? {
+                faces.push(face);
+                pushes.push(Words::read(law, args, cx)?);
+                continue;
+            }
+            match word.text.as_str() {
+                "units" => lattice = units_lattice(args)?,
+                "pbc" => through = args.flag("pbc")?,
+                "fld" => no_lubrication(args)?,
+                _ => return Err(args.unknown(word, KEYWORDS)),
+            }
+        }
+        check(&faces, through, args, cx)?;
+        Ok(Box::new(Declared {
+            id: cx.id.to_string(),
+            group: cx.group,
+            law,
+            walls: faces.into_iter().zip(pushes).collect(),
+            scale: scales(cx.world, lattice),
+            virial: false,
+        }))
+    }
+}
+
+/// `fld yes` makes no sense without a pair style that asks for the walls' forces.
+fn no_lubrication(args: &mut Args) -> Result<()> {
+    let span = args.here();
+    if args.flag("fld")? {
+        let text = "`fld yes` gives the walls' forces to lubrication styles (pair_style lubricateU), of which there are none here";
+        return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("leave it out").into());
+    }
+    Ok(())
+}
+
+/// What pushes: the numbers of the law.
+#[derive(Clone)]
+struct Words {
+    numbers: Vec<Param>,
+    cutoff: f64,
+}
+
+impl Words {
+    fn read(law: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let mut given = vec![];
+        for what in numbers(law) {
+            let number = variable_param(args, what)?;
+            cx.param(&number, false)?;
+            given.push(number);
+        }
+        Ok(Self { numbers: given, cutoff: args.positive("the cutoff")? })
+    }
+}
+
+/// One wall as it is read during a run.
+struct Sealed {
+    face: Face,
+    spot: Spot,
+    law: &'static str,
+    numbers: Vec<Reading>,
+    cutoff: f64,
+}
+
+/// One wall now.
+struct Now<'a> {
+    face: &'a Face,
+    at: f64,
+    law: Law,
+}
+
+impl Sealed {
+    fn now(&self, w: &World, span: Span) -> Result<Now<'_>> {
+        let mut given = [0.0; 3];
+        for ((to, from), what) in given.iter_mut().zip(&self.numbers).zip(numbers(self.law)) {
+            *to = from.get(w);
+            if *to < 0.0 && !from.is_const() {
+                let face = self.face.name();
+                let text = format!("{what} of the wall `{face}` has become {to}: it must not be negative");
+                return fail(Code::BAD_VALUE, span, text);
+            }
+        }
+        Ok(Now { face: &self.face, at: self.spot.get(w), law: Law::new(self.law, given, self.cutoff) })
+    }
+}
+
+impl Now<'_> {
+    /// Distance, force away from the wall and energy of a particle there.
+    #[inline]
+    fn push(&self, x: [f64; 3], radius: f64) -> Option<(f64, [f64; 2])> {
+        let r = self.face.depth(x, self.at);
+        (r < self.law.cutoff).then(|| (r, self.law.at(r, radius)))
+    }
+
+    /// Whether a particle there has come to the wall or gone through.
+    fn reached(&self, x: [f64; 3], radius: f64) -> bool {
+        self.face.depth(x, self.at) <= self.law.least(radius)
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    /// The name of the law.
+    law: &'static str,
+    walls: Vec<(Face, Words)>,
+    /// Of places along each direction.
+    scale: [f64; 3],
+    /// `fix_modify virial yes`.
+    virial: bool,
+}
+
+impl Declared {
+    fn seal(&self, cx: &mut dyn SealCx) -> Result<Vec<Sealed>> {
+        let mut walls = vec![];
+        for (face, words) in &self.walls {
+            let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
+            let numbers = words.numbers.iter().map(&mut read).collect::<Result<Vec<Reading>>>()?;
+            let spot = face.seal(cx, Stage::PostForce, self.scale)?;
+            walls.push(Sealed { face: face.clone(), spot, law: self.law, numbers, cutoff: words.cutoff });
+        }
+        Ok(walls)
+    }
+
+    fn needs_radii(&self) -> bool {
+        self.law == "colloid"
+    }
+}
+
+/// The radius of a particle where the law asks for it, and 0 where it does not.
+fn radius(w: &World, i: usize, asked: bool) -> f64 {
+    if asked { w.particles.radius[i] } else { 0.0 }
+}
+
+/// What one particle gets of all walls: energy, the forces on up to six walls, whether it is behind one.
+type Got = [f64; 8];
+
+fn push_all(walls: &[Now], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
+    let mut got = [0.0; 8];
+    for (k, wall) in walls.iter().enumerate() {
+        let Some((_, [push, energy])) = wall.push(x, radius) else { continue };
+        let along = if wall.face.high { -push } else { push };
+        f[wall.face.axis] += along;
+        got[0] += energy;
+        got[1 + k] -= along;
+        got[7] += f64::from(u8::from(wall.reached(x, radius)));
+    }
+    got
+}
+
+/// The virial that a particle gets of all walls: xx yy zz.
+fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 3] {
+    let mut virial = [0.0; 3];
+    for (wall, (r, [push, _])) in walls.iter().filter_map(|wall| Some((wall, wall.push(x, radius)?))) {
+        virial[wall.face.axis] += push * r;
+    }
+    virial
+}
+
+/// Adds the walls' virial to the sums that are wanted.
+fn tally(w: &mut World, chosen: &Chosen, walls: &[Now], sized: bool, t: &Tick) {
+    let p = &w.particles;
+    let now = chosen.now(w);
+    let of = |w: &World, i: usize| virial_of(walls, w.particles.x[i], radius(w, i, sized));
+    let one = |i: usize| if now.has(p.mask[i], p.x[i]) { of(w, i) } else { [0.0; 3] };
+    if t.virial {
+        let total = sum::<3>(&p.mask, GroupId::ALL, one);
+        (0..3).for_each(|d| w.tally.fixes[d] += total[d]);
+    }
+    if t.atom_virial {
+        let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
+        let (p, now) = (&w.particles, chosen.now(w));
+        for (i, own) in atoms.iter_mut().enumerate().filter(|(i, _)| now.has(p.mask[*i], p.x[*i])) {
+            let added = of(w, i);
+            (0..3).for_each(|d| own[d] += added[d]);
+        }
+        w.tally.atom_fixes = atoms;
+    }
+}
+
+/// The refusal of a particle that has come to a wall or gone through.
+fn reached(w: &World, chosen: &Chosen, (walls, sized): (&[Now], bool), t: &Tick, span: Span) -> Result<()> {
+    let (p, now) = (&w.particles, chosen.now(w));
+    let behind = |i: usize| walls.iter().find(|wall| wall.reached(p.x[i], radius(w, i, sized)));
+    let first = (0..w.n())
+        .filter(|&i| now.has(p.mask[i], p.x[i]))
+        .filter_map(|i| behind(i).map(|wall| (p.tag[i], i, wall)))
+        .min_by_key(|(id, ..)| *id);
+    let Some((id, i, wall)) = first else { return Ok(()) };
+    let [x, y, z] = p.x[i];
+    let text = format!(
+        "particle {id} at ({x}, {y}, {z}) has reached the wall `{}` at {} in step {}",
+        wall.face.name(),
+        wall.at,
+        t.step
+    );
+    Err(Diagnostic::error(Code::BAD_VALUE, span, text)
+        .help("a greater epsilon or cutoff holds it back")
+        .into())
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let walls = self.seal(cx)?;
+        let (slot, virial) = (cx.slot(&format!("f_{}", self.id)), self.virial);
+        let sized = self.needs_radii();
+        let access = Needs::new()
+            .read(X | MASK | if sized { RADIUS } else { Fields::NONE })
+            .add(F | TALLY)
+            .write(SLOTS);
+        let op = StepOp::new(
+            format!("fix {} wall/{}", self.id, self.law),
+            Stage::PostForce,
+            access,
+            move |w, t| {
+                let mut now = vec![];
+                for wall in &walls {
+                    now.push(wall.now(w, span)?);
+                }
+                if virial {
+                    tally(w, &chosen, &now, sized, t);
+                }
+                if t.unchanged {
+                    return Ok(());
+                }
+                let got: Got = change_forces(w, &chosen, |w, i, f| {
+                    push_all(&now, w.particles.x[i], radius(w, i, sized), f)
+                });
+                if got[7] != 0.0 {
+                    reached(w, &chosen, (&now, sized), t, span)?;
+                }
+                publish(w, slot, t, got[0], &got[1..=now.len()]);
+                Ok(())
+            },
+        );
+        Ok(vec![op.boxed()])
+    }
+
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        match args.eat("virial") {
+            true => args.flag("virial").map(|yes| self.virial = yes),
+            false => super::no_option(args),
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        Shape {
+            scalar: true,
+            vector: self.walls.len(),
+            scalar_extensive: true,
+            vector_extensive: true,
+            ..Shape::default()
+        }
+    }
+
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[3.0, 0.0, 1.0], [5.0, 0.0, 1.0]]);
+        b.world.particles.f = vec![[0.0; 3]; 2].into();
+        b.equal.insert("n".into(), -1.0);
+        b.equal.insert("e".into(), 6.0);
+        b
+    }
+
+    // At 1 and 3 from the lower wall, which reaches 4, and at 1 from the upper one: pushes 36, 12 and 4, by hand.
+    #[test]
+    fn pushes_energies_and_forces_on_walls() {
+        let mut b = scene();
+        let fix = b.fix(&HARMONIC, "xlo 2 v_e 1 4 xhi 6 2 v_e 2 zhi EDGE 1 1 1 units box pbc yes").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[36.0, 0.0, 0.0], [8.0, 0.0, 0.0]]);
+        let slot = b.slot_of("f_f");
+        // 6 (3² + 1²) + 2 · 1².
+        assert_eq!((slot.scalar, slot.vector.as_slice()), (62.0, [-48.0, 4.0, 0.0].as_slice()));
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let mut b = scene();
+        for words in [
+            "",
+            "units box",
+            "xlo 1 1 1 1",
+            "xlo 1 1 1 pbc yes",
+            "xlo 1 1 1 0 pbc yes",
+            "xlo 1 1 1 v_e pbc yes",
+            "xlo 1 1 1 1 xlo 2 1 1 1 pbc yes",
+            "xlo 1 v_q 1 1 pbc yes",
+            "xlo 1 1 1 1 pbc yes fld yes",
+            "xlo 1 1 1 1 pbc yes side in",
+        ] {
+            assert!(b.fix(&HARMONIC, words).is_err(), "{words}");
+        }
+        for words in ["xlo 3 1 1 1", "xhi 5 1 1 1", "xlo 0 v_n 1 1", "xlo 0 1 v_n 1"] {
+            let fix = b.fix(&HARMONIC, &format!("{words} units box pbc yes")).unwrap();
+            let mut ops = b.seal(&*fix).unwrap();
+            assert!(b.stage(&mut ops, Stage::PostForce).is_err(), "{words}");
+        }
+        assert!(b.fix(&HARMONIC, "xlo 0 -1 -1 1 units box pbc yes fld no").is_ok());
+    }
+}
