@@ -81,6 +81,12 @@ fn planes_of_walls_follow_variables() {
     close(&result("wall_planes_by_variables.in", &["-compat", "lammps/2025"]), &wanted, 1e-8);
     // Springs that slide are cut otherwise by default; the planes are the same.
     close(&result("wall_planes_by_variables.in", &[]), &wanted, 0.02);
+    // A run cut in two by a restart file has the same bits, also in the middle of a contact.
+    let cut = |half: &str| {
+        let said = text(&run("wall_planes_by_variables.in", &["-var", "half", half]));
+        said.lines().rev().find(|l| l.starts_with("RESULT")).map(str::to_string)
+    };
+    assert!(cut("1000").is_some() && cut("1000") == cut("437"));
     // An elastic piston: twice its velocity, but for what a step of a fiftieth of the contact leaves.
     close(&result("wall_piston.in", &[]), &[-1.0], 1e-6);
 }
