@@ -1,3 +1,5 @@
+//! Which bonds fix bond/create makes in a row of particles, and what it refuses.
+
 use super::*;
 use perigrain_styles::testing::Bench;
 use perigrain_world::AtomStyle;
