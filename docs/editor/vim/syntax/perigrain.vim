@@ -142,6 +142,7 @@ syntax match perigrain_fix_style /\vave\/time\S@!/ contained
 syntax match perigrain_fix_style /\vaveforce\S@!/ contained
 syntax match perigrain_fix_style /\vbalance\S@!/ contained
 syntax match perigrain_fix_style /\vbond\/break\S@!/ contained
+syntax match perigrain_fix_style /\vbond\/create\S@!/ contained
 syntax match perigrain_fix_style /\vcontroller\S@!/ contained
 syntax match perigrain_fix_style /\vdamping\/cundall\S@!/ contained
 syntax match perigrain_fix_style /\vdeform\S@!/ contained
@@ -188,11 +189,17 @@ syntax match perigrain_fix_style /\vvector\S@!/ contained
 syntax match perigrain_fix_style /\vviscous\S@!/ contained
 syntax match perigrain_fix_style /\vviscous\/nonlinear\S@!/ contained
 syntax match perigrain_fix_style /\vviscous\/sphere\S@!/ contained
+syntax match perigrain_fix_style /\vwall\/colloid\S@!/ contained
 syntax match perigrain_fix_style /\vwall\/gran\S@!/ contained
 syntax match perigrain_fix_style /\vwall\/gran\/region\S@!/ contained
 syntax match perigrain_fix_style /\vwall\/harmonic\S@!/ contained
+syntax match perigrain_fix_style /\vwall\/lj1043\S@!/ contained
+syntax match perigrain_fix_style /\vwall\/lj126\S@!/ contained
+syntax match perigrain_fix_style /\vwall\/lj93\S@!/ contained
 syntax match perigrain_fix_style /\vwall\/mesh\S@!/ contained
+syntax match perigrain_fix_style /\vwall\/morse\S@!/ contained
 syntax match perigrain_fix_style /\vwall\/reflect\S@!/ contained
+syntax match perigrain_fix_style /\vwall\/region\S@!/ contained
 highlight default link perigrain_fix_style Type
 syntax match perigrainCommand /\v^\s*\zscompute\S@!/ nextgroup=perigrain_compute_1 skipwhite
 syntax match perigrain_compute_1 /\S\+/ contained nextgroup=perigrain_compute_2 skipwhite
