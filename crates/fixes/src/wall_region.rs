@@ -27,7 +27,7 @@ impl Style for WallRegion {
             syntax: "fix ID group wall/region regionID lj93|lj126|lj1043|colloid|harmonic epsilon sigma cutoff | morse D0 alpha r0 cutoff",
             summary: "The surface of a region as a smooth wall that pushes and pulls particles.",
             text: &TEXT,
-            example: "atom_style sphere\nregion b block -5 5 -5 5 -5 5\ncreate_box 1 b\nregion ball sphere 0 0 0 4\ncreate_atoms 1 single 0 0 2.9\n\
+            example: "units lj\natom_style sphere\nregion b block -5 5 -5 5 -5 5\ncreate_box 1 b\nregion ball sphere 0 0 0 4\ncreate_atoms 1 single 0 0 2.9\n\
                       set group all diameter 1.0\nset group all density 1.0\nfix 1 all nve\nfix shell all wall/region ball lj93 1.0 1.0 2.5\nfix_modify shell energy yes\n\
                       thermo_style custom step pe f_shell f_shell[3]\nrun 100",
         }
