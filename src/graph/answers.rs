@@ -37,13 +37,14 @@ pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
         "peri_flag" => flag(s.peri),
         "molecule_flag" => flag(s.molecules),
         "nbondtypes" => w.bonds.types as f64,
+        "nangletypes" => w.bonds.angles.types as f64,
         "world_size" | "universe_size" => 1.0,
         "bigint" => 8.0,
         "tagint" | "imageint" => 4.0,
         "triclinic" => flag(w.domain.as_ref().is_some_and(|d| d.tilt.is_some())),
-        "nghost" | "nangletypes" | "ndihedraltypes" | "nimpropertypes" | "q_flag" | "mu_flag"
-        | "ellipsoid_flag" | "angmom_flag" | "world_rank" | "universe_rank" | "nellipsoids" | "nlines"
-        | "ntris" | "nbodies" | "kokkos_active" | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
+        "nghost" | "ndihedraltypes" | "nimpropertypes" | "q_flag" | "mu_flag" | "ellipsoid_flag"
+        | "angmom_flag" | "world_rank" | "universe_rank" | "nellipsoids" | "nlines" | "ntris" | "nbodies"
+        | "kokkos_active" | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
         _ => return None,
     };
     Some(Value::Number(number))
@@ -143,7 +144,10 @@ fn active(w: &World, declared: &Declared, category: &Word, name: &Word) -> Resul
         "atom_style" => Ok(word == w.particles.style.name()),
         "pair_style" => Ok(word == declared.pair.unwrap_or("none")),
         "bond_style" => Ok(word == declared.bond.unwrap_or("none")),
-        "angle_style" | "dihedral_style" | "improper_style" | "kspace_style" => Ok(word == "none"),
+        "angle_style" => {
+            Ok((word == "zero") == w.bonds.angles.style.is_some() && ["zero", "none"].contains(&word))
+        }
+        "dihedral_style" | "improper_style" | "kspace_style" => Ok(word == "none"),
         _ => among("category of is_active()", category, CATEGORIES),
     }
 }

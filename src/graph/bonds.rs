@@ -140,6 +140,21 @@ pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
     }
 }
 
+/// Angles without a style, types without coefficients.
+pub fn check_angles(w: &World, span: Span, found: &mut Diagnostics) {
+    let angles = &w.bonds.angles;
+    if angles.style.is_none() && !angles.list.is_empty() {
+        let text = "there are angles but no angle_style: they exert no forces";
+        let d = Diagnostic::warning(Code::NO_FORCES, span, text);
+        found.push(d.help("`angle_style zero` says that this is meant"));
+    }
+    if let Some(first) = angles.missing().first() {
+        let text = format!("angle_style zero has no coefficients for angle type {first}");
+        let d = Diagnostic::error(Code::INCOMPLETE, span, text);
+        found.push(d.help(format!("add `angle_coeff {first}`")));
+    }
+}
+
 /// A bond style that leaves some forces to a pair style needs that one.
 fn companion(graph: &Graph, node: &BondNode, span: Span, found: &mut Diagnostics) {
     let wanted = node.force.companions();

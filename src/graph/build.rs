@@ -1,6 +1,6 @@
 //! Lines that declare become nodes: fixes, computes, thermo, and what stands in files of its own.
 
-use super::node::{ComputeNode, FixNode, Graph};
+use super::node::{ComputeNode, FixNode, Graph, PairNode};
 use super::pair_modify::pair_modify;
 use super::{bonds, dumps, pairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
@@ -114,8 +114,9 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
     let words: Vec<String> = std::iter::once(&cmd.name).chain(&cmd.args).map(|w| w.text.clone()).collect();
     let id = cmd.args.first().map_or("", |w| &w.text);
     match cmd.name.text.as_str() {
-        "pair_style" | "pair_coeff" | "peri_modify" => {
-            if let Some(node) = &mut graph.pair {
+        name @ ("pair_style" | "pair_coeff" | "pair_modify" | "peri_modify") => {
+            let counts = |node: &PairNode| name != "pair_modify" || node.pair.facts().mixes;
+            if let Some(node) = graph.pair.as_mut().filter(|node| counts(node)) {
                 say(&mut node.lines, Said { words, lattice: w.lattice.clone() }, |a, b| a.words == b.words);
             }
         }

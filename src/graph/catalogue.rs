@@ -1,7 +1,7 @@
 //! Every style there is, by category, under LAMMPS' names for these.
 
 use super::build::DECLARATIONS;
-use perigrain_commands::{ATOM_STYLES, COMMANDS, RUN_STYLES, SHAPES};
+use perigrain_commands::{ANGLE_STYLES, ATOM_STYLES, COMMANDS, RUN_STYLES, SHAPES};
 use perigrain_computes::COMPUTES;
 use perigrain_dumps::DUMPS;
 use perigrain_fixes::FIXES;
@@ -65,8 +65,9 @@ pub fn styles(category: &str) -> Option<Vec<&'static str>> {
         "minimize" => MinStyle::ALL.map(|(name, _)| name).to_vec(),
         "pair" => PAIRS.iter().map(|s| s.name()).collect(),
         "bond" => BONDS.iter().map(|s| s.name()).collect(),
+        "angle" => ANGLE_STYLES.to_vec(),
         // Forces between three and more particles, and electric ones, do not exist here.
-        "angle" | "dihedral" | "improper" | "kspace" => vec![],
+        "dihedral" | "improper" | "kspace" => vec![],
         "fix" => FIXES.iter().map(|s| s.name()).collect(),
         "compute" => COMPUTES.iter().map(|s| s.name()).collect(),
         "region" => SHAPES.iter().map(|(name, _)| *name).collect(),

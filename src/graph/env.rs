@@ -176,9 +176,7 @@ fn hidden(w: &World, name: &str) -> bool {
         | "cellc" | "avecx" | "bvecy" | "cvecz" => space,
         "xlat" | "ylat" | "zlat" | "xy" | "xz" | "yz" | "cellalpha" | "cellbeta" | "cellgamma" | "avecy"
         | "avecz" | "bvecx" | "bvecz" | "cvecx" | "cvecy" => false,
-        "ecoul" | "eangle" | "edihed" | "eimp" | "elong" | "etail" | "angles" | "dihedrals" | "impropers" => {
-            false
-        }
+        "ecoul" | "eangle" | "edihed" | "eimp" | "elong" | "etail" | "dihedrals" | "impropers" => false,
         _ => u.particles,
     }
 }

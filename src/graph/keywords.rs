@@ -153,6 +153,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "evdwl" | "epair" => w.tally.pair * per_atom,
         "ebond" | "emol" => w.tally.bond * per_atom,
         "bonds" => (w.bonds.len() + if w.settings.lammps() { w.bonds.left } else { 0 }) as f64,
+        "angles" => w.bonds.angles.list.len() as f64,
         "enthalpy" => {
             pe() + ke() + scalar(s.press) * volume(w) / w.settings.units.constants().nktv2p * per_atom
         }

@@ -1,9 +1,10 @@
-//! `pair_modify`: options of LAMMPS' pair styles, of which those here have none.
+//! `pair_modify`: options of LAMMPS' pair styles, of which some here know how types are mixed.
 
 use super::build::{Context, Declared};
 use super::node::Graph;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
+use perigrain_pairs::Mix;
 use perigrain_world::World;
 
 const KEYWORDS: [&str; 13] = [
@@ -22,20 +23,22 @@ const KEYWORDS: [&str; 13] = [
     "compute/tally",
 ];
 
-/// `pair_modify keyword value …`: read whole, and said to be without effect.
-pub fn pair_modify(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> Result<Declared> {
+/// `pair_modify keyword value …`: read whole; what has no effect here is said to have none.
+pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     let Some(node) = &graph.pair else {
         return fail(Code::WRONG_ORDER, args.name_span(), "pair_modify comes before any pair_style");
     };
     args.clone().expect("a keyword such as shift or mix")?;
+    let (facts, mut pair) = (node.pair.facts(), node.pair.clone());
     if args.eat("pair") {
         part(&node.pair.parts().iter().map(|p| p.facts().name).collect::<Vec<_>>(), args)?;
     }
-    let (mut shift, mut tail) = (false, false);
+    let (mut shift, mut tail, mut idle) = (false, false, false);
     while let Some(word) = args.next() {
         match word.text.as_str() {
             "mix" => {
-                args.choice("mixing rule", &["geometric", "arithmetic", "sixthpower"])?;
+                let name = args.choice("mixing rule", &Mix::NAMES.map(|(name, _)| name))?;
+                Mix::NAMES.iter().filter(|(n, _)| *n == name).for_each(|(_, rule)| pair.mix(*rule));
             }
             "shift" => shift = args.flag("shift")?,
             "tail" => tail = args.flag("tail")?,
@@ -62,18 +65,26 @@ pub fn pair_modify(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> R
             }
             _ => return Err(args.unknown(word, &KEYWORDS)),
         }
+        idle |= word.text != "mix" || !facts.mixes;
         if tail && (shift || w.settings.two_dimensional) {
             let with = if shift { "`shift yes`" } else { "two dimensions" };
             return fail(Code::CONFLICT, args.span(), format!("`tail yes` does not go with {with}"));
         }
     }
-    let text =
-        "without effect: no pair style here has a shift, a tail or a table, and each has one mixing rule";
-    cx.build(graph, w, "", perigrain_world::GroupId::ALL).note(Diagnostic::note(
-        Code::NO_EFFECT,
-        cx.span,
-        text,
-    ));
+    if idle {
+        let text = match facts.mixes {
+            true => "without effect but for `mix`: no pair style here has a shift, a tail or a table",
+            false => {
+                "without effect: no pair style here has a shift, a tail or a table, and this one has one mixing rule"
+            }
+        };
+        let note = Diagnostic::note(Code::NO_EFFECT, cx.span, text);
+        cx.build(graph, w, "", perigrain_world::GroupId::ALL).note(note);
+    }
+    if let Some(node) = &mut graph.pair {
+        node.pair = pair;
+    }
+    w.touch();
     Ok(Declared::default())
 }
 

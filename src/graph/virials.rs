@@ -6,8 +6,8 @@ use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::SealCx;
 use perigrain_styles::probe::{Ask, Probe, look_all};
 use perigrain_world::field::{
-    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
-    TALLY, TRAVEL, V, X, X0,
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
+    TAG, TALLY, TRAVEL, V, X, X0,
 };
 use perigrain_world::{RunStyle, World};
 
@@ -45,7 +45,7 @@ impl Op for Virials {
     fn about(&self) -> About {
         // Contacts are there whenever virials of particles are asked for.
         let needs = Needs::new()
-            .read(MASK | MOLECULE | BONDS)
+            .read(MASK | MOLECULE | BONDS | MEMO)
             .read(
                 BOX | COLUMNS
                     | CONTACTS

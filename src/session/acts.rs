@@ -100,7 +100,12 @@ impl Session {
         let provides = commands::provided(cmd).filter(|_| deleted.is_none());
         self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
         for (line, text) in then {
-            self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
+            let style = COMMANDS.iter().find(|c| c.name() == line.name.text);
+            let outcome = match style {
+                Some(style) => self.act(&line, *style),
+                None => self.declare(&line),
+            };
+            outcome.map_err(|e| e.at(line.span).within(&text))?;
         }
         Ok(())
     }

@@ -31,6 +31,7 @@ impl Session {
         let mut found = Diagnostics::default();
         self.check_pair(span, &mut found);
         crate::graph::bonds::check(&self.graph, &self.world, span, &mut found);
+        crate::graph::bonds::check_angles(&self.world, span, &mut found);
         self.check_masses(span, &mut found);
         if moves {
             self.check_integrators(span, &mut found);

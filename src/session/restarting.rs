@@ -307,7 +307,7 @@ fn without_particles(w: &mut World) {
     w.contacts.clear();
     w.wall_contacts.clear();
     w.columns = Default::default();
-    (w.bonds.list, w.bonds.special) = (vec![], vec![]);
+    (w.bonds.list, w.bonds.special, w.bonds.angles.list) = (vec![], vec![], vec![]);
     w.tally = Default::default();
     w.rebuild = Default::default();
 }

@@ -3,6 +3,7 @@
 //! Which row each test answers, and what caused it, stands in `docs/decisions/strangers.md`.
 
 mod bonds;
+mod classics;
 mod energy_of_contacts;
 mod energy_of_solids;
 mod interrupts;

@@ -285,6 +285,8 @@ const STAY: &[&str] = &[
     "calibrate",
     "delete_bonds",
     "special_bonds",
+    "angle_style",
+    "angle_coeff",
     "molecule",
 ];
 

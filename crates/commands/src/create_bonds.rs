@@ -1,5 +1,6 @@
 //! `create_bonds`: bonds between particles that are there.
 
+mod angle;
 mod gap;
 
 use super::{Act, CommandStyle};
@@ -22,16 +23,16 @@ impl Style for CreateBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_bonds many GROUP1 GROUP2 TYPE RMIN RMAX | single/bond TYPE ID1 ID2  [special yes|no]\n\
+            syntax: "create_bonds many GROUP1 GROUP2 TYPE RMIN RMAX | single/bond TYPE ID1 ID2 | single/angle TYPE ID1 ID2 ID3  [special yes|no]\n\
                      create_bonds gap GROUP1 GROUP2 TYPE GMIN GMAX [mix TYPE2 SHARE SEED]",
             summary: "Makes bonds between particles.",
             text: "`many`: a bond between each particle of one group and each of the other whose distance lies between RMIN and \
                    RMAX, both included, except where `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) \
                    take the pair out of neighbour lists: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
                    the default weights particles two or three bonds apart are left out, too: a warning says how many and what would bond them. LAMMPS also needs a pair style that \
-                   reaches as far; perigrain does not. `single/bond`: one bond between two ids.\n\n\
+                   reaches as far; perigrain does not. `single/bond`: one bond between two ids; `single/angle`: an angle at the second of three ids, which exerts nothing (`angle_style zero`).\n\n\
                    `special no` leaves open for now which pairs count as bonded: say `yes` with the last of many such lines. \
-                   `single/angle` and the like are refused.\n\n\
+                   `single/dihedral` and `single/improper` are refused.\n\n\
                    `gap` is perigrain's own: as `many`, for spheres whose surfaces are GMIN to GMAX apart (distance less both \
                    radii, both ends included). A negative GMIN takes in spheres that overlap so far, as packings leave them; a \
                    warning tells of how many a larger one leaves out. `mix` gives a part SHARE of the bonds TYPE2, drawn from the two \
@@ -62,11 +63,12 @@ impl CommandStyle for CreateBonds {
             "many" => many(a, cx)?,
             "gap" => gap::parse(style, a, cx).map(|(kind, gap)| (kind, Choice::Gap(gap)))?,
             "single/bond" => single(a, cx)?,
-            "single/angle" | "single/dihedral" | "single/improper" => {
+            "single/angle" => return angle::parse(a, cx),
+            "single/dihedral" | "single/improper" => {
                 return Err(common::not_here(style, "create_bonds"));
             }
             _ => {
-                let known = ["many", "gap", "single/bond"];
+                let known = ["many", "gap", "single/bond", "single/angle"];
                 return Err(common::unknown_style(style, "style of create_bonds", &known));
             }
         };

@@ -11,17 +11,12 @@ use perigrain_world::{Domain, Region, memory};
 /// The command.
 pub struct CreateBox;
 
-const KEYWORDS: [&str; 3] = ["bond/types", "extra/bond/per/atom", "extra/special/per/atom"];
+const KEYWORDS: [&str; 5] =
+    ["bond/types", "angle/types", "extra/bond/per/atom", "extra/angle/per/atom", "extra/special/per/atom"];
 
-/// Keywords LAMMPS has: room for angles and the like.
-const ELSEWHERE: [&str; 6] = [
-    "angle/types",
-    "dihedral/types",
-    "improper/types",
-    "extra/angle/per/atom",
-    "extra/dihedral/per/atom",
-    "extra/improper/per/atom",
-];
+/// Keywords LAMMPS has: room for dihedrals and the like.
+const ELSEWHERE: [&str; 4] =
+    ["dihedral/types", "improper/types", "extra/dihedral/per/atom", "extra/improper/per/atom"];
 
 impl Style for CreateBox {
     fn name(&self) -> &'static str {
@@ -30,13 +25,13 @@ impl Style for CreateBox {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_box N REGION [bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N]",
+            syntax: "create_box N REGION [bond/types N] [angle/types N] [extra/bond/per/atom N] [extra/angle/per/atom N] [extra/special/per/atom N]",
             summary: "Creates the simulation box from a bounded region, for N particle types.",
             text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and \
                    `side in`. A prism becomes a triclinic box: its edges lean as those of the prism (tilts xy, xz and yz), and may lean \
                    otherwise later (`change_box`, `fix deform`). Where a tilt is more than half of the length along which it leads, a \
                    warning says so. General triclinic boxes (`NULL`) are refused. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS. `bond/types` \
-                   gives the number of bond types, for atom styles with bonds; room for bonds per particle is not limited, \
+                   gives the number of bond types, for atom styles with bonds, `angle/types` that of angle types; room for bonds per particle is not limited, \
                    `extra/…` only has to be said for LAMMPS.",
             example: "create_box 3 world",
         }
@@ -62,7 +57,7 @@ impl CommandStyle for CreateBox {
         }
         let region = cx.region(word)?;
         if cx.checking && region.motion.is_none() && region.follows() && !region.outside {
-            return Ok(guessed_box(region, types as usize, bond_types(a, cx)?));
+            return Ok(guessed_box(region, types as usize, topology(a, cx)?));
         }
         if region.motion.is_some() || region.outside {
             return fail(
@@ -86,7 +81,7 @@ impl CommandStyle for CreateBox {
         }) {
             return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
         }
-        let bond_types = bond_types(a, cx)?;
+        let [bond_types, angle_types] = topology(a, cx)?;
         let flat = cx.world.settings.two_dimensional;
         common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
         common::check_volume([0, 1, 2].map(|d| hi[d] - lo[d])).map_err(|e| e.at(word.span))?;
@@ -98,7 +93,7 @@ impl CommandStyle for CreateBox {
             domain.open_shrinking_faces();
             cx.world.domain = Some(domain).into();
             cx.world.types = types as usize;
-            cx.world.bonds.types = bond_types;
+            (cx.world.bonds.types, cx.world.bonds.angles.types) = (bond_types, angle_types);
             cx.world.type_mass = vec![None; types as usize].into();
             Ok(())
         }))
@@ -106,7 +101,7 @@ impl CommandStyle for CreateBox {
 }
 
 /// While a deck is only checked: a box of some size where variables will say how large it is.
-fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act> {
+fn guessed_box(region: &Region, types: usize, [bond_types, angle_types]: [usize; 2]) -> Box<dyn Act> {
     let (mut lo, mut hi) = match &region.shape {
         Shape::Block { lo, hi } | Shape::Prism { lo, hi, .. } => (*lo, *hi),
         _ => ([f64::NAN; 3], [f64::NAN; 3]),
@@ -126,33 +121,37 @@ fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act>
         let domain = Domain { flat, tilt, ..Domain::new(lo, hi, cx.world.settings.boundary) };
         cx.world.domain = Some(domain).into();
         (cx.world.types, cx.world.bonds.types) = (types, bond_types);
+        cx.world.bonds.angles.types = angle_types;
         cx.world.type_mass = vec![None; types].into();
         Ok(())
     })
 }
 
-/// Room for bonds: their types count, lists grow as they must.
-fn bond_types(a: &mut Args, cx: &BuildCx) -> Result<usize> {
-    let mut types = 0;
+/// Room for bonds and angles: their types count, lists grow as they must.
+fn topology(a: &mut Args, cx: &BuildCx) -> Result<[usize; 2]> {
+    let (mut types, style) = ([0; 2], cx.world.particles.style);
     while let Some(word) = a.next() {
-        let span = a.here();
-        match word.text.as_str() {
-            "bond/types" => types = a.integer_from(0, "the number of bond types")?,
-            "extra/bond/per/atom" | "extra/special/per/atom" => {
-                a.integer_from(0, "the extra room")?;
-            }
-            _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
+        let (span, name) = (a.here(), word.text.as_str());
+        if !KEYWORDS.contains(&name) {
+            return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE));
         }
-        if !cx.world.particles.style.bonded {
-            let text = format!("particles of atom_style {} have no bonds", cx.world.particles.style.name());
+        let angles = name.contains("angle");
+        if !style.bonded || (angles && !style.angled) {
+            let (what, other) = if angles { ("angles", "angle") } else { ("bonds", "bond") };
+            let text = format!("particles of atom_style {} have no {what}", style.name());
             let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-            return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+            return Err(d.help(format!("`atom_style {other}`, alone or in a hybrid, has them")).into());
         }
-        if types > i64::from(u16::MAX) {
-            return fail(Code::BAD_VALUE, span, format!("at most {} bond types are possible", u16::MAX));
+        let number = a.integer_from(0, "the number")?;
+        if name.ends_with("/types") {
+            let Ok(number) = u16::try_from(number) else {
+                let text = format!("at most {} types of bonds or angles are possible", u16::MAX);
+                return fail(Code::BAD_VALUE, span, text);
+            };
+            types[usize::from(angles)] = usize::from(number);
         }
     }
-    Ok(types as usize)
+    Ok(types)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod angle_style;
 mod atom_modify;
 mod atom_style;
 mod boundary;
@@ -54,6 +55,7 @@ mod units;
 mod velocity;
 mod write_data;
 
+pub use angle_style::ANGLE_STYLES;
 pub use atom_style::ATOM_STYLES;
 pub use perigrain_styles::command::{Act, CommandStyle};
 pub use region::SHAPES;
@@ -103,5 +105,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &calibrate::Calibrate,
     &delete_bonds::DeleteBonds,
     &special_bonds::SpecialBonds,
+    &angle_style::AngleStyleCommand,
+    &angle_style::AngleCoeff,
     &molecule::Molecule,
 ];

@@ -20,16 +20,16 @@ impl Style for Molecule {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "molecule ID FILE [toff T] [boff B] [offset T B A D I] [scale S] [FILE …] …",
+            syntax: "molecule ID FILE [toff T] [boff B] [aoff A] [offset T B A D I] [scale S] [FILE …] …",
             summary: "Reads templates of molecules and clumps of spheres from files.",
-            text: "Each file describes one molecule: a title line, then `N atoms`, `N bonds` and, if wanted, `M mass`, `X Y Z com`, \
+            text: "Each file describes one molecule: a title line, then `N atoms`, `N bonds`, `N angles` and, if wanted, `M mass`, `X Y Z com`, \
                    `XX YY ZZ XY XZ YZ inertia`, then sections, each with a blank line after its name and one line per particle or \
                    bond: Coords (`number x y z`), Types (`number type`), Molecules (`number molecule`), Diameters, Masses, Bonds (`number type \
-                   a b`). Files are looked for in the working folder, then beside the deck.\n\n\
-                   `toff` and `boff` add to the types of particles and bonds of the file before them, `offset` gives both and \
-                   three numbers for angles and the like; `scale` multiplies coordinates, diameters and `com` by S, masses by S³, \
+                   a b`), Angles (`number type a b c`). Files are looked for in the working folder, then beside the deck.\n\n\
+                   `toff`, `boff` and `aoff` add to the types of particles, bonds and angles of the file before them, `offset` gives all three and \
+                   two numbers for dihedrals and impropers; `scale` multiplies coordinates, diameters and `com` by S, masses by S³, \
                    `inertia` by S⁵. Which pairs count as bonded follows from the bonds: Special Bond Counts and Special Bonds are \
-                   read past, with a note. Charges, dipoles, angles, bodies, fragments and SHAKE data are refused. A restart file \
+                   read past, with a note. Charges, dipoles, dihedrals, bodies, fragments and SHAKE data are refused. A restart file \
                    does not hold templates, as in LAMMPS.",
             example: "print \"\"\"Two touching spheres\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 0.0009 0 0\n\nTypes\n\n1 2\n2 2\n\nDiameters\n\n\
                       1 0.001\n2 0.001\n\"\"\" file pair.txt screen no\nmolecule pair pair.txt\n\
@@ -44,6 +44,7 @@ struct Asked {
     file: Word,
     kind: u16,
     bond: u16,
+    angle: u16,
     scale: f64,
 }
 
@@ -66,7 +67,7 @@ impl CommandStyle for Molecule {
             if file.text.ends_with(".json") {
                 return Err(not_here(&file, "a molecule file in JSON:"));
             }
-            let mut asked = Asked { file, kind: 0, bond: 0, scale: 1.0 };
+            let mut asked = Asked { file, kind: 0, bond: 0, angle: 0, scale: 1.0 };
             while keyword(a, &mut asked)? {}
             files.push(asked);
         }
@@ -90,7 +91,11 @@ fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
             a.next();
             asked.bond = offset(a, "the offset of bond types")?;
         }
-        "aoff" | "doff" | "ioff" => {
+        "aoff" => {
+            a.next();
+            asked.angle = offset(a, "the offset of angle types")?;
+        }
+        "doff" | "ioff" => {
             a.next();
             offset(a, "the offset")?;
         }
@@ -98,7 +103,8 @@ fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
             a.next();
             asked.kind = offset(a, "the offset of types")?;
             asked.bond = offset(a, "the offset of bond types")?;
-            for what in ["angle", "dihedral", "improper"] {
+            asked.angle = offset(a, "the offset of angle types")?;
+            for what in ["dihedral", "improper"] {
                 offset(a, &format!("the offset of {what} types"))?;
             }
         }
@@ -148,6 +154,9 @@ fn change(t: &mut Template, asked: &Asked) -> Result<()> {
     for (kind, _) in &mut t.bonds {
         *kind = kind.saturating_add(asked.bond);
     }
+    for (kind, _) in &mut t.angles {
+        *kind = kind.saturating_add(asked.angle);
+    }
     t.places.iter_mut().chain(&mut t.com).flatten().for_each(|x| *x *= s);
     t.radii.iter_mut().for_each(|r| *r *= s);
     t.masses.iter_mut().chain(&mut t.mass).for_each(|m| *m *= s * s * s);
@@ -165,7 +174,9 @@ fn tell(cx: &mut ActCx, id: &str, t: &Template) {
     cx.say("  0 bodies");
     cx.say(format!("  {} atoms with max type {kinds}", t.count));
     cx.say(format!("  {} bonds with max type {bonds}", t.bonds.len()));
-    for what in ["angles", "dihedrals", "impropers"] {
+    let angles = t.angles.iter().map(|a| a.0).max().unwrap_or(0);
+    cx.say(format!("  {} angles with max type {angles}", t.angles.len()));
+    for what in ["dihedrals", "impropers"] {
         cx.say(format!("  0 {what} with max type 0"));
     }
 }

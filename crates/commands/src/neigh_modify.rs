@@ -2,16 +2,28 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{bad_keyword, not_here, setting};
+use perigrain_lang::{Args, Command, Word};
+use perigrain_styles::common::{not_here, setting};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::NeighborSettings;
 
 /// The command.
 pub struct NeighModify;
 
-const KEYWORDS: [&str; 10] =
-    ["delay", "every", "check", "once", "exclude", "include", "cluster", "page", "one", "binsize"];
+const KEYWORDS: [&str; 12] = [
+    "delay",
+    "every",
+    "check",
+    "once",
+    "exclude",
+    "include",
+    "cluster",
+    "page",
+    "one",
+    "binsize",
+    "collection/type",
+    "collection/interval",
+];
 
 impl Style for NeighModify {
     fn name(&self) -> &'static str {
@@ -20,7 +32,7 @@ impl Style for NeighModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "neigh_modify [every N] [delay N] [check yes|no] [once yes|no] [exclude type I J | group A B | molecule/intra G | molecule/inter G | none] …",
+            syntax: "neigh_modify [every N] [delay N] [check yes|no] [once yes|no] [exclude type I J | group A B | molecule/intra G | molecule/inter G | none] [collection/type N LIST …] [collection/interval N CUTOFF …] …",
             summary: "Says when neighbour lists are rebuilt and which pairs they leave out.",
             text: "A rebuild is considered every N steps, not before `delay` steps after the last one, and with `check yes` \
                    only if some particle has moved half the skin; the delay must be a multiple of N. Wrapping into the box, shrink-wrapping and the test for \
@@ -28,7 +40,9 @@ impl Style for NeighModify {
                    the same. `exclude type I J` and `exclude group A B` leave pairs out, `exclude molecule/intra G` (or `molecule G`) those within a molecule of the group, `molecule/inter G` \
                    those across molecules, `exclude \
                    none` forgets all such rules. Peridynamic particles excluded from each other get no bonds if the rule stands when families are found, at the first \
-                   run; later it takes short-range contact away and leaves bonds. `page`, `one`, `binsize` and `cluster` are accepted without effect. \
+                   run; later it takes short-range contact away and leaves bonds. `page`, `one`, `binsize` and `cluster` are accepted without effect, and so are \
+                   `collection/type N TYPES …` (each type in one of N lists such as `1*2,5`) and `collection/interval N CUTOFF …` of `neighbor … multi`: types and sizes are searched \
+                   class by class here without being told. \
                    Defaults: every 1 delay 0 check yes once no.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }
@@ -81,17 +95,73 @@ fn option(set: &mut NeighborSettings, keyword: &Word, a: &mut Args, cx: &BuildCx
             a.non_negative("the bin size")?;
             without_effect(keyword, cx);
         }
-        _ => {
-            let lammps = ["collection/type", "collection/interval"];
-            return Err(bad_keyword(a, keyword, &KEYWORDS, &lammps));
-        }
+        "collection/type" | "collection/interval" => collections(set, keyword, a, cx)?,
+        _ => return Err(a.unknown(keyword, &KEYWORDS)),
     }
     Ok(())
 }
 
 fn without_effect(keyword: &Word, cx: &BuildCx) {
-    let text = format!("neigh_modify {} has no effect here: lists find their own size", keyword.text);
+    let what = if keyword.text.starts_with("collection") { "classes" } else { "size" };
+    let text = format!("neigh_modify {} has no effect here: lists find their own {what}", keyword.text);
     cx.note(Diagnostic::note(Code::NO_EFFECT, keyword.span, text));
+}
+
+/// `collection/type N LIST …` and `collection/interval N CUTOFF …`: how LAMMPS' `multi` gathers particles of like reach.
+fn collections(set: &NeighborSettings, keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<()> {
+    if !set.multi {
+        let text = format!("{} belongs to neighbour lists of the kind `multi`", keyword.text);
+        let d = Diagnostic::error(Code::CONFLICT, keyword.span, text);
+        return Err(d.help("write `neighbor SKIN multi` before this line").into());
+    }
+    let count = a.integer_from(1, "the number of collections N")?;
+    match keyword.text.as_str() {
+        "collection/type" => collections_of_types(count, a, cx)?,
+        _ => {
+            let mut last = f64::NEG_INFINITY;
+            for _ in 0..count {
+                let span = a.here();
+                let cutoff = a.number("the upper cutoff of a collection")?;
+                if cutoff <= last {
+                    let text = format!("cutoffs of collections must grow: {cutoff} follows {last}");
+                    return fail(Code::BAD_VALUE, span, text);
+                }
+                last = cutoff;
+            }
+        }
+    }
+    without_effect(keyword, cx);
+    Ok(())
+}
+
+/// Reads `count` lists such as `1*2,5` in which each type stands once.
+fn collections_of_types(count: i64, a: &mut Args, cx: &BuildCx) -> Result<()> {
+    let mut seen = vec![false; cx.world.types];
+    for _ in 0..count {
+        let list = a.expect("a list of types such as `1*2,5`")?;
+        for range in list.text.split(',') {
+            let one = Command {
+                name: list.clone(),
+                args: vec![Word::new(range, list.span)],
+                span: list.span,
+                text: range.into(),
+            };
+            let (from, to) = Args::new(&one).type_range(cx.world.types)?;
+            for t in from..=to {
+                if std::mem::replace(&mut seen[usize::from(t) - 1], true) {
+                    return fail(Code::BAD_VALUE, list.span, format!("type {t} stands in two collections"));
+                }
+            }
+        }
+    }
+    match seen.iter().position(|seen| !seen) {
+        None => Ok(()),
+        Some(k) => {
+            let d =
+                Diagnostic::error(Code::INCOMPLETE, a.span(), format!("type {} is in no collection", k + 1));
+            Err(d.help("each type must stand in one of the lists").into())
+        }
+    }
 }
 
 fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -158,6 +228,17 @@ mod tests {
         assert_eq!(refused(&w, "neigh_modify exclude type 1 3").0, "3");
         assert_eq!(refused(&w, "neigh_modify exclude molecule all").0, "molecule");
         assert_eq!(refused(&w, "neigh_modify evry 2").0, "evry");
+        assert_eq!(refused(&w, "neigh_modify collection/type 1 1*2").0, "collection/type");
+        let mut w = w;
+        w.settings.neighbor.multi = true;
+        for (words, at) in [
+            ("collection/type 2 1 1", "1"),
+            ("collection/type 1 1", "neigh_modify collection/type 1 1"),
+            ("collection/interval 2 1.0 1.0", "1.0"),
+            ("collection/type 0", "0"),
+        ] {
+            assert_eq!(refused(&w, &format!("neigh_modify {words}")).0, at);
+        }
         assert_eq!(refused(&w, "neighbor 0.2 multi/old").0, "multi/old");
     }
 }

@@ -31,10 +31,10 @@ impl Style for Neighbor {
 impl CommandStyle for Neighbor {
     fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
         let skin = a.non_negative("the skin")?;
-        choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
+        let way = choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
         Ok(setting(move |cx| {
             let near = &mut cx.world.settings.neighbor;
-            (near.skin, near.said) = (skin, true);
+            (near.skin, near.said, near.multi) = (skin, true, way == "multi");
             Ok(())
         }))
     }

@@ -17,26 +17,22 @@ use std::sync::Arc;
 /// The command.
 pub struct ReadData;
 
-const KEYWORDS: [&str; 10] = [
+const KEYWORDS: [&str; 12] = [
     "add",
     "offset",
     "shift",
     "extra/atom/types",
     "extra/bond/types",
+    "extra/angle/types",
     "extra/bond/per/atom",
+    "extra/angle/per/atom",
     "extra/special/per/atom",
     "group",
     "nocoeff",
     "fix",
 ];
-const ELSEWHERE: [&str; 6] = [
-    "extra/angle/types",
-    "extra/dihedral/types",
-    "extra/improper/types",
-    "extra/angle/per/atom",
-    "extra/dihedral/per/atom",
-    "extra/improper/per/atom",
-];
+const ELSEWHERE: [&str; 4] =
+    ["extra/dihedral/types", "extra/improper/types", "extra/dihedral/per/atom", "extra/improper/per/atom"];
 
 impl Style for ReadData {
     fn name(&self) -> &'static str {
@@ -46,15 +42,15 @@ impl Style for ReadData {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "read_data FILE [add append|merge|IDOFFSET] [offset TYPE BOND ANGLE DIHEDRAL IMPROPER] [shift X Y Z] \
-                     [extra/atom/types N] [extra/bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N] \
+                     [extra/atom/types N] [extra/bond/types N] [extra/angle/types N] [extra/bond/per/atom N] [extra/angle/per/atom N] [extra/special/per/atom N] \
                      [group ID] [nocoeff] [fix ID HEADER SECTION]…",
             summary: "Reads box, particles, velocities, masses and coefficients from a LAMMPS data file.",
             text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`; it is looked for in the working \
                    folder, then beside the deck. The header gives `N atoms`, `N atom types`, `xlo xhi`, `ylo yhi`, `zlo \
-                   zhi`, for atom styles with bonds also `N bonds` and `N bond types`; sections are Masses, Atoms, Velocities, Bonds \
-                   (number, type, two ids), Pair Coeffs, PairIJ Coeffs and Bond Coeffs. Columns of Atoms: `id type \
+                   zhi`, for atom styles with bonds also `N bonds` and `N bond types`, with angles `N angles` and `N angle types`; sections are Masses, Atoms, Velocities, Bonds \
+                   (number, type, two ids), Angles (number, type, three ids), Pair Coeffs, PairIJ Coeffs, Bond Coeffs and Angle Coeffs. Columns of Atoms: `id type \
                    x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x y z` (peri), \
-                   `id molecule type x y z` (bond, molecular), `id molecule type diameter density x y z` (bpm/sphere), `id \
+                   `id molecule type x y z` (bond, angle, molecular), `id molecule type diameter density x y z` (bpm/sphere), `id \
                    type x y z` and then the columns of each style in the order of its name (hybrid; what two have stands \
                    once), all with three image flags at the end or none. Velocities: `id vx vy vz`, with spheres also `wx \
                    wy wz`. The density of a sphere becomes the mass 4/3 π r³ ρ; without a radius it is the mass. The \
@@ -63,15 +59,15 @@ impl Style for ReadData {
                    Positions are wrapped along periodic dimensions; elsewhere they must be inside the box, which is opened \
                    by 1e-4 of its edge at shrink-wrapped faces, which then follow the particles. Image flags of other dimensions become 0, with a warning.\n\n\
                    `add` brings particles into an existing box, which grows to hold the file's: `append` puts the ids \
-                   behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types and bond types (the \
-                   last three numbers are for angles and the like), `shift` to places and to the file's box. \
+                   behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types, bond types and angle types (the \
+                   last two numbers are for dihedrals and impropers), `shift` to places and to the file's box. \
                    Masses of types are skipped where particles in a hybrid with bonds have their own (LAMMPS writes zeros there). \
-                   `extra/atom/types` and `extra/bond/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
+                   `extra/atom/types`, `extra/bond/types` and `extra/angle/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
                    none; `nocoeff` skips coefficients. `fix ID NULL SECTION` reads a section of that heading (`NULL`: the fix's ID) into the properties of a \
                    fix property/atom: a line for each particle, its id and then the values in the order of the fix's line; a \
                    file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`, `Atoms # hybrid sphere peri`, \
                    which LAMMPS takes and which `Atoms # hybrid` may leave out), it must be one with the deck's columns; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
-                   are refused in the file itself. Refused by name: angles and other topology, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
+                   are refused in the file itself. Refused by name: dihedrals and impropers, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
     }
@@ -84,6 +80,8 @@ struct Reading {
     type_offset: u16,
     bond_offset: u16,
     extra_bond_types: usize,
+    angle_offset: u16,
+    extra_angle_types: usize,
     shift: [f64; 3],
     extra_types: usize,
     group: Option<Word>,
@@ -101,6 +99,8 @@ impl CommandStyle for ReadData {
             type_offset: 0,
             bond_offset: 0,
             extra_bond_types: 0,
+            angle_offset: 0,
+            extra_angle_types: 0,
             shift: [0.0; 3],
             extra_types: 0,
             group: None,
@@ -114,7 +114,7 @@ impl CommandStyle for ReadData {
                 "add" => r.ids = ids(a)?,
                 "offset" => {
                     only_with_add.get_or_insert(word);
-                    (r.type_offset, r.bond_offset) = offsets(a)?;
+                    [r.type_offset, r.bond_offset, r.angle_offset] = offsets(a)?;
                 }
                 "shift" => {
                     only_with_add.get_or_insert(word);
@@ -123,8 +123,9 @@ impl CommandStyle for ReadData {
                     }
                 }
                 "extra/bond/types" => r.extra_bond_types = extra_types(a)?,
+                "extra/angle/types" => r.extra_angle_types = extra_types(a)?,
                 // Lists grow as they must.
-                "extra/bond/per/atom" | "extra/special/per/atom" => {
+                "extra/bond/per/atom" | "extra/angle/per/atom" | "extra/special/per/atom" => {
                     a.integer_from(0, "the extra room")?;
                 }
                 "extra/atom/types" => {
@@ -176,6 +177,9 @@ impl Act for Reading {
             bond_types: world.domain.is_some().then_some(world.bonds.types),
             bond_offset: self.bond_offset,
             extra_bond_types: self.extra_bond_types,
+            angle_types: world.domain.is_some().then_some(world.bonds.angles.types),
+            angle_offset: self.angle_offset,
+            extra_angle_types: self.extra_angle_types,
             sections: &self.sections,
         };
         let outcome = body::read(&text.text, &how).and_then(|data| self.place(cx, data, &text.text));
@@ -234,6 +238,7 @@ impl Reading {
         cx.world.type_mass = scene.type_mass.clone();
         cx.world.type_mass.resize(cx.world.types, None);
         cx.world.bonds.types = scene.bonds.types + self.extra_bond_types;
+        cx.world.bonds.angles.types = scene.bonds.angles.types + self.extra_angle_types;
         self.group(cx).map(|_| ())
     }
 
@@ -298,6 +303,9 @@ impl Reading {
         for (bond, _) in &mut data.bonds {
             bond.ends = bond.ends.map(|tag| tag.saturating_add(add));
         }
+        for angle in &mut data.angles {
+            angle.ends = angle.ends.map(|tag| tag.saturating_add(add));
+        }
         Ok(data)
     }
 
@@ -346,7 +354,7 @@ impl Reading {
         w.domain = Some(domain).into();
         w.types = data.types;
         w.type_mass.resize(data.types, None);
-        w.bonds.types = data.bond_types;
+        (w.bonds.types, w.bonds.angles.types) = (data.bond_types, data.angle_types);
         for &(kind, mass) in &data.masses {
             w.type_mass[usize::from(kind) - 1] = Some(mass);
         }
@@ -357,6 +365,7 @@ impl Reading {
             common::join(w, new);
             fill(w, &self.sections, &data.filled, first);
             data.bonds.drain(..).for_each(|(bond, _)| w.bonds.push(bond));
+            w.bonds.angles.list.append(&mut data.angles);
             w.bonds.find_special();
             // LAMMPS lets shrink-wrapped faces follow at once.
             common::settle(w);
@@ -380,6 +389,10 @@ impl Reading {
         if !data.bonds.is_empty() {
             cx.say("  reading bonds ...");
             cx.say(format!("  {} bonds", data.bonds.len()));
+        }
+        if !data.angles.is_empty() {
+            cx.say("  reading angles ...");
+            cx.say(format!("  {} angles", data.angles.len()));
         }
     }
 }

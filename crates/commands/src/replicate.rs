@@ -7,7 +7,7 @@ use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter, rigid_bodies};
 use perigrain_world::bonds::ascending;
 use perigrain_world::index::Index;
-use perigrain_world::{Bond, Domain, memory};
+use perigrain_world::{Angle, Bond, Domain, memory};
 
 /// The command.
 pub struct Replicate;
@@ -136,6 +136,7 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
     let world = &mut *cx.world;
     let molecules = world.particles.last_molecule();
     let (bonds, special) = (std::mem::take(&mut world.bonds.list), std::mem::take(&mut world.bonds.special));
+    let angles = std::mem::take(&mut world.bonds.angles.list);
     let turned = std::mem::take(&mut world.bonds.turned);
     let memory = std::mem::take(&mut world.bonds.memory);
     world.contacts.values_mut().for_each(|c| *c = Default::default());
@@ -152,6 +153,12 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
         let p = &mut world.particles;
         let moved = |ends: [u32; 2]| joints.ends(&index, ends, place);
         world.bonds.list.extend(bonds.iter().map(|b| Bond { ends: moved(b.ends), ..*b }));
+        world.bonds.angles.list.extend(angles.iter().map(|angle| {
+            // Both sides begin at the corner, whose copy is in this repetition.
+            let [a, corner, c] = angle.ends;
+            let ([corner, a], [_, c]) = (moved([corner, a]), moved([corner, c]));
+            Angle { ends: [a, corner, c], ..*angle }
+        }));
         world.bonds.special.extend(special.iter().map(|p| ascending(moved(*p))));
         world.bonds.memory.extend(memory.iter().map(|(ends, m)| (ascending(moved(*ends)), *m)));
         world.bonds.turned.extend(turned.iter().map(|(ends, q)| {
@@ -183,6 +190,9 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
     cx.say(format!("  {} atoms", cx.world.n()));
     if !cx.world.bonds.is_empty() {
         cx.say(format!("  {} bonds", cx.world.bonds.len()));
+    }
+    if !cx.world.bonds.angles.list.is_empty() {
+        cx.say(format!("  {} angles", cx.world.bonds.angles.list.len()));
     }
     Ok(())
 }

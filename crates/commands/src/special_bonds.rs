@@ -20,8 +20,8 @@ impl Style for SpecialBonds {
             syntax: "special_bonds lj|coul|lj/coul W12 W13 W14 … | amber | charmm | dreiding | fene",
             summary: "Says whether pair forces act between particles that are one, two or three bonds apart.",
             text: "The weights belong to particles one, two and three bonds apart; each line begins anew from 0 0 0 for both \
-                   kinds. A weight `lj` of 0 leaves the pairs out of all pair forces, any other leaves them in: granular styles know \
-                   no half contacts, as in LAMMPS. `coul` belongs to electric forces; here only `create_bonds` looks at it. \
+                   kinds. A weight `lj` of 0 leaves the pairs out of all pair forces. One between 0 and 1 is a factor on forces and energies of `soft` and `bpm/spring`; \
+                   granular styles know no half contacts, as in LAMMPS. `coul` belongs to electric forces; here only `create_bonds` looks at it. \
                    Peridynamic bonds are a matter of their own and have no such weights. `angle yes` and `dihedral yes` belong to \
                    interactions that perigrain does not have and are refused.",
             example: "special_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0",

@@ -26,7 +26,7 @@ impl Style for WriteData {
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
                    bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. No \
                    pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone): `pair` makes no difference; \
-                   `nocoeff` leaves out those of bonds. Each fix property/atom has a section of its own unless it says `writedata no` (`nofix`: none has). `nolabelmap` makes no difference, as types have no labels. Peridynamic bonds, damage, contact history, forces and \
+                   `nocoeff` leaves out those of bonds and angles. Each fix property/atom has a section of its own unless it says `writedata no` (`nofix`: none has). `nolabelmap` makes no difference, as types have no labels. Peridynamic bonds, damage, contact history, forces and \
                    the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
                    refused.",
             example: "write_data plate.*.data nocoeff",

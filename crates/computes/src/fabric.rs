@@ -10,8 +10,8 @@ use perigrain_styles::probe::{Ask, Interaction, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
-    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
-    TRAVEL, V, X,
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
+    TAG, TRAVEL, V, X,
 };
 use perigrain_world::{GroupId, SlotId};
 
@@ -148,6 +148,7 @@ impl Compute for Declared {
             | FAMILIES
             | TAG
             | LISTS
+            | MEMO
             | MOLECULE
             | TRAVEL;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {

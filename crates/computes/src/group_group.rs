@@ -9,8 +9,8 @@ use perigrain_styles::probe::{Ask, Interaction, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
-    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
-    TRAVEL, V, VOLUME, X, X0,
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
+    TAG, TRAVEL, V, VOLUME, X, X0,
 };
 use perigrain_world::{GroupId, SlotId, World};
 
@@ -122,6 +122,7 @@ impl Compute for Declared {
             | FAMILIES
             | TAG
             | LISTS
+            | MEMO
             | MOLECULE
             | TRAVEL
             | VOLUME

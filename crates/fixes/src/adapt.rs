@@ -35,7 +35,7 @@ impl Style for Adapt {
                    perigrain's are those of before.\n\n\
                    `pair`, `bond`: the value becomes the coefficient of these types, or with `scale yes` a factor on what it was when the run \
                    began. There are `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` of all peridynamic styles, `c` of \
-                   the bond-based ones, and `k gamma` of pair style bpm/spring; a sub-style of `hybrid` is named by its own name. A new \
+                   the bond-based ones, `k gamma` of pair style bpm/spring, and `a` of pair style soft (as in LAMMPS); a sub-style of `hybrid` is named by its own name. A new \
                    `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.\n\n\
                    `reset yes`: what was changed is put back at the end of each run. `kspace` and `atom charge` are refused: there is \
                    nothing of the kind here.",

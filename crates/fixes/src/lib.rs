@@ -6,6 +6,7 @@
 mod adapt;
 mod addforce;
 mod addtorque;
+mod addtorque_atom;
 mod ave_atom;
 mod ave_chunk;
 mod ave_histo;
@@ -56,6 +57,7 @@ mod recenter;
 mod resistance;
 pub mod rigid;
 mod setforce;
+mod settorque_atom;
 mod spring;
 mod spring_self;
 mod store_force;
@@ -83,6 +85,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &adapt::Adapt,
     &addforce::AddForce,
     &addtorque::AddTorque,
+    &addtorque_atom::AddTorqueAtom,
     &ave_atom::AveAtom,
     &ave_chunk::AveChunk,
     &ave_histo::AveHisto,
@@ -130,6 +133,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &rigid::RigidNveSmall,
     &rigid::RigidSmall,
     &setforce::SetForce,
+    &settorque_atom::SetTorqueAtom,
     &spring::Spring,
     &spring_self::SpringSelf,
     &store_force::StoreForce,
@@ -150,6 +154,17 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &wall_reflect::WallReflect,
     &wall_region::WallRegion,
 ];
+
+/// Refuses particles that cannot be turned by torques.
+fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    let text = format!("fix {name} needs spheres, which have torques");
+    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text)
+        .help("put `atom_style sphere`, alone or in a hybrid, at the top of the deck")
+        .into())
+}
 
 /// Takes the region after the keyword `region`.
 fn region_keyword(args: &mut Args, cx: &BuildCx) -> Result<String> {

@@ -1,6 +1,6 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
-use super::{ByPart, Deck, Facts, PAIRS, Pair, PairStyle, Scales, TypePairs};
+use super::{ByPart, Deck, Facts, Mix, PAIRS, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
@@ -166,7 +166,8 @@ impl Pair for Declared {
         let own = self.users.iter().filter(|((i, j), _)| i == j).map(|((i, _), list)| (*i, list));
         let solid = |i: &u16, list: &[usize]| list.iter().any(|&k| self.subs[k].facts().solids.contains(i));
         let solids = own.filter(|(i, list)| solid(i, list)).map(|(i, _)| i).collect();
-        Facts { name: self.name, solids, ..Facts::default() }
+        let mixes = self.subs.iter().any(|s| s.facts().mixes);
+        Facts { name: self.name, solids, mixes, ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -199,6 +200,10 @@ impl Pair for Declared {
 
     fn declare(&self, w: &mut World) {
         self.subs.iter().for_each(|s| s.declare(w));
+    }
+
+    fn mix(&mut self, rule: Mix) {
+        self.subs.iter_mut().for_each(|s| s.mix(rule));
     }
 
     fn covers(&self, i: u16, j: u16) -> bool {

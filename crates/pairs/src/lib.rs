@@ -8,6 +8,7 @@
 pub mod bond;
 mod bpm_peri;
 mod bpm_spring;
+mod central;
 pub mod contact;
 pub mod contact_probe;
 mod gran_hertz_history;
@@ -17,9 +18,10 @@ mod granular;
 mod hybrid;
 pub mod peri;
 mod shared;
+mod soft;
 mod zero;
 
-pub use perigrain_styles::pair::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
+pub use perigrain_styles::pair::{ByPart, Deck, Facts, Mix, Pair, PairStyle, Scales, TypePairs};
 pub use perigrain_styles::probe;
 
 /// Every pair style.
@@ -39,5 +41,6 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &peri::PeriPmbPlastic,
     &peri::PeriPmbSoftening,
     &peri::PeriVes,
+    &soft::SoftStyle,
     &zero::ZeroStyle,
 ];

@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn lammps_names_are_known_and_lead_on() {
         assert!(
-            has("fix", "nph/sphere") && has("command", "angle_style") && has("compute", "continuum/chunk")
+            has("fix", "nph/sphere") && has("command", "dihedral_style") && has("compute", "continuum/chunk")
         );
         assert!(!has("fix", "nve/spher") && !has("pair", "nve") && !has("fix", ""));
         assert_eq!(plain("fix", "nve/sphere/omp"), "nve/sphere");

@@ -229,9 +229,31 @@ pub fn change_forces<const N: usize>(
     change: impl Fn(&World, usize, &mut [f64; 3]) -> [f64; N] + Sync,
 ) -> [f64; N] {
     let mut forces = std::mem::take(&mut w.particles.f);
-    let world = &*w;
+    let total = change_column(w, &mut forces, chosen, change);
+    w.particles.f = forces;
+    total
+}
+
+/// The same with torques.
+pub fn change_torques<const N: usize>(
+    w: &mut World,
+    chosen: &Chosen,
+    change: impl Fn(&World, usize, &mut [f64; 3]) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let mut torques = std::mem::take(&mut w.particles.torque);
+    let total = change_column(w, &mut torques, chosen, change);
+    w.particles.torque = torques;
+    total
+}
+
+fn change_column<const N: usize>(
+    world: &World,
+    column: &mut [[f64; 3]],
+    chosen: &Chosen,
+    change: impl Fn(&World, usize, &mut [f64; 3]) -> [f64; N] + Sync,
+) -> [f64; N] {
     let chosen = chosen.now(world);
-    let columns = (&mut forces[..], &world.particles.x[..], &world.particles.mask[..]);
+    let columns = (column, &world.particles.x[..], &world.particles.mask[..]);
     let chunk = |start: usize, (f, x, mask): (&mut [[f64; 3]], &[[f64; 3]], &[u32])| {
         let mut total = [0.0; N];
         for (k, ((f, x), mask)) in f.iter_mut().zip(x).zip(mask).enumerate() {
@@ -242,9 +264,7 @@ pub fn change_forces<const N: usize>(
         }
         total
     };
-    let total = par::reduce_each(columns, chunk, add).unwrap_or([0.0; N]);
-    w.particles.f = forces;
-    total
+    par::reduce_each(columns, chunk, add).unwrap_or([0.0; N])
 }
 
 /// Writes a fix's global values into its slot.

@@ -44,6 +44,7 @@ pub fn fits(t: &Template, cx: &BuildCx, span: Span) -> Result<()> {
         (!t.radii.is_empty() && !style.sphere, "diameters", "have none"),
         (!t.masses.is_empty() && !style.own_mass(), "masses", "have them by type"),
         (!t.bonds.is_empty() && !style.bonded, "bonds", "have none"),
+        (!t.angles.is_empty() && !style.angled, "angles", "have none"),
     ];
     if let Some((_, what, but)) = cases.into_iter().find(|c| c.0) {
         let text = format!("the molecule has {what}, but particles of this atom_style {but}");
@@ -53,6 +54,11 @@ pub fn fits(t: &Template, cx: &BuildCx, span: Span) -> Result<()> {
     if most > cx.world.bonds.types {
         let types = cx.world.bonds.types;
         let text = format!("the molecule has bonds of type {most}, the scene has {types} bond types");
+        return fail(Code::BAD_VALUE, span, text);
+    }
+    let (most, types) = (t.angles.iter().map(|a| usize::from(a.0)).max(), cx.world.bonds.angles.types);
+    if let Some(most) = most.filter(|most| *most > types) {
+        let text = format!("the molecule has angles of type {most}, the scene has {types} angle types");
         return fail(Code::BAD_VALUE, span, text);
     }
     Ok(())

@@ -45,6 +45,44 @@ pub struct Facts {
     pub unbreakable: Option<u16>,
     /// The coefficients that `fix adapt` may change, by name.
     pub coefficients: &'static [&'static str],
+    /// Whether `pair_modify mix` says how it mixes types.
+    pub mixes: bool,
+}
+
+/// How the numbers of two types make those between them (`pair_modify mix`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mix {
+    /// √(a b).
+    #[default]
+    Geometric,
+    /// (a + b)/2 for distances, √(a b) for energies.
+    Arithmetic,
+    /// ((a⁶ + b⁶)/2)^1/6 for distances.
+    SixthPower,
+}
+
+impl Mix {
+    /// The rules by name.
+    pub const NAMES: [(&'static str, Mix); 3] =
+        [("geometric", Mix::Geometric), ("arithmetic", Mix::Arithmetic), ("sixthpower", Mix::SixthPower)];
+
+    /// Of two distances [length].
+    pub fn distance(self, a: f64, b: f64) -> f64 {
+        match self {
+            Mix::Geometric => (a * b).sqrt(),
+            Mix::Arithmetic => 0.5 * (a + b),
+            Mix::SixthPower => (0.5 * (a.powi(6) + b.powi(6))).powf(1.0 / 6.0),
+        }
+    }
+
+    /// Of two energies that belong to two distances.
+    pub fn energy(self, [a, b]: [f64; 2], [s, t]: [f64; 2]) -> f64 {
+        let mean = (a * b).sqrt();
+        match self {
+            Mix::Geometric | Mix::Arithmetic => mean,
+            Mix::SixthPower => 2.0 * mean * (s * t).powi(3) / (s.powi(6) + t.powi(6)),
+        }
+    }
 }
 
 /// What the deck has said of particles, for a check without particles.
@@ -116,6 +154,9 @@ pub trait Pair: DynClone + Send {
     /// Limits the style to some type pairs (as a sub-style of `hybrid`); by default it acts on all.
     fn restrict(&mut self, _pairs: &TypePairs) {}
 
+    /// Takes the rule by which types without a line of their own are mixed; by default the style has a rule of its own.
+    fn mix(&mut self, _rule: Mix) {}
+
     /// The sub-styles of a `hybrid`.
     fn parts(&self) -> Vec<&dyn Pair> {
         vec![]
@@ -161,3 +202,20 @@ pub trait Pair: DynClone + Send {
 }
 
 dyn_clone::clone_trait_object!(Pair);
+
+#[cfg(test)]
+mod tests {
+    use super::Mix;
+
+    // By hand for 1 and 2; of equal numbers each rule gives the same.
+    #[test]
+    fn rules_of_mixing() {
+        let of = Mix::NAMES.map(|(_, rule)| rule.distance(1.0, 2.0));
+        assert!((of[0] - 2f64.sqrt()).abs() < 1e-15 && of[1] == 1.5);
+        assert!((of[2] - 32.5f64.powf(1.0 / 6.0)).abs() < 1e-15);
+        for (_, rule) in Mix::NAMES {
+            let same = [rule.distance(3.0, 3.0), rule.energy([3.0; 2], [0.5; 2])];
+            assert!(same.iter().all(|a| (a - 3.0).abs() < 1e-14), "{rule:?} {same:?}");
+        }
+    }
+}

@@ -17,7 +17,10 @@ pub struct AtomStyle {
     pub molecules: bool,
     /// Bonds between particles.
     pub bonded: bool,
-    /// Named `molecular`, not `bond`: the two have the same columns here.
+    /// Angles between bonds.
+    #[serde(default)]
+    pub angled: bool,
+    /// Named `molecular`, not `angle`: the two have the same columns here.
     pub molecular: bool,
     /// Named as `hybrid …`, which decides the columns of data files.
     pub hybrid: bool,
@@ -58,6 +61,7 @@ impl AtomStyle {
             (false, false, true, false) => "peri",
             (false, false, false, false) => "atomic",
             (false, false, false, true) if self.molecular => "molecular",
+            (false, false, false, true) if self.angled => "angle",
             (false, false, false, true) => "bond",
             _ => "hybrid",
         }
@@ -69,7 +73,11 @@ impl AtomStyle {
         if !self.hybrid {
             return self.name().to_string();
         }
-        let bond = if self.molecular { "molecular" } else { "bond" };
+        let bond = match (self.molecular, self.angled) {
+            (true, _) => "molecular",
+            (false, true) => "angle",
+            (false, false) => "bond",
+        };
         let styles = ["bpm/sphere", bond, "sphere", "peri"];
         let (mut words, mut made) = (String::from("hybrid"), Self::default());
         let begins = |made: &Self| made.own.iter().zip(&self.own).all(|(a, b)| a.is_none() || a == b);
@@ -113,8 +121,9 @@ impl AtomStyle {
                 (self.peri, self.sphere_mass) = (true, false);
                 &[Own::Volume, Own::Density]
             }
-            "bond" | "molecular" => {
+            "bond" | "angle" | "molecular" => {
                 (self.bonded, self.molecules) = (true, true);
+                self.angled |= name != "bond";
                 self.molecular |= name == "molecular";
                 &[Own::Molecule]
             }
@@ -144,7 +153,7 @@ mod tests {
     /// Columns of a hybrid's data file stand in the order of its styles: the words must lead back to it.
     #[test]
     fn words_of_a_hybrid_lead_to_its_columns() {
-        let styles = ["atomic", "sphere", "peri", "bond", "molecular", "bpm/sphere"];
+        let styles = ["atomic", "sphere", "peri", "bond", "molecular", "angle", "bpm/sphere"];
         let mut lists = vec![vec![]];
         for length in 1..=4 {
             let longer = |list: &Vec<&'static str>| -> Vec<Vec<&'static str>> {

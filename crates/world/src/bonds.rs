@@ -1,5 +1,6 @@
 //! Bonds between particles by their ids, and which pairs they exempt from pair forces (`special_bonds`).
 
+use super::angles::Angles;
 use super::index::Index;
 use perigrain_base::math::body::{self, Quat, UNTURNED, back};
 use perigrain_base::math::vec3::{Vec3, scale};
@@ -92,6 +93,9 @@ pub struct Bonds {
     /// What the dashpots of bonds take up at the present step, by bond type, from 0 [force length/time]: each style adds up its own.
     #[serde(default)]
     pub power: Vec<f64>,
+    /// Angles between bonds.
+    #[serde(default)]
+    pub angles: Angles,
     /// Grows with every change of the list or of what is special, so that others notice.
     pub changes: u64,
     /// How many have gone with both ends through a face, which LAMMPS goes on counting until atoms are deleted by a command.
@@ -138,6 +142,7 @@ impl Bonds {
             holds
         });
         self.special.retain(|p| !parted(p));
+        self.angles.part(|side| parted(&ascending(side)));
         // Another bond may join the same ends.
         for (ends, _) in broken.iter().filter(|(ends, _)| !held.contains(ends)) {
             self.turned.remove(ends);
@@ -163,6 +168,7 @@ impl Bonds {
         let parted = |ends: [u32; 2]| pairs.binary_search(&ascending(ends)).is_ok();
         self.list.retain(|b| !parted(b.ends));
         self.special.retain(|p| !parted(*p));
+        self.angles.part(parted);
         self.forget_memory();
         self.changes += 1;
     }
@@ -181,6 +187,7 @@ impl Bonds {
         self.list.retain(|b| b.ends.iter().any(|t| there.contains(t)));
         self.left += before - self.len();
         self.special.retain(|p| p.iter().any(|t| there.contains(t)));
+        self.angles.keep(|t| there.contains(&t));
         self.forget_memory();
         self.changes += 1;
     }
@@ -210,6 +217,7 @@ impl Bonds {
         self.memory = memory.into_iter().filter_map(|(ends, m)| Some((ascending(both(ends)?), m))).collect();
         self.special = self.special.iter().filter_map(|p| both(*p)).map(ascending).collect();
         self.special.sort_unstable();
+        self.angles.rename(new);
         self.changes += 1;
     }
 
@@ -245,6 +253,15 @@ impl Bonds {
         let pairs = if far > 0 { self.apart(far as u8) } else { vec![] };
         let zero = |apart: u8| self.weights.lj[usize::from(apart) - 1] == 0.0;
         pairs.into_iter().filter(|(_, apart)| zero(*apart)).map(|(p, _)| p).collect()
+    }
+
+    /// The pairs whose forces count in part, with their weights between 0 and 1, ascending.
+    pub fn weakened(&self) -> Vec<([u32; 2], f64)> {
+        let weight = |apart: u8| self.weights.lj[usize::from(apart) - 1];
+        let in_part = |apart: u8| weight(apart) > 0.0 && weight(apart) < 1.0;
+        let far = (1..=3).rev().find(|k| in_part(*k)).unwrap_or(0);
+        let pairs = if far > 0 { self.apart(far) } else { vec![] };
+        pairs.into_iter().filter(|(_, k)| in_part(*k)).map(|(p, k)| (p, weight(k))).collect()
     }
 
     /// Whether two particles are joined by a bond that counts.
@@ -319,6 +336,9 @@ mod tests {
         assert_eq!(b.barred().len(), 9);
         b.weights.lj = [0.0, 1.0, 1.0];
         assert_eq!(b.barred(), [[1, 2], [2, 3], [3, 4], [4, 5]]);
+        assert!(b.weakened().is_empty());
+        b.weights.lj = [0.0, 0.5, 1.0];
+        assert_eq!(b.weakened(), [([1, 3], 0.5), ([2, 4], 0.5), ([3, 5], 0.5)]);
         b.weights.lj = [1.0; 3];
         assert!(b.barred().is_empty() && b.joined(3, 4) && !b.joined(1, 3));
     }

@@ -8,6 +8,7 @@
 
 pub mod adapted;
 pub mod allowed;
+pub mod angles;
 mod atom_style;
 pub mod bonds;
 pub mod clock;
@@ -55,6 +56,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_peri::families::Families;
 
 pub use allowed::{Allowed, excluded};
+pub use angles::{Angle, Angles};
 pub use atom_style::{AtomStyle, Own};
 pub use bonds::{Bond, Bonds};
 pub use clock::{Clock, Halt};

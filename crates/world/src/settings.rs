@@ -70,6 +70,9 @@ pub struct NeighborSettings {
     pub skin: f64,
     /// The deck has said how far that is.
     pub said: bool,
+    /// The deck has chosen `multi`, which changes nothing but which words may follow.
+    #[serde(skip)]
+    pub multi: bool,
     /// Earliest rebuild after the last one [steps].
     pub delay: i64,
     /// Consider a rebuild every so many steps.
@@ -91,6 +94,7 @@ impl Default for NeighborSettings {
         Self {
             skin: 0.3,
             said: false,
+            multi: false,
             delay: 0,
             every: 1,
             check: true,

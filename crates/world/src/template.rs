@@ -1,6 +1,6 @@
 //! Templates of molecules: what one file of the `molecule` command says.
 
-use super::{Bond, World};
+use super::{Angle, Bond, World};
 use perigrain_base::math::body::{Quat, apply, matrix};
 use std::f64::consts::PI;
 
@@ -23,6 +23,9 @@ pub struct Template {
     pub molecules: Vec<u32>,
     /// Bonds: type and the numbers of both ends, from 1.
     pub bonds: Vec<(u16, [u32; 2])>,
+    /// Angles: type and the numbers of their particles, from 1, the one at the corner in the middle.
+    #[serde(default)]
+    pub angles: Vec<(u16, [u32; 3])>,
     /// Mass of all, if the file says so.
     pub mass: Option<f64>,
     /// Centre of mass, if the file says so [length].
@@ -92,7 +95,7 @@ impl Numbering {
 }
 
 impl World {
-    /// Puts a copy of a template with its bonds at these places, which are wrapped into the box and turned by `q` as its matter is, and
+    /// Puts a copy of a template with its bonds and angles at these places, which are wrapped into the box and turned by `q` as its matter is, and
     /// counts on. Which pairs count as bonded (`bonds.find_special`) and the length of other columns are for the caller to settle after the
     /// last copy.
     pub fn insert_molecule(&mut self, t: &Template, at: &[[f64; 3]], q: Quat, numbers: &mut Numbering) {
@@ -123,6 +126,8 @@ impl World {
         for (kind, ends) in &t.bonds {
             self.bonds.push(Bond::new(i32::from(*kind), ends.map(|k| first + k)));
         }
+        let angles = t.angles.iter().map(|(kind, ends)| Angle { kind: *kind, ends: ends.map(|k| first + k) });
+        self.bonds.angles.list.extend(angles);
         numbers.molecule += t.last_molecule();
     }
 }

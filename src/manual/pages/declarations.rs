@@ -33,11 +33,12 @@ pub(super) const PAIR_MODIFY: Entry = (
     "pair_modify",
     Doc {
         syntax: "pair_modify [pair STYLE] keyword value …",
-        summary: "Options of LAMMPS' pair styles; without effect here.",
-        text: "`mix geometric|arithmetic|sixthpower`, `shift yes|no`, `tail yes|no`, `table N`, `tabinner R`, \
+        summary: "How types are mixed, and options of LAMMPS' pair styles that have no effect here.",
+        text: "`mix geometric|arithmetic|sixthpower` is the rule by which `soft` and `bpm/spring` mix the cutoffs of two types without a \
+            line of their own. `shift yes|no`, `tail yes|no`, `table N`, `tabinner R`, \
             `table/disp N`, `tabinner/disp R`, `neigh/trim yes|no`, `compute/tally yes|no`, `nofdotr` and `compute yes` are read \
             for LAMMPS' sake, and a note says that they change nothing: no pair style here has a shift, a tail or a table, \
-            and granular styles mix in one way, as in LAMMPS. `pair STYLE` names a sub-style of `hybrid`. `compute no` and \
+            and `mix` does not concern granular styles, which mix in one way, as in LAMMPS. `pair STYLE` names a sub-style of `hybrid`. `compute no` and \
             `special` would change forces; they are refused.",
         example: "pair_modify shift yes mix geometric",
     },

@@ -43,7 +43,8 @@ impl Session {
             "map_tag_max" | "tag_max" => Large(i64::from(w.particles.last_tag())),
             "dimension" => Whole(if s.two_dimensional { 2 } else { 3 }),
             "triclinic" => flag(w.domain.as_ref().is_some_and(|d| d.tilt.is_some())),
-            "q_flag" | "nangles" | "ndihedrals" | "nimpropers" => Whole(0),
+            "nangles" => Large(w.bonds.angles.list.len() as i64),
+            "q_flag" | "ndihedrals" | "nimpropers" => Whole(0),
             "procgrid" => Wholes(vec![1; 3]),
             "special_lj" => {
                 let [a, b, c] = w.bonds.weights.lj;

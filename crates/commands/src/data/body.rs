@@ -8,7 +8,7 @@ use super::{Column, columns};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use perigrain_lang::Command;
 use perigrain_world::index::twice;
-use perigrain_world::{AtomStyle, Bond, Particles};
+use perigrain_world::{Angle, AtomStyle, Bond, Particles};
 
 /// What the deck says about reading.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,12 @@ pub struct How<'a> {
     pub bond_offset: u16,
     /// Bond types beyond those of the file.
     pub extra_bond_types: usize,
+    /// The number of angle types there will be.
+    pub angle_types: Option<usize>,
+    /// Added to every angle type.
+    pub angle_offset: u16,
+    /// Angle types beyond those of the file.
+    pub extra_angle_types: usize,
     /// Sections of fixes.
     pub sections: &'a [Section],
 }
@@ -50,12 +56,16 @@ pub struct DataFile {
     pub velocities: bool,
     /// The line on which each particle stands.
     pub lines: Vec<u32>,
-    /// `pair_coeff` and `bond_coeff` lines.
+    /// `pair_coeff`, `bond_coeff` and `angle_coeff` lines.
     pub coeffs: Vec<Command>,
     /// The number of bond types, extra ones included.
     pub bond_types: usize,
     /// Bonds with ids as in the file, and the lines on which they stand.
     pub bonds: Vec<(Bond, u32)>,
+    /// The number of angle types, extra ones included.
+    pub angle_types: usize,
+    /// Angles with ids as in the file.
+    pub angles: Vec<Angle>,
     /// What the sections of fixes say.
     pub filled: Vec<Filled>,
     /// What is worth knowing of the file.
@@ -72,11 +82,9 @@ impl DataFile {
 }
 
 /// Sections LAMMPS has besides.
-pub(super) const ELSEWHERE: [&str; 20] = [
-    "Angles",
+pub(super) const ELSEWHERE: [&str; 18] = [
     "Dihedrals",
     "Impropers",
-    "Angle Coeffs",
     "Dihedral Coeffs",
     "Improper Coeffs",
     "Ellipsoids",
@@ -95,8 +103,17 @@ pub(super) const ELSEWHERE: [&str; 20] = [
     "AngleTorsion Coeffs",
 ];
 
-pub(super) const SECTIONS: [&str; 7] =
-    ["Masses", "Atoms", "Velocities", "Bonds", "Pair Coeffs", "PairIJ Coeffs", "Bond Coeffs"];
+pub(super) const SECTIONS: [&str; 9] = [
+    "Masses",
+    "Atoms",
+    "Velocities",
+    "Bonds",
+    "Angles",
+    "Pair Coeffs",
+    "PairIJ Coeffs",
+    "Bond Coeffs",
+    "Angle Coeffs",
+];
 
 /// Reads a whole file.
 ///
@@ -111,12 +128,18 @@ pub fn read<'a>(text: &'a str, how: &How<'a>) -> Result<DataFile> {
         return fail(Code::BAD_VALUE, lines.end(), text);
     }
     let bond_types = how.bond_types.unwrap_or(header.bond_types + how.extra_bond_types);
-    if let Some(at) = header.bonds_at.filter(|_| !how.style.bonded) {
-        let text = format!("particles of atom_style {} have no bonds", how.style.name());
-        let d = Diagnostic::error(Code::CONFLICT, at, text);
-        return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+    let angle_types = how.angle_types.unwrap_or(header.angle_types + how.extra_angle_types);
+    let (bonds, angles) = (header.bonds_at, header.angles_at);
+    for (at, there, what, of) in
+        [(bonds, how.style.bonded, "bonds", "bond"), (angles, how.style.angled, "angles", "angle")]
+    {
+        if let Some(at) = at.filter(|_| !there) {
+            let text = format!("particles of atom_style {} have no {what}", how.style.name());
+            let d = Diagnostic::error(Code::CONFLICT, at, text);
+            return Err(d.help(format!("`atom_style {of}`, alone or in a hybrid, has them")).into());
+        }
     }
-    let data = DataFile { header, types, bond_types, ..DataFile::default() };
+    let data = DataFile { header, types, bond_types, angle_types, ..DataFile::default() };
     let mut reader = Reader { lines, how: *how, data };
     let mut seen: Vec<String> = vec![];
     while let Some(title) = reader.lines.take_filled() {
@@ -132,10 +155,15 @@ pub fn read<'a>(text: &'a str, how: &How<'a>) -> Result<DataFile> {
         let text = format!("the header promises {promised} atoms, but there is no section Atoms");
         return fail(Code::INCOMPLETE, reader.data.header.atoms_at.unwrap_or(reader.lines.end()), text);
     }
-    let (promised, have) = (reader.data.header.bonds, reader.data.bonds.len());
-    if promised > have {
-        let text = format!("the header promises {promised} bonds, but there is no section Bonds");
-        return fail(Code::INCOMPLETE, reader.data.header.bonds_at.unwrap_or(reader.lines.end()), text);
+    let (header, data) = (&reader.data.header, &reader.data);
+    for (promised, have, at, what, section) in [
+        (header.bonds, data.bonds.len(), header.bonds_at, "bonds", "Bonds"),
+        (header.angles, data.angles.len(), header.angles_at, "angles", "Angles"),
+    ] {
+        if promised > have {
+            let text = format!("the header promises {promised} {what}, but there is no section {section}");
+            return fail(Code::INCOMPLETE, at.unwrap_or(reader.lines.end()), text);
+        }
     }
     Ok(reader.data)
 }
@@ -175,10 +203,12 @@ impl<'a> Reader<'a> {
             "Atoms" => self.atoms(title),
             "Velocities" => self.velocities(title),
             "Bonds" => self.bonds(title),
+            "Angles" => self.angles(title),
             _ if let Some(k) = self.how.sections.iter().position(|s| s.name == name) => {
                 self.properties(k, title)
             }
             "Bond Coeffs" => self.rows(name, title, self.data.header.bond_types, Self::bond_coeff),
+            "Angle Coeffs" => self.rows(name, title, self.data.header.angle_types, Self::angle_coeff),
             "Pair Coeffs" => self.rows(name, title, types, |r, line| r.coeff(line, 1)),
             _ => self.rows(name, title, types * (types + 1) / 2, |r, line| r.coeff(line, 2)),
         }
@@ -203,6 +233,7 @@ impl<'a> Reader<'a> {
                     let at = match name {
                         "Atoms" | "Velocities" => header.atoms_at,
                         "Bonds" => header.bonds_at,
+                        "Angles" => header.angles_at,
                         _ if self.how.sections.iter().any(|s| s.name == name) => header.atoms_at,
                         _ => None,
                     };

@@ -24,6 +24,12 @@ pub struct Header {
     pub bond_types: usize,
     /// Where the number of bonds or their types stands.
     pub bonds_at: Option<Span>,
+    /// Number of angles.
+    pub angles: usize,
+    /// Number of angle types.
+    pub angle_types: usize,
+    /// Where the number of angles or their types stands.
+    pub angles_at: Option<Span>,
 }
 
 impl Default for Header {
@@ -40,19 +46,19 @@ impl Default for Header {
             bonds: 0,
             bond_types: 0,
             bonds_at: None,
+            angles: 0,
+            angle_types: 0,
+            angles_at: None,
         }
     }
 }
 
 /// Header words with a count that must be zero here.
-const COUNTS: [&str; 14] = [
-    "angles",
+const COUNTS: [&str; 11] = [
     "dihedrals",
     "impropers",
-    "angle types",
     "dihedral types",
     "improper types",
-    "extra angle per atom",
     "extra dihedral per atom",
     "extra improper per atom",
     "ellipsoids",
@@ -68,7 +74,7 @@ const SLANTED: [&str; 4] = ["avec", "bvec", "cvec", "abc origin"];
 /// Reads the header; the first line of the file is a title. The cursor stands before the first section afterwards.
 ///
 /// # Errors
-/// Lines that are neither header nor section, angles, general triclinic boxes, faces in the wrong order.
+/// Lines that are neither header nor section, dihedrals, general triclinic boxes, faces in the wrong order.
 pub fn read(lines: &mut Lines) -> Result<Header> {
     let mut header = Header::default();
     lines.take();
@@ -108,8 +114,15 @@ fn take(header: &mut Header, line: &Line, values: &[&str], name: &str) -> Result
             }
             *(if name == "bonds" { &mut header.bonds } else { &mut header.bond_types }) = n;
         }
+        "angles" | "angle types" => {
+            let n = count(line, values, name)?;
+            if n > 0 {
+                header.angles_at = Some(line.span_of(values[0]));
+            }
+            *(if name == "angles" { &mut header.angles } else { &mut header.angle_types }) = n;
+        }
         // Lists grow as they must.
-        "extra bond per atom" | "extra special per atom" => {
+        "extra bond per atom" | "extra angle per atom" | "extra special per atom" => {
             count(line, values, name)?;
         }
         "xlo xhi" => edge(header, 0, line, values)?,
@@ -133,8 +146,18 @@ fn take(header: &mut Header, line: &Line, values: &[&str], name: &str) -> Result
             }
         }
         _ => {
-            let known =
-                ["atoms", "atom types", "bonds", "bond types", "xlo xhi", "ylo yhi", "zlo zhi", "xy xz yz"];
+            let known = [
+                "atoms",
+                "atom types",
+                "bonds",
+                "bond types",
+                "angles",
+                "angle types",
+                "xlo xhi",
+                "ylo yhi",
+                "zlo zhi",
+                "xy xz yz",
+            ];
             let text = format!("`{name}` is no header line of a data file");
             let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, line.span(), text);
             return Err(match perigrain_base::diag::nearest(name, known) {

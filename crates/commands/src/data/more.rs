@@ -1,12 +1,12 @@
-//! The sections of a data file beside Atoms: Velocities, Bonds, coefficients of pairs and bonds.
+//! The sections of a data file beside Atoms: Velocities, Bonds, Angles and their coefficients.
 
 use super::body::{Reader, id};
 use super::text::{Line, not_here, number, whole};
 use super::velocity_columns;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Command, Word};
-use perigrain_world::Bond;
 use perigrain_world::index::Index;
+use perigrain_world::{Angle, Bond};
 
 /// A molecule ID.
 pub(super) fn molecule_id(line: &Line, word: &str) -> Result<u32> {
@@ -77,15 +77,76 @@ impl<'a> Reader<'a> {
 
     /// A `bond_coeff` line.
     pub(super) fn bond_coeff(&mut self, line: &Line) -> Result<()> {
-        let mut words = line.words();
-        let kind = self.bond_kind(line, words.next().unwrap_or(""))?;
+        let kind = self.bond_kind(line, line.words().next().unwrap_or(""))?;
+        self.coeff_of("bond_coeff", kind, line)
+    }
+
+    /// An `angle_coeff` line.
+    pub(super) fn angle_coeff(&mut self, line: &Line) -> Result<()> {
+        let kind = self.angle_kind(line, line.words().next().unwrap_or(""))?;
+        self.coeff_of("angle_coeff", kind.into(), line)
+    }
+
+    /// The line of a command that gives coefficients to a type of bonds or angles.
+    fn coeff_of(&mut self, command: &str, kind: i32, line: &Line) -> Result<()> {
+        let words = line.words().skip(1);
         let mut args = vec![Word::new(kind.to_string(), line.span())];
         args.extend(words.map(|w| Word::new(w, line.span_of(w))));
         if !self.how.no_coeff {
-            let (name, span) = (Word::new("bond_coeff", line.span()), line.span());
+            let (name, span) = (Word::new(command, line.span()), line.span());
             self.data.coeffs.push(Command { name, args, span, text: line.text.trim().to_string() });
         }
         Ok(())
+    }
+
+    fn angle_kind(&self, line: &Line, word: &str) -> Result<u16> {
+        if word.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return Err(not_here(line.span_of(word), &format!("the type label `{word}`")).into());
+        }
+        let shifted = whole(line, word, "the angle type")?.saturating_add(i64::from(self.how.angle_offset));
+        match u16::try_from(shifted) {
+            Ok(k) if k >= 1 && usize::from(k) <= self.data.angle_types => Ok(k),
+            _ => {
+                let text = format!("there are angle types 1 to {}, not {shifted}", self.data.angle_types);
+                fail(Code::BAD_VALUE, line.span_of(word), text)
+            }
+        }
+    }
+
+    /// The id of a particle of this file.
+    fn member(&self, index: &Index, line: &Line, word: &str) -> Result<u32> {
+        let tag = id(line, word)?;
+        match index.find(tag, &self.data.particles.tag) {
+            Some(_) => Ok(tag),
+            None => {
+                let text = format!("the section Atoms has no particle {word}");
+                fail(Code::UNKNOWN_NAME, line.span_of(word), text)
+            }
+        }
+    }
+
+    /// The section Angles.
+    pub(super) fn angles(&mut self, title: &Line<'a>) -> Result<()> {
+        if self.data.particles.is_empty() && self.data.header.atoms > 0 {
+            return fail(Code::WRONG_ORDER, title.span(), "the section Angles must follow Atoms");
+        }
+        let index = Index::new(&self.data.particles.tag);
+        let count = self.data.header.angles;
+        self.rows("Angles", title, count, |r, line| {
+            let words: Vec<&str> = line.words().collect();
+            let &[_, kind, a, b, c] = words.as_slice() else {
+                let text = "a number, an angle type and three ids are needed here";
+                return fail(Code::SYNTAX, line.span(), text);
+            };
+            let kind = r.angle_kind(line, kind)?;
+            let end = |word| r.member(&index, line, word);
+            let ends @ [one, corner, other] = [end(a)?, end(b)?, end(c)?];
+            if one == corner || corner == other || one == other {
+                return fail(Code::BAD_VALUE, line.span(), "an angle needs three different particles");
+            }
+            r.data.angles.push(Angle { kind, ends });
+            Ok(())
+        })
     }
 
     fn bond_kind(&self, line: &Line, word: &str) -> Result<i32> {
@@ -116,16 +177,7 @@ impl<'a> Reader<'a> {
                 return fail(Code::SYNTAX, line.span(), text);
             };
             let kind = r.bond_kind(line, kind)?;
-            let end = |word: &str| {
-                let tag = id(line, word)?;
-                match index.find(tag, &r.data.particles.tag) {
-                    Some(_) => Ok(tag),
-                    None => {
-                        let text = format!("the section Atoms has no particle {word}");
-                        fail(Code::UNKNOWN_NAME, line.span_of(word), text)
-                    }
-                }
-            };
+            let end = |word| r.member(&index, line, word);
             let ends = [end(a)?, end(b)?];
             if ends[0] == ends[1] {
                 return fail(Code::BAD_VALUE, line.span_of(b), "a bond needs two different particles");

@@ -34,18 +34,18 @@ pub fn ids(a: &mut Args) -> Result<Ids> {
     }
 }
 
-/// The five offsets, of which the last three have nothing to act on.
-pub fn offsets(a: &mut Args) -> Result<(u16, u16)> {
+/// The five offsets, of types, bond types and angle types; the last two have nothing to act on.
+pub fn offsets(a: &mut Args) -> Result<[u16; 3]> {
     let mut offset = |what: &str| {
         let span = a.here();
         let types = a.integer_from(0, &format!("the offset of {what}"))?;
         u16::try_from(types).or_else(|_| fail(Code::BAD_VALUE, span, format!("there are no {types} types")))
     };
-    let both = (offset("types")?, offset("bond types")?);
-    for what in ["angle types", "dihedral types", "improper types"] {
+    let used = [offset("types")?, offset("bond types")?, offset("angle types")?];
+    for what in ["dihedral types", "improper types"] {
         offset(what)?;
     }
-    Ok(both)
+    Ok(used)
 }
 
 /// Takes a number of extra types.

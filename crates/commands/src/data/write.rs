@@ -2,14 +2,15 @@
 
 use super::{Column, columns};
 use perigrain_base::math::cformat::shortest;
-use perigrain_world::{Particles, Properties, World};
+use perigrain_world::index::Index;
+use perigrain_world::{Angle, Angles, Particles, Properties, World};
 use std::f64::consts::PI;
 use std::io::{Result, Write};
 
 /// What a data file gets besides particles.
 #[derive(Clone, Copy, Debug)]
 pub struct With {
-    /// Coefficients of bonds.
+    /// Coefficients of bonds and angles.
     pub coeffs: bool,
     /// Sections of fixes.
     pub fixes: bool,
@@ -28,6 +29,10 @@ pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
     if w.bonds.types > 0 || !w.bonds.is_empty() {
         writeln!(out, "{} bonds\n{} bond types", w.bonds.len(), w.bonds.types)?;
     }
+    let angles = &w.bonds.angles;
+    if angles.types > 0 || !angles.list.is_empty() {
+        writeln!(out, "{} angles\n{} angle types", angles.list.len(), angles.types)?;
+    }
     writeln!(out)?;
     if let Some(domain) = &*w.domain {
         for (d, axis) in ["x", "y", "z"].into_iter().enumerate() {
@@ -40,6 +45,7 @@ pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
     masses(out, w)?;
     if with.coeffs {
         bond_coeffs(out, w)?;
+        angle_coeffs(out, &w.bonds.angles)?;
     }
     let p = &w.particles;
     if p.is_empty() {
@@ -48,6 +54,7 @@ pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
     atoms(out, p)?;
     velocities(out, p)?;
     bonds(out, w)?;
+    section_angles(out, w)?;
     let written = w.properties.iter().filter(|p| with.fixes && p.written);
     written.into_iter().try_for_each(|own| properties(out, w, own))
 }
@@ -102,6 +109,30 @@ fn bond_coeffs(out: &mut dyn Write, w: &World) -> Result<()> {
         writeln!(out, "{kind} {text}")?;
     }
     Ok(())
+}
+
+/// The section Angle Coeffs, where all types have coefficients.
+fn angle_coeffs(out: &mut dyn Write, angles: &Angles) -> Result<()> {
+    let Some(style) = angles.style.as_ref().filter(|s| s.given.len() == angles.types && angles.types > 0)
+    else {
+        return Ok(());
+    };
+    writeln!(out, "\nAngle Coeffs # zero\n")?;
+    style.given.iter().try_for_each(|(kind, angle)| writeln!(out, "{kind} {}", shortest(*angle)))
+}
+
+/// The section Angles, in the order of the particles at the corners, which LAMMPS lists them with.
+fn section_angles(out: &mut dyn Write, w: &World) -> Result<()> {
+    let index = Index::new(&w.particles.tag);
+    let mut list = w.bonds.angles.list.clone();
+    if list.is_empty() {
+        return Ok(());
+    }
+    list.sort_by_key(|angle| index.find(angle.ends[1], &w.particles.tag));
+    writeln!(out, "\nAngles\n")?;
+    (1..)
+        .zip(list)
+        .try_for_each(|(k, Angle { kind, ends: [a, b, c] })| writeln!(out, "{k} {kind} {a} {b} {c}"))
 }
 
 fn atoms(out: &mut dyn Write, p: &Particles) -> Result<()> {

@@ -4,15 +4,23 @@ use crate::data::text::{Line, Lines, not_here, number, under_heading, whole};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use perigrain_world::Template;
 
-const SECTIONS: [&str; 8] =
-    ["Coords", "Types", "Molecules", "Diameters", "Masses", "Bonds", "Special Bond Counts", "Special Bonds"];
+const SECTIONS: [&str; 9] = [
+    "Coords",
+    "Types",
+    "Molecules",
+    "Diameters",
+    "Masses",
+    "Bonds",
+    "Angles",
+    "Special Bond Counts",
+    "Special Bonds",
+];
 
 /// Sections LAMMPS has besides.
-const ELSEWHERE: [&str; 12] = [
+const ELSEWHERE: [&str; 11] = [
     "Charges",
     "Dipoles",
     "Fragments",
-    "Angles",
     "Dihedrals",
     "Impropers",
     "Shake Flags",
@@ -24,7 +32,7 @@ const ELSEWHERE: [&str; 12] = [
 ];
 
 /// Header words with a count that must be zero here.
-const COUNTS: [&str; 5] = ["angles", "dihedrals", "impropers", "fragments", "body"];
+const COUNTS: [&str; 4] = ["dihedrals", "impropers", "fragments", "body"];
 
 /// Reads a file and leaves notes about it; whether lists of special bonds were read past.
 ///
@@ -35,6 +43,7 @@ pub fn read(text: &str, notes: &mut Diagnostics) -> Result<(Template, bool)> {
     let mut f = File {
         t: Template::default(),
         bonds: 0,
+        angles: 0,
         skipped: false,
         seen: vec![],
         notes: Diagnostics::default(),
@@ -56,9 +65,13 @@ pub fn read(text: &str, notes: &mut Diagnostics) -> Result<(Template, bool)> {
             "the header must say how many atoms there are: `N atoms`",
         );
     }
-    if f.t.bonds.len() < f.bonds {
-        let text = format!("the header promises {} bonds, but there is no section Bonds", f.bonds);
-        return fail(Code::INCOMPLETE, lines.end(), text);
+    for (promised, have, what, section) in
+        [(f.bonds, f.t.bonds.len(), "bonds", "Bonds"), (f.angles, f.t.angles.len(), "angles", "Angles")]
+    {
+        if have < promised {
+            let text = format!("the header promises {promised} {what}, but there is no section {section}");
+            return fail(Code::INCOMPLETE, lines.end(), text);
+        }
     }
     notes.append(f.notes);
     Ok((f.t, f.skipped))
@@ -68,6 +81,8 @@ struct File {
     t: Template,
     /// Number of bonds the header promises.
     bonds: usize,
+    /// And of angles.
+    angles: usize,
     skipped: bool,
     seen: Vec<String>,
     notes: Diagnostics,
@@ -100,6 +115,7 @@ impl File {
         match name.as_str() {
             "atoms" => self.t.count = count()?,
             "bonds" => self.bonds = count()?,
+            "angles" => self.angles = count()?,
             "mass" => {
                 let m = numbers(1)?[0];
                 if m <= 0.0 {
@@ -115,7 +131,7 @@ impl File {
                 }
             }
             other => {
-                let known = ["atoms", "bonds", "mass", "com", "inertia"];
+                let known = ["atoms", "bonds", "angles", "mass", "com", "inertia"];
                 let d = Diagnostic::error(
                     Code::UNKNOWN_KEYWORD,
                     line.span(),
@@ -152,7 +168,11 @@ impl File {
             return fail(Code::DUPLICATE_NAME, title.span(), format!("a second section {name}"));
         }
         self.notes.0.extend(under_heading(lines, &name)?);
-        let count = if name == "Bonds" { self.bonds } else { self.t.count };
+        let count = match name.as_str() {
+            "Bonds" => self.bonds,
+            "Angles" => self.angles,
+            _ => self.t.count,
+        };
         // Before room is made for them: a header may promise more than the file holds.
         let mut ahead = *lines;
         let have = (0..count).take_while(|_| ahead.take().is_some_and(|l| !l.is_blank())).count();
@@ -191,6 +211,7 @@ impl File {
         }
         let wanted = match name {
             "Coords" | "Bonds" => 4,
+            "Angles" => 5,
             _ => 2,
         };
         if words.len() != wanted {
@@ -219,6 +240,15 @@ impl File {
             "Molecules" => t.molecules[k] = u32::from(kind(line, words[1], "the molecule")?),
             "Diameters" => t.radii[k] = 0.5 * least(words[1], "the diameter")?,
             "Masses" => t.masses[k] = least(words[1], "the mass")?,
+            "Angles" => {
+                let end = |word| within(line, word, t.count, "an end of an angle");
+                let ends @ [a, b, c] = [end(words[2])?, end(words[3])?, end(words[4])?];
+                if a == b || b == c || a == c {
+                    let text = "an angle needs three different particles";
+                    return fail(Code::BAD_VALUE, line.span(), text);
+                }
+                t.angles.push((kind(line, words[1], "the angle type")?, ends.map(|k| k as u32 + 1)));
+            }
             _ => {
                 let (a, b) = (
                     within(line, words[2], t.count, "an end of a bond")?,

@@ -30,7 +30,7 @@ pub fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
         let text = format!("{what} style {} has no coefficient that fix adapt could change", style.text);
         let d = Diagnostic::error(Code::NOT_SUPPORTED, style.span, text);
         return Err(d
-            .help("peri/pmb, other peri styles, bpm/spring and bond style harmonic have some")
+            .help("peri/pmb, other peri styles, soft, bpm/spring and bond style harmonic have some")
             .into());
     }
     let name = args.expect("a coefficient")?;

@@ -261,6 +261,7 @@ impl Pair for Solid {
             needs: if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] },
             true_forces: Some(self.unit() == ForceUnit::Newton),
             elastic_grains: false,
+            mixes: false,
             solids: types().filter(|&i| self.covers(i, i)).collect(),
             unbreakable: types().find(endless).filter(|_| !self.materials.is_empty()),
             coefficients: match self.law.kind {

@@ -113,6 +113,10 @@ pub fn bonds(w: &World) -> Outcome {
     )?;
     // Counted from type 0, which nobody has.
     must(b.power.len() <= b.types + 1, "there are dashpots of more types than there are")?;
+    let angles = &b.angles;
+    must(angles.types <= usize::from(u16::MAX), "there are more types of angles than can be")?;
+    let in_range = angles.list.iter().all(|a| (1..=angles.types).contains(&usize::from(a.kind)));
+    must(in_range, "an angle's type is beyond the number of types")?;
     let coeffs = b.coeffs.iter().flat_map(|(_, all)| all.keys());
     must(coeffs.into_iter().all(|k| (1..=b.types).contains(k)), "coefficients belong to no type")
 }

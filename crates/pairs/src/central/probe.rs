@@ -1,0 +1,55 @@
+//! What single pairs of a central law say when they are asked.
+
+use super::{Law, Table};
+use crate::shared::{built_at, near};
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::scale;
+use perigrain_neigh::list::{Pair, difference};
+use perigrain_styles::probe::{Ask, Interaction, Probe};
+use perigrain_world::{Allowed, World};
+
+/// Evaluates single pairs.
+pub struct Asked<L> {
+    table: Table<L>,
+}
+
+impl<L: Law> Asked<L> {
+    /// With these coefficients.
+    pub fn new(table: Table<L>) -> Self {
+        Self { table }
+    }
+
+    fn list(&self, w: &World) -> Vec<Pair> {
+        near(w, built_at(w), &self.table.wanted, w.settings.neighbor.skin, &Allowed::felt(w))
+    }
+}
+
+impl<L: Law> Probe for Asked<L> {
+    fn name(&self) -> &'static str {
+        L::NAME
+    }
+
+    fn own(&self) -> usize {
+        0
+    }
+
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        Some(self.table.farthest()).filter(|c| *c > 0.0)
+    }
+
+    fn listed(&self, w: &World) -> Result<Vec<[u32; 2]>> {
+        Ok(self.list(w).iter().map(|p| [p.i, p.j]).collect())
+    }
+
+    fn look(&mut self, w: &World, _ask: Ask) -> Result<Vec<Interaction>> {
+        self.table.renew(w);
+        self.table.weigh(w);
+        let interaction = |pair: &Pair| {
+            let felt = self.table.felt(w, pair)?;
+            let d = difference(&w.particles.x, &w.periods(), pair);
+            let (force, energy) = (scale(felt.force, d), felt.energy);
+            Some(Interaction { i: pair.i, j: pair.j, d, force, energy, ..Interaction::default() })
+        };
+        Ok(self.list(w).iter().filter_map(interaction).collect())
+    }
+}
