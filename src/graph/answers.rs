@@ -35,6 +35,8 @@ pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
         "rmass_flag" => flag(s.own_mass()),
         "radius_flag" | "omega_flag" | "torque_flag" => flag(s.sphere),
         "peri_flag" => flag(s.peri),
+        "q_flag" => flag(s.charged),
+        "mu_flag" => flag(s.dipole),
         "molecule_flag" => flag(s.molecules),
         "nbondtypes" => w.bonds.types as f64,
         "nangletypes" => w.bonds.angles.types as f64,
@@ -42,9 +44,9 @@ pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
         "bigint" => 8.0,
         "tagint" | "imageint" => 4.0,
         "triclinic" => flag(w.domain.as_ref().is_some_and(|d| d.tilt.is_some())),
-        "nghost" | "ndihedraltypes" | "nimpropertypes" | "q_flag" | "mu_flag" | "ellipsoid_flag"
-        | "angmom_flag" | "world_rank" | "universe_rank" | "nellipsoids" | "nlines" | "ntris" | "nbodies"
-        | "kokkos_active" | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
+        "nghost" | "ndihedraltypes" | "nimpropertypes" | "ellipsoid_flag" | "angmom_flag" | "world_rank"
+        | "universe_rank" | "nellipsoids" | "nlines" | "ntris" | "nbodies" | "kokkos_active"
+        | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
         _ => return None,
     };
     Some(Value::Number(number))

@@ -7,6 +7,7 @@ use crate::graph::build::{Context, declare};
 use crate::graph::env::DeckValues;
 use crate::graph::regions::place_now;
 use perigrain_base::diag::Result;
+use perigrain_commands::COMMANDS;
 use perigrain_lang::{Args, Command};
 use perigrain_styles::{ActCx, CommandStyle};
 use perigrain_world::{GroupId, Promise};

@@ -57,3 +57,83 @@ fn chains_keep_their_angles() {
     // The file that was written names the coefficients of all three types, so that `angle_style zero` needs no further lines.
     assert!(!said.contains("error["), "{said}");
 }
+
+/// ω = t T/(2/5 m R²), m = π/6, R = 1/2, t = 1; the total before each fix changes it.
+#[test]
+fn torques_of_single_spheres_are_added_and_set() {
+    let inertia = 0.4 * std::f64::consts::PI / 6.0 * 0.25;
+    let said = text(&run("torques_of_spheres.in", &[]));
+    let found = numbers(&said, "RESULT");
+    let wanted = [0.02 / inertia, 0.1 / inertia, 0.02 / inertia, 0.0, 0.0, 0.02, 0.1];
+    assert_eq!(found.len(), wanted.len(), "{said}");
+    // A hundred additions of equal numbers.
+    assert!(
+        found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-13 * (1.0 + b)),
+        "{found:?} {wanted:?}"
+    );
+}
+
+/// LAMMPS 22Jul2025 prints these numbers with fourteen digits; with `dipole/dlm` its own. Moments stay behind in `displace_atoms rotate` and
+/// `fix move rotate` as in LAMMPS under compat, and turn along without it.
+#[test]
+fn dipoles_turn_in_fields() {
+    let start = [
+        0.3,
+        -0.88314335509192,
+        0.43357172187211,
+        -0.84974900785458,
+        0.67568298287459,
+        1.3,
+        0.7,
+        0.0,
+        0.7,
+        0.35,
+    ];
+    let plain = [
+        0.70117169598406,
+        0.16063141047117,
+        -1.2461112000626,
+        -0.33377301725662,
+        0.77326856947891,
+        1.3,
+        0.0,
+        0.0,
+        4.1408460164328,
+    ];
+    let rotations = [
+        0.70037689009812,
+        -0.029248963611129,
+        -1.2988752875425,
+        -0.045469611159254,
+        0.765529410334,
+        1.3,
+        0.0,
+        0.0,
+        4.1408460164328,
+    ];
+    let energies = [[-38.386239753721; 2], [-38.626237301074; 2]];
+    let rigid = [
+        [0.55391753431162, 0.26139843564742, 0.35333585018113],
+        [0.57721101712513, 0.12634511395096, 0.38841260778982],
+    ];
+    for (k, (update, after)) in [("dipole", plain), ("dipole/dlm", rotations)].into_iter().enumerate() {
+        let said = text(&run("dipoles_in_a_field.in", &["-var", "u", update, "-compat", "lammps/2025"]));
+        // All digits at first; 500 steps of rounding after that.
+        close(&said, "RESULT0", &start, 1e-13);
+        close(&said, "RESULT1", &after, 1e-9);
+        let second = numbers(&said, "RESULT2");
+        assert!(second[4..6].iter().zip(&energies[k]).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{said}");
+        let (then, turned, moved) =
+            (numbers(&said, "RESULT2")[0], numbers(&said, "ROTATED"), numbers(&said, "MOVED"));
+        assert!(turned == moved && turned[0] == then, "{said}");
+        close(&said, "RIGID", &rigid[k], 1e-9);
+        assert_eq!(numbers(&said, "RESTARTED")[1], 0.7);
+        assert_eq!(numbers(&said, "READ"), numbers(&said, "RESTARTED"), "{said}");
+    }
+    // A quarter of a turn about z, and another one in 2.5 of 10 time units.
+    let said = text(&run("dipoles_in_a_field.in", &["-var", "u", "dipole"]));
+    let before = numbers(&said, "RESULT2")[0];
+    let (turned, moved) = (numbers(&said, "ROTATED"), numbers(&said, "MOVED"));
+    assert!((turned[1] - before).abs() < 1e-12, "{said}");
+    assert!((moved[0] + turned[1]).abs() < 1e-12 && (moved[1] - turned[0]).abs() < 1e-12, "{said}");
+}

@@ -131,7 +131,7 @@ const SCENE: &str = "\
 units si
 newton on off
 comm_modify vel yes cutoff 4
-atom_style bpm/sphere
+atom_style hybrid bpm/sphere dipole
 boundary p p p
 region b block -5 5 -5 5 -5 5
 create_box 2 b bond/types 1 extra/bond/per/atom 6 extra/special/per/atom 20
@@ -142,6 +142,8 @@ group body id 1 2 3
 set group all diameter 1.0 density 1.0 mol 1
 set atom 1 quat 1 2 3 40
 set atom 2 quat 0 1 0 -70
+set group all dipole 0.3 -0.4 0.5
+set type 2 dipole 0.1 0.5 0.2 charge 0.7
 set group all omega 1 -2 0.5
 velocity all set 0.3 0.1 -0.2
 fix own all property/atom d_own
@@ -355,6 +357,10 @@ fn wrong(name: &str, under: Under, before: &World, now: &World, lines: &str) -> 
         // Looked at with places.
         ("image", Under::Place) => true,
         ("quat", Under::Orientation) => all(&|i| alike(new.quat[i], after(q, old.quat[i]))),
+        ("mu", Under::Orientation) => {
+            all(&|i| near(new.mu[i], turned(q, old.mu[i])) && length(new.mu[i]) > 0.3)
+        }
+        ("charge", Under::Nothing) => new.charge == old.charge && new.charge.contains(&0.7),
         // Step by step whatever moves particles sets them.
         ("v", Under::Motion) => !acts || new.v == old.v,
         ("omega", Under::Motion) => !acts || new.omega == old.omega,

@@ -50,7 +50,7 @@ impl Style for ReadData {
                    zhi`, for atom styles with bonds also `N bonds` and `N bond types`, with angles `N angles` and `N angle types`; sections are Masses, Atoms, Velocities, Bonds \
                    (number, type, two ids), Angles (number, type, three ids), Pair Coeffs, PairIJ Coeffs, Bond Coeffs and Angle Coeffs. Columns of Atoms: `id type \
                    x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x y z` (peri), \
-                   `id molecule type x y z` (bond, angle, molecular), `id molecule type diameter density x y z` (bpm/sphere), `id \
+                   `id molecule type x y z` (bond, angle, molecular), `id type charge x y z` (charge), `id type charge x y z mux muy muz` (dipole), `id molecule type charge x y z` (full), `id molecule type diameter density x y z` (bpm/sphere), `id \
                    type x y z` and then the columns of each style in the order of its name (hybrid; what two have stands \
                    once), all with three image flags at the end or none. Velocities: `id vx vy vz`, with spheres also `wx \
                    wy wz`. The density of a sphere becomes the mass 4/3 π r³ ρ; without a radius it is the mass. The \

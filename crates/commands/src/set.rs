@@ -17,7 +17,7 @@ use perigrain_world::{AtomStyle, GroupId, Region};
 /// The command.
 pub struct Set;
 
-const KEYWORDS: [&str; 24] = [
+const KEYWORDS: [&str; 27] = [
     "mol",
     "bond",
     "type",
@@ -36,6 +36,9 @@ const KEYWORDS: [&str; 24] = [
     "omega",
     "quat",
     "quat/random",
+    "charge",
+    "dipole",
+    "dipole/random",
     "x",
     "y",
     "z",
@@ -43,10 +46,7 @@ const KEYWORDS: [&str; 24] = [
     "vy",
     "vz",
 ];
-const ELSEWHERE: [&str; 18] = [
-    "charge",
-    "dipole",
-    "dipole/random",
+const ELSEWHERE: [&str; 15] = [
     "spin",
     "spin/atom",
     "shape",
@@ -74,7 +74,7 @@ impl Style for Set {
             syntax: "set atom A*B | type A*B | mol A*B | group ID | region ID  KEYWORD VALUE …",
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
-                   `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `quat A B C THETA` (the orientation: turned by THETA degrees about an axis of any length; LAMMPS, and `-compat lammps`, turn farther about an axis that is not of unit length), `quat/random SEED`, `image NX NY NZ` (`NULL` \
+                   `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `quat A B C THETA` (the orientation: turned by THETA degrees about an axis of any length; LAMMPS, and `-compat lammps`, turn farther about an axis that is not of unit length), `quat/random SEED`, `charge Q`, `dipole MUX MUY MUZ`, `dipole/random SEED MU` (moments of size MU in directions that LAMMPS draws too: corners of a cube are likelier), `image NX NY NZ` (`NULL` \
                    leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is), `peri/radius`, `peri/strength`, `peri/stiffness`. A value is a number or an atom-style variable `v_name`. \
                    Who is chosen is decided once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
@@ -150,7 +150,7 @@ fn choice(a: &mut Args, cx: &BuildCx) -> Result<Choice> {
 }
 
 fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
-    let AtomStyle { sphere, oriented, peri, .. } = cx.world.particles.style;
+    let AtomStyle { sphere, oriented, peri, charged, dipole, .. } = cx.world.particles.style;
     let needs = |there: bool| match there {
         true => Ok(()),
         false => {
@@ -231,6 +231,19 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
         "quat/random" => {
             needs(oriented)?;
             seed(a).map(Change::AnyQuat)
+        }
+        "charge" => {
+            needs(charged)?;
+            value(a, cx, "the charge", None).map(Change::Charge)
+        }
+        "dipole" => {
+            needs(dipole)?;
+            let mut next = || value(a, cx, "the dipole moment", None);
+            Ok(Change::Moment([next()?, next()?, next()?]))
+        }
+        "dipole/random" => {
+            needs(dipole)?;
+            Ok(Change::AnyMoment(seed(a)?, a.positive("the dipole moment")?))
         }
         "mol" => {
             needs(cx.world.particles.style.molecules)?;

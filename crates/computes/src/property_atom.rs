@@ -2,6 +2,7 @@
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use perigrain_base::math::vec3::length;
 use perigrain_base::par;
 use perigrain_lang::{Args, Word};
 use perigrain_peri::linked::Strain;
@@ -12,8 +13,8 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{BOND_FACTORS, HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
-    BOX, COLUMNS, F, FAMILIES, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE,
-    TYPE_MASS, V, VOLUME, X, X0,
+    BOX, CHARGE, COLUMNS, F, FAMILIES, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, MU, OMEGA, QUAT, RADIUS,
+    TAG, TORQUE, TYPE_MASS, V, VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
 use perigrain_world::{AtomStyle, GroupId, Numbers, SlotId, World};
@@ -33,7 +34,7 @@ impl Style for PropertyAtom {
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style bpm/sphere `quatw quati quatj quatk`, the orientation; with atom_style peri `vfrac`, the volume, `peri/strength` and `peri/stiffness`, the factors of `set`, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
+                   tqy tqz`; with atom_style bpm/sphere `quatw quati quatj quatk`, the orientation; with atom_style dipole `mux muy muz`, the dipole moment, and `mu`, its size; with charges `q`; with atom_style peri `vfrac`, the volume, `peri/strength` and `peri/stiffness`, the factors of `set`, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
                    with the particle (with its first end only, under `newton off` with both); with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
                    belong to atom styles that perigrain does not have and are refused. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
                    `s0` of pair styles peri/… is LAMMPS' critical stretch: the largest s00 − α s of the bonds that a particle had before the \
@@ -51,6 +52,8 @@ enum Needs {
     Nothing,
     Sphere,
     Oriented,
+    Charge,
+    Moment,
     Peri,
     Molecules,
     Linked,
@@ -63,6 +66,8 @@ impl Needs {
             Needs::Nothing => true,
             Needs::Sphere => style.sphere,
             Needs::Oriented => style.oriented,
+            Needs::Charge => style.charged,
+            Needs::Moment => style.dipole,
             Needs::Peri => style.peri,
             Needs::Molecules => style.molecules,
             Needs::Linked => style.bonded,
@@ -160,6 +165,11 @@ const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
     ("quati", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][1])),
     ("quatj", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][2])),
     ("quatk", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][3])),
+    ("q", Needs::Charge, Getter::Own(|w, i| w.particles.charge[i])),
+    ("mux", Needs::Moment, Getter::Own(|w, i| w.particles.mu[i][0])),
+    ("muy", Needs::Moment, Getter::Own(|w, i| w.particles.mu[i][1])),
+    ("muz", Needs::Moment, Getter::Own(|w, i| w.particles.mu[i][2])),
+    ("mu", Needs::Moment, Getter::Own(|w, i| length(w.particles.mu[i]))),
     ("vfrac", Needs::Peri, Getter::Own(|w, i| w.particles.volume[i])),
     ("peri/strength", Needs::Peri, Getter::Whole(|w| bond_factors(w, 0))),
     ("peri/stiffness", Needs::Peri, Getter::Whole(|w| bond_factors(w, 1))),
@@ -172,10 +182,10 @@ const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
 
 /// LAMMPS' attributes of atom styles that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
-    "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "angmomx", "angmomy",
-    "angmomz", "shapex", "shapey", "shapez", "end1x", "end1y", "end1z", "end2x", "end2y", "end2z",
-    "corner1x", "corner1y", "corner1z", "corner2x", "corner2y", "corner2z", "corner3x", "corner3y",
-    "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho", "e", "de", "cv", "buckling",
+    "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "angmomx", "angmomy", "angmomz", "shapex", "shapey",
+    "shapez", "end1x", "end1y", "end1z", "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z",
+    "corner2x", "corner2y", "corner2z", "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel",
+    "erforce", "rho", "drho", "e", "de", "cv", "buckling",
 ];
 
 /// The refusal of a property of fix property/atom that somebody reads and nobody has.
@@ -231,13 +241,23 @@ fn scaled(w: &World, i: usize, d: usize) -> f64 {
 impl ComputeStyle for PropertyAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         let first = args.expect("an attribute, as `radius`")?;
-        let mut oriented = first.text.starts_with("quat");
+        let mut reads = reads_of(&first.text);
         let mut getters = vec![read_attribute(first, cx)?];
         while let Some(word) = args.next() {
-            oriented |= word.text.starts_with("quat");
+            reads |= reads_of(&word.text);
             getters.push(read_attribute(word, cx)?);
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters, oriented }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters, reads }))
+    }
+}
+
+/// The fields of an attribute that few particles have.
+fn reads_of(name: &str) -> Fields {
+    match name {
+        "quatw" | "quati" | "quatj" | "quatk" => QUAT,
+        "mux" | "muy" | "muz" | "mu" => MU,
+        "q" => CHARGE,
+        _ => Fields::NONE,
     }
 }
 
@@ -259,6 +279,8 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
         let style = match needs {
             Needs::Sphere => "atom_style sphere",
             Needs::Oriented => "atom_style bpm/sphere",
+            Needs::Charge => "atom_style charge",
+            Needs::Moment => "atom_style dipole",
             Needs::Molecules => "atom_style bond",
             Needs::Linked => "bond_style bpm/peri",
             Needs::Breaking => "atom_style peri` or `bond_style bpm/peri",
@@ -306,7 +328,7 @@ struct Declared {
     span: Span,
     getters: Vec<Getter>,
     /// Some attribute is of orientations.
-    oriented: bool,
+    reads: Fields,
 }
 
 impl Compute for Declared {
@@ -338,7 +360,7 @@ impl Compute for Declared {
                 | F
                 | V
                 | MOLECULE
-                | if self.oriented { QUAT } else { Fields::NONE },
+                | self.reads,
             move |w, _, out| {
                 let (bit, columns) = (group.bit(), getters.len());
                 out.cols = columns;

@@ -1,6 +1,7 @@
 //! Per-particle attributes that dumps can show: `id`, `x`, `vx`, `radius`, `c_ID[2]`, `v_name` ….
 
 use perigrain_base::diag::{Code, Result};
+use perigrain_base::math::vec3;
 use perigrain_computes::property_atom::gone;
 use perigrain_lang::args::blame;
 use perigrain_lang::{ValueRef, Word};
@@ -69,6 +70,10 @@ pub enum Core {
     Volume,
     /// Molecule ID.
     Molecule,
+    /// Charge.
+    Charge,
+    /// A component of the dipole moment, or its size.
+    Moment(Option<usize>),
     /// Name of the type (`dump_modify element`).
     Element,
 }
@@ -111,11 +116,16 @@ pub const CORE: &[(&str, Core)] = &[
     ("tqy", Core::Torque(1)),
     ("tqz", Core::Torque(2)),
     ("volume", Core::Volume),
+    ("q", Core::Charge),
+    ("mux", Core::Moment(Some(0))),
+    ("muy", Core::Moment(Some(1))),
+    ("muz", Core::Moment(Some(2))),
+    ("mu", Core::Moment(None)),
     ("element", Core::Element),
 ];
 
 /// LAMMPS' attributes for things that perigrain's particles do not have.
-const ELSEWHERE: &[&str] = &["q", "mux", "muy", "muz", "mu", "angmomx", "angmomy", "angmomz"];
+const ELSEWHERE: &[&str] = &["angmomx", "angmomy", "angmomz"];
 
 /// What `c_ID[*]` becomes: one attribute per column.
 pub fn expand(word: &Word, cx: &BuildCx) -> Result<Vec<Attribute>> {
@@ -154,6 +164,8 @@ fn requires(core: Core, word: &Word, cx: &BuildCx) -> Result<()> {
         Core::Radius | Core::Diameter | Core::Omega(_) | Core::Torque(_) => (style.sphere, "sphere"),
         Core::Volume => (style.peri, "peri"),
         Core::Molecule => (style.molecules, "bond"),
+        Core::Charge => (style.charged, "charge"),
+        Core::Moment(_) => (style.dipole, "dipole"),
         _ => return Ok(()),
     };
     if there {
@@ -300,6 +312,9 @@ impl Bound {
             Core::Torque(k) => Data::component(&p.torque, k),
             Core::Volume => Data::slice(&p.volume),
             Core::Molecule => Data::int(|i| i64::from(p.molecule[i])),
+            Core::Charge => Data::slice(&p.charge),
+            Core::Moment(Some(k)) => Data::component(&p.mu, k),
+            Core::Moment(None) => Data::float(|i| vec3::length(p.mu[i])),
         }
     }
 }

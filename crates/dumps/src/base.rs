@@ -23,7 +23,8 @@ use perigrain_styles::{BuildCx, SealCx, Wants};
 
 pub use keywords::{column, unknown};
 use perigrain_world::field::{
-    BOX, COLUMNS, F, FACTS, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, V, VOLUME, X,
+    BOX, CHARGE, COLUMNS, F, FACTS, Fields, IMAGE, KIND, MASK, MASS, MU, OMEGA, RADIUS, REGIONS, SLOTS, TAG,
+    TORQUE, V, VOLUME, X,
 };
 use perigrain_world::{Domain, GroupId, Key, Numbers, Region, World};
 
@@ -259,7 +260,11 @@ impl Base {
             refresh.as_mut().map_or(Ok(()), |op| op.run(w, t))
         };
         let name = format!("dump {} {}", self.id, self.style);
-        let reads = X | V | F | IMAGE | MASK | TAG | KIND | MASS | RADIUS | OMEGA | TORQUE | VOLUME;
+        let style = cx.world().particles.style;
+        let of = |there: bool, field: Fields| if there { field } else { Fields::NONE };
+        let electric = of(style.charged, CHARGE) | of(style.dipole, MU);
+        let reads =
+            X | V | F | IMAGE | MASK | TAG | KIND | MASS | RADIUS | OMEGA | TORQUE | VOLUME | electric;
         // A file is there from the first step on, as in LAMMPS.
         let when = if self.state().target.pattern.many() { when } else { when.or(When::First) };
         Ok(StepOp::new(

@@ -22,10 +22,12 @@ mod crowd;
 mod damping_cundall;
 pub mod deform;
 mod deposit;
+mod dipoles;
 mod drag;
 mod dt_critical;
 mod dt_guard;
 mod dt_reset;
+mod efield;
 mod elapsed;
 mod enforce2d;
 mod evaporate;
@@ -78,6 +80,8 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, ValueRef};
 pub use perigrain_styles::fix::{Facts, Fix, FixStyle, Minimizing, Moves, no_option};
 use perigrain_styles::{BuildCx, Shape};
+use perigrain_world::World;
+use perigrain_world::field::{Fields, MU, QUAT};
 
 /// Every fix style.
 #[rustfmt::skip]
@@ -104,6 +108,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &dt_critical::DtCritical,
     &dt_guard::DtGuard,
     &dt_reset::DtReset,
+    &efield::Efield,
     &enforce2d::Enforce2d,
     &evaporate::Evaporate,
     &external::External,
@@ -154,6 +159,13 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &wall_reflect::WallReflect,
     &wall_region::WallRegion,
 ];
+
+/// The fields that say how particles of this scene lie: orientations and dipole moments.
+fn lying(w: &World) -> Fields {
+    let style = w.particles.style;
+    let of = |there: bool, field: Fields| if there { field } else { Fields::NONE };
+    of(style.oriented, QUAT) | of(style.dipole, MU)
+}
 
 /// Refuses particles that cannot be turned by torques.
 fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {

@@ -4,7 +4,7 @@ use super::elapsed::Elapsed;
 use super::lineforce::direction;
 use super::nve::half_step;
 use super::path::{Path, Readings};
-use super::{Facts, Fix, FixStyle, Moves};
+use super::{Facts, Fix, FixStyle, Moves, lying};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::body::Quat;
 use perigrain_base::math::vec3::{add, sub};
@@ -15,7 +15,7 @@ use perigrain_styles::common::{number_or_null, param_or_null, scales, units_latt
 use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, QUAT, SLOTS, TYPE_MASS, V, X};
+use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, SlotId, Vectors, World};
 use std::f64::consts::PI;
 
@@ -148,9 +148,9 @@ impl Declared {
         new.into_iter().for_each(|i| self.turn.take(w, i, turned));
     }
 
-    /// How the path has turned particles at time `t`, if it turns them and they have orientations.
+    /// How the path has turned particles at time `t`, if it turns them and they have orientations or dipole moments.
     fn turned(&self, w: &World, t: f64) -> Option<Quat> {
-        self.path.turn(t).filter(|_| w.particles.style.oriented)
+        self.path.turn(t).filter(|_| w.particles.style.turns())
     }
 }
 
@@ -190,7 +190,7 @@ impl Fix for Declared {
         }
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} move", self.id);
-        let lie = if self.turned(cx.world(), 0.0).is_some() { QUAT } else { Fields::NONE };
+        let lie = self.turned(cx.world(), 0.0).map_or(Fields::NONE, |_| lying(cx.world()));
         let access = Needs::new()
             .read(F | MASS | MASK | BOX | COLUMNS | SLOTS | TYPE_MASS | KIND)
             .write(X | V | OMEGA | SLOTS | lie)
@@ -201,7 +201,9 @@ impl Fix for Declared {
             } else {
                 let time = advance(w, group, &path, &readings, key, t);
                 if let Some(turned) = me.turned(w, time) {
-                    me.turn.turn(&mut w.particles.quat, &w.columns, |_| Some(turned));
+                    // LAMMPS leaves dipole moments as they were.
+                    let moments = !w.settings.lammps();
+                    me.turn.turn(&mut w.particles, &w.columns, moments, |_| Some(turned));
                 }
             }
             Ok(())

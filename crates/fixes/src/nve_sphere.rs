@@ -1,5 +1,6 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
+use super::dipoles::{self, Update};
 use super::kick::{self as kicks, Turning};
 use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -27,11 +28,12 @@ impl Style for NveSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group nve/sphere [disc]",
+            syntax: "fix ID group nve/sphere [update dipole|dipole/dlm] [disc]",
             summary: "Moves and turns the group's spheres by velocity Verlet.",
             text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). `disc`, \
-                   for flat scenes, takes I = 1/2 m R². Orientations stay as they are: spheres with bonds that bend and twist need `fix nve/bpm/sphere`. Every particle of the group needs a radius. `update dipole` is refused as \
-                   LAMMPS refuses it where particles have no dipole: no particle in perigrain has one.",
+                   for flat scenes, takes I = 1/2 m R². Orientations stay as they are: spheres with bonds that bend and twist need `fix nve/bpm/sphere`. Every particle of the group needs a radius.\n\n\
+                   `update dipole` (`atom_style hybrid sphere dipole`): dipole moments follow the spin, μ += Δt ω × μ, at their length; `dipole/dlm` turns them by rotations about \
+                   x y z y x of the body, half of Δt each (Dullweber, Leimkuhler, McLachlan, J. Chem. Phys. 107, 1997), which is of second order.",
             example: "fix 1 all nve/sphere",
         }
     }
@@ -50,18 +52,22 @@ impl FixStyle for NveSphere {
 
 /// Reads the words of either style; [`ORIENTED`] turns orientations too.
 pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-    let (oriented, mut inertia) = (name == ORIENTED, INERTIA);
+    let (oriented, mut inertia, mut update) = (name == ORIENTED, INERTIA, None);
     let known: &[&str] = if oriented { &["disc"] } else { &["update", "disc"] };
     while let Some(word) = args.next() {
         match word.text.as_str() {
             "update" if !oriented => {
                 let what = args.expect("dipole or dipole/dlm")?;
-                if !matches!(what.text.as_str(), "dipole" | "dipole/dlm") {
-                    return Err(args.unknown(what, &["dipole", "dipole/dlm"]));
+                update = match what.text.as_str() {
+                    "dipole" => Some(Update::Plain),
+                    "dipole/dlm" => Some(Update::Rotations),
+                    _ => return Err(args.unknown(what, &["dipole", "dipole/dlm"])),
+                };
+                if !cx.world.particles.style.dipole {
+                    let text = "`update dipole` needs particles with a dipole, and these have none";
+                    let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
+                    return Err(d.help("`atom_style hybrid sphere dipole` has both").into());
                 }
-                let text = "`update dipole` needs particles with a dipole, and these have none";
-                let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
-                return Err(d.help("leave it out").into());
             }
             "disc" if cx.world.settings.two_dimensional => inertia = DISC,
             "disc" => {
@@ -72,7 +78,7 @@ pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Res
         }
     }
     let turning = Turning { inertia, oriented };
-    Ok(Box::new(Declared { name, id: cx.id.to_string(), group: cx.group, turning }))
+    Ok(Box::new(Declared { name, id: cx.id.to_string(), group: cx.group, turning, update }))
 }
 
 #[derive(Clone)]
@@ -81,6 +87,8 @@ struct Declared {
     id: String,
     group: GroupId,
     turning: Turning,
+    /// How dipole moments follow.
+    update: Option<Update>,
 }
 
 impl Fix for Declared {
@@ -101,10 +109,11 @@ impl Fix for Declared {
         };
         let idle = |_: &mut World, _: &Tick| Ok(());
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), idle);
+        let moments = self.update.map(|update| dipoles::op(name.clone(), group, update));
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), idle);
         let first = kicks::first(first.in_every_level().reporting(), group, Some(turning));
         let second = kicks::second(second.in_every_level().reporting(), group, Some(turning));
-        Ok(vec![first.boxed(), second.boxed()])
+        Ok(std::iter::once(first.boxed()).chain(moments).chain([second.boxed()]).collect())
     }
 
     fn facts(&self, _: &World) -> Facts {

@@ -27,8 +27,8 @@ use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
-    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, QUAT, RADIUS, SLOTS, TAG, TALLY,
-    TORQUE, TRAVEL, TYPE_MASS, V, X,
+    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TAG, TALLY, TORQUE,
+    TRAVEL, TYPE_MASS, V, X,
 };
 use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, Template, Vectors, World};
 
@@ -362,7 +362,7 @@ impl Fix for Declared {
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} {}", self.id, self.style);
         // Orientations, where particles have them.
-        let lie = if cx.world().particles.style.oriented { QUAT } else { Fields::NONE };
+        let lie = super::lying(cx.world());
         let (me, mut seen) = (self.clone(), None);
         let bodies = StepOp::new(
             name.clone(),

@@ -20,12 +20,18 @@ pub struct AtomStyle {
     /// Angles between bonds.
     #[serde(default)]
     pub angled: bool,
+    /// A charge per particle.
+    #[serde(default)]
+    pub charged: bool,
+    /// A dipole moment per particle.
+    #[serde(default)]
+    pub dipole: bool,
     /// Named `molecular`, not `angle`: the two have the same columns here.
     pub molecular: bool,
     /// Named as `hybrid …`, which decides the columns of data files.
     pub hybrid: bool,
     /// The own columns of a hybrid in data files, in the order in which its styles name them.
-    pub own: [Option<Own>; 4],
+    pub own: [Option<Own>; 6],
 }
 
 /// A column of data files that only some atom styles have.
@@ -39,6 +45,10 @@ pub enum Own {
     Density,
     /// Volume.
     Volume,
+    /// Charge.
+    Charge,
+    /// The three components of the dipole moment.
+    Moment,
 }
 
 impl AtomStyle {
@@ -47,15 +57,23 @@ impl AtomStyle {
         self.sphere || self.peri
     }
 
-    /// Whether types may be given masses that nobody uses: LAMMPS asks for them where spheres or peridynamic particles are in a
-    /// hybrid with bonds.
+    /// Whether types may be given masses that nothing uses: LAMMPS asks for them where spheres or peridynamic particles are in a
+    /// hybrid with bonds or charges.
     pub fn idle_type_mass(&self) -> bool {
-        self.own_mass() && self.hybrid && self.bonded
+        self.own_mass() && self.hybrid && (self.bonded || self.charged)
+    }
+
+    /// Whether particles turn as torques want and carry something that turns with them.
+    pub fn turns(&self) -> bool {
+        self.oriented || self.dipole
     }
 
     /// The word after `atom_style`.
     pub fn name(&self) -> &'static str {
         match (self.hybrid, self.sphere, self.peri, self.bonded) {
+            (false, ..) if self.dipole => "dipole",
+            (false, .., true) if self.charged => "full",
+            (false, ..) if self.charged => "charge",
             (false, true, false, false) => "sphere",
             (false, true, false, true) => "bpm/sphere",
             (false, false, true, false) => "peri",
@@ -78,7 +96,7 @@ impl AtomStyle {
             (false, true) => "angle",
             (false, false) => "bond",
         };
-        let styles = ["bpm/sphere", bond, "sphere", "peri"];
+        let styles = ["bpm/sphere", bond, "sphere", "peri", "dipole", "charge"];
         let (mut words, mut made) = (String::from("hybrid"), Self::default());
         let begins = |made: &Self| made.own.iter().zip(&self.own).all(|(a, b)| a.is_none() || a == b);
         while made.own != self.own {
@@ -91,7 +109,7 @@ impl AtomStyle {
             words = format!("{words} {word}");
             made = with;
         }
-        if self.own == [None; 4] { format!("{words} atomic") } else { words }
+        if self.own == [None; 6] { format!("{words} atomic") } else { words }
     }
 
     /// Whether data files of the style that these words name have the columns of this one; after `hybrid` styles may be left out.
@@ -127,6 +145,18 @@ impl AtomStyle {
                 self.molecular |= name == "molecular";
                 &[Own::Molecule]
             }
+            "charge" => {
+                self.charged = true;
+                &[Own::Charge]
+            }
+            "dipole" => {
+                (self.charged, self.dipole) = (true, true);
+                &[Own::Charge, Own::Moment]
+            }
+            "full" => {
+                (self.bonded, self.molecules, self.angled, self.charged) = (true, true, true, true);
+                &[Own::Molecule, Own::Charge]
+            }
             _ => return false,
         };
         for &column in own {
@@ -153,7 +183,7 @@ mod tests {
     /// Columns of a hybrid's data file stand in the order of its styles: the words must lead back to it.
     #[test]
     fn words_of_a_hybrid_lead_to_its_columns() {
-        let styles = ["atomic", "sphere", "peri", "bond", "molecular", "angle", "bpm/sphere"];
+        let styles = ["atomic", "sphere", "peri", "bond", "molecular", "dipole", "full", "bpm/sphere"];
         let mut lists = vec![vec![]];
         for length in 1..=4 {
             let longer = |list: &Vec<&'static str>| -> Vec<Vec<&'static str>> {
@@ -183,6 +213,7 @@ mod tests {
     fn another_order_is_another_layout() {
         assert!(!hybrid("sphere peri").is_laid_out_as("hybrid peri sphere"));
         assert!(!hybrid("sphere peri").is_laid_out_as("hybrid sphere dipole"));
+        assert_eq!(hybrid("sphere dipole").words(), "hybrid sphere dipole");
         assert!(!hybrid("sphere").is_laid_out_as("sphere"));
         assert!(hybrid("bond sphere").is_laid_out_as("hybrid atomic molecular sphere"));
         let mut plain = AtomStyle::default();

@@ -28,6 +28,7 @@ pub const LEVEL: &str = "level/";
 const UNDER: &[(&str, &str, Under)] = &[
     // Where particles began their prescribed path, and how they lay as seen from it.
     ("move/", "/turn", Under::Nothing),
+    ("move/", "/moment", Under::Nothing),
     ("move/", "", Under::Anchor),
     ("spring/self/", "", Under::Anchor),
     // Where computes count the way of particles from.
@@ -37,6 +38,7 @@ const UNDER: &[(&str, &str, Under)] = &[
     // Places and orientations by the axes of rigid bodies.
     ("rigid", "/place", Under::Nothing),
     ("rigid", "/turn", Under::Nothing),
+    ("rigid", "/moment", Under::Nothing),
     ("rigid", "/virial xx", Under::Anew),
     ("rigid", "/virial xy", Under::Anew),
     ("external/", "", Under::Anew),

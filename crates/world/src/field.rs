@@ -33,6 +33,10 @@ fields! {
     TORQUE "torque" Anew;
     /// Orientations, unit quaternions.
     QUAT "quat" Orientation;
+    /// Dipole moments [charge·length].
+    MU "mu" Orientation;
+    /// Charges.
+    CHARGE "charge" Nothing;
     /// Radii [length].
     RADIUS "radius" Nothing;
     /// Masses of particles, or densities of peridynamic ones.

@@ -22,6 +22,8 @@ pub fn bytes(w: &World) -> u64 {
         + of(p.omega.past())
         + of(p.torque.past())
         + of(p.quat.past())
+        + of(p.mu.past())
+        + of(p.charge.past())
         + of(p.volume.past())
         + of(p.x0.past())
         + of(p.density.past())

@@ -10,7 +10,7 @@ use super::contacts::{Contacts, Rolls};
 use super::named::Key;
 use super::region::{Angle, turned};
 use super::{Named, Numbers, Particles, Vectors, World};
-use perigrain_base::math::body::{Quat, after, back, normalized, turn, turned as vector_turned};
+use perigrain_base::math::body::{Quat, UNTURNED, after, back, normalized, turn, turned as vector_turned};
 use perigrain_base::math::vec3::{Vec3, add};
 use perigrain_base::par;
 
@@ -72,12 +72,12 @@ impl Turn {
 
 impl World {
     /// Puts the particles for which `moved` holds elsewhere as one piece, with all that has a direction and belongs to their matter; how
-    /// they move stays as it is. `rolls`: where contacts keep rolling displacements. LAMMPS leaves springs of contacts as they were, and
-    /// so does `compat lammps`.
+    /// they move stays as it is. `rolls`: where contacts keep rolling displacements. LAMMPS leaves springs of contacts and dipole moments as
+    /// they were, and so does `compat lammps`.
     pub fn carry(&mut self, turn: &Turn, rolls: &[Rolls], moved: impl Fn(usize) -> bool) {
         let members: Vec<usize> = (0..self.n()).filter(|&i| moved(i)).collect();
         let edges = self.edges();
-        let springs = !self.settings.lammps();
+        let turns = !self.settings.lammps();
         // Every part of a scene is named here, so that none can be added without a word about what a turn does to it.
         let World {
             particles,
@@ -113,10 +113,10 @@ impl World {
             read_files: _,
             parts: _,
         } = self;
-        if springs {
+        if turns {
             turn_springs(contacts, particles, turn, rolls, &members);
         }
-        particles.carry(turn, &members, |image| edges.shift(image.map(f64::from)));
+        particles.carry(turn, &members, turns, |image| edges.shift(image.map(f64::from)));
         columns.carry(turn, &members);
     }
 
@@ -140,13 +140,14 @@ impl World {
 }
 
 impl Particles {
-    /// Turns the members: see [`World::carry`]; `crossed` is how far away an image is.
-    fn carry(&mut self, turn: &Turn, members: &[usize], crossed: impl Fn([i32; 3]) -> Vec3) {
+    /// Turns the members: see [`World::carry`]; `crossed` is how far away an image is, and `moments` turn along.
+    fn carry(&mut self, turn: &Turn, members: &[usize], moments: bool, crossed: impl Fn([i32; 3]) -> Vec3) {
         // Every column is named, as above.
         let Particles {
             x,
             image,
             quat,
+            mu,
             // `Under::Motion`.
             v: _,
             omega: _,
@@ -162,6 +163,7 @@ impl Particles {
             mask: _,
             mass: _,
             radius: _,
+            charge: _,
             volume: _,
             density: _,
             molecule: _,
@@ -173,6 +175,9 @@ impl Particles {
         }
         if !quat.is_empty() {
             members.iter().for_each(|&i| quat[i] = turn.orientation(quat[i]));
+        }
+        if moments && !mu.is_empty() {
+            members.iter().for_each(|&i| mu[i] = turn.vector(mu[i]));
         }
     }
 }
@@ -217,18 +222,20 @@ fn turn_springs(
     }
 }
 
-/// How particles lie as seen from what holds them, in columns of one name: the real part of a quaternion and the others. All four are zero
-/// for those that nothing holds.
+/// How particles lie as seen from what holds them, in columns of one name: the real part of a quaternion and the others, and their dipole
+/// moments. All four numbers are zero for those that nothing holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Grip {
     real: Numbers,
     others: Vectors,
+    moment: Vectors,
 }
 
 impl Grip {
     /// Under this name.
     pub fn new(name: &str) -> Self {
-        Self { real: Key::new(name), others: Key::new(name) }
+        let moment = Key::new(&format!("{name}/moment"));
+        Self { real: Key::new(name), others: Key::new(name), moment }
     }
 
     /// Whether it holds particle `i`.
@@ -238,7 +245,12 @@ impl Grip {
 
     /// Takes hold of particle `i` as it lies now, `holder` being how that lies which holds it.
     pub fn take(self, w: &mut World, i: usize, holder: Quat) {
-        let (n, [real, others @ ..]) = (w.n(), after(back(holder), w.particles.quat[i]));
+        let lies = w.particles.quat.get(i).copied().unwrap_or(UNTURNED);
+        let (n, [real, others @ ..]) = (w.n(), after(back(holder), lies));
+        if let Some(mu) = w.particles.mu.get(i) {
+            let seen = vector_turned(back(holder), *mu);
+            w.columns.vector(self.moment, n)[i] = seen;
+        }
         w.columns.scalar(self.real, n)[i] = real;
         w.columns.vector(self.others, n)[i] = others;
     }
@@ -247,11 +259,31 @@ impl Grip {
     pub fn drop(self, w: &mut World) {
         w.columns.remove(self.real);
         w.columns.remove(self.others);
+        w.columns.remove(self.moment);
     }
 
-    /// Turns the particles that are held with what holds them, as `holder` says of each.
-    pub fn turn(self, quat: &mut [Quat], columns: &Columns, holder: impl Fn(usize) -> Option<Quat> + Sync) {
-        par::each(quat, |first, quat| {
+    /// Turns the particles that are held with what holds them, as `holder` says of each: orientations, and dipole moments where these are
+    /// `moments`.
+    pub fn turn(
+        self,
+        particles: &mut Particles,
+        columns: &Columns,
+        moments: bool,
+        holder: impl Fn(usize) -> Option<Quat> + Sync,
+    ) {
+        if let Some(seen) = columns.get_vector(self.moment).filter(|_| moments && particles.style.dipole) {
+            par::each(&mut particles.mu[..], |first, mu: &mut [Vec3]| {
+                for (k, mu) in mu.iter_mut().enumerate() {
+                    if let (Some(_), Some(holder)) = (self.of(columns, first + k), holder(first + k)) {
+                        *mu = vector_turned(holder, seen[first + k]);
+                    }
+                }
+            });
+        }
+        if !particles.style.oriented {
+            return;
+        }
+        par::each(&mut particles.quat[..], |first, quat: &mut [Quat]| {
             for (k, quat) in quat.iter_mut().enumerate() {
                 if let Some((own, holder)) = self.of(columns, first + k).zip(holder(first + k)) {
                     *quat = normalized(after(holder, own));

@@ -33,6 +33,10 @@ pub struct Particles {
     pub torque: Tracked<Vec<[f64; 3]>>,
     /// Orientation: a unit quaternion, the real part first, that turns vectors of the body into space (`bpm/sphere`).
     pub quat: Tracked<Vec<Quat>>,
+    /// Dipole moment [charge length] (`dipole`).
+    pub mu: Tracked<Vec<[f64; 3]>>,
+    /// Charge (`charge`, `dipole`, `full`).
+    pub charge: Tracked<Vec<f64>>,
     /// Peridynamics: volume of the node [length³].
     pub volume: Tracked<Vec<f64>>,
     /// Peridynamics: position at creation [length].
@@ -76,6 +80,12 @@ impl Particles {
         if self.style.oriented {
             self.quat.reserve_exact(more);
         }
+        if self.style.dipole {
+            self.mu.reserve_exact(more);
+        }
+        if self.style.charged {
+            self.charge.reserve_exact(more);
+        }
         if self.style.peri {
             self.volume.reserve_exact(more);
             self.x0.reserve_exact(more);
@@ -106,6 +116,12 @@ impl Particles {
         }
         if oriented {
             self.quat.push(UNTURNED);
+        }
+        if self.style.dipole {
+            self.mu.push([0.0; 3]);
+        }
+        if self.style.charged {
+            self.charge.push(0.0);
         }
         if peri {
             self.volume.push(1.0);
@@ -138,6 +154,7 @@ impl Particles {
             (&mut self.omega, &mut more.omega),
             (&mut self.torque, &mut more.torque),
             (&mut self.x0, &mut more.x0),
+            (&mut self.mu, &mut more.mu),
         ] {
             own.append(new);
         }
@@ -146,6 +163,7 @@ impl Particles {
             (&mut self.radius, &mut more.radius),
             (&mut self.volume, &mut more.volume),
             (&mut self.density, &mut more.density),
+            (&mut self.charge, &mut more.charge),
         ] {
             own.append(new);
         }
@@ -168,10 +186,24 @@ impl Particles {
         self.image.gather(old);
         pick(&mut [&mut self.kind], old);
         pick(&mut [&mut self.tag, &mut self.mask, &mut self.molecule, &mut self.rank], old);
-        pick(&mut [&mut self.mass, &mut self.radius, &mut self.volume, &mut self.density], old);
+        let numbers = &mut [
+            &mut *self.mass,
+            &mut *self.radius,
+            &mut *self.volume,
+            &mut *self.density,
+            &mut *self.charge,
+        ];
+        pick(numbers, old);
         pick(&mut [&mut self.quat], old);
-        let mut vectors: [&mut Vec<_>; 6] =
-            [&mut self.x, &mut self.v, &mut self.f, &mut self.omega, &mut self.torque, &mut self.x0];
+        let mut vectors: [&mut Vec<_>; 7] = [
+            &mut self.x,
+            &mut self.v,
+            &mut self.f,
+            &mut self.omega,
+            &mut self.torque,
+            &mut self.x0,
+            &mut self.mu,
+        ];
         pick(&mut vectors, old);
     }
 

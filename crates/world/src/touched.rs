@@ -26,6 +26,8 @@ impl World {
             (field::OMEGA, p.omega.take_marks()),
             (field::TORQUE, p.torque.take_marks()),
             (field::QUAT, p.quat.take_marks()),
+            (field::MU, p.mu.take_marks()),
+            (field::CHARGE, p.charge.take_marks()),
             (field::RADIUS, p.radius.take_marks()),
             (field::MASS, p.mass.take_marks()),
             (field::KIND, p.kind.take_marks()),

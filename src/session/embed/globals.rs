@@ -44,7 +44,8 @@ impl Session {
             "dimension" => Whole(if s.two_dimensional { 2 } else { 3 }),
             "triclinic" => flag(w.domain.as_ref().is_some_and(|d| d.tilt.is_some())),
             "nangles" => Large(w.bonds.angles.list.len() as i64),
-            "q_flag" | "ndihedrals" | "nimpropers" => Whole(0),
+            "q_flag" => flag(w.particles.style.charged),
+            "ndihedrals" | "nimpropers" => Whole(0),
             "procgrid" => Wholes(vec![1; 3]),
             "special_lj" => {
                 let [a, b, c] = w.bonds.weights.lj;

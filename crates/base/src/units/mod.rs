@@ -106,6 +106,15 @@ impl UnitSystem {
         }
     }
 
+    /// A charge times an electric field, as forces count [force/(charge field)].
+    pub fn field_to_force(self) -> f64 {
+        match self {
+            Self::Real => 23.060549,
+            Self::Electron => 1.94469051e-10,
+            _ => 1.0,
+        }
+    }
+
     /// The constants of the system.
     pub fn constants(self) -> Constants {
         const ONE: Constants = Constants {

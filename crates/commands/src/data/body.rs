@@ -331,7 +331,7 @@ impl<'a> Reader<'a> {
     }
 
     fn atom(&mut self, line: &Line, layout: &[Column]) -> Result<()> {
-        let mut words = [""; 16];
+        let mut words = [""; 20];
         let mut n = 0;
         for word in line.words() {
             let Some(slot) = words.get_mut(n) else { return Err(self.misfit(line, layout, n + 1)) };
@@ -343,6 +343,7 @@ impl<'a> Reader<'a> {
         }
         let (mut tag, mut kind, mut x) = (0, 0, [0.0; 3]);
         let (mut diameter, mut density, mut volume, mut molecule) = (0.0, 0.0, 0.0, 0);
+        let (mut charge, mut moment) = (0.0, [0.0; 3]);
         for (column, word) in layout.iter().zip(words) {
             let least = |least: f64, open: bool| -> Result<f64> {
                 let a = number(line, word, column.name())?;
@@ -361,6 +362,8 @@ impl<'a> Reader<'a> {
                 Column::Density => density = least(0.0, true)?,
                 Column::Volume => volume = least(0.0, true)?,
                 Column::Molecule => molecule = molecule_id(line, word)?,
+                Column::Charge => charge = number(line, word, column.name())?,
+                Column::Moment(d) => moment[*d] = number(line, word, column.name())?,
             }
         }
         let mut image = [0; 3];
@@ -392,6 +395,12 @@ impl<'a> Reader<'a> {
         }
         if p.style.molecules {
             p.molecule[last] = molecule;
+        }
+        if p.style.charged {
+            p.charge[last] = charge;
+        }
+        if p.style.dipole {
+            p.mu[last] = moment;
         }
         Ok(())
     }

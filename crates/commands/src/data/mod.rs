@@ -28,6 +28,10 @@ pub enum Column {
     Volume,
     /// Molecule ID.
     Molecule,
+    /// Charge.
+    Charge,
+    /// A component of the dipole moment.
+    Moment(usize),
 }
 
 impl Column {
@@ -43,20 +47,30 @@ impl Column {
             Column::Density => "the density",
             Column::Volume => "the volume",
             Column::Molecule => "the molecule",
+            Column::Charge => "the charge",
+            Column::Moment(0) => "mux",
+            Column::Moment(1) => "muy",
+            Column::Moment(_) => "muz",
         }
     }
 }
 
 /// The columns of the section Atoms, image flags apart.
 pub fn columns(style: AtomStyle) -> Vec<Column> {
-    use Column::{Density, Diameter, Id, Molecule, Type, Volume, X};
+    use Column::{Charge, Density, Diameter, Id, Molecule, Moment, Type, Volume, X};
+    static MOMENT: [Column; 3] = [Moment(0), Moment(1), Moment(2)];
     let place = [X(0), X(1), X(2)];
     if style.hybrid {
-        let own = style.own.iter().flatten().map(|own| match own {
-            Own::Molecule => Molecule,
-            Own::Diameter => Diameter,
-            Own::Density => Density,
-            Own::Volume => Volume,
+        let own = style.own.iter().flatten().flat_map(|own| {
+            let columns: &'static [Column] = match own {
+                Own::Molecule => &[Molecule],
+                Own::Diameter => &[Diameter],
+                Own::Density => &[Density],
+                Own::Volume => &[Volume],
+                Own::Charge => &[Charge],
+                Own::Moment => &MOMENT,
+            };
+            columns.iter().copied()
         });
         return [Id, Type].into_iter().chain(place).chain(own).collect();
     }
@@ -66,7 +80,9 @@ pub fn columns(style: AtomStyle) -> Vec<Column> {
         (false, true) => &[Volume, Density],
         (false, false) => &[],
     };
-    [&[Id], molecule, &[Type], own, &place].concat()
+    let charge: &[Column] = if style.charged { &[Charge] } else { &[] };
+    let moment: &[Column] = if style.dipole { &MOMENT } else { &[] };
+    [&[Id], molecule, &[Type], own, charge, &place, moment].concat()
 }
 
 /// Numbers after the id in the section Velocities.

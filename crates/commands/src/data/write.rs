@@ -148,6 +148,8 @@ fn atoms(out: &mut dyn Write, p: &Particles) -> Result<()> {
                 Column::Density => write!(out, " {}", shortest(density(p, i)))?,
                 Column::Volume => write!(out, " {}", shortest(p.volume[i]))?,
                 Column::Molecule => write!(out, " {}", p.molecule[i])?,
+                Column::Charge => write!(out, " {}", shortest(p.charge[i]))?,
+                Column::Moment(d) => write!(out, " {}", shortest(p.mu[i][*d]))?,
             }
         }
         let [a, b, c] = p.image[i];

@@ -68,6 +68,12 @@ pub enum Change {
     },
     /// Random orientations from a seed.
     AnyQuat(u32),
+    /// The charge.
+    Charge(Param),
+    /// The dipole moment.
+    Moment([Param; 3]),
+    /// Dipole moments of a size in random directions from a seed.
+    AnyMoment(u32, f64),
     /// The molecule ID.
     Molecule(Param),
     /// The type of bonds with both ends among the chosen.
@@ -106,9 +112,10 @@ impl Item {
             | Change::Bond(_)
             | Change::OfVolume(_)
             | Change::AnyQuat(_)
+            | Change::AnyMoment(..)
             | Change::Factors { factors: Factors::Drawn(_), .. } => false,
             Change::Image(p) => p.iter().flatten().any(is),
-            Change::Omega(p) => p.iter().any(is),
+            Change::Omega(p) | Change::Moment(p) => p.iter().any(is),
             Change::Quat { axis, angle } => axis.iter().chain([angle]).any(is),
             Change::Kind(p)
             | Change::Mass(p)
@@ -118,6 +125,7 @@ impl Item {
             | Change::Radius(p)
             | Change::Volume(p)
             | Change::Molecule(p)
+            | Change::Charge(p)
             | Change::Place(_, p)
             | Change::Velocity(_, p)
             | Change::Factors { factors: Factors::Given(p), .. }
@@ -296,6 +304,15 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
             }
         }
         Change::AnyQuat(seed) => orientation::any(cx.world, chosen, *seed),
+        Change::Charge(p) => {
+            let v = checked(p, "", None)?;
+            chosen.iter().for_each(|&i| cx.world.particles.charge[i] = v[i]);
+        }
+        Change::Moment(p) => {
+            let v = [checked(&p[0], "", None)?, checked(&p[1], "", None)?, checked(&p[2], "", None)?];
+            chosen.iter().for_each(|&i| cx.world.particles.mu[i] = [v[0][i], v[1][i], v[2][i]]);
+        }
+        Change::AnyMoment(seed, size) => orientation::any_moment(cx.world, chosen, *seed, *size),
         Change::Molecule(p) => {
             let v = checked(p, "the molecule", Some(Limit::NotNegative))?;
             chosen.iter().for_each(|&i| cx.world.particles.molecule[i] = v[i] as u32);

@@ -1,4 +1,4 @@
-//! `set … quat` and `quat/random`: orientations.
+//! `set … quat`, `quat/random` and `dipole/random`: orientations.
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::body::{Quat, normalized, turn};
@@ -37,5 +37,18 @@ pub fn any(w: &mut World, chosen: &[usize], seed: u32) {
             let (first, second) = (2.0 * PI * stream.uniform(), 2.0 * PI * stream.uniform());
             [second.cos() * b, first.sin() * a, first.cos() * a, second.sin() * b]
         };
+    }
+}
+
+/// Dipole moments of a size, as LAMMPS draws them: a point of a cube about the origin by random numbers that belong to the particle's
+/// place gives the direction.
+pub fn any_moment(w: &mut World, chosen: &[usize], seed: u32, size: f64) {
+    let (flat, mut stream) = (w.settings.two_dimensional, ParkMiller::new(seed));
+    let p = &mut w.particles;
+    for &i in chosen {
+        stream.reset_at(seed, p.x[i]);
+        let mut within = || stream.uniform() - 0.5;
+        let point = [within(), within(), if flat { 0.0 } else { within() }];
+        p.mu[i] = scale(size / length(point), point);
     }
 }

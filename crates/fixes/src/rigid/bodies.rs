@@ -142,7 +142,7 @@ impl Declared {
 
     /// Keeps the orientation of members that have none yet: those of restart files that store no orientations of members.
     fn hold_members(&self, w: &mut World) {
-        if !w.particles.style.oriented {
+        if !w.particles.style.turns() {
             return;
         }
         let bodies = self.load(w);
@@ -189,7 +189,7 @@ impl Declared {
         for &i in members {
             let d = sub(unwrapped(w, i), body.x);
             w.columns.vector(self.keys.place, n)[i] = apply(&axes, d);
-            if w.particles.style.oriented {
+            if w.particles.style.turns() {
                 self.keys.turn.take(w, i, body.q);
             }
         }

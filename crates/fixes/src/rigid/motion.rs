@@ -194,15 +194,15 @@ impl Declared {
         Held { total, atoms }
     }
 
-    /// Orientations of the particles as those of their bodies are now.
+    /// Orientations and dipole moments of the particles as those of their bodies are now.
     fn turn_members(&self, w: &mut World, crew: &Crew) {
-        if !w.particles.style.oriented {
+        if !w.particles.style.turns() {
             return;
         }
         let (rows, _) = w.memo.get(crew.keys.bodies).map_or(&[][..], Vec::as_slice).as_chunks::<WIDTH>();
         let number = w.columns.get_scalar(crew.keys.body).unwrap_or_default();
         let body = |i: usize| Some(Body::of(rows.get((*number.get(i)? as usize).wrapping_sub(1))?).q);
-        crew.keys.turn.turn(&mut w.particles.quat, &w.columns, body);
+        crew.keys.turn.turn(&mut w.particles, &w.columns, true, body);
     }
 
     /// Velocities and spins of the particles as their bodies have them now, outside of a run.

@@ -29,6 +29,7 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
     let motion = (&p.tag, &p.kind, masks, &p.image, &p.x, &p.v, &p.f);
     let matter =
         (&p.mass, &p.radius, &p.omega, &p.torque, &p.quat, &p.volume, &p.x0, &p.density, &p.molecule);
+    let electric = (&p.mu, &p.charge);
     let c = &w.clock;
     let clock = (c.step, c.dt, c.time_base, c.time_step);
     let materials = w.materials.iter().map(|(name, material)| (name.as_str(), material));
@@ -38,7 +39,7 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
         clock,
         scene,
         motion,
-        matter,
+        (matter, electric),
         columns,
         names,
         (&w.rebuild, &w.families, &w.contacts, &w.wall_contacts, &w.bonds.list, &w.bonds.weights),

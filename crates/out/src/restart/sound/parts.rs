@@ -18,6 +18,8 @@ pub fn particles(w: &World) -> Outcome {
         ("angular velocities", p.omega.len(), own(style.sphere)),
         ("torques", p.torque.len(), own(style.sphere)),
         ("orientations", p.quat.len(), own(style.oriented)),
+        ("dipole moments", p.mu.len(), own(style.dipole)),
+        ("charges", p.charge.len(), own(style.charged)),
         ("volumes", p.volume.len(), own(style.peri)),
         ("places at creation", p.x0.len(), own(style.peri)),
         ("densities", p.density.len(), own(style.own_mass())),
@@ -46,11 +48,12 @@ pub fn particles(w: &World) -> Outcome {
         ("force", p.f.past()),
         ("angular velocity", p.omega.past()),
         ("torque", p.torque.past()),
+        ("dipole moment", p.mu.past()),
     ] {
         must(!triples.as_flattened().iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
     // A density that was never told is none.
-    for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past())] {
+    for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past()), ("charge", p.charge.past())] {
         must(!all.iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
     must(!p.quat.past().as_flattened().iter().any(|x| x.is_nan()), "an orientation is no number")?;

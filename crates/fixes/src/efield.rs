@@ -1,0 +1,229 @@
+//! fix efield: an electric field that pulls charges and turns dipole moments.
+
+use super::{Facts, Fix, FixStyle, Minimizing, region_keyword};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::vec3::{add, cross, dot, scale};
+use perigrain_lang::{Args, Param, RefKind, ValueRef};
+use perigrain_plan::{Needs, Op, Stage, When};
+use perigrain_styles::common::variable_param;
+use perigrain_styles::matter::{Chosen, change_forces, change_torques, publish, unwrapped};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, CHARGE, F, Fields, IMAGE, MASK, MU, REGIONS, SLOTS, TORQUE, X};
+use perigrain_world::{AtomStyle, World};
+
+/// The style.
+pub struct Efield;
+
+impl Style for Efield {
+    fn name(&self) -> &'static str {
+        "efield"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group efield ex ey ez [region ID] [energy v_name | potential v_name]",
+            summary: "Pulls charges and turns dipole moments by an electric field.",
+            text: "Each of ex ey ez is a number or `v_name` of an equal-style variable, for charges alone also of an atom-style one, evaluated each step; in units \
+                   of the electric field. Charges feel q E; dipole moments of spheres (`atom_style hybrid sphere dipole`) the torque μ × E, which turns them where \
+                   `fix nve/sphere … update dipole` moves the spheres. Only inside of a `region`, where one is named. Acts in the setup of a run too. Scalar (extensive): the energy \
+                   −Σ q E·x (unwrapped) − Σ μ·E of a constant field. With variables it is Σ of the atom-style variable behind `energy`, of `potential` times the \
+                   charge, or without either, as LAMMPS has it, 0. `fix_modify ID energy yes` adds it to the potential energy. Vector of 3 (extensive): the total force on charges. \
+                   Particles feel the field alone: there are no forces between charges or dipoles here.",
+            example: "units lj\natom_style hybrid sphere dipole\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1.0\n\
+                      set group all diameter 1.0 density 1.0\nset group all dipole 0.0 0.0 0.5\nfix 1 all nve/sphere update dipole\nfix field all efield 1.0 0.0 0.0\nrun 10",
+        }
+    }
+}
+
+impl FixStyle for Efield {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let style = cx.world.particles.style;
+        if !style.charged && !turns(style) {
+            let d =
+                Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix efield needs charges or dipole moments");
+            return Err(d
+                .help("put `atom_style charge` or `atom_style hybrid sphere dipole` at the top of the deck")
+                .into());
+        }
+        let field = [variable_param(args, "ex")?, variable_param(args, "ey")?, variable_param(args, "ez")?];
+        field.iter().try_for_each(|p| cx.param(p, !turns(style)))?;
+        let mut fix =
+            Declared { id: cx.id.to_string(), group: cx.group, field, region: None, energy: Energy::Own };
+        let variable = !fix.is_constant();
+        if variable {
+            fix.energy = Energy::None;
+        }
+        while let Some(word) = args.next() {
+            let potential = word.text == "potential";
+            match word.text.as_str() {
+                "region" => fix.region = Some(region_keyword(args, cx)?),
+                "energy" | "potential" if !variable => {
+                    let text = format!("the {} of a constant field is known already", word.text);
+                    let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+                    return Err(d.help("leave the word and its value out").into());
+                }
+                "energy" | "potential" => {
+                    let of = atom_variable(args, cx, &word.text)?;
+                    // As in LAMMPS the potential overrides the energy.
+                    if potential || !matches!(fix.energy, Energy::Said { potential: true, .. }) {
+                        fix.energy = Energy::Said { of, potential };
+                    }
+                }
+                _ => return Err(args.unknown(word, &["region", "energy", "potential"])),
+            }
+        }
+        Ok(Box::new(fix))
+    }
+}
+
+/// Whether the field turns particles.
+fn turns(style: AtomStyle) -> bool {
+    style.dipole && style.sphere
+}
+
+fn atom_variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
+    let word = args.expect(&format!("the variable after `{what}`"))?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if r.kind == RefKind::Variable => {
+            cx.value(&r, true)?;
+            Ok(r)
+        }
+        _ => fail(
+            Code::WRONG_KIND,
+            word.span,
+            format!("`{what}` takes v_name of an atom-style variable, not `{}`", word.text),
+        ),
+    }
+}
+
+/// Where the energy comes from.
+#[derive(Clone)]
+enum Energy {
+    /// That of a constant field.
+    Own,
+    /// None, as a variable field has without a word about it.
+    None,
+    /// From an atom-style variable: the energy itself, or the potential at the charge.
+    Said { of: ValueRef, potential: bool },
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: perigrain_world::GroupId,
+    field: [Param; 3],
+    region: Option<String>,
+    energy: Energy,
+}
+
+impl Declared {
+    fn is_constant(&self) -> bool {
+        self.field.iter().all(|p| matches!(p, Param::Number(_)))
+    }
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (span, style) = (cx.span(), cx.world().particles.style);
+        let chosen = Chosen::new(cx.world(), self.group, self.region.as_deref(), span)?;
+        let [x, y, z] = &self.field;
+        let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
+        let field = [read(x)?, read(y)?, read(z)?];
+        let said: Option<(Reading, bool)> = match &self.energy {
+            Energy::Said { of, potential } => {
+                Some((cx.value(of, Stage::PostForce, &When::Always)?, *potential))
+            }
+            Energy::Own | Energy::None => None,
+        };
+        let own = matches!(self.energy, Energy::Own);
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let of = |there: bool, fields: Fields| if there { fields } else { Fields::NONE };
+        let reads = X | MASK | REGIONS | of(style.charged, CHARGE | IMAGE | BOX) | of(turns(style), MU);
+        let needs =
+            Needs::new().read(reads).add(of(style.charged, F)).write(SLOTS | of(turns(style), TORQUE));
+        let op = StepOp::new(format!("fix {} efield", self.id), Stage::PostForce, needs, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            // Fields are said in units in which force and charge may have others.
+            let unit = w.settings.units.field_to_force();
+            let at = |w: &World, i: usize| scale(unit, field.map(|r| r.atom(w, i)));
+            let mut energy = 0.0;
+            let mut total = [0.0; 3];
+            if style.charged {
+                let [e, force @ ..] = change_forces::<4>(w, &chosen, |w, i, f| {
+                    let (q, x) = (w.particles.charge[i], unwrapped(w, i));
+                    let force = scale(q, at(w, i));
+                    *f = add(*f, force);
+                    let energy = match said {
+                        _ if own => -dot(force, x),
+                        Some((of, potential)) => of.atom(w, i) * if potential { unit * q } else { 1.0 },
+                        None => 0.0,
+                    };
+                    [energy, force[0], force[1], force[2]]
+                });
+                (energy, total) = (energy + e, force);
+            }
+            if turns(style) {
+                let [e] = change_torques::<1>(w, &chosen, |w, i, torque| {
+                    let (mu, field) = (w.particles.mu[i], at(w, i));
+                    *torque = add(*torque, cross(mu, field));
+                    [-dot(mu, field)]
+                });
+                energy += if own { e } else { 0.0 };
+            }
+            publish(w, slot, t, energy, &total);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+
+    fn scene(style: AtomStyle) -> Bench {
+        let mut b = Bench::new(style, &[[1.0, 0.0, 0.0], [5.0, 1.0, 0.0]]);
+        b.atom.insert("a".into(), vec![-1.0, -2.0]);
+        b.equal.insert("e".into(), 2.0);
+        b
+    }
+
+    #[test]
+    fn charges_are_pulled_and_moments_turned() {
+        let mut b = scene(AtomStyle { sphere: true, charged: true, dipole: true, ..AtomStyle::default() });
+        b.world.particles.charge = vec![0.0, 3.0].into();
+        b.world.particles.mu = vec![[0.0, 0.0, 0.5], [0.0; 3]].into();
+        let fix = b.fix(&Efield, "2 0 0").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        let p = &b.world.particles;
+        // z × x = y.
+        assert_eq!((p.f[1], p.torque[0]), ([6.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
+        let slot = b.slot_of("f_f");
+        assert_eq!((slot.scalar, slot.vector.as_slice()), (-30.0, [6.0, 0.0, 0.0].as_slice()));
+        assert!(b.fix(&Efield, "v_a 0 0").is_err() && b.fix(&Efield, "v_e 0 0").is_ok());
+    }
+
+    #[test]
+    fn what_it_needs_and_mistakes_are_named() {
+        let b = scene(AtomStyle { charged: true, ..AtomStyle::default() });
+        assert!(
+            b.fix(&Efield, "v_a 0 0 energy v_a").is_ok() && b.fix(&Efield, "v_e 0 0 potential v_a").is_ok()
+        );
+        for words in ["0 0", "1 0 0 energy v_a", "v_e 0 0 energy 2", "1 0 0 regoin r", "NULL 0 0"] {
+            assert!(b.fix(&Efield, words).is_err(), "{words}");
+        }
+        assert!(scene(AtomStyle::default()).fix(&Efield, "1 0 0").is_err());
+    }
+}
