@@ -81,6 +81,14 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("granular/force.rs", "facts", "only where plastic grains overlap deeply"),
     ("graph/welcome.rs", "v mask", "only where molecules that come are bodies"),
     ("fixes/src/deform.rs", "id", "only where peridynamic bonds cross faces"),
+    ("pair_local.rs", "memo", "only where pairs of central laws are asked"),
+    ("group_group.rs", "memo", "only where pairs of central laws are asked"),
+    ("property_local.rs", "memo", "only where pairs of central laws are asked"),
+    ("fabric.rs", "memo", "only where pairs of central laws are asked"),
+    ("graph/virials.rs", "memo", "only where pairs of central laws are asked"),
+    ("addtorque_atom.rs", "regions", "only with `region`"),
+    ("settorque_atom.rs", "regions", "only with `region`"),
+    ("efield.rs", "regions", "only with `region`"),
 ];
 
 /// The ops that put particles elsewhere, by file. `tests/strangers/movers.rs` holds what each does to whatever has a direction: an op that

@@ -37,8 +37,7 @@ impl Style for Adapt {
                    began. There are `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` of all peridynamic styles, `c` of \
                    the bond-based ones, `k gamma` of pair style bpm/spring, and `a` of pair style soft (as in LAMMPS); a sub-style of `hybrid` is named by its own name. A new \
                    `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.\n\n\
-                   `reset yes`: what was changed is put back at the end of each run. `kspace` and `atom charge` are refused: there is \
-                   nothing of the kind here.",
+                   `reset yes`: what was changed is put back at the end of each run. `kspace` and `atom charge` are refused.",
             example: "variable d equal ramp(0.001,0.0011)\nfix swell ball adapt 1 atom diameter v_d reset yes",
         }
     }
@@ -108,7 +107,9 @@ fn size(args: &mut Args, cx: &BuildCx) -> Result<Size> {
     let span = args.here();
     let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
     if what == "charge" {
-        return fail(Code::NOT_SUPPORTED, span, "particles have no charge in perigrain");
+        let d =
+            Diagnostic::error(Code::NOT_SUPPORTED, span, "fix adapt does not change the charge in perigrain");
+        return Err(d.help("`set … charge` does, between runs").into());
     }
     if !cx.world.particles.style.sphere {
         let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");

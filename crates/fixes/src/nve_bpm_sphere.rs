@@ -15,11 +15,12 @@ impl Style for NveBpmSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group nve/bpm/sphere [disc]",
+            syntax: "fix ID group nve/bpm/sphere [update dipole|dipole/dlm] [disc]",
             summary: "Moves and turns the group's spheres by velocity Verlet, with their orientations.",
             text: "As `fix nve/sphere`; after the first half kick orientations follow the spins, q̇ = ½ ω q over Δt with the ω of the middle \
                    of the step, extrapolated from one step and two halves (Richardson) and kept at unit length. Bonds that bend and twist \
-                   (`bond_style bpm/rotational`) need them. `disc`, for flat scenes, takes I = 1/2 m R² instead of 2/5 m R².",
+                   (`bond_style bpm/rotational`) need them. `disc`, for flat scenes, takes I = 1/2 m R² instead of 2/5 m R². \
+                   `update dipole` and `dipole/dlm` (`atom_style hybrid bpm/sphere dipole`) let dipole moments follow the spin as `fix nve/sphere` does.",
             example: "units lj\natom_style bpm/sphere\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 2 2 2\n\
                       set group all omega 0 0 0.5\nfix 1 all nve/bpm/sphere\nrun 10",
         }

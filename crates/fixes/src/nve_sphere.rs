@@ -53,10 +53,9 @@ impl FixStyle for NveSphere {
 /// Reads the words of either style; [`ORIENTED`] turns orientations too.
 pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
     let (oriented, mut inertia, mut update) = (name == ORIENTED, INERTIA, None);
-    let known: &[&str] = if oriented { &["disc"] } else { &["update", "disc"] };
     while let Some(word) = args.next() {
         match word.text.as_str() {
-            "update" if !oriented => {
+            "update" => {
                 let what = args.expect("dipole or dipole/dlm")?;
                 update = match what.text.as_str() {
                     "dipole" => Some(Update::Plain),
@@ -66,7 +65,8 @@ pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Res
                 if !cx.world.particles.style.dipole {
                     let text = "`update dipole` needs particles with a dipole, and these have none";
                     let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
-                    return Err(d.help("`atom_style hybrid sphere dipole` has both").into());
+                    let spheres = if oriented { "bpm/sphere" } else { "sphere" };
+                    return Err(d.help(format!("`atom_style hybrid {spheres} dipole` has both")).into());
                 }
             }
             "disc" if cx.world.settings.two_dimensional => inertia = DISC,
@@ -74,7 +74,7 @@ pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Res
                 let text = "`disc` belongs to flat scenes (`dimension 2`)";
                 return fail(Code::CONFLICT, word.span, text);
             }
-            _ => return Err(args.unknown(word, known)),
+            _ => return Err(args.unknown(word, &["update", "disc"])),
         }
     }
     let turning = Turning { inertia, oriented };

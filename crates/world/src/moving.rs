@@ -9,7 +9,7 @@ use super::columns::{self, Columns};
 use super::contacts::{Contacts, Rolls};
 use super::named::Key;
 use super::region::{Angle, turned};
-use super::{Named, Numbers, Particles, Vectors, World};
+use super::{AtomStyle, Named, Numbers, Particles, Vectors, World};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, normalized, turn, turned as vector_turned};
 use perigrain_base::math::vec3::{Vec3, add};
 use perigrain_base::par;
@@ -245,10 +245,11 @@ impl Grip {
 
     /// Takes hold of particle `i` as it lies now, `holder` being how that lies which holds it.
     pub fn take(self, w: &mut World, i: usize, holder: Quat) {
-        let lies = w.particles.quat.get(i).copied().unwrap_or(UNTURNED);
+        let AtomStyle { oriented, dipole, .. } = w.particles.style;
+        let lies = if oriented { w.particles.quat[i] } else { UNTURNED };
         let (n, [real, others @ ..]) = (w.n(), after(back(holder), lies));
-        if let Some(mu) = w.particles.mu.get(i) {
-            let seen = vector_turned(back(holder), *mu);
+        if dipole {
+            let seen = vector_turned(back(holder), w.particles.mu[i]);
             w.columns.vector(self.moment, n)[i] = seen;
         }
         w.columns.scalar(self.real, n)[i] = real;
