@@ -64,6 +64,8 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("granular/force.rs", "columns", "only with heat"),
     ("peri/force.rs", "radius lists", "only beside grains"),
     ("graph/ledger.rs", "x0", "only beside solids"),
+    ("graph/ledger.rs", "v omega radius volume families mask columns", "only where fixes push or drive"),
+    ("wall_region.rs", "id tally", "only where a particle is lost, and where virials are asked for"),
     ("graph/row.rs", "lists", "only rows that count rebuilds"),
     ("wall/op.rs", "columns", "only with heat"),
     ("contact_atom.rs", "x0", "only beside solids"),

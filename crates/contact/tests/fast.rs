@@ -313,8 +313,8 @@ impl Loop for FastLoop {
         );
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         let (temperatures, mut heat) = (s.temperatures(), vec![0.0; s.x.len()]);
-        let heat = Some((&temperatures[..], &mut heat[..]));
-        let sums = Sums { force: &mut f, torque: &mut torque, heat, deeds: None };
+        let flow = Some((&temperatures[..], &mut heat[..]));
+        let sums = Sums { force: &mut f, torque: &mut torque, heat: flow, deeds: None };
         let virial = self.fast.run(&s.grains(), sums, step, true, true);
         Got { f, torque, heat, contacts: self.fast.contacts(), virial }
     }
