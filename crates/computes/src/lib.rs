@@ -72,6 +72,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &chunk::angmom::AngmomChunk,
     &chunk::atom::ChunkAtom,
     &chunk::com::ComChunk,
+    &chunk::continuum::ContinuumChunk,
     &chunk::first::MsdChunk,
     &chunk::first::VacfChunk,
     &chunk::gyration::GyrationChunk,

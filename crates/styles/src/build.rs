@@ -79,6 +79,17 @@ pub struct Chunking {
     pub compressed: bool,
     /// They are counted once (`nchunk once`).
     pub fixed: bool,
+    /// They are layers along axes: `bin/1d`, `bin/2d`, `bin/3d`.
+    pub bins: Option<Bins>,
+}
+
+/// Chunks that are layers, pencils or boxes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Bins {
+    /// The axis of each coordinate, in the order of the line; the last of them varies fastest.
+    pub axes: [Option<usize>; 3],
+    /// Coordinates are fractions of the box.
+    pub reduced: bool,
 }
 
 impl Shape {

@@ -40,7 +40,7 @@ pub mod triangles;
 
 pub use act::{ActCx, Flow, Motion, Values};
 pub use bond::{BondForce, BondStyle};
-pub use build::{BuildCx, Chunking, Names, Shape, Use, UseKind};
+pub use build::{Bins, BuildCx, Chunking, Names, Shape, Use, UseKind};
 pub use command::{Act, CommandStyle};
 pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};

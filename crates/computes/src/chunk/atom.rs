@@ -62,7 +62,8 @@ struct Declared(Spec);
 impl Compute for Declared {
     fn shape(&self) -> Shape {
         let Spec { compress: compressed, once: fixed, .. } = self.0;
-        let chunks = Chunking { coordinates: self.0.coordinates(), compressed, fixed };
+        let (coordinates, bins) = (self.0.coordinates(), self.0.bins());
+        let chunks = Chunking { coordinates, compressed, fixed, bins };
         Shape { atom: Some(1), chunks: Some(chunks), ..Shape::default() }
     }
 

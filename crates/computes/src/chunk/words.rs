@@ -4,7 +4,7 @@ use super::bins::{Axis, Origin, Shells};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::args::parse_number;
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_styles::{BuildCx, UseKind, Wants};
+use perigrain_styles::{Bins, BuildCx, UseKind, Wants};
 use perigrain_world::{Face, GroupId, Key, Region};
 
 /// What decides the number of a particle's chunk.
@@ -183,6 +183,13 @@ impl Spec {
                 What::Cylinder(axis, _) => open(axis),
                 _ => false,
             }
+    }
+
+    /// The axes of layers; `None` for other chunks.
+    pub fn bins(&self) -> Option<Bins> {
+        let What::Bins(axes) = &self.what else { return None };
+        let axis = |k: usize| axes.get(k).map(|a| a.dim);
+        Some(Bins { axes: std::array::from_fn(axis), reduced: self.reduced })
     }
 
     /// Coordinates of each chunk.
