@@ -204,7 +204,7 @@ impl Declared {
 }
 
 /// How many lengths of the box the kernel may reach over.
-const MOST_IMAGES: f64 = 1000.0;
+const MOST_IMAGES: f64 = 30.0;
 
 impl Compute for Declared {
     fn shape(&self) -> Shape {

@@ -214,6 +214,7 @@ syntax match perigrain_compute_style /\vcluster\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vcom\S@!/ contained
 syntax match perigrain_compute_style /\vcom\/chunk\S@!/ contained
 syntax match perigrain_compute_style /\vcontact\/atom\S@!/ contained
+syntax match perigrain_compute_style /\vcontinuum\/chunk\S@!/ contained
 syntax match perigrain_compute_style /\vcoord\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vcount\/type\S@!/ contained
 syntax match perigrain_compute_style /\vcrack\S@!/ contained
