@@ -16,7 +16,7 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{Bins, BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
-    TRAVEL, TYPE_MASS, V, X,
+    TRAVEL, TYPE_MASS, V, VOLUME, X, X0,
 };
 use perigrain_world::{Domain, GroupId, Key, SlotId};
 
@@ -234,6 +234,9 @@ impl Compute for Declared {
                 | LISTS
                 | MOLECULE
                 | TRAVEL;
+        }
+        if needed.pairs && cx.world().particles.style.peri {
+            reads = reads | VOLUME | X0;
         }
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let d = w.domain()?;
