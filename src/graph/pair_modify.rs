@@ -5,7 +5,7 @@ use super::node::Graph;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_pairs::Mix;
-use perigrain_world::World;
+use perigrain_world::{GroupId, World};
 
 const KEYWORDS: [&str; 13] = [
     "pair",
@@ -37,8 +37,11 @@ pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
     while let Some(word) = args.next() {
         match word.text.as_str() {
             "mix" => {
-                let name = args.choice("mixing rule", &Mix::NAMES.map(|(name, _)| name))?;
-                Mix::NAMES.iter().filter(|(n, _)| *n == name).for_each(|(_, rule)| pair.mix(*rule));
+                if facts.mixes {
+                    pair.modify("pair_modify", args, &cx.build(graph, w, "", GroupId::ALL))?;
+                } else {
+                    Mix::read(args)?;
+                }
             }
             "shift" => shift = args.flag("shift")?,
             "tail" => tail = args.flag("tail")?,
@@ -79,7 +82,7 @@ pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
             }
         };
         let note = Diagnostic::note(Code::NO_EFFECT, cx.span, text);
-        cx.build(graph, w, "", perigrain_world::GroupId::ALL).note(note);
+        cx.build(graph, w, "", GroupId::ALL).note(note);
     }
     if let Some(node) = &mut graph.pair {
         node.pair = pair;

@@ -188,14 +188,14 @@ fn only_the_atom_style_is_refused() {
     let said = check(dipoles);
     assert_eq!((lines(&said, "error"), lines(&said, "warning")), (1, 0), "{said}");
     assert!(said.contains("atom_style `dipole/x`"), "{said}");
-    let charges = "units lj\natom_style full\nregion b block 0 9 0 9 0 9\ncreate_box 1 b bond/types 1 angle/types 1\n\
+    let charges = "units lj\natom_style amoeba\nregion b block 0 9 0 9 0 9\ncreate_box 1 b bond/types 1 angle/types 1\n\
                    create_atoms 1 random 10 123 b\nmass 1 1\nset group all charge 1\nbond_style harmonic\nbond_coeff 1 1 1\n\
                    angle_style harmonic\nangle_coeff 1 1 180\nkspace_style pppm 1e-4\nfix 1 all nve\nrun 10\n";
     let said = check(charges);
     assert_eq!((lines(&said, "error"), lines(&said, "warning")), (1, 0), "{said}");
     assert!(
-        said.contains("LAMMPS' atom_style `full` is not in perigrain")
-            && said.contains("there are no charges"),
+        said.contains("LAMMPS' atom_style `amoeba` is not in perigrain")
+            && said.contains("charges and moments feel fields"),
         "{said}"
     );
     // Other mistakes stay.
@@ -217,10 +217,14 @@ fn words_of_lammps_lead_on() {
             "`compute stress/atom`",
         ),
         ("compute 1 all voronoi/atom", "LAMMPS' compute style `voronoi/atom`", "`compute coord/atom`"),
-        ("pair_style lj/cut 2.5", "LAMMPS' pair style `lj/cut`", "`pair_style bpm/spring`"),
-        ("pair_style hybrid lj/cut 2.5 zero 1", "LAMMPS' pair style `lj/cut`", "`pair_style bpm/spring`"),
+        ("pair_style lj/cut 2.5", "LAMMPS' pair style `lj/cut`", "`pair_style soft` or `bpm/spring`"),
+        (
+            "pair_style hybrid lj/cut 2.5 zero 1",
+            "LAMMPS' pair style `lj/cut`",
+            "`pair_style soft` or `bpm/spring`",
+        ),
         ("dump 1 all netcdf 10 x.nc id", "LAMMPS' dump style `netcdf`", "`dump vtk`"),
-        ("angle_style harmonic", "LAMMPS' command `angle_style`", "`bond_style bpm/rotational`"),
+        ("angle_style harmonic", "LAMMPS' angle_style `harmonic`", "`bond_style bpm/rotational`"),
         ("kspace_style pppm 1e-4", "LAMMPS' command `kspace_style`", "leave the line out"),
         ("labelmap atom 1 C", "LAMMPS' command `labelmap`", "write types as numbers"),
         ("min_style hftn", "LAMMPS' minimization style `hftn`", "`fire`"),

@@ -61,7 +61,7 @@ impl CommandStyle for AngleStyleCommand {
         let word = a.expect("a style of angles")?;
         let new = match lammps::plain("angle", &word.text) {
             "none" => None,
-            _ if !style.angled => {
+            "zero" if !style.angled => {
                 let text = format!("particles of atom_style {} have no angles", style.name());
                 let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
                 return Err(d.help("`atom_style angle`, alone or in a hybrid, has them").into());

@@ -279,7 +279,8 @@ mod tests {
         assert_eq!(refused(&w, "create_bonds many all all 3 0.9 1").0, "3");
         assert_eq!(refused(&w, "create_bonds many all all 1 1.9 1").0, "1");
         assert_eq!(refused(&w, "create_bonds single/bond 1 7 7").0, "7");
-        assert_eq!(refused(&w, "create_bonds single/angle 1 7 8 9").0, "single/angle");
+        // Particles of atom_style bond have no angles.
+        assert_eq!(refused(&w, "create_bonds single/angle 1 7 8 9").0, "create_bonds");
         more(&mut w, "special_bonds lj 0 1 1 coul 1 1 1");
         assert_eq!(refused(&w, "create_bonds many all all 1 1.9 2").0, "create_bonds");
     }

@@ -82,7 +82,8 @@ mod tests {
     #[test]
     fn spheres_without_orientations_are_refused() {
         let mut b = bench(1);
-        assert_eq!(b.fix(&NveBpmSphere, "update dipole").err().unwrap().0[0].code, Code::UNKNOWN_KEYWORD);
+        // There are no dipoles here.
+        assert_eq!(b.fix(&NveBpmSphere, "update dipole").err().unwrap().0[0].code, Code::CONFLICT);
         b.world.particles.style.oriented = false;
         assert_eq!(b.fix(&NveBpmSphere, "").err().unwrap().0[0].code, Code::WRONG_ORDER);
     }

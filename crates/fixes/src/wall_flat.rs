@@ -149,7 +149,8 @@ struct Sealed {
     face: Face,
     spot: Spot,
     law: &'static str,
-    numbers: Vec<Reading>,
+    /// The numbers of the law, and whether each is a variable's, which must not be negative.
+    numbers: Vec<(Reading, bool)>,
     cutoff: f64,
 }
 
@@ -163,9 +164,9 @@ struct Now<'a> {
 impl Sealed {
     fn now(&self, w: &World, span: Span) -> Result<Now<'_>> {
         let mut given = [0.0; 3];
-        for ((to, from), what) in given.iter_mut().zip(&self.numbers).zip(numbers(self.law)) {
+        for ((to, (from, varies)), what) in given.iter_mut().zip(&self.numbers).zip(numbers(self.law)) {
             *to = from.get(w);
-            if *to < 0.0 && !from.is_const() {
+            if *to < 0.0 && *varies {
                 let face = self.face.name();
                 let text = format!("{what} of the wall `{face}` has become {to}: it must not be negative");
                 return fail(Code::BAD_VALUE, span, text);
@@ -206,8 +207,11 @@ impl Declared {
     fn seal(&self, cx: &mut dyn SealCx) -> Result<Vec<Sealed>> {
         let mut walls = vec![];
         for (face, words) in &self.walls {
-            let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
-            let numbers = words.numbers.iter().map(&mut read).collect::<Result<Vec<Reading>>>()?;
+            let mut read = |p: &Param| {
+                let varies = !matches!(p, Param::Number(_));
+                cx.param(p, Stage::PostForce, &When::Always).map(|reading| (reading, varies))
+            };
+            let numbers = words.numbers.iter().map(&mut read).collect::<Result<Vec<_>>>()?;
             let spot = face.seal(cx, Stage::PostForce, self.scale)?;
             walls.push(Sealed { face: face.clone(), spot, law: self.law, numbers, cutoff: words.cutoff });
         }

@@ -66,6 +66,15 @@ impl Mix {
     pub const NAMES: [(&'static str, Mix); 3] =
         [("geometric", Mix::Geometric), ("arithmetic", Mix::Arithmetic), ("sixthpower", Mix::SixthPower)];
 
+    /// Reads a rule.
+    ///
+    /// # Errors
+    /// A word that names none.
+    pub fn read(args: &mut Args) -> Result<Self> {
+        let name = args.choice("mixing rule", &Self::NAMES.map(|(name, _)| name))?;
+        Ok(Self::NAMES.iter().find(|(n, _)| *n == name).map_or(Self::default(), |(_, rule)| *rule))
+    }
+
     /// Of two distances [length].
     pub fn distance(self, a: f64, b: f64) -> f64 {
         match self {
@@ -154,9 +163,6 @@ pub trait Pair: DynClone + Send {
     /// Limits the style to some type pairs (as a sub-style of `hybrid`); by default it acts on all.
     fn restrict(&mut self, _pairs: &TypePairs) {}
 
-    /// Takes the rule by which types without a line of their own are mixed; by default the style has a rule of its own.
-    fn mix(&mut self, _rule: Mix) {}
-
     /// The sub-styles of a `hybrid`.
     fn parts(&self) -> Vec<&dyn Pair> {
         vec![]
@@ -187,7 +193,7 @@ pub trait Pair: DynClone + Send {
         None
     }
 
-    /// `peri_modify …` and the like: options by command name.
+    /// `peri_modify …` and `pair_modify mix …`, where types are mixed by a rule: options by command name.
     ///
     /// # Errors
     /// By default the pair style has none.
