@@ -12,6 +12,8 @@ syntax match perigrainComment /#.*$/ contains=@Spell
 syntax region perigrainString start=/"/ end=/"/ oneline contains=perigrainValue
 syntax region perigrainString start=/'/ end=/'/ oneline contains=perigrainValue
 syntax region perigrainString start=/"""/ end=/"""/ contains=perigrainValue
+syntax match perigrainCommand /\v^\s*\zsangle_coeff\S@!/
+syntax match perigrainCommand /\v^\s*\zsangle_style\S@!/
 syntax match perigrainCommand /\v^\s*\zsatom_modify\S@!/
 syntax match perigrainCommand /\v^\s*\zsatom_style\S@!/
 syntax match perigrainCommand /\v^\s*\zsbalance\S@!/
@@ -116,6 +118,7 @@ syntax match perigrain_pair_style_style /\vperi\/pmb\S@!/ contained
 syntax match perigrain_pair_style_style /\vperi\/pmb\/plastic\S@!/ contained
 syntax match perigrain_pair_style_style /\vperi\/pmb\/softening\S@!/ contained
 syntax match perigrain_pair_style_style /\vperi\/ves\S@!/ contained
+syntax match perigrain_pair_style_style /\vsoft\S@!/ contained
 syntax match perigrain_pair_style_style /\vzero\S@!/ contained
 highlight default link perigrain_pair_style_style Type
 syntax match perigrainCommand /\v^\s*\zsbond_style\S@!/ nextgroup=perigrain_bond_style_style skipwhite
@@ -134,6 +137,7 @@ syntax match perigrain_fix_2 /\S\+/ contained nextgroup=perigrain_fix_style skip
 syntax match perigrain_fix_style /\vadapt\S@!/ contained
 syntax match perigrain_fix_style /\vaddforce\S@!/ contained
 syntax match perigrain_fix_style /\vaddtorque\S@!/ contained
+syntax match perigrain_fix_style /\vaddtorque\/atom\S@!/ contained
 syntax match perigrain_fix_style /\vave\/atom\S@!/ contained
 syntax match perigrain_fix_style /\vave\/chunk\S@!/ contained
 syntax match perigrain_fix_style /\vave\/histo\S@!/ contained
@@ -152,6 +156,7 @@ syntax match perigrain_fix_style /\vdrag\S@!/ contained
 syntax match perigrain_fix_style /\vdt\/critical\S@!/ contained
 syntax match perigrain_fix_style /\vdt\/guard\S@!/ contained
 syntax match perigrain_fix_style /\vdt\/reset\S@!/ contained
+syntax match perigrain_fix_style /\vefield\S@!/ contained
 syntax match perigrain_fix_style /\venforce2d\S@!/ contained
 syntax match perigrain_fix_style /\vevaporate\S@!/ contained
 syntax match perigrain_fix_style /\vexternal\S@!/ contained
@@ -181,6 +186,7 @@ syntax match perigrain_fix_style /\vrigid\/nve\S@!/ contained
 syntax match perigrain_fix_style /\vrigid\/nve\/small\S@!/ contained
 syntax match perigrain_fix_style /\vrigid\/small\S@!/ contained
 syntax match perigrain_fix_style /\vsetforce\S@!/ contained
+syntax match perigrain_fix_style /\vsettorque\/atom\S@!/ contained
 syntax match perigrain_fix_style /\vspring\S@!/ contained
 syntax match perigrain_fix_style /\vspring\/self\S@!/ contained
 syntax match perigrain_fix_style /\vstore\/force\S@!/ contained
