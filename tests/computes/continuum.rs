@@ -48,7 +48,7 @@ fn fields_add_up_to_their_particles_and_contacts() {
     for bins in [
         "bin/3d x lower 0.25 y lower 0.25 z lower 0.25",
         "bin/2d z center 0.25 x lower 0.25",
-        "bin/1d y 0.1 0.25",
+        "bin/1d y lower 0.25",
     ] {
         let fields =
             "density momentum/* volume/fraction stress/contacts/* fabric/* stress/zz stress/ke/zz natoms";
@@ -102,8 +102,8 @@ fn threads_leave_fields_as_they_are() {
 fn pile(below: usize) -> String {
     let (n, k) = (20, 1e4);
     let mut deck = format!(
-        "units lj\natom_style sphere\nboundary p p f\nregion b block 0 1.5 0 1.5 -2 24\ncreate_box 1 b\n\
-         pair_style granular\npair_coeff * * hooke {k} 0\n"
+        "units lj\natom_style sphere\nboundary p p f\nregion b block 0 1.5 0 1.5 -3 24\ncreate_box 1 b\n\
+         pair_style granular\npair_coeff * * hooke {k} 0 tangential linear_nohistory 0 0\n"
     );
     let mut z = 0.5 - f64::from(n) / k;
     if below > 0 {
@@ -116,7 +116,7 @@ fn pile(below: usize) -> String {
     deck + &format!("set group all diameter 1\nset group all density {}\n", 6.0 / std::f64::consts::PI)
 }
 
-/// Bins of 0.1 along z from −2, on an area of 1.5².
+/// Bins of 0.1 along z from −3, farther below the floor than the kernel reaches, on an area of 1.5².
 fn stands(deck: &str) {
     let (rows, _) = rows(deck);
     let (area, h) = (2.25, 0.1);
@@ -125,7 +125,7 @@ fn stands(deck: &str) {
     assert!((h * sum(&rows, boundary) * area + 20.0).abs() < 1e-3);
     let mut above = 0.0;
     for k in (1..rows.len() - 1).rev() {
-        let z = -2.0 + (k as f64 + 0.5) * h;
+        let z = -3.0 + (k as f64 + 0.5) * h;
         above += 0.5 * h * (rows[k][density] + rows[k + 1][density]);
         // A still body: ∂σ_zz/∂z = ρ g + boundary force. Differences over 2 h leave h²/6 of the third derivative, as
         // large as the weight over the cube of the kernel's width.
@@ -152,7 +152,7 @@ const FIELDS: &str = "compute cc all chunk/atom bin/1d z lower 0.1 units box\n\
 #[test]
 fn stress_in_a_pile_is_the_weight_above() {
     stands(&format!(
-        "{}{FIELDS} boundary/fix\nfix floor all wall/gran granular hooke 1e4 0 zplane 0 NULL contacts\n{WRITE}",
+        "{}{FIELDS} boundary/fix\nfix floor all wall/gran granular hooke 1e4 0 tangential linear_nohistory 0 0 zplane 0 NULL contacts\n{WRITE}",
         pile(0)
     ));
     stands(&format!("{}group low id 1\n{FIELDS} boundary/atom low\n{WRITE}", pile(1)));
@@ -167,7 +167,8 @@ fn walls_of_a_boundary_must_tell_their_contacts() {
         *run.map(|_| ()).unwrap_err().downcast::<String>().unwrap()
     };
     assert!(failing("").contains("needs a wall"));
-    let text = failing("fix floor all wall/gran granular hooke 1e4 0 zplane 0 NULL");
+    let text =
+        failing("fix floor all wall/gran granular hooke 1e4 0 tangential linear_nohistory 0 0 zplane 0 NULL");
     assert!(text.contains("needs the contacts of fix floor"), "{text}");
 }
 
