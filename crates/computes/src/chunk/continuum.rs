@@ -220,7 +220,7 @@ impl Compute for Declared {
         let walls = self.walls(cx, stage, when)?;
         let mut reads = X | V | MASS | MASK | BOX | KIND | TYPE_MASS;
         if cx.world().particles.style.sphere {
-            reads = reads | RADIUS;
+            reads |= RADIUS;
         }
         if needed.pairs {
             reads = reads

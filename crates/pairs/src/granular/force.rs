@@ -445,9 +445,7 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
 /// Room for what contacts tell the ledger of energy, where there is one.
 fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairDeeds> {
     // Opening a memory that does not exist writes it.
-    if w.parts.pair_deeds.is_none() {
-        return None;
-    }
+    w.parts.pair_deeds.as_ref()?;
     let n = w.n();
     let all = w.parts.pair_deeds.as_mut()?;
     let mut own = std::mem::take(all.get_or(key.of(), PairDeeds::default));
