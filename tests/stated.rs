@@ -27,7 +27,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("fixes/src/ave_atom.rs", "f", "what is averaged is the deck's"),
     ("fixes/src/ave_chunk.rs", "f", "what is averaged is the deck's"),
     ("fixes/src/ave_histo.rs", "f", "what is averaged is the deck's"),
-    ("fixes/src/deform.rs", "slots", "only where a variable moves the box"),
+    ("deform/op.rs", "slots", "only where a variable moves the box"),
     (
         "fixes/src/time_step.rs",
         "contacts radius bonds id lists molecule omega travel",
@@ -56,8 +56,8 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("chunk/atom.rs", "regions", "only bins of regions"),
     ("property_atom.rs", "molecule", "only `mol`"),
     ("addforce.rs", "regions", "only with `region`"),
-    ("deform.rs", "x0", "only where solids follow the box"),
-    ("deform.rs", "lists", "only where a box leans so far that it is flipped"),
+    ("deform/op.rs", "x0", "only where solids follow the box"),
+    ("deform/op.rs", "lists", "only where a box leans so far that it is flipped"),
     ("rigid.rs", "tally columns", "only with virials, and those of particles"),
     ("viscous_sphere.rs", "slots", "only with a variable for each"),
     ("bond/driver.rs", "lists", "only where broken bonds free pairs"),
@@ -82,7 +82,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("damping_cundall.rs", "slots", "only with `scale v_name`"),
     ("granular/force.rs", "facts", "only where plastic grains overlap deeply"),
     ("graph/welcome.rs", "v mask", "only where molecules that come are bodies"),
-    ("fixes/src/deform.rs", "id", "only where peridynamic bonds cross faces"),
+    ("deform/op.rs", "id", "only where peridynamic bonds cross faces"),
     ("pair_local.rs", "memo", "only where pairs of central laws are asked"),
     ("group_group.rs", "memo", "only where pairs of central laws are asked"),
     ("property_local.rs", "memo", "only where pairs of central laws are asked"),
@@ -103,7 +103,7 @@ const MOVERS: [&str; 9] = [
     "/move_fix.rs",
     "/rigid.rs",
     "/recenter.rs",
-    "/deform.rs",
+    "/deform/op.rs",
     "/wall_reflect.rs",
 ];
 

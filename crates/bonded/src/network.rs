@@ -17,7 +17,7 @@ use perigrain_base::par;
 pub struct Network {
     /// Number of particles.
     pub particles: usize,
-    /// Who is bonded to whom.
+    /// The partners of each particle in bonds.
     pub pairs: Pairs,
     /// Vectors from the lower end to the upper one [length]. Directions and lengths are reckoned from them: there are millions of bonds,
     /// and what is read costs more than what is reckoned.

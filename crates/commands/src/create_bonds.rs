@@ -11,7 +11,7 @@ use perigrain_styles::common::{self, bad_keyword, bond_type, on_particles};
 use perigrain_styles::near::{every_type, room_for_pairs};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
-use perigrain_world::{Allowed, Bond, GroupId, World};
+use perigrain_world::{Allowed, Bond, GroupId, Partners, World};
 
 /// The command.
 pub struct CreateBonds;
@@ -217,15 +217,7 @@ fn within(w: &World, groups: [GroupId; 2], reach: Reach, mut near: impl FnMut(&P
     let wanted = every_type(w, reach);
     let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
     let is = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
-    let weights = w.bonds.weights;
-    let zero = |apart: usize| weights.lj[apart - 1] == 0.0 && weights.coul[apart - 1] == 0.0;
-    // Looking no farther along bonds than weights are zero saves most of the time in a large network.
-    let far = (1..=3).rev().find(|apart| zero(*apart)).unwrap_or(0);
-    let barred = w.bonds.apart(far as u8);
-    let apart = |ends: &[u32; 2]| {
-        let k = barred.binary_search_by_key(&ends, |(pair, _)| pair).ok()?;
-        Some(barred[k].1).filter(|n| zero(usize::from(*n)))
-    };
+    let partners = Partners::new(w);
     let tags = |q: &Pair| {
         let [i, j] = [q.i, q.j].map(|k| p.tag[k as usize]);
         [i.min(j), i.max(j)]
@@ -239,12 +231,12 @@ fn within(w: &World, groups: [GroupId; 2], reach: Reach, mut near: impl FnMut(&P
     let allowed = Allowed::excluded(w);
     let mut found = Found { ends: vec![], apart: vec![], excluded: vec![] };
     for q in pairs(&view, &wanted, 0.0, &keep).iter().filter(|q| q.i != q.j) {
-        let ends = tags(q);
-        let apart = apart(&ends);
-        if apart == Some(1) || !near(q, square(q)) {
+        if !near(q, square(q)) {
             continue;
         }
+        let (ends, apart) = (tags(q), partners.unlisted([q.i, q.j].map(|k| k as usize)));
         let list = match apart {
+            Some(1) => continue,
             Some(_) => &mut found.apart,
             None if allowed.pair(q.i as usize, q.j as usize) => &mut found.ends,
             None => &mut found.excluded,

@@ -76,7 +76,7 @@ impl Style for Set {
             text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
                    `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `quat A B C THETA` (the orientation: turned by THETA degrees about an axis of any length; LAMMPS, and `-compat lammps`, turn farther about an axis that is not of unit length), `quat/random SEED`, `charge Q`, `dipole MUX MUY MUZ`, `dipole/random SEED MU` (moments of size MU in directions that LAMMPS draws too: corners of a cube are likelier), `image NX NY NZ` (`NULL` \
                    leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is), `peri/radius`, `peri/strength`, `peri/stiffness`. A value is a number or an atom-style variable `v_name`. \
-                   Who is chosen is decided once for the whole line. \
+                   Particles are chosen once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
                    without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
                    say it before `density`. `type/fraction` decides for each particle by a random number that belongs \

@@ -13,6 +13,7 @@ pub mod fast;
 pub mod heat;
 pub mod law;
 pub mod mdr;
+pub mod model;
 pub mod normal;
 pub mod slider;
 pub mod tangential;
@@ -22,7 +23,8 @@ pub mod walls;
 
 pub use damping::Damping;
 pub use heat::Heat;
-pub use law::{Arm, Classic, Granular, Model, Unmixable};
+pub use law::Granular;
+pub use model::{Arm, Classic, Model, Unmixable};
 pub use normal::Normal;
 pub use tangential::{Drag, Friction, Tangential};
 pub use turning::{Rolling, Sds, Twisting};

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
-use perigrain_styles::matter::{Chosen, ChosenNow, change_forces, publish, sum, unwrapped};
+use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, MASK, REGIONS, SLOTS, TALLY, X};
@@ -112,18 +112,8 @@ impl Fix for Declared {
         let (slot, virial) = (cx.slot(&format!("f_{}", self.id)), self.virial);
         let access = Needs::new().read(X | IMAGE | MASK | BOX | REGIONS).add(F | TALLY).write(SLOTS);
         let op = StepOp::new(format!("fix {} addforce", self.id), Stage::PostForce, access, move |w, t| {
-            if virial && t.virial {
-                let added = virial_of(w, &chosen, &force);
-                (0..6).for_each(|k| w.tally.fixes[k] += added[k]);
-            }
-            if virial && t.atom_virial {
-                let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
-                let now = chosen.now(w);
-                for (i, own) in atoms.iter_mut().enumerate() {
-                    let added = virial_of_one(w, &now, &force, i);
-                    (0..6).for_each(|k| own[k] += added[k]);
-                }
-                w.tally.atom_fixes = atoms;
+            if virial {
+                add_virial(w, t, &chosen, |w, i| virial_of(w, &force, i));
             }
             if t.unchanged {
                 return Ok(());
@@ -163,17 +153,8 @@ impl Fix for Declared {
     }
 }
 
-/// Σ f x of the added force with unwrapped positions: xx yy zz xy xz yz.
-fn virial_of(w: &World, chosen: &Chosen, force: &[Reading; 3]) -> [f64; 6] {
-    let (p, chosen) = (&w.particles, chosen.now(w));
-    sum::<6>(&p.mask, GroupId::ALL, |i| virial_of_one(w, &chosen, force, i))
-}
-
-/// The part of particle `i`.
-fn virial_of_one(w: &World, chosen: &ChosenNow, force: &[Reading; 3], i: usize) -> [f64; 6] {
-    if !chosen.has(w.particles.mask[i], w.particles.x[i]) {
-        return [0.0; 6];
-    }
+/// f x of the force added to particle `i` with its unwrapped position: xx yy zz xy xz yz.
+fn virial_of(w: &World, force: &[Reading; 3], i: usize) -> [f64; 6] {
     let (x, [fx, fy, fz]) = (unwrapped(w, i), force.map(|r| r.atom(w, i)));
     [fx * x[0], fy * x[1], fz * x[2], fx * x[1], fx * x[2], fy * x[2]]
 }

@@ -1,24 +1,22 @@
 //! fix deform: a box that changes its lengths and tilts while a run goes on.
 
 mod lean;
+mod op;
 mod pressure;
 mod track;
 
 pub use pressure::DeformPressure;
 
 use super::{Facts, Fix, FixStyle};
-use lean::Lean;
+use op::{Move, Shape, tell};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::{check_flat, scales, units_lattice};
-use perigrain_styles::near::{bonds_across, bonds_fit};
+use perigrain_plan::{Op, Tick, When};
+use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::domain::Flow;
-use perigrain_world::field::{BONDS, BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, TAG, X};
-use perigrain_world::{Face, Fields, GroupId, Key, Numbers, RATES, World};
+use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
 use pressure::{Controls, Pressed};
-use track::{Track, tracks};
+use track::tracks;
 
 /// The style.
 pub struct Deform;
@@ -45,7 +43,7 @@ impl Style for Deform {
                    (`region prism`) have the same styles but for `scale` and `volume`, with one number for `final` and `delta`; \
                    `erate R` is R times the first length of y (`xy`) or z (`xz`, `yz`) per time. Where a tilt passes half the \
                    length of x (`xy`, `xz`) or y (`yz`), with `flip yes` (default) the box is put in the place of the one a whole \
-                   edge less, at the next rebuild of lists: another box of the same lattice, in which everybody is where it was. `remap x` (default) stretches the positions of the group's \
+                   edge less, at the next rebuild of lists: another box of the same lattice, in which all particles are where they were. `remap x` (default) stretches the positions of the group's \
                    particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
                    of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
                    In a flat scene `z` changes the length that the box has along z, and no particle; it must go on holding the plane z = 0. (LAMMPS, \
@@ -329,179 +327,5 @@ impl Fix for Declared {
         let ([x, y, z], [xy, xz, yz]) =
             (self.motions.each_ref().map(Option::is_some), self.leans.each_ref().map(Option::is_some));
         Facts { deforms: [x, y, z, xy, xz, yz], ..Facts::default() }
-    }
-}
-
-/// The box at a step.
-struct Shape {
-    lo: [f64; 3],
-    hi: [f64; 3],
-    tilt: [f64; 3],
-    /// How fast lengths grow.
-    rate: [f64; 3],
-    /// How fast tilts do.
-    turning: [f64; 3],
-}
-
-impl Shape {
-    fn at(tracks: &[Track; 3], leans: &[Lean; 3], w: &World, t: &Tick) -> Result<Self> {
-        let (lo, hi, rate) = track::faces(tracks, w, t)?;
-        let (tilt, turning) = lean::tilts(leans, w, t, [0, 1, 2].map(|d| hi[d] - lo[d]))?;
-        Ok(Self { lo, hi, tilt, rate, turning })
-    }
-
-    /// How fast images are that particles see or become. LAMMPS takes what compute temp/deform takes.
-    fn flow(
-        &self,
-        tracks: &[Track; 3],
-        leans: &[Lean; 3],
-        (w, group): (&World, GroupId),
-        first: bool,
-    ) -> Flow {
-        if w.settings.lammps() {
-            let [rate, _, tilt] = self.streaming(tracks, leans, w, first);
-            return Flow { rate, tilt, group };
-        }
-        Flow { rate: self.rate, tilt: self.turning, group }
-    }
-
-    /// How fast lengths grow, lower faces move and tilts grow, as compute temp/deform asks for it.
-    fn streaming(&self, tracks: &[Track; 3], leans: &[Lean; 3], w: &World, first: bool) -> [[f64; 3]; 3] {
-        let lengths = [0, 1, 2].map(|d| self.hi[d] - self.lo[d]);
-        let [rate, low] = track::streaming(tracks, w, (self.rate, lengths), first);
-        [rate, low, lean::streaming(leans, w, self.turning, first)]
-    }
-}
-
-/// Lets the world remember how fast lengths grow, lower faces move and tilts grow.
-fn tell(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], remap: Remap) {
-    let remapped = f64::from(u8::from(remap == Remap::Positions));
-    let row = w.memo.get_or(key, Vec::new);
-    row.clear();
-    row.extend(rate.into_iter().chain(low).chain([remapped]).chain(turning));
-}
-
-/// Moves the faces.
-struct Move {
-    name: String,
-    /// Where the world remembers the rates.
-    stretch: Numbers,
-    tracks: [Track; 3],
-    leans: [Lean; 3],
-    flips: bool,
-    remap: Remap,
-    group: GroupId,
-    when: When,
-    /// Peridynamic bonds cross faces whose edges change.
-    crossed: bool,
-}
-
-impl Move {
-    /// Whether images move otherwise than particles, along edges that lean more and more.
-    fn turns_images(&self) -> bool {
-        self.remap == Remap::Velocities && self.leans.iter().any(Lean::moves)
-    }
-
-    /// Which edges are changed.
-    fn changes(&self) -> [bool; 3] {
-        let mut changes = self.tracks.each_ref().map(Track::moves);
-        for (k, _) in self.leans.iter().enumerate().filter(|(_, lean)| lean.moves()) {
-            changes[lean::ACROSS[k]] = true;
-        }
-        changes
-    }
-}
-
-impl Op for Move {
-    fn about(&self) -> About {
-        About {
-            when: self.when.clone(),
-            in_setup: true,
-            ..About::new(
-                &self.name,
-                Stage::EndOfStep,
-                Needs::new()
-                    .read(
-                        TAG | MASK
-                            | SLOTS
-                            | FAMILIES
-                            | if self.turns_images() { BONDS } else { Fields::NONE },
-                    )
-                    .write(X | BOX | if self.flips { LISTS } else { Fields::NONE })
-                    .keep(MEMO),
-            )
-        }
-    }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let shape = Shape::at(&self.tracks, &self.leans, w, t)?;
-        tell(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
-        let flow = shape.flow(&self.tracks, &self.leans, (w, self.group), t.setup);
-        let Shape { lo, hi, tilt, .. } = shape;
-        // Particles of a flat scene stay in their plane.
-        let flat = w.settings.two_dimensional && !w.settings.lammps();
-        if self.remap == Remap::Velocities
-            && let Some(domain) = &mut *w.domain
-        {
-            domain.flow = Some(flow);
-        }
-        if t.setup {
-            if self.turns_images() && !w.bonds.is_empty() {
-                // Whose image a bond leads to, and how fast that one is, its damping does not know.
-                let text = "bonds do not go with tilts that change with `remap v`";
-                return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text)
-                    .help("`remap x` will do")
-                    .into());
-            }
-            let along = self.remap == Remap::Positions;
-            self.crossed = bonds_across(w, self.changes(), along)?.is_some();
-            if self.crossed && self.flips && self.leans.iter().any(Lean::moves) {
-                let text = "peridynamic bonds cross periodic faces: the box cannot flip";
-                let help = "say `flip no`: bonds go by the edges of the box at the first run";
-                return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text).help(help).into());
-            }
-            return Ok(());
-        }
-        let Some(domain) = &mut *w.domain else { return Ok(()) };
-        let before = domain.clone();
-        let (from, length) = (domain.lo, domain.lengths());
-        check_flat(domain.boundary, (lo[2], hi[2]), flat)?;
-        (domain.lo, domain.hi) = (lo, hi);
-        if domain.tilt.is_some() {
-            domain.tilt = Some(tilt);
-        }
-        let edges = domain.periods();
-        if self.crossed {
-            bonds_fit(w, &edges)?;
-        }
-        let Some(domain) = &mut *w.domain else { return Ok(()) };
-        if self.flips {
-            domain.flip = lean::flip(domain);
-            if domain.flip.is_some() {
-                w.rebuild.due = true;
-            }
-        }
-        if self.remap == Remap::Positions && (before.tilted() || domain.tilted()) {
-            let (p, bit) = (&mut w.particles, self.group.bit());
-            for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
-                let z = x[2];
-                *x = domain.at(before.fractions(x));
-                if flat {
-                    x[2] = z;
-                }
-            }
-        } else if self.remap == Remap::Positions {
-            let (p, bit) = (&mut w.particles, self.group.bit());
-            for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
-                // Where in the box, then there in the new one: dimensions that stay keep their bits.
-                for d in (0..if flat { 2 } else { 3 }).filter(|&d| self.tracks[d].moves()) {
-                    x[d] = (x[d] - from[d]) / length[d] * (hi[d] - lo[d]) + lo[d];
-                }
-            }
-        }
-        Ok(())
-    }
-    fn finish(&mut self, w: &mut World) -> Result<()> {
-        w.domain.iter_mut().for_each(|d| d.flow = None);
-        Ok(())
     }
 }

@@ -167,6 +167,16 @@ fn lying(w: &World) -> Fields {
     of(style.oriented, QUAT) | of(style.dipole, MU)
 }
 
+/// Refuses particles without a radius.
+fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    let text = format!("fix {style} needs particles with a radius");
+    let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+    Err(d.help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck").into())
+}
+
 /// Refuses particles that cannot be turned by torques.
 fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
     if cx.world.particles.style.sphere {

@@ -2,12 +2,12 @@
 
 use super::faces::{Face, Spot, check};
 use super::wall_law::{Law, NAMES, formula, numbers};
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing, needs_spheres};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{scales, units_lattice, variable_param};
-use perigrain_styles::matter::{Chosen, change_forces, publish, sum};
+use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, Fields, MASK, RADIUS, SLOTS, TALLY, X};
@@ -84,10 +84,8 @@ const KEYWORDS: &[&str] = &["xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "units", "
 impl FixStyle for FlatWall {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let law = NAMES[self.0];
-        if law == "colloid" && !cx.world.particles.style.sphere {
-            let text = "fix wall/colloid needs particles with a radius";
-            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
-            return Err(d.help("put `atom_style sphere` at the top of the deck").into());
+        if law == "colloid" {
+            needs_spheres(cx, self.name())?;
         }
         let (mut faces, mut pushes, mut lattice, mut through) = (vec![], vec![], true, false);
         while let Some(word) = args.next() {
@@ -244,34 +242,13 @@ fn push_all(walls: &[Now], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
     got
 }
 
-/// The virial that a particle gets of all walls: xx yy zz.
-fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 3] {
-    let mut virial = [0.0; 3];
+/// The virial that a particle gets of all walls: xx yy zz xy xz yz.
+fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 6] {
+    let mut virial = [0.0; 6];
     for (wall, (r, [push, _])) in walls.iter().filter_map(|wall| Some((wall, wall.push(x, radius)?))) {
         virial[wall.face.axis] += push * r;
     }
     virial
-}
-
-/// Adds the walls' virial to the sums that are wanted.
-fn tally(w: &mut World, chosen: &Chosen, walls: &[Now], sized: bool, t: &Tick) {
-    let p = &w.particles;
-    let now = chosen.now(w);
-    let of = |w: &World, i: usize| virial_of(walls, w.particles.x[i], radius(w, i, sized));
-    let one = |i: usize| if now.has(p.mask[i], p.x[i]) { of(w, i) } else { [0.0; 3] };
-    if t.virial {
-        let total = sum::<3>(&p.mask, GroupId::ALL, one);
-        (0..3).for_each(|d| w.tally.fixes[d] += total[d]);
-    }
-    if t.atom_virial {
-        let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
-        let (p, now) = (&w.particles, chosen.now(w));
-        for (i, own) in atoms.iter_mut().enumerate().filter(|(i, _)| now.has(p.mask[*i], p.x[*i])) {
-            let added = of(w, i);
-            (0..3).for_each(|d| own[d] += added[d]);
-        }
-        w.tally.atom_fixes = atoms;
-    }
 }
 
 /// The refusal of a particle that has come to a wall or gone through.
@@ -316,7 +293,8 @@ impl Fix for Declared {
                     now.push(wall.now(w, span)?);
                 }
                 if virial {
-                    tally(w, &chosen, &now, sized, t);
+                    let of = |w: &World, i: usize| virial_of(&now, w.particles.x[i], radius(w, i, sized));
+                    add_virial(w, t, &chosen, of);
                 }
                 if t.unchanged {
                     return Ok(());

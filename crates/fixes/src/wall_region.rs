@@ -7,7 +7,7 @@ use perigrain_base::math::vec3::{Vec3, scale};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::common::unknown_style;
-use perigrain_styles::matter::{Chosen, change_forces, publish, sum};
+use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, RADIUS, REGIONS, SLOTS, TAG, TALLY, X};
@@ -145,38 +145,16 @@ impl Declared {
     }
 
     /// The virial that a particle gets of the wall: xx yy zz xy xz yz.
-    fn virial_of(&self, wall: &Wall, w: &World, i: usize) -> [f64; 6] {
+    fn virial_of(&self, w: &World, key: Key<Region>, i: usize) -> [f64; 6] {
         let mut virial = [0.0; 6];
+        let Some(region) = w.regions.get(key) else { return virial };
+        let wall = Wall { region, law: &self.law, lammps: w.settings.lammps() };
         wall.push(w.particles.x[i], self.radius(w, i), |place, force, _| {
             let (f, d) = (scale(force, place.normal), scale(place.distance, place.normal));
             let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
             virial.iter_mut().zip(pairs).for_each(|(v, (a, b))| *v += f[a] * d[b]);
         });
         virial
-    }
-
-    /// Adds the wall's virial to the sums that are wanted.
-    fn tally(&self, w: &mut World, key: Key<Region>, t: &Tick) {
-        if !self.virial || !(t.virial || t.atom_virial) {
-            return;
-        }
-        let Some(region) = w.regions.get(key) else { return };
-        let wall = Wall { region, law: &self.law, lammps: w.settings.lammps() };
-        let bit = self.group.bit();
-        if t.virial {
-            let total = sum::<6>(&w.particles.mask, self.group, |i| self.virial_of(&wall, w, i));
-            (0..6).for_each(|d| w.tally.fixes[d] += total[d]);
-        }
-        if t.atom_virial {
-            let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
-            let Some(region) = w.regions.get(key) else { return };
-            let wall = Wall { region, law: &self.law, lammps: w.settings.lammps() };
-            for (i, own) in atoms.iter_mut().enumerate().filter(|(i, _)| w.particles.mask[*i] & bit != 0) {
-                let added = self.virial_of(&wall, w, i);
-                (0..6).for_each(|d| own[d] += added[d]);
-            }
-            w.tally.atom_fixes = atoms;
-        }
     }
 
     /// The refusal of a particle that has left the region or come to its surface.
@@ -212,7 +190,9 @@ impl Fix for Declared {
         let access = Needs::new().read(radii | MASK | TAG | REGIONS).add(F | TALLY).write(SLOTS);
         let name = format!("fix {} wall/region", self.id);
         let op = StepOp::new(name, Stage::PostForce, access, move |w, t| {
-            me.tally(w, key, t);
+            if me.virial {
+                add_virial(w, t, &chosen, |w, i| me.virial_of(w, key, i));
+            }
             if t.unchanged {
                 return Ok(());
             }

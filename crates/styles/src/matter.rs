@@ -194,7 +194,7 @@ impl Chosen {
         self.region.is_none().then_some(self.bit)
     }
 
-    /// Who is meant at this moment: regions may move. Of a region that is gone nobody.
+    /// The particles that are meant at this moment: regions may move. Of a region that is gone there are none.
     pub fn now<'w>(&self, w: &'w World) -> ChosenNow<'w> {
         match self.region {
             None => ChosenNow { bit: self.bit, region: None },
@@ -206,7 +206,7 @@ impl Chosen {
     }
 }
 
-/// Who is meant at one moment.
+/// The particles that are meant at one moment.
 #[derive(Clone, Copy)]
 pub struct ChosenNow<'w> {
     bit: u32,
@@ -265,6 +265,25 @@ fn change_column<const N: usize>(
         total
     };
     par::reduce_each(columns, chunk, add).unwrap_or([0.0; N])
+}
+
+/// Adds to the virials that are wanted what each chosen particle has of a fix, `of(world, i)`: xx yy zz xy xz yz [energy].
+pub fn add_virial(w: &mut World, t: &Tick, chosen: &Chosen, of: impl Fn(&World, usize) -> [f64; 6] + Sync) {
+    let (x, mask) = (&w.particles.x, &w.particles.mask);
+    if t.virial {
+        let now = chosen.now(w);
+        let one = |i: usize| if now.has(mask[i], x[i]) { of(w, i) } else { [0.0; 6] };
+        let total = sum(mask, GroupId::ALL, one);
+        w.tally.fixes = add(w.tally.fixes, total);
+    }
+    if t.atom_virial {
+        let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
+        let (now, p) = (chosen.now(w), &w.particles);
+        for (i, own) in atoms.iter_mut().enumerate().filter(|(i, _)| now.has(p.mask[*i], p.x[*i])) {
+            *own = add(*own, of(w, i));
+        }
+        w.tally.atom_fixes = atoms;
+    }
 }
 
 /// Writes a fix's global values into its slot.

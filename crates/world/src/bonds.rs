@@ -270,7 +270,7 @@ impl Bonds {
     }
 }
 
-/// Who is bonded to whom, by places in a sorted list of ids.
+/// The partners of each particle in bonds, by places in a sorted list of ids.
 struct Near {
     ids: Vec<u32>,
     partners: Vec<Vec<usize>>,

@@ -4,7 +4,7 @@ use super::{Molecules, Rule};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_styles::near::of_types;
 use perigrain_world::index::Index;
-use perigrain_world::{Allowed, World};
+use perigrain_world::{Allowed, Partners, World};
 
 /// How many bonds of the fix's type each particle has.
 pub struct Count(pub Vec<usize>);
@@ -97,62 +97,6 @@ fn leave_bonded(w: &World, list: &mut Vec<Candidate>) {
     if list.is_empty() || w.bonds.special.is_empty() {
         return;
     }
-    let weights = w.bonds.weights;
-    let zero = |apart: usize| weights.lj[apart - 1] == 0.0 && weights.coul[apart - 1] == 0.0;
     let partners = Partners::new(w);
-    list.retain(|pair| match partners.apart(pair.ends) {
-        None => true,
-        Some(1) => false,
-        Some(apart) => !zero(apart),
-    });
-}
-
-/// Who is bonded to whom, by places.
-struct Partners {
-    starts: Vec<u32>,
-    all: Vec<u32>,
-}
-
-impl Partners {
-    fn new(w: &World) -> Self {
-        let index = Index::new(&w.particles.tag);
-        let ends: Vec<[usize; 2]> = w
-            .bonds
-            .special
-            .iter()
-            .filter_map(|ids| {
-                let [a, b] = ids.map(|id| index.find(id, &w.particles.tag));
-                Some([a?, b?])
-            })
-            .collect();
-        let mut starts = vec![0; w.n() + 1];
-        ends.iter().flatten().for_each(|i| starts[i + 1] += 1);
-        (1..starts.len()).for_each(|k| starts[k] += starts[k - 1]);
-        let (mut next, mut all) = (starts.clone(), vec![0; 2 * ends.len()]);
-        for [a, b] in ends {
-            for (from, to) in [(a, b), (b, a)] {
-                all[next[from] as usize] = to as u32;
-                next[from] += 1;
-            }
-        }
-        Self { starts, all }
-    }
-
-    fn of(&self, i: u32) -> &[u32] {
-        let i = i as usize;
-        &self.all[self.starts[i] as usize..self.starts[i + 1] as usize]
-    }
-
-    /// How many bonds apart two particles are, if at most three.
-    fn apart(&self, [a, b]: [usize; 2]) -> Option<usize> {
-        let (a, b) = (a as u32, b as u32);
-        let (near, far) = (self.of(a), self.of(b));
-        if near.contains(&b) {
-            return Some(1);
-        }
-        if near.iter().any(|m| far.contains(m)) {
-            return Some(2);
-        }
-        near.iter().any(|m| self.of(*m).iter().any(|n| far.contains(n))).then_some(3)
-    }
+    list.retain(|pair| partners.apart(pair.ends) != Some(1) && partners.unlisted(pair.ends).is_none());
 }

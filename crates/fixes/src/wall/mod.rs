@@ -9,8 +9,8 @@ mod plastic;
 pub mod region;
 mod words;
 
-use super::Fix;
 use super::window::forget;
+use super::{Fix, needs_spheres};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::normal::plastic_grain;
 use perigrain_contact::walls::{Wall, WallSweep};
@@ -136,16 +136,6 @@ impl<F: Form> Fix for Declared<F> {
         let law = self.common.material.law(w.settings.compat);
         durations::on_wall(w, &law, self.common.group.bit(), deck)
     }
-}
-
-/// Refuses particles without a radius.
-fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
-    if cx.world.particles.style.sphere {
-        return Ok(());
-    }
-    let text = format!("fix {style} needs particles with a radius");
-    let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
-    Err(d.help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck").into())
 }
 
 /// Refuses a wall across a direction in which the box repeats.

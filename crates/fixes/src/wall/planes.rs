@@ -129,7 +129,7 @@ impl Followed {
         let kept = w.memo.get(self.key).and_then(|m| <[f64; KEPT]>::try_from(&m[..]).ok());
         let step = t.step as f64;
         self.velocity = match kept {
-            // The setup of a run goes on with what the last step has seen.
+            // The setup of a run takes what the last step has seen.
             Some([last, .., lower, upper]) if last == step => [lower, upper],
             Some([last, lo, hi, ..]) if last + 1.0 == step => {
                 [(now[0], lo), (now[1], hi)].map(|(now, was)| now.map_or(0.0, |now| (now - was) / t.dt))

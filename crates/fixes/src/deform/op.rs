@@ -1,0 +1,194 @@
+//! The op of fix deform: the box at each step, and the particles that go with it.
+
+use super::Remap;
+use super::lean::{self, Lean};
+use super::track::{self, Track};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_styles::common::check_flat;
+use perigrain_styles::near::{bonds_across, bonds_fit};
+use perigrain_world::domain::Flow;
+use perigrain_world::field::{BONDS, BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, TAG, X};
+use perigrain_world::{Domain, Fields, GroupId, Numbers, World};
+
+/// The box at a step.
+pub struct Shape {
+    lo: [f64; 3],
+    hi: [f64; 3],
+    tilt: [f64; 3],
+    /// How fast lengths grow.
+    rate: [f64; 3],
+    /// How fast tilts do.
+    turning: [f64; 3],
+}
+
+impl Shape {
+    pub fn at(tracks: &[Track; 3], leans: &[Lean; 3], w: &World, t: &Tick) -> Result<Self> {
+        let (lo, hi, rate) = track::faces(tracks, w, t)?;
+        let (tilt, turning) = lean::tilts(leans, w, t, [0, 1, 2].map(|d| hi[d] - lo[d]))?;
+        Ok(Self { lo, hi, tilt, rate, turning })
+    }
+
+    /// How fast images are that particles see or become. LAMMPS takes what compute temp/deform takes.
+    pub fn flow(
+        &self,
+        tracks: &[Track; 3],
+        leans: &[Lean; 3],
+        (w, group): (&World, GroupId),
+        first: bool,
+    ) -> Flow {
+        if w.settings.lammps() {
+            let [rate, _, tilt] = self.streaming(tracks, leans, w, first);
+            return Flow { rate, tilt, group };
+        }
+        Flow { rate: self.rate, tilt: self.turning, group }
+    }
+
+    /// How fast lengths grow, lower faces move and tilts grow, as compute temp/deform asks for it.
+    pub fn streaming(&self, tracks: &[Track; 3], leans: &[Lean; 3], w: &World, first: bool) -> [[f64; 3]; 3] {
+        let lengths = [0, 1, 2].map(|d| self.hi[d] - self.lo[d]);
+        let [rate, low] = track::streaming(tracks, w, (self.rate, lengths), first);
+        [rate, low, lean::streaming(leans, w, self.turning, first)]
+    }
+}
+
+/// Lets the world remember how fast lengths grow, lower faces move and tilts grow.
+pub fn tell(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], remap: Remap) {
+    let remapped = f64::from(u8::from(remap == Remap::Positions));
+    let row = w.memo.get_or(key, Vec::new);
+    row.clear();
+    row.extend(rate.into_iter().chain(low).chain([remapped]).chain(turning));
+}
+
+/// Moves the faces.
+pub struct Move {
+    /// The op's name.
+    pub name: String,
+    /// Where the world remembers the rates.
+    pub stretch: Numbers,
+    /// Where the faces go.
+    pub tracks: [Track; 3],
+    /// Where the tilts go.
+    pub leans: [Lean; 3],
+    /// Whether a box that leans too far is flipped.
+    pub flips: bool,
+    /// What goes with the box.
+    pub remap: Remap,
+    /// The particles that go with it.
+    pub group: GroupId,
+    /// When faces move.
+    pub when: When,
+    /// Peridynamic bonds cross faces whose edges change.
+    pub crossed: bool,
+}
+
+impl Move {
+    /// Whether images move otherwise than particles, along edges that lean more and more.
+    fn turns_images(&self) -> bool {
+        self.remap == Remap::Velocities && self.leans.iter().any(Lean::moves)
+    }
+
+    /// Which edges are changed.
+    fn changes(&self) -> [bool; 3] {
+        let mut changes = self.tracks.each_ref().map(Track::moves);
+        for (k, _) in self.leans.iter().enumerate().filter(|(_, lean)| lean.moves()) {
+            changes[lean::ACROSS[k]] = true;
+        }
+        changes
+    }
+
+    /// In the setup of a run: which bonds go through the faces, and whether they may.
+    fn begin(&mut self, w: &mut World) -> Result<()> {
+        if self.turns_images() && !w.bonds.is_empty() {
+            // Whose image a bond leads to, and how fast that one is, its damping does not know.
+            let text = "bonds do not go with tilts that change with `remap v`";
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text).help("`remap x` will do").into());
+        }
+        let along = self.remap == Remap::Positions;
+        self.crossed = bonds_across(w, self.changes(), along)?.is_some();
+        if self.crossed && self.flips && self.leans.iter().any(Lean::moves) {
+            let text = "peridynamic bonds cross periodic faces: the box cannot flip";
+            let help = "say `flip no`: bonds go by the edges of the box at the first run";
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text).help(help).into());
+        }
+        Ok(())
+    }
+
+    /// Takes particles along with the box from what it was `before`; those of a `flat` scene within their plane.
+    fn carry(&self, w: &mut World, before: &Domain, flat: bool) {
+        let Some(domain) = &*w.domain else { return };
+        let tilted = before.tilted() || domain.tilted();
+        let (from, length, to) = (before.lo, before.lengths(), domain.lengths());
+        let (p, bit) = (&mut w.particles, self.group.bit());
+        for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
+            if tilted {
+                let z = x[2];
+                *x = domain.at(before.fractions(x));
+                if flat {
+                    x[2] = z;
+                }
+                continue;
+            }
+            // Where in the box, then there in the new one: dimensions that stay keep their bits.
+            for d in (0..if flat { 2 } else { 3 }).filter(|&d| self.tracks[d].moves()) {
+                x[d] = (x[d] - from[d]) / length[d] * to[d] + domain.lo[d];
+            }
+        }
+    }
+}
+
+impl Op for Move {
+    fn about(&self) -> About {
+        let of = |there: bool, field: Fields| if there { field } else { Fields::NONE };
+        let needs = Needs::new()
+            .read(TAG | MASK | SLOTS | FAMILIES | of(self.turns_images(), BONDS))
+            .write(X | BOX | of(self.flips, LISTS))
+            .keep(MEMO);
+        let about = About::new(&self.name, Stage::EndOfStep, needs);
+        About { when: self.when.clone(), in_setup: true, ..about }
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let shape = Shape::at(&self.tracks, &self.leans, w, t)?;
+        tell(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
+        let flow = shape.flow(&self.tracks, &self.leans, (w, self.group), t.setup);
+        let Shape { lo, hi, tilt, .. } = shape;
+        // Particles of a flat scene stay in their plane.
+        let flat = w.settings.two_dimensional && !w.settings.lammps();
+        if self.remap == Remap::Velocities
+            && let Some(domain) = &mut *w.domain
+        {
+            domain.flow = Some(flow);
+        }
+        if t.setup {
+            return self.begin(w);
+        }
+        let Some(domain) = &mut *w.domain else { return Ok(()) };
+        let before = domain.clone();
+        check_flat(domain.boundary, (lo[2], hi[2]), flat)?;
+        (domain.lo, domain.hi) = (lo, hi);
+        if domain.tilt.is_some() {
+            domain.tilt = Some(tilt);
+        }
+        let edges = domain.periods();
+        if self.crossed {
+            bonds_fit(w, &edges)?;
+        }
+        let Some(domain) = &mut *w.domain else { return Ok(()) };
+        if self.flips {
+            domain.flip = lean::flip(domain);
+            if domain.flip.is_some() {
+                w.rebuild.due = true;
+            }
+        }
+        if self.remap == Remap::Positions {
+            self.carry(w, &before, flat);
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        w.domain.iter_mut().for_each(|d| d.flow = None);
+        Ok(())
+    }
+}
