@@ -42,7 +42,7 @@ impl Style for NeighModify {
                    none` forgets all such rules. Peridynamic particles excluded from each other get no bonds if the rule stands when families are found, at the first \
                    run; later it takes short-range contact away and leaves bonds. `page`, `one`, `binsize` and `cluster` are accepted without effect, and so are \
                    `collection/type N TYPES …` (each type in one of N lists such as `1*2,5`) and `collection/interval N CUTOFF …` of `neighbor … multi`: types and sizes are searched \
-                   class by class here without being told. \
+                   class by class here in any case. \
                    Defaults: every 1 delay 0 check yes once no.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }

@@ -82,10 +82,10 @@ impl FixStyle for BondCreate {
                 "prob" => fix.chance = Some((fraction(args)?, marsaglia_seed(args)?)),
                 "molecule" => fix.rule.molecules = molecules(args, cx)?,
                 "atype" | "dtype" | "itype" | "aconstrain" => {
-                    let text = format!("`{}` is about angles, which perigrain has not", word.text);
+                    let text = format!("`{}` makes angles or dihedrals, which this fix does not", word.text);
                     let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
                     return Err(d
-                        .help("leave it out; `bond_style bpm/rotational` and `bpm/beam` bend")
+                        .help("leave it out: they would exert nothing; bonds of `bpm/rotational` and `bpm/beam` bend")
                         .into());
                 }
                 _ => return Err(args.unknown(word, &KEYWORDS)),
@@ -190,9 +190,7 @@ impl Declared {
         for pair in ends {
             let tags = perigrain_world::bonds::ascending(pair.map(|i| w.particles.tag[i]));
             w.bonds.push(Bond::new(i32::from(self.rule.kind), tags));
-            if let Err(at) = w.bonds.special.binary_search(&tags) {
-                w.bonds.special.insert(at, tags);
-            }
+            w.bonds.special.push(tags);
             for &i in pair {
                 count.0[i] += 1;
                 let own = w.particles.kind[i];
@@ -202,6 +200,8 @@ impl Declared {
                 }
             }
         }
+        w.bonds.special.sort_unstable();
+        w.bonds.special.dedup();
         // Bonded pairs leave the lists, and what lists know of types is new.
         w.rebuild.due = true;
         if self.changes_types() {
