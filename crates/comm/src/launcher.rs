@@ -1,0 +1,98 @@
+//! What has started this process: a launcher of several ranks, or a person.
+
+use super::Comm;
+use std::sync::Arc;
+
+/// Variables that launchers set: the number of ranks, this rank, and the launcher's name.
+const LAUNCHERS: [(&str, &str, &str); 4] = [
+    ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK", "Open MPI"),
+    ("PMI_SIZE", "PMI_RANK", "MPICH or its kin"),
+    ("MPI_LOCALNRANKS", "MPI_LOCALRANKID", "MPICH or its kin"),
+    ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID", "srun"),
+];
+
+/// Set to `none` it lets each process of a launcher run by itself, else it names the MPI library to load.
+pub(crate) const CHOICE: &str = "PERIGRAIN_MPI";
+
+/// A launcher, as its environment tells.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Launched {
+    /// How many processes it has started.
+    pub size: usize,
+    /// Which of them this is.
+    pub rank: usize,
+    /// Its name.
+    pub by: &'static str,
+}
+
+/// The launcher that has started several processes, this among them; `None` for one alone, and where each is to run by itself
+/// (`PERIGRAIN_MPI=none`).
+pub fn launched() -> Option<Launched> {
+    found(|key| std::env::var(key).ok())
+}
+
+fn found(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
+    if variable(CHOICE).is_some_and(|choice| choice == "none") {
+        return None;
+    }
+    let number = |key: &str| variable(key)?.trim().parse::<usize>().ok();
+    let several = |(size, rank, by): &(&str, &str, &'static str)| {
+        let size = number(size).filter(|size| *size > 1)?;
+        Some(Launched { size, rank: number(rank).unwrap_or(0), by })
+    };
+    LAUNCHERS.iter().find_map(several)
+}
+
+/// Joins the ranks that the launcher has started.
+///
+/// # Errors
+/// No MPI library that can be used; a library that sees other ranks than the launcher has started.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+pub fn open(by: &Launched) -> Result<Arc<dyn Comm>, String> {
+    let mpi = super::Mpi::open()?;
+    if mpi.size() != by.size {
+        // A library of another kind than the launcher's sees one rank in each process.
+        return Err(format!(
+            "{} is loaded, which sees {} rank{} where {} has started {}: it is not the launcher's library",
+            mpi.library(),
+            mpi.size(),
+            if mpi.size() == 1 { "" } else { "s" },
+            by.by,
+            by.size
+        ));
+    }
+    Ok(Arc::new(mpi))
+}
+
+/// Joins the ranks that the launcher has started.
+///
+/// # Errors
+/// Always: MPI libraries are found at run time on Linux alone.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+pub fn open(_by: &Launched) -> Result<Arc<dyn Comm>, String> {
+    Err("MPI libraries are loaded on Linux alone".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn launchers_are_known_by_their_variables() {
+        let of = |set: &[(&str, &str)]| {
+            let set: Vec<(String, String)> =
+                set.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+            found(|key| set.iter().find(|(k, _)| k == key).map(|(_, v)| v.clone()))
+        };
+        assert_eq!(of(&[]), None);
+        // A job script has these from the queue, and no launcher has started it.
+        assert_eq!(of(&[("SLURM_NTASKS", "4"), ("SLURM_PROCID", "0")]), None);
+        assert_eq!(of(&[("OMPI_COMM_WORLD_SIZE", "1"), ("OMPI_COMM_WORLD_RANK", "0")]), None);
+        let open = of(&[("OMPI_COMM_WORLD_SIZE", "3"), ("OMPI_COMM_WORLD_RANK", "2")]).unwrap();
+        assert_eq!((open.size, open.rank, open.by), (3, 2, "Open MPI"));
+        let mpich = [("PMI_SIZE", "2"), ("PMI_RANK", "1")];
+        assert_eq!(of(&mpich).unwrap().rank, 1);
+        assert_eq!(of(&[&mpich[..], &[(CHOICE, "none")]].concat()), None);
+        assert_eq!(of(&[("SLURM_STEP_NUM_TASKS", "2"), ("SLURM_PROCID", "1")]).unwrap().by, "srun");
+    }
+}

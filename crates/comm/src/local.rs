@@ -1,0 +1,367 @@
+//! Ranks on one machine, each pair of them connected by sockets: processes that the first one starts, or threads of a test.
+//!
+//! What goes over a socket are frames: a kind, a length, the bytes. Ranks that call different functions are found out by the kind.
+
+use super::{Comm, lost};
+use std::io::{ErrorKind, Read, Write};
+use std::os::fd::{AsRawFd, FromRawFd, RawFd};
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command};
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::time::{Duration, Instant};
+
+/// The variable by which a started process knows its place: its rank, the number of ranks, and a socket for each.
+const SEAT: &str = "PERIGRAIN_SEAT";
+
+/// Bytes that a socket surely takes while the other side does not read yet; more is sent by a thread of its own.
+const SMALL: usize = 16 << 10;
+
+/// Bytes of a frame before what it carries.
+const HEAD: usize = 9;
+
+/// What a frame belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Kind {
+    Swap = 1,
+    Gather,
+    Sum,
+    Most,
+    Tell,
+    Meet,
+}
+
+/// A rank beside others on the same machine.
+pub struct Local {
+    rank: usize,
+    /// By rank; none for this one itself.
+    sockets: Vec<Option<UnixStream>>,
+    /// Whether the ranks are processes; else they are threads of this one.
+    apart: bool,
+    /// The processes that the first rank has started.
+    children: Mutex<Vec<Child>>,
+}
+
+/// The place of a process that [`Local::start`] has started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Seat(String);
+
+impl Seat {
+    /// This process' place, if it was started with one.
+    pub fn given() -> Option<Self> {
+        std::env::var(SEAT).ok().map(Self)
+    }
+
+    /// Takes the place.
+    ///
+    /// # Errors
+    /// A variable that this program has not written.
+    pub fn take(self) -> Result<Local, String> {
+        let wrong = || format!("{SEAT} is `{}`, which no perigrain has set", self.0);
+        let numbers: Option<Vec<RawFd>> = self.0.split(' ').map(|n| n.parse().ok()).collect();
+        let numbers = numbers.filter(|n| n.len() > 2).ok_or_else(wrong)?;
+        let (rank, sockets) = (numbers[0] as usize, &numbers[1..]);
+        if rank >= sockets.len() {
+            return Err(wrong());
+        }
+        let own = |(k, fd): (usize, &RawFd)| {
+            // SAFETY: the process that started this one has opened the socket for it alone; its number is used once.
+            (k != rank).then(|| unsafe { UnixStream::from_raw_fd(*fd) })
+        };
+        let sockets: Vec<_> = sockets.iter().enumerate().map(own).collect();
+        for socket in sockets.iter().flatten() {
+            // Programs that a deck starts do not keep it open.
+            inherited(socket.as_raw_fd(), false).map_err(|e| format!("a socket to another rank: {e}"))?;
+        }
+        Ok(Local { rank, sockets, apart: true, children: Mutex::default() })
+    }
+}
+
+/// Whether a program that this process becomes has the file open still.
+fn inherited(fd: RawFd, yes: bool) -> std::io::Result<()> {
+    // SAFETY: changes a flag of a file that is open.
+    let done = unsafe { libc::fcntl(fd, libc::F_SETFD, if yes { 0 } else { libc::FD_CLOEXEC }) };
+    if done < 0 { Err(std::io::Error::last_os_error()) } else { Ok(()) }
+}
+
+impl Local {
+    /// As many ranks for threads of this process.
+    ///
+    /// # Errors
+    /// The system grants no more sockets.
+    pub fn threads(size: usize) -> std::io::Result<Vec<Self>> {
+        let rows = mesh(size)?;
+        let seat = |(rank, sockets)| Self { rank, sockets, apart: false, children: Mutex::default() };
+        Ok(rows.into_iter().enumerate().map(seat).collect())
+    }
+
+    /// Starts the other ranks by this command, which begins a program that takes its [`Seat`]; this process is the first rank.
+    ///
+    /// # Errors
+    /// Processes cannot be started.
+    pub fn start(size: usize, mut command: impl FnMut() -> Command) -> std::io::Result<Self> {
+        let mut rows = mesh(size)?.into_iter();
+        let own = rows.next().unwrap_or_default();
+        let mut children = vec![];
+        for (k, row) in rows.enumerate() {
+            let fds: Vec<RawFd> = row.iter().flatten().map(AsRawFd::as_raw_fd).collect();
+            let all = row.iter().map(|socket| socket.as_ref().map_or(-1, AsRawFd::as_raw_fd).to_string());
+            let place = format!("{} {}", k + 1, all.collect::<Vec<_>>().join(" "));
+            let mut command = command();
+            command.env(SEAT, place).stdin(std::process::Stdio::null());
+            let keep =
+                move || fds.iter().try_for_each(|fd| inherited(*fd, true)).and_then(|()| die_with_parent());
+            // SAFETY: only calls of the system between fork and exec.
+            unsafe { command.pre_exec(keep) };
+            children.push(command.spawn()?);
+        }
+        Ok(Self { rank: 0, sockets: own, apart: true, children: Mutex::new(children) })
+    }
+
+    fn socket(&self, with: usize) -> &UnixStream {
+        match self.sockets.get(with) {
+            Some(Some(socket)) => socket,
+            _ => panic!("rank {with} is this one, or none"),
+        }
+    }
+
+    /// The other rank is gone.
+    fn gone(&self, other: usize) -> ! {
+        if self.apart {
+            lost(self.rank, other);
+        }
+        panic!("rank {other} has ended")
+    }
+
+    fn send(&self, to: usize, kind: Kind, bytes: &[u8]) {
+        let mut socket = self.socket(to);
+        let mut head = [kind as u8; HEAD];
+        head[1..].copy_from_slice(&(bytes.len() as u64).to_le_bytes());
+        if socket.write_all(&head).and_then(|()| socket.write_all(bytes)).is_err() {
+            self.gone(to);
+        }
+    }
+
+    /// The length of the frame that comes.
+    fn head(&self, from: usize, kind: Kind) -> usize {
+        let (mut socket, mut head) = (self.socket(from), [0; HEAD]);
+        if socket.read_exact(&mut head).is_err() {
+            self.gone(from);
+        }
+        assert!(
+            head[0] == kind as u8,
+            "rank {from} sends frame {} where rank {} waits for {kind:?}",
+            head[0],
+            self.rank
+        );
+        head[1..].iter().rev().fold(0, |n, byte| n << 8 | usize::from(*byte))
+    }
+
+    fn receive(&self, from: usize, kind: Kind, bytes: &mut [u8]) {
+        let length = self.head(from, kind);
+        assert!(length == bytes.len(), "rank {from} sends {length} bytes where {} were agreed", bytes.len());
+        if self.socket(from).read_exact(bytes).is_err() {
+            self.gone(from);
+        }
+    }
+
+    /// The first rank makes one of all ranks' bytes, and all have it.
+    fn combine(&self, kind: Kind, bytes: &mut [u8], add: impl Fn(&mut [u8], &[u8])) {
+        if self.rank > 0 {
+            self.send(0, kind, bytes);
+            return self.receive(0, kind, bytes);
+        }
+        let mut other = vec![0; bytes.len()];
+        for from in 1..self.size() {
+            self.receive(from, kind, &mut other);
+            add(bytes, &other);
+        }
+        (1..self.size()).for_each(|to| self.send(to, kind, bytes));
+    }
+
+    /// As [`Local::combine`], of numbers of eight bytes.
+    fn numbers<T: Copy>(
+        &self,
+        kind: Kind,
+        values: &mut [T],
+        (into, from): (fn(T) -> [u8; 8], fn([u8; 8]) -> T),
+        add: impl Fn(T, T) -> T,
+    ) {
+        let eight = |bytes: &[u8]| {
+            let mut number = [0; 8];
+            number.copy_from_slice(bytes);
+            from(number)
+        };
+        let mut bytes: Vec<u8> = values.iter().flat_map(|v| into(*v)).collect();
+        self.combine(kind, &mut bytes, |sum, other| {
+            for (s, o) in sum.chunks_exact_mut(8).zip(other.chunks_exact(8)) {
+                let both = into(add(eight(s), eight(o)));
+                s.copy_from_slice(&both);
+            }
+        });
+        values.iter_mut().zip(bytes.chunks_exact(8)).for_each(|(v, b)| *v = eight(b));
+    }
+}
+
+/// A socket from each rank to each other one.
+fn mesh(size: usize) -> std::io::Result<Vec<Vec<Option<UnixStream>>>> {
+    let mut rows: Vec<Vec<Option<UnixStream>>> =
+        (0..size).map(|_| (0..size).map(|_| None).collect()).collect();
+    for a in 0..size {
+        for b in a + 1..size {
+            let (one, other) = UnixStream::pair()?;
+            (rows[a][b], rows[b][a]) = (Some(one), Some(other));
+        }
+    }
+    Ok(rows)
+}
+
+/// A process that another one has started ends with it.
+#[cfg(target_os = "linux")]
+fn die_with_parent() -> std::io::Result<()> {
+    // SAFETY: changes what this process gets when its parent ends.
+    let done = unsafe { libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL) };
+    if done < 0 { Err(std::io::Error::last_os_error()) } else { Ok(()) }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn die_with_parent() -> std::io::Result<()> {
+    Ok(())
+}
+
+impl Comm for Local {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.sockets.len()
+    }
+
+    fn library(&self) -> String {
+        "sockets of this machine".into()
+    }
+
+    fn swap(&self, out: &[(usize, &[u8])], into: &mut [(usize, &mut [u8])]) {
+        let own = out.iter().filter(|(to, _)| *to == self.rank).map(|(_, bytes)| *bytes);
+        let mut own = own.collect::<Vec<_>>().into_iter();
+        let send = || {
+            for (to, bytes) in out.iter().filter(|(to, _)| *to != self.rank) {
+                self.send(*to, Kind::Swap, bytes);
+            }
+        };
+        let receive = |into: &mut [(usize, &mut [u8])]| {
+            for (from, bytes) in into {
+                match *from == self.rank {
+                    true => bytes.copy_from_slice(own.next().unwrap_or_default()),
+                    false => self.receive(*from, Kind::Swap, bytes),
+                }
+            }
+        };
+        let most = (0..self.size())
+            .map(|r| out.iter().filter(|o| o.0 == r).map(|o| o.1.len() + HEAD).sum::<usize>());
+        if most.max().unwrap_or(0) <= SMALL {
+            send();
+            let mut receive = receive;
+            return receive(into);
+        }
+        std::thread::scope(|s| {
+            s.spawn(send);
+            let mut receive = receive;
+            receive(into);
+        });
+    }
+
+    fn gather_all(&self, all: &mut [u8], counts: &[usize]) {
+        let start = |rank: usize| counts[..rank].iter().sum::<usize>();
+        if self.rank > 0 {
+            let at = start(self.rank);
+            self.send(0, Kind::Gather, &all[at..at + counts[self.rank]]);
+            return self.receive(0, Kind::Gather, all);
+        }
+        for from in 1..self.size() {
+            let at = start(from);
+            self.receive(from, Kind::Gather, &mut all[at..at + counts[from]]);
+        }
+        (1..self.size()).for_each(|to| self.send(to, Kind::Gather, all));
+    }
+
+    fn sum(&self, values: &mut [i64]) {
+        self.numbers(Kind::Sum, values, (i64::to_le_bytes, i64::from_le_bytes), i64::wrapping_add);
+    }
+
+    fn most(&self, values: &mut [f64]) {
+        self.numbers(Kind::Most, values, (f64::to_le_bytes, f64::from_le_bytes), f64::max);
+    }
+
+    fn tell(&self, bytes: &mut Vec<u8>) {
+        if self.rank == 0 {
+            return (1..self.size()).for_each(|to| self.send(to, Kind::Tell, bytes));
+        }
+        *bytes = vec![0; self.head(0, Kind::Tell)];
+        if self.socket(0).read_exact(bytes).is_err() {
+            self.gone(0);
+        }
+    }
+
+    fn meet(&self, patience: Duration) -> bool {
+        let end = Instant::now() + patience;
+        let greet = |to: usize| self.socket(to).write_all(&[Kind::Meet as u8; HEAD]).is_ok();
+        let mut met = true;
+        if self.rank > 0 {
+            return greet(0) && self.greeted(0, end);
+        }
+        for from in 1..self.size() {
+            met &= self.greeted(from, end);
+        }
+        for to in 1..self.size() {
+            met &= !met || greet(to);
+        }
+        met
+    }
+
+    fn close(&self) {
+        for child in self.children.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+            // All have met: it ends by itself.
+            let _ = child.wait();
+        }
+    }
+
+    fn abort(&self, code: i32) -> ! {
+        for child in self.children.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+            // One that has ended needs no signal.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+        if !self.apart {
+            panic!("rank {} ends all with {code}", self.rank);
+        }
+        std::process::exit(code)
+    }
+}
+
+impl Local {
+    /// Whether the other rank comes to [`Comm::meet`] before this time; one that sends something else is elsewhere.
+    fn greeted(&self, from: usize, end: Instant) -> bool {
+        let mut socket = self.socket(from);
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() || socket.set_read_timeout(Some(left)).is_err() {
+                return false;
+            }
+            let mut head = [0; HEAD];
+            match socket.read_exact(&mut head) {
+                Ok(()) if head == [Kind::Meet as u8; HEAD] => return true,
+                Ok(()) => return false,
+                Err(e) if e.kind() == ErrorKind::Interrupted => {}
+                Err(_) => return false,
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "local_tests.rs"]
+mod tests;

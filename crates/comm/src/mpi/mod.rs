@@ -1,0 +1,285 @@
+//! Any MPI library, found at run time: neither built nor linked against.
+//!
+//! MPI's errors end the job, as its default handler does.
+
+mod abi;
+mod library;
+
+use super::Comm;
+use abi::Constants;
+use library::{Functions, Library};
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::time::{Duration, Instant};
+
+/// A handle of MPI's: a pointer, or an `int` that lies in the low half where the calling convention looks for it (x86-64 and
+/// aarch64, at most eight arguments).
+type Handle = usize;
+
+/// Bytes that one call carries; its counts are C's `int`.
+const PIECE: usize = 1 << 30;
+
+/// Messages between partners have this tag.
+const TAG: c_int = 7;
+
+/// A rank of an MPI job.
+pub struct Mpi {
+    f: Functions,
+    c: Constants,
+    version: String,
+    rank: usize,
+    size: usize,
+    /// Ranks meet at their end by a communicator of its own: one that waits elsewhere is not taken for one that has come.
+    last: Handle,
+}
+
+impl Mpi {
+    /// Loads a library and joins the job's ranks.
+    ///
+    /// # Errors
+    /// No library, or one that lacks a function or allows calls by one thread only.
+    pub fn open() -> Result<Self, String> {
+        let Library { f, constants: c, .. } = library::find()?;
+        let version = version(&f);
+        let mut granted = 0;
+        // SAFETY: no arguments are handed over, and the last one is written.
+        let failed = unsafe {
+            (f.MPI_Init_thread)(std::ptr::null_mut(), std::ptr::null_mut(), c.serialized, &mut granted)
+        };
+        if failed != 0 {
+            return Err(format!("{version}: MPI_Init_thread fails with {failed}"));
+        }
+        if granted < c.serialized {
+            return Err(format!("{version} allows no calls by another thread than the first"));
+        }
+        let (mut rank, mut size, mut last) = (0, 0, 0);
+        // SAFETY: each call writes its last argument.
+        unsafe {
+            (f.MPI_Comm_rank)(c.world, &mut rank);
+            (f.MPI_Comm_size)(c.world, &mut size);
+            (f.MPI_Comm_dup)(c.world, &mut last);
+        }
+        let mpi = Self { f, c, version, rank: rank as usize, size: size as usize, last };
+        mpi.proves_itself()?;
+        Ok(mpi)
+    }
+
+    /// Constants that do not fit the library would be wrong numbers later.
+    fn proves_itself(&self) -> Result<(), String> {
+        let (n, me) = (self.size, self.rank);
+        let mut sum = [1i64, me as i64];
+        self.sum(&mut sum);
+        let mut most = [me as f64, -(me as f64)];
+        self.most(&mut most);
+        let (right, left) = ((me + 1) % n, (me + n - 1) % n);
+        let mut came = [0u8; 8];
+        self.swap(&[(right, &(me as u64).to_le_bytes())], &mut [(left, &mut came)]);
+        let right = sum == [n as i64, (n * (n - 1) / 2) as i64]
+            && most == [(n - 1) as f64, 0.0]
+            && u64::from_le_bytes(came) == left as u64;
+        if right {
+            Ok(())
+        } else {
+            Err(format!("{} does not add up: its interface is unknown", self.version))
+        }
+    }
+}
+
+/// The library's own name for itself.
+fn version(f: &Functions) -> String {
+    // The standard's MPI_MAX_LIBRARY_VERSION_STRING is 8192.
+    let (mut text, mut length) = (vec![0u8; 2 * 8192], 0);
+    // SAFETY: the library writes at most that many bytes and a zero.
+    unsafe { (f.MPI_Get_library_version)(text.as_mut_ptr().cast::<c_char>(), &mut length) };
+    let text =
+        CStr::from_bytes_until_nul(&text).map(|t| t.to_string_lossy().into_owned()).unwrap_or_default();
+    // MPICH fills the line with tabs, Open MPI with where it was built.
+    let line = text.lines().next().unwrap_or_default();
+    line.split(',').next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn count(length: usize) -> c_int {
+    debug_assert!(length <= PIECE, "pieces of messages are short");
+    length as c_int
+}
+
+impl Comm for Mpi {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn library(&self) -> String {
+        format!("{} ({})", self.version, self.c.abi.name())
+    }
+
+    fn swap(&self, out: &[(usize, &[u8])], into: &mut [(usize, &mut [u8])]) {
+        let pieces = |length: usize| length.div_ceil(PIECE);
+        let n: usize =
+            out.iter().map(|o| pieces(o.1.len())).chain(into.iter().map(|i| pieces(i.1.len()))).sum();
+        // Entries of eight bytes or of four.
+        let mut requests = vec![0u64; n];
+        let wide = self.c.request;
+        let entry = |k: usize, requests: &mut [u64]| -> *mut c_void {
+            // SAFETY: entry `k` of `n` lies within the table.
+            unsafe { requests.as_mut_ptr().cast::<u8>().add(k * wide).cast() }
+        };
+        let mut k = 0;
+        for (from, bytes) in into {
+            for piece in bytes.chunks_mut(PIECE) {
+                let to = piece.as_mut_ptr().cast();
+                // SAFETY: the piece is written until all are waited for below, while it is borrowed.
+                unsafe {
+                    (self.f.MPI_Irecv)(
+                        to,
+                        count(piece.len()),
+                        self.c.byte,
+                        *from as c_int,
+                        TAG,
+                        self.c.world,
+                        entry(k, &mut requests),
+                    )
+                };
+                k += 1;
+            }
+        }
+        for (to, bytes) in out {
+            for piece in bytes.chunks(PIECE) {
+                // SAFETY: the piece is read until all are waited for below, while it is borrowed.
+                unsafe {
+                    (self.f.MPI_Isend)(
+                        piece.as_ptr().cast(),
+                        count(piece.len()),
+                        self.c.byte,
+                        *to as c_int,
+                        TAG,
+                        self.c.world,
+                        entry(k, &mut requests),
+                    )
+                };
+                k += 1;
+            }
+        }
+        // SAFETY: all requests made above; statuses are not wanted.
+        unsafe {
+            (self.f.MPI_Waitall)(count(n), requests.as_mut_ptr().cast(), self.c.no_statuses as *mut c_void)
+        };
+    }
+
+    fn gather_all(&self, all: &mut [u8], counts: &[usize]) {
+        let mut start = 0;
+        if all.len() > PIECE {
+            for (from, length) in counts.iter().enumerate() {
+                self.broadcast(&mut all[start..start + length], from);
+                start += length;
+            }
+            return;
+        }
+        let places: Vec<c_int> = counts
+            .iter()
+            .map(|length| {
+                start += length;
+                count(start - length)
+            })
+            .collect();
+        let counts: Vec<c_int> = counts.iter().map(|length| count(*length)).collect();
+        // SAFETY: pieces lie beside each other in `all`, and this rank's is in its place.
+        unsafe {
+            (self.f.MPI_Allgatherv)(
+                self.c.in_place as *const c_void,
+                0,
+                self.c.byte,
+                all.as_mut_ptr().cast(),
+                counts.as_ptr(),
+                places.as_ptr(),
+                self.c.byte,
+                self.c.world,
+            )
+        };
+    }
+
+    fn sum(&self, values: &mut [i64]) {
+        for v in values.chunks_mut(PIECE / 8) {
+            self.reduce(v.as_mut_ptr().cast(), v.len(), (self.c.int64, self.c.sum));
+        }
+    }
+
+    fn most(&self, values: &mut [f64]) {
+        for v in values.chunks_mut(PIECE / 8) {
+            self.reduce(v.as_mut_ptr().cast(), v.len(), (self.c.double, self.c.max));
+        }
+    }
+
+    fn tell(&self, bytes: &mut Vec<u8>) {
+        let mut length = (bytes.len() as u64).to_le_bytes();
+        self.broadcast(&mut length, 0);
+        if self.rank > 0 {
+            *bytes = vec![0; u64::from_le_bytes(length) as usize];
+        }
+        self.broadcast(bytes, 0);
+    }
+
+    fn meet(&self, patience: Duration) -> bool {
+        let (mut request, end) = (0u64, Instant::now() + patience);
+        let request: *mut c_void = (&raw mut request).cast();
+        // SAFETY: the request lives until the test says that it is done, or the job is ended.
+        unsafe { (self.f.MPI_Ibarrier)(self.last, request) };
+        let mut pause = Duration::from_micros(20);
+        loop {
+            let mut done = 0;
+            // SAFETY: the request made above.
+            unsafe { (self.f.MPI_Test)(request, &mut done, self.c.no_statuses as *mut c_void) };
+            if done != 0 || Instant::now() >= end {
+                return done != 0;
+            }
+            std::thread::sleep(pause);
+            pause = (2 * pause).min(Duration::from_millis(5));
+        }
+    }
+
+    fn close(&self) {
+        // SAFETY: nothing is under way, as all ranks have met.
+        unsafe { (self.f.MPI_Finalize)() };
+    }
+
+    fn abort(&self, code: i32) -> ! {
+        // SAFETY: ends the job.
+        unsafe { (self.f.MPI_Abort)(self.c.world, code) };
+        std::process::exit(code)
+    }
+}
+
+impl Mpi {
+    /// One rank's bytes to all.
+    fn broadcast(&self, bytes: &mut [u8], from: usize) {
+        for piece in bytes.chunks_mut(PIECE) {
+            // SAFETY: so many bytes are read at `from` and written elsewhere.
+            unsafe {
+                (self.f.MPI_Bcast)(
+                    piece.as_mut_ptr().cast(),
+                    count(piece.len()),
+                    self.c.byte,
+                    from as c_int,
+                    self.c.world,
+                )
+            };
+        }
+    }
+
+    /// Numbers of all ranks made one, in place.
+    fn reduce(&self, values: *mut c_void, n: usize, (kind, how): (Handle, Handle)) {
+        // SAFETY: `n` numbers of this kind stand at `values`.
+        unsafe {
+            (self.f.MPI_Allreduce)(
+                self.c.in_place as *const c_void,
+                values,
+                count(n),
+                kind,
+                how,
+                self.c.world,
+            )
+        };
+    }
+}
