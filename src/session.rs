@@ -64,7 +64,6 @@ pub use perigrain_plan::run::{Made, Watch};
 use perigrain_world::{Unseen, World};
 pub use spent::{Part, Spent};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 pub use sweeping::Swept;
 pub use timer::{Limit, time};
 
@@ -136,6 +135,8 @@ pub struct Session {
     read_from: Option<FileId>,
     /// Lines worked off, each turn of a loop by itself.
     turns: u64,
+    /// Lines behind which several ranks could have agreed about an end.
+    behind: u64,
     /// Steps made in all runs.
     made: i64,
     /// How many scenes there have been.
@@ -196,6 +197,7 @@ impl Session {
             told_to,
             read_from: None,
             turns: 0,
+            behind: 0,
             made: 0,
             scenes: 0,
             asked: Default::default(),
@@ -229,7 +231,8 @@ impl Session {
     /// An empty world with this session's settings; the computes that thermo output needs are there.
     fn reset_world(&mut self) {
         let old = &self.world.settings;
-        let (stop, deadline, limit_every) = (old.stop.clone(), old.deadline, old.limit_every);
+        let (stop, deadline, limit_every, agreed) =
+            (old.stop.clone(), old.deadline, old.limit_every, old.agreed);
         let compat = self.options.compat;
         let promised = std::mem::take(&mut self.world.parts.promised);
         let read_files = std::mem::take(&mut self.world.read_files);
@@ -242,7 +245,7 @@ impl Session {
         self.world.parts.unseen = self.sight();
         let s = &mut self.world.settings;
         s.compat = compat;
-        (s.stop, s.deadline, s.limit_every) = (stop, deadline, limit_every);
+        (s.stop, s.deadline, s.limit_every, s.agreed) = (stop, deadline, limit_every, agreed);
         s.force_list = self.options.force_list;
         s.no_skipping = self.options.no_skipping;
         s.portable = self.options.portable;
@@ -331,7 +334,7 @@ impl Session {
                 }
                 Err(e) => return Err(e),
             }
-            if self.world.settings.stop.load(Ordering::Relaxed) && !self.interrupted {
+            if self.is_asked_to_end(&line) && !self.interrupted {
                 self.interrupted = true;
                 self.say_interrupted(&line)?;
             }

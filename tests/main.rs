@@ -42,6 +42,7 @@ mod prompt;
 mod pty;
 #[path = "common/random.rs"]
 mod random;
+mod ranks;
 mod report;
 #[path = "restart/main.rs"]
 mod restart;

@@ -1,6 +1,7 @@
 //! LAMMPS' command-line switches, read by hand because `-var name a b c` fits no option parser.
 
 use super::partitions::{self, World};
+use super::ranks;
 use perigrain_base::diag::nearest;
 use perigrain_base::gate::Limits;
 use perigrain_world::Compat;
@@ -52,6 +53,8 @@ pub struct Options {
     pub timeout: Option<Duration>,
     /// `-threads N`, `-pk omp N`.
     pub threads: Option<usize>,
+    /// `-ranks N`: as many processes of this machine run the deck together.
+    pub ranks: Option<usize>,
     /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, and of which version.
     pub compat: Compat,
     /// `-partition 4x1 2x8`: the threads of each partition; empty where there is one.
@@ -165,6 +168,21 @@ pub const SWITCHES: &[Switch] = &[
         "use at most N threads; results are the same bits for any N (OMP_NUM_THREADS, else all cores)",
         |o, v| {
             o.threads = Some(v.count("a number of threads")?);
+            Ok(())
+        },
+    ),
+    switch(
+        &["-ranks"],
+        "N",
+        "run the deck on N processes of this machine together, as `mpirun -n N` does; results are the same bits for any N",
+        |o, v| {
+            let n = v.count("a number of ranks")?;
+            if n > ranks::MOST {
+                let usage =
+                    Usage::new(format!("`-ranks {n}`: at most {} processes are started here", ranks::MOST));
+                return Err(usage.help("`mpirun -n N perigrain …` runs more, on several machines"));
+            }
+            o.ranks = Some(n);
             Ok(())
         },
     ),

@@ -6,6 +6,7 @@ use super::reporting::{Recorder, Sheet, Told};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals, viewing};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use console::Term;
+use perigrain_base::comm::{self, Alone};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use perigrain_base::{gate, memory};
 use perigrain_out::file::trouble;
@@ -14,15 +15,15 @@ use perigrain_out::thermo::wall_time;
 use perigrain_world::World;
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
-use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 /// Works a deck off in some mode; the exit code.
 pub fn work_off(o: &Options, mode: Mode) -> u8 {
     let begin = Instant::now();
     let log = Log::silent();
-    let progress = Progress::new(Some(log.clone()));
+    let progress = if comm::is_first() { Progress::new(Some(log.clone())) } else { Progress::default() };
     say_lacking(&log);
     let mut sources = Sources::default();
     let outcome = attempt(o, mode, &progress, &log, &mut sources);
@@ -61,21 +62,17 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
         let with = o.compat.told();
         let threads = session::threads();
         let version = env!("CARGO_PKG_VERSION");
-        let _ = log.line(&format!("perigrain {version} ({threads} thread(s){with})"));
+        let ranks = super::ranks::said();
+        let _ = log.line(&format!("perigrain {version} ({ranks}{threads} thread(s){with})"));
     }
     let outcome = session.run_text(&name, &text);
     sources.clone_from(&session.sources);
     let mut written = Ok(());
     if let Some(sheet) = &mut sheet {
         let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
-        written = sheet.write(Told {
-            options: o,
-            text: text.clone(),
-            session: &session,
-            outcome: &outcome,
-            film,
-            log,
-        });
+        let told = Told { options: o, text: text.clone(), session: &session, outcome: &outcome, film, log };
+        // What it looks at it looks at alone.
+        written = comm::run_as(Arc::new(Alone), || sheet.write(told));
         if written.is_ok() {
             log.to_screen(&sheet.said());
         }
@@ -160,6 +157,7 @@ fn last_restart(o: &Options) -> String {
 /// # Errors
 /// Words that are not understood or concern a program of its own, files that cannot be written.
 pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::Result<Session, Usage> {
+    super::ranks::refuse("each Python would run a scene of its own")?;
     let (o, decks) = super::args::parse_many(words)?;
     if !decks.is_empty() {
         let usage = Usage::new("a deck on the command line is not worked off here");
@@ -170,6 +168,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
         (o.view.is_some(), "-view"),
         (o.safe.is_some(), "-safe"),
         (!o.partition.is_empty(), "-partition"),
+        (o.ranks.is_some(), "-ranks"),
         (o.help, "-help"),
         (o.version, "-version"),
         (o.world.is_some(), "-world"),
@@ -259,14 +258,16 @@ impl Watch for Bar {
 
 /// The deck's name and text; bytes that are no UTF-8 become the replacement character and are refused where they matter.
 pub(super) fn read(deck: &Deck) -> Result<(String, String)> {
-    let mut bytes = vec![];
-    let outcome = match deck {
-        Deck::Stdin => stdin().read_to_end(&mut bytes).map(drop),
-        Deck::File(path) => std::fs::read(path).map(|all| bytes = all),
-    };
+    let outcome = gate::first(|| match deck {
+        Deck::Stdin => {
+            let mut bytes = vec![];
+            stdin().read_to_end(&mut bytes).map(|_| bytes)
+        }
+        Deck::File(path) => std::fs::read(path),
+    });
     let name = name(deck);
     match outcome {
-        Ok(()) => Ok((name, String::from_utf8_lossy(&bytes).into_owned())),
+        Ok(bytes) => Ok((name, String::from_utf8_lossy(&bytes).into_owned())),
         Err(e) => fail(Code::NO_FILE, None, format!("cannot read the deck `{name}`: {e}")),
     }
 }
@@ -335,7 +336,10 @@ pub(super) fn say_lacking(log: &Log) {
 fn complain(problems: &Diagnostics, sources: &Sources, log: &Log) {
     // When the log cannot be written the terminal has it all the same.
     let _ = log.to_log(render::plain(problems, sources).trim_end());
-    print(problems, sources);
+    match comm::is_first() {
+        true => print(problems, sources),
+        false => super::ranks::keep(&render::plain(problems, sources)),
+    }
 }
 
 /// Problems on standard error, with colours on a terminal.

@@ -13,6 +13,7 @@ pub mod manual;
 mod pager;
 pub mod partitions;
 pub mod progress;
+mod ranks;
 pub mod repl;
 mod reporting;
 mod shells;
@@ -51,13 +52,16 @@ pub fn work() -> u8 {
     match tasks::parse(words).and_then(perform) {
         Ok(code) => code,
         Err(usage) => {
-            complain(&usage);
+            if ranks::speaks() {
+                complain(&usage);
+            }
             USAGE
         }
     }
 }
 
 fn perform(task: Task) -> Result<u8, Usage> {
+    task.alone().map_or(Ok(()), ranks::refuse)?;
     match task {
         Task::Text(text) => pager::page(&text),
         Task::Explain(code) => pager::page(&explain(&code)?),
@@ -75,9 +79,10 @@ fn perform(task: Task) -> Result<u8, Usage> {
                     Ok(deck::work_off(&partitions::own(&o, world), Mode::Run))
                 }
                 None if !o.partition.is_empty() => partitions::work_off(&o),
-                None => Ok(deck::work_off(&o, Mode::Run)),
+                None => ranks::work_off(&o),
             };
         }
+        Task::Ranks(o) => return ranks::show(&o),
         Task::Repl(o) => return Ok(repl::run(&o)),
         Task::Sweep(request) => return sweeping::perform(&request),
         Task::Bench(request) => return benching::perform(&request),

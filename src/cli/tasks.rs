@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 pub enum Task {
     /// Run a deck.
     Run(Options),
+    /// Say what ranks are connected by.
+    Ranks(Options),
     /// Work off lines as they are typed.
     Repl(Options),
     /// Report every problem of decks without acting.
@@ -114,6 +116,12 @@ enum Sub {
         #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
+    /// Say which MPI library connects the ranks of `mpirun -n N perigrain ranks`, and how fast
+    Ranks {
+        /// `-ranks N`: as many processes of this machine
+        #[arg(value_name = "SWITCH", trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<String>,
+    },
     /// Make many runs of a deck side by side, each with other values of variables, and one table of what they give
     Sweep {
         /// The deck, lists of values, and LAMMPS' switches
@@ -173,7 +181,7 @@ enum Sub {
 }
 
 /// Subcommands that take a deck and LAMMPS' switches, which are not clap's to read.
-const WITH_DECKS: [&str; 6] = ["run", "repl", "check", "plan", "sweep", "bench"];
+const WITH_DECKS: [&str; 7] = ["run", "repl", "check", "plan", "ranks", "sweep", "bench"];
 
 /// Reads the command line without the program's name.
 ///
@@ -240,10 +248,22 @@ impl Task {
         }
     }
 
+    /// What only one process can do of this; nothing where several ranks can.
+    pub(super) fn alone(&self) -> Option<&'static str> {
+        match self {
+            Task::Run(o) if o.world.is_some() => None,
+            Task::Run(o) if !o.partition.is_empty() => Some("`-partition` starts processes of its own"),
+            Task::Run(_) | Task::Ranks(_) | Task::Text(_) | Task::Explain(_) | Task::Worker => None,
+            Task::Doc(_) | Task::Help(_) => None,
+            Task::Repl(_) => Some("lines are typed into one"),
+            _ => Some("this is work for one"),
+        }
+    }
+
     /// The switches, those of the first deck if there are several.
     fn options(&self) -> Option<&Options> {
         match self {
-            Task::Run(o) | Task::Repl(o) | Task::Plan { options: o, .. } => Some(o),
+            Task::Run(o) | Task::Ranks(o) | Task::Repl(o) | Task::Plan { options: o, .. } => Some(o),
             Task::Check { decks, .. } => decks.first(),
             Task::Sweep(request) => Some(&request.options),
             Task::Bench(request) => Some(&request.sweep.options),
@@ -312,6 +332,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         Sub::Fmt(wanted) => Task::Format(wanted),
         Sub::Lsp { stdio: _ } => Task::Lsp,
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
+        Sub::Ranks { rest } => Task::Ranks(args::parse(rest)?),
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),
         Sub::Report(wanted) => Task::Report(wanted),

@@ -1,5 +1,6 @@
 //! Thermo keywords: what each is computed from, and its value.
 
+use perigrain_base::comm;
 use perigrain_world::{COUPLED, Clock, Slot, SlotId, World};
 
 /// What a keyword's value is computed from besides the world itself.
@@ -200,7 +201,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
 }
 
 fn time_value(name: &str, c: &Clock) -> f64 {
-    let cpu = || c.began.map_or(0.0, |b| b.elapsed().as_secs_f64());
+    let cpu = || comm::told::number(|| c.began.map_or(0.0, |b| b.elapsed().as_secs_f64()));
     let done = (c.step - c.first) as f64;
     match name {
         "step" => c.step as f64,

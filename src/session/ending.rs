@@ -3,9 +3,9 @@
 use super::Session;
 use crate::human::{about, bytes, count, duration};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
-use perigrain_base::par;
 use perigrain_base::stop::Stop;
-use perigrain_lang::Line;
+use perigrain_base::{comm, par};
+use perigrain_lang::{Line, Script};
 use perigrain_out::log::Log;
 use perigrain_plan::run::verlet::Outcome;
 use perigrain_plan::{OpClass, StepPlan};
@@ -21,6 +21,9 @@ const MUCH: f64 = 0.25;
 /// How much longer than `-timeout` says a line may be at work: a tenth of the limit within these bounds.
 const LEAST_GRACE: Duration = Duration::from_secs(2);
 const MOST_GRACE: Duration = Duration::from_secs(60);
+
+/// Exit code of what a signal has ended.
+const INTERRUPTED: i32 = 130;
 
 /// Particles for which several threads pay.
 const MANY: usize = 2000;
@@ -89,10 +92,30 @@ impl Session {
     /// What ends a line before it is done: a signal, or the limit of `-timeout` where that is past for a while.
     pub(super) fn heeded(&self) -> Stop {
         let limit = self.options.limit.as_ref();
+        if !comm::is_first() {
+            // The first rank gives up work for all.
+            return Stop::default();
+        }
         // A `timer timeout` in the deck has the last word.
         let given = limit.zip(self.world.settings.deadline).filter(|(l, end)| self.born + l.time == *end);
         let deadline = given.map(|(l, end)| end + (l.time / 10).clamp(LEAST_GRACE, MOST_GRACE));
         Stop::new(self.stop_flag(), deadline)
+    }
+
+    /// Whether a signal asks for an end behind a line. Several ranks agree about that; behind lines that a loop repeats a million
+    /// times now and then.
+    pub(super) fn is_asked_to_end(&mut self, line: &Line) -> bool {
+        if comm::several() {
+            let light = line.command.as_ref().is_none_or(|cmd| {
+                let name = cmd.name.text.as_str();
+                super::flow::LIGHT.contains(&name) || Script::FLOW.contains(&name)
+            });
+            self.behind += 1;
+            if !light || self.behind.is_multiple_of(256) {
+                self.world.settings.agree(None);
+            }
+        }
+        self.world.settings.stops()
     }
 
     /// What becomes of a line that was given up.
@@ -118,6 +141,11 @@ impl Session {
         self.interrupted = true;
         let place = self.place_of(line).unwrap_or_default();
         self.options.log.line(&format!("Interrupted in {place}: this line is not done, and none follows"))?;
+        if comm::several() {
+            // The other ranks are in the midst of it.
+            self.options.log.flush()?;
+            comm::present().abort(INTERRUPTED);
+        }
         let mut details = told.iter().filter(|d| !d.help.is_empty());
         details.try_for_each(|d| self.options.log.line(&format!("  {}; {}", d.message, d.help.join("; "))))
     }

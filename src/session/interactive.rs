@@ -147,6 +147,7 @@ impl Session {
             plans: _,
             told_to: _,
             turns: _,
+            behind: _,
             read_from: _,
             made: _,
             scenes: _,

@@ -54,7 +54,7 @@ impl Session {
             Source::Here(word) => (word.text.clone(), "deck".into(), word),
             Source::File(word) => {
                 let path = perigrain_world::reading::place(&word.text, &self.options.folder);
-                if self.looking() && !path.exists() {
+                if self.looking() && !perigrain_base::gate::exists(&path) {
                     return Ok(());
                 }
                 let bytes = perigrain_base::gate::read(&path)

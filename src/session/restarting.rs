@@ -147,7 +147,7 @@ impl Session {
         let places = [PathBuf::new(), self.world.folder.clone()];
         if !word.text.contains('*') {
             let mut paths = places.iter().map(|p| p.join(&word.text));
-            let found = paths.find(|p| gate::refuses(p) || p.exists());
+            let found = paths.find(|p| gate::refuses(p) || gate::exists(p));
             return found.ok_or_else(|| missing(format!("there is no restart file `{}`", word.text)));
         }
         let latest = places.iter().find_map(|p| latest(&p.join(&word.text)));
@@ -162,7 +162,8 @@ impl Session {
         let old = &mut self.world;
         let (settings, now) = (&mut world.settings, &old.settings);
         settings.stop = now.stop.clone();
-        (settings.deadline, settings.limit_every) = (now.deadline, now.limit_every);
+        (settings.deadline, settings.limit_every, settings.agreed) =
+            (now.deadline, now.limit_every, now.agreed);
         (settings.force_list, settings.no_skipping) = (now.force_list, now.no_skipping);
         (settings.portable, settings.compat) = (now.portable, now.compat);
         if let Some(families) = &mut *world.families {
@@ -294,8 +295,8 @@ fn latest(pattern: &Path) -> Option<PathBuf> {
         let step = file.strip_prefix(before)?.strip_suffix(after)?;
         step.bytes().all(|b| b.is_ascii_digit()).then(|| step.parse().ok()).flatten()
     };
-    let files = gate::list(folder).ok()?.flatten();
-    let names = files.filter_map(|f| f.file_name().into_string().ok());
+    let files = gate::names(folder).ok()?;
+    let names = files.iter().filter_map(|f| f.file_name()?.to_str().map(String::from));
     let last = names.filter_map(|n| step(&n).map(|s| (s, n))).max()?;
     Some(pattern.with_file_name(last.1))
 }

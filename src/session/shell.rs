@@ -1,8 +1,9 @@
 //! `shell`: folders, files, environment, and commands for the system's shell.
 
 use super::Session;
+use perigrain_base::comm::told;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_base::stop;
+use perigrain_base::{gate, stop};
 use perigrain_lang::{Args, Command, Word};
 use std::path::Path;
 use std::process::{Child, ExitStatus};
@@ -50,15 +51,16 @@ impl Session {
         self.options.log.flush()?;
         match what.text.as_str() {
             "cd" => self.change_folder(&words[0]),
-            "mv" => self.tried(cmd.span, std::fs::rename(&words[0].text, &words[1].text)),
-            "mkdir" => words.iter().for_each(|w| self.tried(w.span, std::fs::create_dir(&w.text))),
-            "rmdir" => words.iter().for_each(|w| self.tried(w.span, std::fs::remove_dir(&w.text))),
+            "mv" => self.tried(cmd.span, || std::fs::rename(&words[0].text, &words[1].text)),
+            "mkdir" => words.iter().for_each(|w| self.tried(w.span, || std::fs::create_dir(&w.text))),
+            "rmdir" => words.iter().for_each(|w| self.tried(w.span, || std::fs::remove_dir(&w.text))),
             "rm" => {
                 let silent = words[0].text == "-f";
                 for w in &words[usize::from(silent)..] {
-                    let outcome = std::fs::remove_file(&w.text);
-                    if !silent {
-                        self.tried(w.span, outcome);
+                    let known = self.notes.0.len();
+                    self.tried(w.span, || std::fs::remove_file(&w.text));
+                    if silent {
+                        self.notes.0.truncate(known);
                     }
                 }
             }
@@ -87,24 +89,31 @@ impl Session {
                 *own = whole;
             }
         }
-        self.tried(folder.span, std::env::set_current_dir(&folder.text));
+        self.tried(folder.span, || std::env::set_current_dir(&folder.text));
     }
 
     /// A line for the system's shell, with the deck's environment.
     fn system(&mut self, what: &Word, words: &[Word], span: Span) {
         let line: Vec<&str> = std::iter::once(what).chain(words).map(|w| w.text.as_str()).collect();
         let line = line.join(" ");
-        let mut shell = std::process::Command::new("sh");
-        let child = shell.arg("-c").arg(&line).envs(self.vars.environment()).spawn();
-        match child.and_then(waited) {
-            Ok(s) if s.success() => {}
-            Ok(s) => self.warn(span, format!("`{line}` ended with {s}")),
-            Err(e) => self.warn(span, format!("`{line}` could not be started: {e}")),
+        // Of several ranks the first one does it.
+        let trouble = told::text(|| {
+            let mut shell = std::process::Command::new("sh");
+            let child = shell.arg("-c").arg(&line).envs(self.vars.environment()).spawn();
+            match child.and_then(waited) {
+                Ok(s) if s.success() => None,
+                Ok(s) => Some(format!("`{line}` ended with {s}")),
+                Err(e) => Some(format!("`{line}` could not be started: {e}")),
+            }
+        });
+        if let Some(trouble) = trouble {
+            self.warn(span, trouble);
         }
     }
 
-    fn tried(&mut self, span: Span, outcome: std::io::Result<()>) {
-        if let Err(e) = outcome {
+    /// Does something to files; of several ranks the first one does.
+    fn tried(&mut self, span: Span, act: impl FnOnce() -> std::io::Result<()>) {
+        if let Err(e) = gate::first(|| act().map(|()| vec![])) {
             self.warn(span, format!("this did not work: {e}"));
         }
     }

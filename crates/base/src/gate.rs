@@ -1,7 +1,13 @@
 //! What a deck that nobody trusts may touch (`-safe`): the files of one folder, and so much of everything.
 //!
-//! Every file that a deck names is opened here. Without `-safe` the gate is open and nothing is looked at.
+//! Every file that a deck names is opened here. Without `-safe` the gate is open and nothing is looked at. Where several ranks run one
+//! deck the first one opens files, and all have what it has: see [`first`] and [`written`].
 
+mod ranks;
+
+pub use ranks::{first, written};
+
+use crate::comm;
 use crate::diag::{Code, Diagnostic};
 use crate::memory;
 use std::collections::BTreeSet;
@@ -198,6 +204,12 @@ fn way_in(gate: &Gate, path: &Path) -> bool {
 /// # Errors
 /// It does, or to something that is no plain file; a folder on the way that is not there.
 pub fn pass(path: &Path) -> Result<()> {
+    let Some(gate) = closed() else { return Ok(()) };
+    first(|| inside(&gate, path).map(|_| vec![])).map(drop)
+}
+
+/// As [`pass`], of this process alone.
+fn passes(path: &Path) -> Result<()> {
     closed().map_or(Ok(()), |gate| inside(&gate, path).map(drop))
 }
 
@@ -230,8 +242,9 @@ pub fn pass_written(path: &Path) -> Result<()> {
 /// # Errors
 /// As [`pass`], and the system's.
 pub fn open(path: impl AsRef<Path>) -> Result<File> {
-    pass(path.as_ref())?;
-    File::open(path)
+    let path = path.as_ref();
+    let own = || passes(path).and_then(|()| File::open(path));
+    if comm::several() { ranks::opened(own) } else { own() }
 }
 
 /// Opens a file to write it, at its end or from scratch.
@@ -239,7 +252,16 @@ pub fn open(path: impl AsRef<Path>) -> Result<File> {
 /// # Errors
 /// As [`pass_written`], and the system's.
 pub fn create(path: impl AsRef<Path>, append: bool) -> Result<File> {
-    pass_written(path.as_ref())?;
+    let path = path.as_ref();
+    written(|| create_here(path, append))
+}
+
+/// As [`create`], at this rank whatever others do.
+///
+/// # Errors
+/// As there.
+pub fn create_here(path: &Path, append: bool) -> Result<File> {
+    pass_written(path)?;
     File::options().create(true).write(true).append(append).truncate(!append).open(path)
 }
 
@@ -248,9 +270,13 @@ pub fn create(path: impl AsRef<Path>, append: bool) -> Result<File> {
 /// # Errors
 /// As [`open`].
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
-    let mut bytes = vec![];
-    memory::read_file(open(path)?, &mut bytes)?;
-    Ok(bytes)
+    let path = path.as_ref();
+    first(|| {
+        let mut bytes = vec![];
+        passes(path)?;
+        memory::read_file(File::open(path)?, &mut bytes)?;
+        Ok(bytes)
+    })
 }
 
 /// All text of a file.
@@ -262,7 +288,29 @@ pub fn read_to_string(path: impl AsRef<Path>) -> Result<String> {
     String::from_utf8(read(path)?).map_err(odd)
 }
 
-/// What a folder holds.
+/// Whether there is such a file or folder.
+pub fn exists(path: &Path) -> bool {
+    comm::told::truth(|| path.exists())
+}
+
+/// The paths of what a folder holds, in order.
+///
+/// # Errors
+/// As [`open`].
+pub fn names(folder: &Path) -> Result<Vec<PathBuf>> {
+    let bytes = first(|| {
+        passes(folder)?;
+        let entries = fs::read_dir(folder)?.collect::<Result<Vec<_>>>()?;
+        let names = entries.iter().map(|e| e.file_name().into_encoded_bytes());
+        Ok(names.collect::<Vec<_>>().join(&0))
+    })?;
+    let named = |name: &[u8]| folder.join(String::from_utf8_lossy(name).as_ref());
+    let mut paths: Vec<_> = bytes.split(|b| *b == 0).filter(|n| !n.is_empty()).map(named).collect();
+    paths.sort();
+    Ok(paths)
+}
+
+/// What a folder holds, for one process.
 ///
 /// # Errors
 /// As [`open`].
@@ -276,8 +324,11 @@ pub fn list(folder: &Path) -> Result<ReadDir> {
 /// # Errors
 /// As [`open`].
 pub fn remove(path: &Path) -> Result<()> {
-    pass(path)?;
-    fs::remove_file(path)
+    first(|| {
+        passes(path)?;
+        fs::remove_file(path).map(|()| vec![])
+    })
+    .map(drop)
 }
 
 #[cfg(test)]

@@ -15,3 +15,6 @@ pub mod memory;
 pub mod par;
 pub mod stop;
 pub mod units;
+
+/// Ranks: several processes that run one deck together.
+pub use perigrain_comm as comm;

@@ -1,6 +1,7 @@
 //! fix halt: ends a run when something has happened.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
+use perigrain_base::comm::told;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
@@ -114,7 +115,9 @@ impl Declared {
         match &self.attribute {
             // No bond_style, no bonds.
             Attribute::Bonds => Ok(0.0),
-            Attribute::Seconds => Ok(w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64())),
+            Attribute::Seconds => {
+                Ok(told::number(|| w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64())))
+            }
             Attribute::Disk(path) => free_megabytes(path),
             Attribute::Variable(_) => Ok(reading.map_or(0.0, |r| r.get(w))),
         }
@@ -128,9 +131,10 @@ fn free_megabytes(path: &Path) -> Result<f64> {
         Diagnostic::error(perigrain_base::gate::code(&e), None::<Span>, text)
     })?;
     // `df` is asked because the standard library cannot tell.
-    let output = std::process::Command::new("df").arg("-Pk").arg("--").arg(path).output();
-    let text =
-        output.ok().filter(|o| o.status.success()).map(|o| String::from_utf8_lossy(&o.stdout).into_owned());
+    let text = told::text(|| {
+        let output = std::process::Command::new("df").arg("-Pk").arg("--").arg(path).output();
+        output.ok().filter(|o| o.status.success()).map(|o| String::from_utf8_lossy(&o.stdout).into_owned())
+    });
     let free = text.and_then(|t| t.lines().nth(1)?.split_whitespace().nth(3)?.parse::<f64>().ok());
     free.map(|kilobytes| kilobytes / 1024.0).ok_or_else(|| {
         let text = format!("the free space at `{}` cannot be found", path.display());

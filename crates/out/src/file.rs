@@ -118,17 +118,21 @@ pub fn open(path: &Path, append: bool) -> Result<BufWriter<File>> {
 
 /// As [`open`], and marks the file as being written for as long as it is open; whether another process has marked it before.
 pub fn claim(path: &Path, append: bool) -> Result<(BufWriter<File>, bool)> {
-    let opened = gate::pass_written(path)
-        .and_then(|()| File::options().create(true).write(true).append(append).truncate(false).open(path));
-    let claimed = opened.and_then(|file| {
+    let mut shared = false;
+    let claimed = gate::written(|| {
+        gate::pass_written(path)?;
+        let file = File::options().create(true).write(true).append(append).truncate(false).open(path)?;
         // Elsewhere a lock would keep readers away; where a file system knows none, nobody is told.
-        let shared = cfg!(unix) && matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        shared = cfg!(unix) && matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if !append && file.metadata()?.is_file() {
             file.set_len(0)?;
         }
-        Ok((BufWriter::with_capacity(1 << 16, file), shared))
+        Ok(file)
     });
-    claimed.map_err(|e| trouble("write", path, &e).into())
+    match claimed {
+        Ok(file) => Ok((BufWriter::with_capacity(1 << 16, file), shared)),
+        Err(e) => Err(trouble("write", path, &e).into()),
+    }
 }
 
 /// Writes a whole file beside its place and moves it there at the end: readers see the old or the new file,
@@ -143,8 +147,21 @@ pub fn replace_durably(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::i
 }
 
 fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let opened = gate::pass_written(path).and_then(|()| beside(path));
-    let (part, file) = opened.map_err(|e| trouble("write", path, &e))?;
+    let mut write = Some(write);
+    let outcome = gate::first(|| match write.take() {
+        Some(write) => put_here(path, durably, write).map(|()| vec![]),
+        None => Ok(vec![]),
+    });
+    outcome.map(drop).map_err(|e| trouble("write", path, &e).into())
+}
+
+fn put_here(
+    path: &Path,
+    durably: bool,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    gate::pass_written(path)?;
+    let (part, file) = beside(path)?;
     let outcome = (|| {
         let mut file = BufWriter::with_capacity(1 << 20, file);
         write(&mut file)?;
@@ -163,10 +180,9 @@ fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io
             None => Ok(()),
         }
     })();
-    outcome.map_err(|e| {
+    outcome.inspect_err(|_| {
         // The half-written file is of no use; that it may not exist is fine.
         let _ = fs::remove_file(&part);
-        trouble("write", path, &e).into()
     })
 }
 

@@ -53,14 +53,16 @@ impl Growing {
     }
 
     fn opened(path: &Path, append: bool, level: flate2::Compression) -> io::Result<Self> {
-        gate::pass_written(path)?;
-        let mut options = File::options();
-        let options = options.create(true).write(true).truncate(!append);
-        // What is there is looked at, if that is allowed: else a new member stands behind it.
-        let (mut file, readable) = match options.clone().read(true).open(path) {
-            Ok(file) => (file, true),
-            Err(_) => (options.open(path)?, false),
-        };
+        let mut readable = false;
+        let mut file = gate::written(|| {
+            gate::pass_written(path)?;
+            let mut options = File::options();
+            let options = options.create(true).write(true).truncate(!append);
+            // What is there is looked at, if that is allowed: else a new member stands behind it.
+            let both = options.clone().read(true).open(path);
+            readable = both.is_ok();
+            both.or_else(|_| options.open(path))
+        })?;
         if !file.metadata()?.is_file() {
             return Ok(Self::fresh(file, level, None));
         }

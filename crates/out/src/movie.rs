@@ -5,6 +5,7 @@ mod apng;
 use crate::file::trouble;
 use crate::image::Image;
 use apng::Apng;
+use perigrain_base::comm::{self, told};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::gate;
 use std::io::{BufWriter, Write};
@@ -51,6 +52,11 @@ pub fn ffmpeg() -> Option<PathBuf> {
     if gate::limits().is_some() {
         return None;
     }
+    told::text(|| found()?.into_os_string().into_string().ok()).map(PathBuf::from)
+}
+
+/// Where ffmpeg is on this machine.
+fn found() -> Option<PathBuf> {
     let name = format!("ffmpeg{}", std::env::consts::EXE_SUFFIX);
     std::env::split_paths(&std::env::var_os("PATH")?)
         .map(|folder| folder.join(&name))
@@ -81,6 +87,9 @@ impl Movie {
             let d = Diagnostic::error(Code::CONFLICT, None, text);
             return Err(d.help("write another movie, by an `undump` and a new `dump`").into());
         }
+        if !comm::is_first() {
+            return Ok(());
+        }
         let to = match &mut self.to {
             Some(to) => to,
             None => self.to.insert(To::open(&self.path, size, self.pace)?),
@@ -105,11 +114,11 @@ impl Movie {
 impl To {
     fn open(path: &Path, size: [usize; 2], pace: Pace) -> Result<Self> {
         if is_own(&path.to_string_lossy()) {
-            let file = gate::create(path, false).and_then(|file| Apng::new(file, size, pace.rate));
+            let file = gate::create_here(path, false).and_then(|file| Apng::new(file, size, pace.rate));
             return file.map(Self::File).map_err(|e| trouble("write", path, &e).into());
         }
         let start = || -> std::io::Result<Self> {
-            let program = ffmpeg().ok_or(std::io::ErrorKind::NotFound)?;
+            let program = found().ok_or(std::io::ErrorKind::NotFound)?;
             let mut command = Command::new(program);
             let rate = pace.rate.to_string();
             command.args([

@@ -2,6 +2,7 @@
 
 use super::file::{self, trouble};
 use perigrain_base::diag::Result;
+use perigrain_base::{comm, gate};
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -49,16 +50,21 @@ impl Sheet {
         let file = match &mut self.file {
             Some(file) => file,
             None => {
-                perigrain_base::gate::pass_written(&self.path)?;
-                let mut options = File::options();
-                // A file of the latest block is cut, which appending files cannot be.
-                let file = match self.keep {
-                    None => options.append(true).create(true).open(&self.path)?,
-                    Some(_) => options.write(true).create(true).truncate(false).open(&self.path)?,
-                };
+                let file = gate::written(|| {
+                    gate::pass_written(&self.path)?;
+                    let mut options = File::options();
+                    // A file of the latest block is cut, which appending files cannot be.
+                    match self.keep {
+                        None => options.append(true).create(true).open(&self.path),
+                        Some(_) => options.write(true).create(true).truncate(false).open(&self.path),
+                    }
+                })?;
                 self.file.insert(file)
             }
         };
+        if !comm::is_first() {
+            return Ok(());
+        }
         if let Some(start) = self.keep {
             file.set_len(start)?;
             file.seek(SeekFrom::Start(start))?;

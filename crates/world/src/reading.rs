@@ -2,7 +2,7 @@
 
 use super::World;
 use perigrain_base::diag::Diagnostic;
-use perigrain_base::letters;
+use perigrain_base::{gate, letters};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,7 +64,7 @@ impl ReadFiles {
 /// Where the file `name` of a deck is: in the working folder, else in `folder`, the deck's own.
 pub fn place(name: &str, folder: &Path) -> PathBuf {
     let (plain, beside) = (PathBuf::from(name), folder.join(name));
-    if !plain.exists() && beside.exists() { beside } else { plain }
+    if !gate::exists(&plain) && gate::exists(&beside) { beside } else { plain }
 }
 
 impl World {

@@ -1,8 +1,9 @@
 //! Choices of a deck that concern everybody.
 
+use perigrain_base::comm;
 use perigrain_base::units::UnitSystem;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Whose numbers are wanted where LAMMPS is wrong.
@@ -215,28 +216,105 @@ pub struct Settings {
     /// Steps between two looks at the clock for that; 0 stands for 10, LAMMPS' own.
     #[serde(skip)]
     pub limit_every: i64,
+    /// What several ranks have agreed upon of both.
+    #[serde(skip)]
+    pub agreed: Agreed,
+}
+
+/// What several ranks know alike about an end that is asked for at one of them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Agreed {
+    stop: bool,
+    late: bool,
+    /// The step of the latest agreement, and when that was.
+    last: Option<(i64, Instant)>,
+    /// The first step before which there is to be another one.
+    next: i64,
+}
+
+/// Time between two agreements in a run [s]; each takes some microseconds.
+const PAUSE: f64 = 0.02;
+
+/// Most steps between two agreements.
+const MOST_STEPS: f64 = 4096.0;
+
+impl Agreed {
+    fn due(&self, step: i64) -> bool {
+        // A new run may count from the beginning.
+        step >= self.next || self.last.is_none_or(|(last, _)| step < last)
+    }
+
+    /// Seconds per step since the latest agreement; a step of an unknown length counts as a long one.
+    fn pace(&self, step: Option<i64>) -> f64 {
+        match (step, self.last) {
+            (Some(step), Some((last, since))) if step > last => {
+                since.elapsed().as_secs_f64() / (step - last) as f64
+            }
+            _ => PAUSE,
+        }
+    }
+
+    /// Takes in what is largest of all ranks: a request, a limit that has passed, the time of a step.
+    fn take(&mut self, step: Option<i64>, [stop, late, pace]: [f64; 3]) {
+        (self.stop, self.late) = (self.stop || stop > 0.0, late > 0.0);
+        self.last = step.map(|step| (step, Instant::now()));
+        self.next = step.map_or(0, |step| step + (PAUSE / pace).clamp(1.0, MOST_STEPS) as i64);
+    }
 }
 
 impl Settings {
     /// Seconds left until the limit of `timer timeout`: negative behind it, 0 without one.
     pub fn time_left(&self) -> f64 {
         let Some(end) = self.deadline else { return 0.0 };
-        let now = Instant::now();
-        match end.checked_duration_since(now) {
-            Some(left) => left.as_secs_f64(),
-            None => -now.duration_since(end).as_secs_f64(),
-        }
+        comm::told::number(|| {
+            let now = Instant::now();
+            match end.checked_duration_since(now) {
+                Some(left) => left.as_secs_f64(),
+                None => -now.duration_since(end).as_secs_f64(),
+            }
+        })
     }
 
     /// Whether the limit of `timer timeout` has passed.
     pub fn timed_out(&self) -> bool {
+        self.deadline.is_some() && comm::told::truth(|| self.is_late())
+    }
+
+    /// As [`Settings::timed_out`], by this rank's own clock.
+    fn is_late(&self) -> bool {
         self.deadline.is_some_and(|end| Instant::now() >= end)
     }
 
-    /// Whether a run has to end before the step after `step`.
+    /// Whether a run has to end before the step after `step`. Of several ranks: as they have agreed.
     pub fn ends_at(&self, step: i64) -> bool {
         let every = if self.limit_every > 0 { self.limit_every } else { 10 };
-        self.deadline.is_some() && step % every == 0 && self.timed_out()
+        let late = || if comm::several() { self.agreed.late } else { self.is_late() };
+        self.deadline.is_some() && step % every == 0 && late()
+    }
+
+    /// Whether something outside asks for an end (Ctrl-C). Of several ranks: as they have agreed.
+    pub fn stops(&self) -> bool {
+        if comm::several() { self.agreed.stop } else { self.stop.load(Ordering::Relaxed) }
+    }
+
+    /// Several ranks agree about an end, before the step after `step`: all of them call this. Steps that take no time are made
+    /// without.
+    pub fn agree_at(&mut self, step: i64) {
+        if comm::several() && self.agreed.due(step) {
+            self.agree(Some(step));
+        }
+    }
+
+    /// Several ranks agree about an end between two lines.
+    pub fn agree(&mut self, step: Option<i64>) {
+        if !comm::several() {
+            return;
+        }
+        let asked = self.stop.load(Ordering::Relaxed);
+        let flag = |yes: bool| f64::from(u8::from(yes));
+        let mut all = [flag(asked), flag(self.is_late()), self.agreed.pace(step)];
+        comm::present().most(&mut all);
+        self.agreed.take(step, all);
     }
 
     /// Whether LAMMPS' artefacts are wanted.

@@ -73,6 +73,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     - `-report FILE`: writes what the run was as one web page, see [Look at a run](../howto/report.md); the file is opened before the run begins;\n\
     - `-view [PORT]`: shows the run in a browser on this machine while it goes on, at the address that it prints; with pause, step and stop;\n\
     - `-compat lammps[/2025|/2026]`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md), and of which version (without one the newest, 2026; `lammps/2025` is LAMMPS 22Jul2025);\n\
+    - `-ranks N`: N processes of this machine run the deck together, as `mpirun -n N perigrain -in DECK` does with any MPI on one machine or several (`perigrain ranks` says which library \
+    connects them, and how fast); results are the same bits for any N, files are written by the first rank;\n\
     - `-partition MxN …`, `-p`: works the deck off M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); `-plog FILE|none`, \
     `-pl`, and `-pscreen FILE|none`, `-ps`: their logs and screens (`log.lammps.0` …, `screen.0` …);\n\
     - `-safe`: keeps the deck in its own folder, without `shell` and environment and with limits to all it uses, for [decks of \

@@ -69,8 +69,8 @@ pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         None => work(),
         Some(pool) => {
-            let stop = crate::stop::present();
-            let mut work = Once::new(|| stop.heed(work));
+            let (stop, ranks) = (crate::stop::present(), crate::comm::present());
+            let mut work = Once::new(|| crate::comm::run_as(ranks, || stop.heed(work)));
             pool.install(&mut || work.run());
             work.out()
         }

@@ -125,7 +125,8 @@ pub fn comes(w: &World, word: &Word, what: &str) -> Result<()> {
         let text = format!("the {what} `{name}` is not one that -safe lets a deck read");
         return fail(Code::NOT_ALLOWED, word.span, text);
     }
-    if w.parts.promised.may_come(name) || Path::new(name).exists() || w.folder.join(name).exists() {
+    let there = || gate::exists(Path::new(name)) || gate::exists(&w.folder.join(name));
+    if w.parts.promised.may_come(name) || there() {
         return Ok(());
     }
     Err(absent(word, &format!("the {what} `{name}` cannot be read: it is not there")))

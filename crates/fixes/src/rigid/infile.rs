@@ -17,7 +17,7 @@ const WORDS: usize = 20;
 /// Files that cannot be read, lines that are not right, bodies that are not there.
 pub fn apply(fix: &Declared, w: &mut World, file: &Word) -> Result<()> {
     let beside = w.folder.join(&file.text);
-    let path = if beside.exists() { beside } else { file.text.clone().into() };
+    let path = if perigrain_base::gate::exists(&beside) { beside } else { file.text.clone().into() };
     w.read_files.note(&path);
     let text = load(&path).map_err(|e| {
         let text = format!("the file `{}` cannot be read: {e}", file.text);

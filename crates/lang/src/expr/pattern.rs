@@ -137,7 +137,8 @@ pub(super) fn os_info() -> String {
         "windows" => "Windows",
         other => other,
     };
-    let release = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
+    let release = || std::fs::read_to_string("/proc/sys/kernel/osrelease").ok();
+    let release = perigrain_base::comm::told::text(release).unwrap_or_default();
     format!("{name} {} {}", release.trim(), std::env::consts::ARCH)
 }
 

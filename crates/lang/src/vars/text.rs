@@ -6,6 +6,7 @@ use crate::expr::{Trail, Yields, element};
 use crate::number::{self, printf, value_text};
 use crate::reference::{RefKind, ValueRef};
 use crate::value::{Env, Value};
+use perigrain_base::comm::told;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 
 /// A variable's value as text.
@@ -67,7 +68,8 @@ impl Vars {
             Data::Text(t) => Some(t.clone()),
             Data::Getenv(key) => {
                 let own = self.environment.get(key).cloned();
-                Some(own.or_else(|| std::env::var(key).ok()).unwrap_or_default())
+                let system = || told::text(|| std::env::var(key).ok());
+                Some(own.or_else(system).unwrap_or_default())
             }
             Data::Lines(l) => Some(l.now().to_owned()),
             Data::Number(v) => Some(value_text(env.control(name).unwrap_or(*v))),

@@ -1,5 +1,6 @@
 //! What a log says before and after a run: memory, loop time, timing tables, counts, wall time.
 
+use perigrain_base::comm;
 use perigrain_base::math::cformat::{Format, Value, general};
 
 /// A line of the timing table.
@@ -56,8 +57,9 @@ impl Finish<'_> {
     /// The whole text after the last row, without the last newline.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "Loop time of {} on 1 procs for {} steps with {} atoms\n\n",
+            "Loop time of {} on {} procs for {} steps with {} atoms\n\n",
             general(self.seconds, 6),
+            comm::present().size(),
             self.steps,
             self.atoms
         );
@@ -66,7 +68,8 @@ impl Finish<'_> {
         }
         let percent = if self.seconds > 0.0 { 100.0 * self.cpu / self.seconds } else { 0.0 };
         text.push_str(&format!(
-            "{percent:.1}% CPU use with 1 MPI tasks x {} OpenMP threads\n\n",
+            "{percent:.1}% CPU use with {} MPI tasks x {} OpenMP threads\n\n",
+            comm::present().size(),
             self.threads
         ));
         if let Some(block) = self.minimized {

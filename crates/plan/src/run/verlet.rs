@@ -8,7 +8,6 @@ use perigrain_base::stop;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::named::Acting;
 use perigrain_world::{Halt, World};
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// How a run ended.
@@ -117,10 +116,7 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
 /// Whether the present step is the last one, or somebody wants it to be.
 fn over(w: &World) -> bool {
     let c = &w.clock;
-    c.step >= c.last
-        || c.halt != Halt::No
-        || w.settings.stop.load(Ordering::Relaxed)
-        || w.settings.ends_at(c.step)
+    c.step >= c.last || c.halt != Halt::No || w.settings.stops() || w.settings.ends_at(c.step)
 }
 
 /// The stages of a step before anything is put out.
@@ -162,6 +158,7 @@ pub(super) fn steps(
         while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
             // A step whose first half is made is made as it was begun.
             if !plan.begun() {
+                w.settings.agree_at(w.clock.step);
                 ended = ended.or_else(|| Early::asked(w));
                 if ended.is_some() && !Early::one_more(w, first) {
                     break;
@@ -227,7 +224,7 @@ enum Early {
 impl Early {
     /// Whether the run has to end, and why.
     fn asked(w: &World) -> Option<Self> {
-        if w.settings.stop.load(Ordering::Relaxed) {
+        if w.settings.stops() {
             return Some(Self::Interrupted);
         }
         w.settings.ends_at(w.clock.step).then_some(Self::TimedOut)
@@ -253,7 +250,8 @@ pub fn look(
     let (begin, cpu) = (Instant::now(), cpu_seconds());
     let (mut steps, mut interrupted) = (0, false);
     loop {
-        interrupted |= w.settings.stop.load(Ordering::Relaxed);
+        w.settings.agree(None);
+        interrupted |= w.settings.stops();
         if !interrupted {
             // The limit of time.
             stop::check()?;

@@ -118,7 +118,7 @@ fn locate(w: &World, word: &Word) -> Result<PathBuf> {
     }
     let path = w.to_read(&word.text);
     passable(&path, word)?;
-    if path.exists() {
+    if gate::exists(&path) {
         return Ok(path);
     }
     if w.parts.promised.anything {

@@ -65,15 +65,15 @@ fn find(w: &World, word: &Word) -> Result<Vec<PathBuf>> {
     for base in [folder.to_path_buf(), w.folder.join(folder)] {
         let base = if base.as_os_str().is_empty() { PathBuf::from(".") } else { base };
         passable(&base, word)?;
-        let Ok(list) = gate::list(&base) else { continue };
+        let Ok(list) = gate::names(&base) else { continue };
         let mut found: Vec<(u64, PathBuf)> = vec![];
-        for entry in list.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
+        for path in list {
+            let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
             let middle = name.strip_prefix(begin).and_then(|n| n.strip_suffix(end));
             if let Some(number) =
                 middle.filter(|m| m.bytes().all(|b| b.is_ascii_digit())).and_then(|m| m.parse().ok())
             {
-                found.push((number, entry.path()));
+                found.push((number, path));
             }
         }
         found.sort();

@@ -12,7 +12,6 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_base::par;
 use perigrain_world::World;
 use perigrain_world::minimizer::{ForceNorm, MinStyle};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// What keeps the relative change of energies near zero finite, in LAMMPS' criterion.
@@ -242,10 +241,11 @@ impl Search<'_> {
         if self.w.clock.step - self.first >= self.goal.iterations {
             return Some(Stop::Iterations);
         }
+        self.w.settings.agree_at(self.w.clock.step);
         if self.w.settings.ends_at(self.w.clock.step) || self.w.clock.halt != perigrain_world::Halt::No {
             return Some(Stop::Ended);
         }
-        if !self.interrupted && self.w.settings.stop.load(Ordering::Relaxed) {
+        if !self.interrupted && self.w.settings.stops() {
             // This iteration is the last one, as if no more had been asked for.
             self.interrupted = true;
             self.goal.iterations = self.w.clock.step - self.first + 1;

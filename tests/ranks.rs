@@ -1,0 +1,320 @@
+//! Several ranks run one deck: what they write has the bytes of one process, and one that fails or dies ends them all.
+
+use crate::restart::scenes::{SCENES, Scene};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const PERIGRAIN: &str = env!("CARGO_BIN_EXE_perigrain");
+
+/// Launchers set these; tests of one process run without.
+const LAUNCHED: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"];
+
+fn start(folder: &Path, program: &str, args: &[&str]) -> Child {
+    let mut command = Command::new(program);
+    LAUNCHED.iter().for_each(|key| drop(command.env_remove(key)));
+    command
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn perigrain(folder: &Path, args: &[&str]) -> Output {
+    start(folder, PERIGRAIN, args).wait_with_output().unwrap()
+}
+
+fn said(o: &Output) -> String {
+    String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr)
+}
+
+/// Lines that tell of time, of processes and of memory; nothing in a run follows from them.
+fn is_of_this_run(line: &str) -> bool {
+    const BEGINNINGS: [&str; 5] = ["perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank"];
+    const PARTS: [&str; 4] = ["% CPU", "CPU = ", " | ", "[s]"];
+    BEGINNINGS.iter().any(|b| line.starts_with(b)) || PARTS.iter().any(|p| line.contains(p))
+}
+
+/// All files of a folder; of logs what does not tell of time.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let file = |e: fs::DirEntry| {
+        let name = e.file_name().into_string().unwrap();
+        let bytes = fs::read(e.path()).unwrap();
+        let bytes = match name.starts_with("log") {
+            false => bytes,
+            true => {
+                let text = String::from_utf8(bytes).unwrap();
+                text.lines().filter(|l| !is_of_this_run(l)).collect::<Vec<_>>().join("\n").into_bytes()
+            }
+        };
+        (name, bytes)
+    };
+    fs::read_dir(folder).unwrap().map(|e| file(e.unwrap())).collect()
+}
+
+/// What a deck leaves behind under these words, in a folder of its own.
+fn left_by(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), deck).unwrap();
+    let o = perigrain(folder.path(), &[&["-in", "in.deck", "-screen", "none"], words].concat());
+    assert!(o.status.success(), "{words:?}: {}\n{deck}", said(&o));
+    files(folder.path())
+}
+
+fn same(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>, what: &str) {
+    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(one), names(other), "{what}");
+    for (name, bytes) in one {
+        let (a, b) = (String::from_utf8_lossy(bytes), String::from_utf8_lossy(&other[name]));
+        let line = a.lines().zip(b.lines()).find(|(a, b)| a != b);
+        assert!(*bytes == other[name], "{what}: {name} differs: {line:?}");
+    }
+}
+
+/// A scene with everything that is written, and read back.
+fn deck_of(scene: &Scene) -> String {
+    format!(
+        "{}{}dump all all custom 7 dump.*.txt id type x y z vx vy vz\ndump_modify all format float %.17g\n\
+         restart 11 often.*.restart\nrun {}\nwrite_restart end.restart\nwrite_data end.data\n",
+        scene.make,
+        scene.again,
+        scene.steps.min(24)
+    )
+}
+
+#[test]
+fn every_family_has_the_same_bytes_on_any_number_of_ranks() {
+    for (k, scene) in SCENES.iter().enumerate() {
+        let list: &[&str] = if scene.list { &["-layout", "list"] } else { &[] };
+        let deck = deck_of(scene);
+        let alone = left_by(&deck, &[&["-threads", "1"], list].concat());
+        // Each scene on one of these numbers; all numbers come several times.
+        let (ranks, threads) = [("2", "1"), ("3", "1"), ("2", "2"), ("5", "1")][k % 4];
+        let several = left_by(&deck, &[&["-ranks", ranks, "-threads", threads], list].concat());
+        same(&alone, &several, &format!("{} on {ranks} ranks of {threads} threads", scene.name));
+    }
+}
+
+#[test]
+fn what_is_read_back_is_the_first_ranks() {
+    let scene = &SCENES[0];
+    let deck = format!(
+        "{}{}variable where getenv PWD\nshell mkdir made\nshell echo 'variable n equal 4' > made/more.in\ninclude made/more.in\n\
+         dump d all custom 2 d.lammpstrj id type x y z\nrun $n\nundump d\nwrite_restart a.restart\nclear\n\
+         read_restart a.restart\n{}if \"$(is_file(a.restart))\" then \"print 'there is one'\"\n\
+         variable t timer\nvariable late equal \"step*(time>0)\"\nprint \"$(v_late)\" file printed\n\
+         rerun d.lammpstrj dump x y z\nprint \"$(cpu*0) ${{where}}\" append printed screen no\nshell rm -f made/more.in nothing\nshell rmdir made\n",
+        scene.make, scene.again, scene.again
+    );
+    let without_folder = |mut files: BTreeMap<String, Vec<u8>>| {
+        let printed = String::from_utf8(files.remove("printed").unwrap()).unwrap();
+        assert!(printed.lines().count() == 2 && printed.contains("/tmp") || !printed.is_empty(), "{printed}");
+        files.insert("printed".into(), printed.lines().next().unwrap().into());
+        files.retain(|name, _| !name.starts_with("log"));
+        files
+    };
+    let alone = without_folder(left_by(&deck, &["-threads", "1"]));
+    same(&alone, &without_folder(left_by(&deck, &["-ranks", "3", "-threads", "1"])), "files read back");
+}
+
+#[test]
+fn a_mistake_is_told_once() {
+    let folder = tempfile::tempdir().unwrap();
+    for (deck, code, part) in [
+        ("units si\nregoin a block 0 1 0 1 0 1\n", 1, "did you mean"),
+        ("read_data nothing.data\n", 1, "nothing.data"),
+        ("read_restart nothing.restart\n", 1, "nothing.restart"),
+        ("log no/such/folder\n", 1, "create the folder"),
+        ("quit 3\n", 3, ""),
+    ] {
+        fs::write(folder.path().join("in.deck"), deck).unwrap();
+        let alone = perigrain(folder.path(), &["-in", "in.deck", "-threads", "1"]);
+        let several = perigrain(folder.path(), &["-in", "in.deck", "-ranks", "3", "-threads", "1"]);
+        assert_eq!(several.status.code(), Some(code), "{deck}: {}", said(&several));
+        assert!(said(&several).contains(part), "{}", said(&several));
+        assert_eq!(alone.stderr, several.stderr, "{deck}");
+    }
+    let o = perigrain(folder.path(), &["-ranks", "9999", "-in", "in.deck"]);
+    assert!(o.status.code() == Some(2) && said(&o).contains("at most 256"), "{}", said(&o));
+}
+
+/// A deck that runs until something ends it, and leaves a restart file.
+const ENDLESS: &str = "run 1000000000\n";
+
+fn endless() -> String {
+    let scene = SCENES.iter().find(|s| s.name == "pile").unwrap_or(&SCENES[1]);
+    format!("{}{}thermo 1000\nrestart 1000000 a.restart b.restart\n{ENDLESS}", scene.make, scene.again)
+}
+
+/// The processes that this one has started.
+fn children(parent: u32) -> Vec<u32> {
+    let of = |pid: u32| -> Option<u32> {
+        let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+        stat.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()
+    };
+    let pids = fs::read_dir("/proc")
+        .unwrap()
+        .filter_map(|e| e.unwrap().file_name().into_string().ok()?.parse().ok());
+    pids.filter(|pid| of(*pid) == Some(parent)).collect()
+}
+
+fn wait_for(what: &str, mut there: impl FnMut() -> bool) {
+    let begin = Instant::now();
+    while !there() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+fn signal(name: &str, pid: u32) {
+    assert!(Command::new("kill").args([name, &pid.to_string()]).status().unwrap().success());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_rank_that_is_killed_ends_all_and_is_named() {
+    for victim in [0, 1, 2] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("in.deck"), endless()).unwrap();
+        let first = start(folder.path(), PERIGRAIN, &["-in", "in.deck", "-ranks", "3", "-threads", "1"]);
+        let mut ranks = vec![first.id()];
+        wait_for("ranks begin", || {
+            ranks = [vec![first.id()], children(first.id())].concat();
+            ranks.len() == 3
+                && fs::read_to_string(folder.path().join("log.lammps"))
+                    .is_ok_and(|t| t.contains("\n      1000 ") || t.contains(" 1000 "))
+        });
+        ranks[1..].sort();
+        let begin = Instant::now();
+        signal("-9", ranks[victim]);
+        let o = first.wait_with_output().unwrap();
+        assert!(!o.status.success() && begin.elapsed() < Duration::from_secs(10));
+        if victim > 0 {
+            assert!(said(&o).contains(&format!("rank {victim} has ended")), "{}", said(&o));
+        }
+        wait_for("all are gone", || {
+            ranks.iter().all(|pid| {
+                !Path::new(&format!("/proc/{pid}/exe")).exists()
+                    || fs::read_link(format!("/proc/{pid}/exe")).is_err()
+            })
+        });
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_request_to_end_at_any_rank_leaves_the_restart_file_of_one_step() {
+    for asked in [0, 2] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("in.deck"), endless()).unwrap();
+        let first = start(folder.path(), PERIGRAIN, &["-in", "in.deck", "-ranks", "3", "-threads", "1"]);
+        let mut ranks = vec![];
+        wait_for("ranks begin", || {
+            ranks = [vec![first.id()], children(first.id())].concat();
+            ranks.len() == 3
+                && fs::read_to_string(folder.path().join("log.lammps")).is_ok_and(|t| t.contains(" 1000 "))
+        });
+        signal("-TERM", ranks[asked]);
+        let o = first.wait_with_output().unwrap();
+        assert_eq!(o.status.code(), Some(130), "{}", said(&o));
+        assert!(said(&o).contains("Interrupted"), "{}", said(&o));
+        assert!(folder.path().join("a.restart").exists(), "{}", said(&o));
+    }
+}
+
+#[test]
+fn processes_of_a_launcher_that_cannot_join_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), "print hello\n").unwrap();
+    fs::write(folder.path().join("log.lammps"), "an earlier log\n").unwrap();
+    let launched = |args: &[&str], mpi: &str| {
+        let mut command = Command::new(PERIGRAIN);
+        command.args(args).current_dir(folder.path()).stdin(Stdio::null());
+        command.env("OMPI_COMM_WORLD_SIZE", "2").env("OMPI_COMM_WORLD_RANK", "0").env("PERIGRAIN_MPI", mpi);
+        command.output().unwrap()
+    };
+    let o = launched(&["-in", "in.deck"], "/no/such/libmpi.so");
+    assert_eq!(o.status.code(), Some(2));
+    let words = said(&o);
+    assert!(
+        words.contains("error: Open MPI has started 2 processes, which cannot join")
+            && words.contains("PERIGRAIN_MPI=none"),
+        "{words}"
+    );
+    assert_eq!(fs::read_to_string(folder.path().join("log.lammps")).unwrap(), "an earlier log\n");
+    // A library that is none.
+    let o = launched(&["-in", "in.deck"], "libc.so.6");
+    assert!(o.status.code() == Some(2) && said(&o).contains("has no MPI_Init_thread"), "{}", said(&o));
+    for (args, why) in [
+        (&["check", "in.deck"][..], "this is work for one"),
+        (&["-in", "in.deck", "-partition", "2x1"], "`-partition` starts processes of its own"),
+        (&["-in", "in.deck", "-ranks", "2"], "`-ranks` would start more of them"),
+        (&["repl"], "lines are typed into one"),
+    ] {
+        let o = launched(args, "");
+        assert!(o.status.code() == Some(2) && said(&o).contains(why), "{args:?}: {}", said(&o));
+    }
+    let o = launched(&["-in", "in.deck"], "none");
+    assert!(o.status.success() && said(&o).contains("hello"), "each by itself: {}", said(&o));
+}
+
+/// Where the launchers of Debian's packages are.
+const LAUNCHERS: [(&str, &[&str], &str); 2] = [
+    ("/usr/bin/mpirun.openmpi", &["--allow-run-as-root", "--oversubscribe"], "Open MPI"),
+    ("/usr/bin/mpiexec.mpich", &[], "MPICH"),
+];
+
+#[test]
+fn real_launchers_have_the_same_bytes() {
+    for (launcher, own, library) in LAUNCHERS {
+        if !Path::new(launcher).exists() {
+            eprintln!("skipped: {launcher} is not there");
+            continue;
+        }
+        for scene in SCENES.iter().step_by(5) {
+            let list: &[&str] = if scene.list { &["-layout", "list"] } else { &[] };
+            let deck = deck_of(scene);
+            let alone = left_by(&deck, &[&["-threads", "1"], list].concat());
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("in.deck"), &deck).unwrap();
+            let words =
+                [own, &["-n", "2", PERIGRAIN, "-in", "in.deck", "-screen", "none", "-threads", "1"], list]
+                    .concat();
+            let o = start(folder.path(), launcher, &words).wait_with_output().unwrap();
+            assert!(o.status.success(), "{launcher}: {}", said(&o));
+            same(&alone, &files(folder.path()), &format!("{} by {launcher}", scene.name));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let o = start(folder.path(), launcher, &[own, &["-n", "3", PERIGRAIN, "ranks"]].concat())
+            .wait_with_output()
+            .unwrap();
+        assert!(said(&o).contains(library) && said(&o).contains("3 ranks on 1 host"), "{}", said(&o));
+        // Processes that were told other things run what the first one has.
+        fs::write(folder.path().join("in.deck"), "variable a getenv OWN\nprint \"OWN is $a\"\n").unwrap();
+        let one = |own: &'static str| ["-n", "1", "env", own, PERIGRAIN, "-in", "in.deck"];
+        let words = [own, &one("OWN=1"), &[":"], &one("OWN=2")].concat();
+        let o = start(folder.path(), launcher, &words).wait_with_output().unwrap();
+        assert!(o.status.success() && said(&o).matches("OWN is 1").count() == 1, "{}", said(&o));
+        // One that was started with other words does not.
+        let words = [own, &one("OWN=1"), &[":"], &one("OWN=2"), &["-var", "x", "1"]].concat();
+        let o = start(folder.path(), launcher, &words).wait_with_output().unwrap();
+        assert!(
+            !o.status.success() && said(&o).matches("was started with other words").count() == 1,
+            "{}",
+            said(&o)
+        );
+    }
+}
+
+#[test]
+fn nothing_is_linked_against_mpi() {
+    let o = Command::new("ldd").arg(PERIGRAIN).output();
+    if let Ok(o) = o {
+        assert!(!said(&o).contains("mpi"), "{}", said(&o));
+    }
+}
