@@ -102,7 +102,7 @@ const BOOK: [&str; 2] = [
      - [Decisions: which bonds break](decisions/breaking.md)\n\
      - [Decisions: lanes](decisions/lanes.md)\n\
      - [Decisions: threads and memory](decisions/threads.md)\n\
-    - [Decisions: ranks](decisions/ranks.md)\n\
+     - [Decisions: ranks](decisions/ranks.md)\n\
      - [Decisions: adding laws](decisions/adding-laws.md)\n\
      - [Decisions: dependencies](decisions/dependencies.md)\n\
      - [Decisions: what strangers hit](decisions/strangers.md)\n\
