@@ -12,8 +12,8 @@ struct Row {
     tolerance: f64,
 }
 
-#[test]
-fn examples_print_what_they_should() {
+/// The tables of all examples.
+fn tables() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let mut tables: Vec<PathBuf> = fs::read_dir(folder)
         .unwrap()
@@ -21,7 +21,23 @@ fn examples_print_what_they_should() {
         .filter(|p| p.exists())
         .collect();
     tables.sort();
-    for table in tables {
+    tables
+}
+
+/// Every example's deck with the arguments that make it small.
+pub fn short_forms() -> Vec<(PathBuf, String)> {
+    let mut forms = vec![];
+    for table in tables() {
+        for (deck, args) in read(&table).into_keys() {
+            forms.extend(variants(&args).into_iter().map(|args| (table.with_file_name(&deck), args)));
+        }
+    }
+    forms
+}
+
+#[test]
+fn examples_print_what_they_should() {
+    for table in tables() {
         for ((deck, args), rows) in read(&table) {
             let printed: Vec<String> =
                 variants(&args).iter().map(|args| run(&table.with_file_name(&deck), args)).collect();

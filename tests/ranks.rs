@@ -1,5 +1,6 @@
 //! Several ranks run one deck: what they write has the bytes of one process, and one that fails or dies ends them all.
 
+use crate::examples;
 use crate::restart::scenes::{SCENES, Scene};
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,6 +16,8 @@ const LAUNCHED: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANK
 fn start(folder: &Path, program: &str, args: &[&str]) -> Child {
     let mut command = Command::new(program);
     LAUNCHED.iter().for_each(|key| drop(command.env_remove(key)));
+    // Containers may forbid a process to read another one's memory, which Open MPI would complain of.
+    command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none");
     command
         .args(args)
         .current_dir(folder)
@@ -97,6 +100,29 @@ fn every_family_has_the_same_bytes_on_any_number_of_ranks() {
         let (ranks, threads) = [("2", "1"), ("3", "1"), ("2", "2"), ("5", "1")][k % 4];
         let several = left_by(&deck, &[&["-ranks", ranks, "-threads", threads], list].concat());
         same(&alone, &several, &format!("{} on {ranks} ranks of {threads} threads", scene.name));
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: `./check --ranks`"]
+fn every_example_has_the_same_bytes_on_any_number_of_ranks() {
+    for (deck, args) in examples::short_forms() {
+        let folder = |words: &[&str]| {
+            let folder = tempfile::tempdir().unwrap();
+            let words: Vec<&str> =
+                [&["-in", deck.to_str().unwrap(), "-screen", "none", "-threads", "1"], words]
+                    .concat()
+                    .into_iter()
+                    .chain(args.split_whitespace())
+                    .collect();
+            let o = perigrain(folder.path(), &words);
+            assert!(o.status.success(), "{words:?}: {}", said(&o));
+            files(folder.path())
+        };
+        let alone = folder(&[]);
+        for ranks in ["2", "3", "5"] {
+            same(&alone, &folder(&["-ranks", ranks]), &format!("{} {args} on {ranks} ranks", deck.display()));
+        }
     }
 }
 

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Random decks on one process and on several ranks: what differs in a byte is printed, its deck stays.
+
+    tests/oracle/on_ranks.py KIND PERIGRAIN FIRST LAST [RANKS]
+
+Kinds and seeds are those of random_decks.py; LAMMPS is not needed. Everything printed but times, and every file left behind, is compared.
+"""
+import importlib
+import os
+import random
+import sys
+import tempfile
+
+from again import Cut
+from beside import run
+from random_decks import KINDS
+
+# Lines that tell of time, memory and processes.
+OF_THIS_RUN = ("perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank")
+PARTS = ("% CPU", "CPU = ", " | ", "[s]", "s/step", "Wall time")
+
+
+def lines(said):
+    """What was printed, but what tells of this run alone."""
+    return [line for line in said.splitlines() if not line.startswith(OF_THIS_RUN) and not any(part in line for part in PARTS)]
+
+
+def differs(deck, perigrain, ranks):
+    """None, or what is not the same on one process and on several ranks."""
+    deck = deck.cut if isinstance(deck, Cut) else deck
+    with tempfile.TemporaryDirectory() as top:
+        with open(f"{top}/ours.in", "w") as file:
+            file.write("\n".join(deck) + "\n")
+        words = [perigrain, "-threads", "1", "-log", "none", f"{top}/ours.in"]
+        one, files_of_one = run(f"{top}/one", *words)
+        several, files_of_several = run(f"{top}/several", *words, "-ranks", str(ranks))
+    for a, b in zip(lines(one), lines(several)):
+        if a != b:
+            return f"{a!r} and {b!r}"
+    if len(lines(one)) != len(lines(several)):
+        return f"{len(lines(one))} and {len(lines(several))} lines"
+    odd = [name for name in sorted(files_of_one.keys() | files_of_several.keys()) if files_of_one.get(name) != files_of_several.get(name)]
+    return f"files {' '.join(odd)}" if odd else None
+
+
+def main():
+    if len(sys.argv) not in (5, 6) or sys.argv[1] not in KINDS:
+        sys.exit(__doc__)
+    what, perigrain, first, last = sys.argv[1:5]
+    ranks = int(sys.argv[5]) if len(sys.argv) > 5 else 3
+    make = getattr(importlib.import_module(what), what)
+    differ = 0
+    for seed in range(int(first), int(last) + 1):
+        deck = make(random.Random(seed))
+        found = differs(deck, os.path.abspath(perigrain), ranks)
+        if found:
+            differ += 1
+            with open(f"{what}.{seed}.in", "w") as file:
+                file.write("\n".join(deck) + "\n")
+            print(f"{what} {seed}: {found}", flush=True)
+    print(f"{what}: {differ} of {int(last) - int(first) + 1} decks differ on {ranks} ranks")
+    return differ != 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
