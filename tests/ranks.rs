@@ -15,7 +15,9 @@ const LAUNCHED: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANK
 
 fn start(folder: &Path, program: &str, args: &[&str]) -> Child {
     let mut command = Command::new(program);
-    LAUNCHED.iter().for_each(|key| drop(command.env_remove(key)));
+    for key in LAUNCHED {
+        command.env_remove(key);
+    }
     // Containers may forbid a process to read another one's memory, which Open MPI would complain of.
     command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none");
     command

@@ -12,6 +12,7 @@ use perigrain::session::{Options, Session};
 use perigrain::world::Compat;
 
 mod jpeg;
+mod vtu;
 
 /// All files of a folder by name.
 fn files(folder: &Path) -> BTreeMap<String, String> {

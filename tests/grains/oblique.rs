@@ -2,6 +2,7 @@
 //! of an independent integration.
 
 use super::scene::{Scene, close, empty, hertz, law, mass, sphere};
+use perigrain::world::World;
 
 /// What a sphere does after it has met a plane.
 #[derive(Clone, Copy, Debug)]
@@ -30,18 +31,17 @@ fn meet([radius, density]: [f64; 2], v: [f64; 2], spin: f64, model: &str, time: 
         + &law(model, dt)
         + &format!("fix wall all wall/gran granular {model} zplane 0.0 NULL\n");
     let mut scene = Scene::new(&deck);
-    let mut seen = After { across: 0.0, up: 0.0, spin: 0.0, normal: 0.0, friction: [0.0; 2] };
-    for _ in 0..4000 {
-        scene.step(1);
-        let p = &scene.world().particles;
-        let f = p.f[0];
+    let sphere = |w: &World| (w.particles.f[0], w.particles.v[0], w.particles.omega[0]);
+    let away = |(f, v, _): &([f64; 3], [f64; 3], [f64; 3])| f[2] == 0.0 && v[2] > 0.0;
+    let steps = scene.watched(4000, sphere, away);
+    let last = steps.last().filter(|s| away(s)).unwrap_or_else(|| panic!("no rebound: {model}"));
+    let mut seen =
+        After { across: last.1[0], up: last.1[2], spin: last.2[1], normal: 0.0, friction: [0.0; 2] };
+    for (f, ..) in &steps {
         seen.normal = seen.normal.max(f[2]);
         seen.friction = [seen.friction[0].max(f[0]), seen.friction[1].min(f[0])];
-        if f[2] == 0.0 && p.v[0][2] > 0.0 {
-            return After { across: p.v[0][0], up: p.v[0][2], spin: p.omega[0][1], ..seen };
-        }
     }
-    panic!("no rebound: {model}");
+    seen
 }
 
 /// Stiffnesses of a contact with a rigid plane: 4/3 E/(1 − ν²) and 8 G/(2 − ν).

@@ -1,14 +1,42 @@
 //! Small scenes of grains, run step by step.
 
 use perigrain::out::log::{Buffer, Log};
-use perigrain::session::{Options, Session};
+use perigrain::session::{Made, Options, Session, Watch};
 use perigrain::world::World;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// A deck at work.
 pub struct Scene {
     session: Session,
     screen: Buffer,
+}
+
+/// Looks at the scene after each step.
+struct Looks<T, L, E> {
+    look: L,
+    ends: E,
+    seen: Arc<Mutex<Vec<T>>>,
+    stop: Arc<AtomicBool>,
+}
+
+impl<T: Send, L: Fn(&World) -> T + Send, E: FnMut(&T) -> bool + Send> Watch for Looks<T, L, E> {
+    fn step(&mut self, _made: &Made) {}
+
+    fn looks(&mut self, _w: &World) -> bool {
+        true
+    }
+
+    fn scene(&mut self, w: &World) {
+        // The run makes one more step once it is asked to end.
+        if self.stop.load(Ordering::Relaxed) {
+            return;
+        }
+        let now = (self.look)(w);
+        self.stop.store((self.ends)(&now), Ordering::Relaxed);
+        self.seen.lock().unwrap().push(now);
+    }
 }
 
 impl Scene {
@@ -30,6 +58,21 @@ impl Scene {
     /// Some steps.
     pub fn step(&mut self, steps: usize) {
         self.say(&format!("run {steps} post no"));
+    }
+
+    /// What `look` sees after each step of one run, which `ends` with the first look that it says so of or after `most` steps. Such a
+    /// run is fifty times as quick as one for each step; the scene is over then.
+    pub fn watched<T: Send + 'static>(
+        &mut self,
+        most: usize,
+        look: impl Fn(&World) -> T + Send + 'static,
+        ends: impl FnMut(&T) -> bool + Send + 'static,
+    ) -> Vec<T> {
+        let seen = Arc::<Mutex<Vec<T>>>::default();
+        let watch = Looks { look, ends, seen: seen.clone(), stop: self.session.stop_flag() };
+        self.session.set_watch(Box::new(watch));
+        self.step(most);
+        std::mem::take(&mut *seen.lock().unwrap())
     }
 
     /// The value of one formula in `$(…)`.
