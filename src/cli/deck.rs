@@ -191,7 +191,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
 }
 
 /// The threads that `OMP_NUM_THREADS` allows: batch systems set it to the cores that were given.
-fn asked_of_openmp() -> Option<usize> {
+pub(super) fn asked_of_openmp() -> Option<usize> {
     let value = std::env::var("OMP_NUM_THREADS").ok()?;
     let threads = openmp_threads(&value);
     if threads.is_none() && !value.trim().is_empty() {

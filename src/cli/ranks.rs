@@ -131,6 +131,7 @@ fn together(ranks: &dyn Comm, o: &Options) -> Result<u8, Usage> {
     let mut plain = [f64::from(u8::from(o.portable || Form::here() == Form::Plain))];
     ranks.most(&mut plain);
     o.portable |= plain[0] > 0.0 && Form::here() != Form::Plain;
+    o.threads = o.threads.or_else(deck::asked_of_openmp);
     o.threads = o.threads.or_else(|| Some(share_of_cores(&nodes, ranks.rank())));
     if ranks.rank() > 0 {
         // The first rank shows everything.
@@ -190,19 +191,18 @@ fn build() -> String {
 /// A rank's share of the cores of its machine, as far as the launcher has not dealt them out.
 fn share_of_cores(nodes: &[String], rank: usize) -> usize {
     let granted = std::thread::available_parallelism().map_or(1, usize::from);
-    let all = std::thread::available_parallelism().map_or(1, |_| cores());
+    let all = cores().max(granted);
     let beside = nodes.iter().filter(|n| **n == nodes[rank]).count();
     if granted < all { granted } else { (all / beside).max(1) }
 }
 
-/// Cores of this machine, whoever may use them.
+/// Cores of this machine, also those that this process may not use; 0 where the system does not list them.
 fn cores() -> usize {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let listed = text.lines().filter(|line| line.starts_with("processor")).count();
-    if listed > 0 { listed } else { std::thread::available_parallelism().map_or(1, usize::from) }
+    text.lines().filter(|line| line.starts_with("processor")).count()
 }
 
-/// Who runs this deck, for the log's first line: nothing where there is one process.
+/// The ranks in the log's first line: nothing where there is one process.
 pub(super) fn said() -> String {
     if !comm::several() {
         return String::new();

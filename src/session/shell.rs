@@ -1,7 +1,7 @@
 //! `shell`: folders, files, environment, and commands for the system's shell.
 
 use super::Session;
-use perigrain_base::comm::told;
+use perigrain_base::comm::{self, told};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::{gate, stop};
 use perigrain_lang::{Args, Command, Word};
@@ -99,6 +99,7 @@ impl Session {
         // Of several ranks the first one does it.
         let trouble = told::text(|| {
             let mut shell = std::process::Command::new("sh");
+            comm::set_apart(&mut shell);
             let child = shell.arg("-c").arg(&line).envs(self.vars.environment()).spawn();
             match child.and_then(waited) {
                 Ok(s) if s.success() => None,

@@ -20,7 +20,7 @@ pub mod told;
 
 pub use alone::Alone;
 pub use host::{file_of, host, nodes, said};
-pub use launcher::{Launched, launched, open};
+pub use launcher::{Launched, launched, open, set_apart};
 #[cfg(unix)]
 pub use local::{Local, Seat};
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
