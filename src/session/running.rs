@@ -368,6 +368,11 @@ impl Session {
         }
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
+            let tiles =
+                self.world.families.as_ref().map(|families| families.told_of_tiles()).unwrap_or_default();
+            if !tiles.is_empty() {
+                self.options.log.line(tiles.trim_end())?;
+            }
         }
         self.plan = Some(plan);
         Ok(())
@@ -386,6 +391,11 @@ impl Session {
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         self.say_notes()?;
         self.options.log.flush()?;
+        if self.options.mode == Mode::Measure
+            && let Some(families) = &mut *self.world.families
+        {
+            families.time_tiles();
+        }
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         plan.reset_meters(timed);
         watch.begins(w);

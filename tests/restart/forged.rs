@@ -82,7 +82,6 @@ fn lattices_lead_where_there_is_something() {
             (body!(|b| b.u[0].truncate(9)), s, "former displacements is 9"),
             (body!(|b| b.width = usize::MAX), s, "the number of its rows"),
             (body!(|b| b.planes = 0), s, "it has no rows"),
-            (body!(|b| b.thickness = 0), s, "the thickness of its slabs"),
             (
                 body!(|b| b.rows.iter_mut().filter(|r| r.len > 0).for_each(|r| r.lo += r.start as i32)),
                 s,

@@ -3,7 +3,6 @@
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::list::ListBody;
 use crate::families::{Cell, Families, Law, LawKind, Moved, NearPair};
-use crate::lattice::sweep::extent;
 use perigrain_base::par::{self, Shared};
 
 /// One partner of a particle.
@@ -293,11 +292,14 @@ impl Counted {
         let (entries, cells) = (body.stencil.len(), body.particle.len());
         let mut live = vec![0u16; cells];
         let counts = Shared::new(&mut live);
-        par::two_colours(body.slabs(), |slab| {
-            let (own, first, last) = extent(body, slab);
+        let thickness = (body.reach[2] as usize).max(1);
+        par::two_colours(body.planes.div_ceil(thickness), |slab| {
+            let (low, high) = (slab * thickness, ((slab + 1) * thickness).min(body.planes));
+            let start = |plane: usize| body.rows[body.slot(plane, 0)].start as usize;
+            let (first, last) = (start(low), start((high + thickness).min(body.planes)));
             // Eights reach into cells beyond a row's ends, which may be another slab's: counted aside, with entries around.
             let mut aside = vec![0u16; last - first + 2 * PAD];
-            for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
+            for slot in body.slot(low, 0)..body.slot(high, 0) {
                 let row = body.rows[slot];
                 for (e, &[along, across, up]) in body.stencil.iter().enumerate() {
                     let other = (slot + up as usize * body.width).wrapping_add_signed(across as isize);

@@ -1,4 +1,4 @@
-//! Laying out a body on a lattice: rows, slabs, half stencil, alive bits.
+//! Laying out a body on a lattice: rows, half stencil, alive bits.
 
 use crate::build::detect::distance;
 use crate::build::sites::Sites;
@@ -78,7 +78,7 @@ impl Frame {
             (lo, [0, 1, 2].map(|k| (hi[k] - lo[k] + 1) as usize))
         };
         let (mut lo, mut size) = extent(&turn);
-        // Planes follow each other along the longer direction: more slabs share the work. In the order of creation rows of a disc
+        // Planes follow each other along the longer direction. In the order of creation rows of a disc
         // half as high as wide are gathered sooner, which is 5 to 8 % of its steps on one core.
         if size[1] > size[2] {
             turn = turn.exchanged();
@@ -193,17 +193,11 @@ pub fn prune(body: &LatticeBody, all: Vec<[i32; 3]>) -> Pruned {
     Pruned { stencil, steps, step_of }
 }
 
-/// Planes per slab: thick slabs hand over fewer forces twice, many slabs keep threads equally busy.
-pub fn thickness(planes: usize, above: usize) -> usize {
-    planes.div_ceil(16).clamp(above, 2 * above).max(1)
-}
-
 fn rows(body: &mut LatticeBody, members: &[u32], frame: &Frame) {
     let [_, across, up] = frame.size;
     let [_, beside, above] = body.reach.map(|r| r as usize);
     body.planes = up;
     body.width = across + 2 * beside;
-    body.thickness = thickness(up, above);
     let mut extent = vec![(i32::MAX, i32::MIN); body.width * (up + above + 1)];
     let slot = |at: &[i32; 3]| at[2] as usize * body.width + at[1] as usize + beside;
     for at in &frame.at {

@@ -1,6 +1,7 @@
 //! A peridynamic body on a lattice: cells in rows, rows in planes, one bit per bond.
 
 use crate::families::law::SiteState;
+use crate::families::tiles::Tiles;
 use crate::families::{Measures, Scatter};
 use perigrain_base::math::cell::{Basis, point};
 
@@ -95,7 +96,7 @@ pub struct LatticeBody {
     pub width: usize,
     /// Rows of all planes and of the empty ones.
     pub rows: Vec<Row>,
-    /// Planes per slab.
+    /// Planes of the slabs in which versions before tiles swept bodies: restart files have it.
     pub thickness: usize,
     /// Particle in each cell; `u32::MAX` where vacant.
     pub particle: Vec<u32>,
@@ -142,6 +143,9 @@ pub struct LatticeBody {
     /// Critical measures of families in the step before, by chunks.
     #[serde(skip)]
     pub measures: Measures,
+    /// The blocks in which it is swept.
+    #[serde(skip)]
+    pub tiles: Tiles,
     /// Where bonds lead.
     #[serde(skip)]
     pub leads: Leads,
@@ -161,6 +165,8 @@ pub struct LatticeBody {
 pub struct Lead {
     /// How many cells further.
     pub to: i32,
+    /// The same in the window of the tile that the row belongs to.
+    pub due: i32,
     /// The place of their table of constants.
     pub table: u32,
     /// The stencil vector.
@@ -240,11 +246,6 @@ impl LatticeBody {
     pub fn slot_of(&self, cell: usize) -> usize {
         let known = self.leads.slot.get(cell / LANES).map(|slot| *slot as usize);
         known.unwrap_or_else(|| self.rows.partition_point(|r| r.start as usize <= cell) - 1)
-    }
-
-    /// The slabs' number.
-    pub fn slabs(&self) -> usize {
-        self.planes.div_ceil(self.thickness)
     }
 
     /// The cell one stencil vector beyond `cell` (in row slot `slot`), vacant or not.
@@ -359,6 +360,7 @@ impl LatticeBody {
             + self.cell_kind.len()
             + self.measures.bytes()
             + self.leads.to.len() * size_of::<Lead>()
+            + self.tiles.bytes()
             + self.slackest.bond.len() * size_of::<Slack>()
             + self.slackest.bound.len() * 8
             + self.leads.of_row.len() * 8

@@ -18,6 +18,7 @@ mod measures;
 mod scatter;
 mod sound;
 mod table;
+pub mod tiles;
 
 pub use crate::damage::Neighbour;
 pub use bond_weights::{BondWeights, Factors, Weighed};
@@ -439,7 +440,7 @@ pub struct Candidate {
     pub alpha: f64,
 }
 
-/// What one thread needs for a slab.
+/// What one thread needs for a slab of a list.
 #[derive(Debug, Default)]
 pub struct Window {
     /// Forces of a slab and of what it reaches.

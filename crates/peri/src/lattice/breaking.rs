@@ -78,7 +78,7 @@ impl LatticeBody {
         let alive = &self.alive[chunk * entries..][..entries];
         // Tables of a pair of types stand together: few pairs, and to divide for every bond would take longer than the bond.
         let (mut first, mut pair) = (u32::MAX, 0);
-        for &Lead { to, table, e } in to {
+        for &Lead { to, table, e, .. } in to {
             let bits = alive[e as usize];
             if bits == 0 {
                 continue;

@@ -56,7 +56,7 @@ pub unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -
             let mut sum = [L::splat(0.0); SUMS];
             let mut lead = 0;
             while lead < a.to.len() {
-                let Lead { to, table, e } = *a.to.get_unchecked(lead);
+                let Lead { to, table, e, .. } = *a.to.get_unchecked(lead);
                 let vector = e as usize;
                 let bits = *a.alive.get_unchecked(vector) >> here;
                 lead += 1;

@@ -180,7 +180,7 @@ pub(crate) unsafe fn pull<
         let mut sum = [[zero; 3]; 2];
         let mut lead = 0;
         while lead < a.to.len() {
-            let Lead { to, table, e } = *a.to.get_unchecked(lead);
+            let Lead { to, due, table, e } = *a.to.get_unchecked(lead);
             let vector = e as usize;
             let bits = *a.alive.get_unchecked(vector);
             lead += 1;
@@ -239,7 +239,7 @@ pub(crate) unsafe fn pull<
                     sum[v][k] = near.fma(b.y[k], sum[v][k]);
                     k += 1;
                 }
-                take::<L>(&a.f, other, far, &b.y);
+                take::<L>(&a.f, here as isize + due as isize, far, &b.y);
                 v += 1;
             }
         }
@@ -276,7 +276,7 @@ pub(crate) unsafe fn add_up<
         let mut sum = [L::splat(0.0); 2];
         let mut lead = 0;
         while lead < a.to.len() {
-            let Lead { to, table, e } = *a.to.get_unchecked(lead);
+            let Lead { to, due, table, e } = *a.to.get_unchecked(lead);
             let vector = e as usize;
             let bits = *a.alive.get_unchecked(vector);
             lead += 1;
@@ -307,7 +307,7 @@ pub(crate) unsafe fn add_up<
                     far = far.mul(L::load(cells.volume.add(here)));
                 }
                 sum[v] = sum[v].add(near);
-                let target = a.f[0].offset(other);
+                let target = a.f[0].offset(here as isize + due as isize);
                 L::load(target).add(far).store(target);
                 v += 1;
             }

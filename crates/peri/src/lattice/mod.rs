@@ -9,14 +9,18 @@ pub mod forms;
 pub mod gather;
 pub mod kernels;
 pub mod leads;
+mod measured;
+pub(crate) mod owed;
 pub mod states;
 pub mod sweep;
 pub mod tables;
+pub(crate) mod tiles;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::law::COLUMNS;
+use crate::families::tiles::Tiles;
 use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
 use crate::lanes::isa::Isa;
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
@@ -41,14 +45,12 @@ impl Families {
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
     ) {
-        let Self { lattices, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
+        let Self { lattices, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
-        scratch.windows.resize_with(par::most_threads().max(scratch.windows.len()), Mutex::default);
-        let windows: &[Mutex<Window>] = &scratch.windows;
         let settling = settling((law, table), options, (advance, tallied, *counts_losses));
         let f = Shared::new(f);
         for body in lattices {
-            lattice_body::<K>(body, view, &f, (mode, options), &settling, windows);
+            lattice_body::<K>(body, view, &f, (mode, options), &settling);
         }
     }
 
@@ -110,7 +112,6 @@ fn lattice_body<K: Isa>(
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
     settling: &Settling,
-    windows: &[Mutex<Window>],
 ) {
     let kind = settling.law.kind;
     let spreads = kind.spreads();
@@ -121,6 +122,8 @@ fn lattice_body<K: Isa>(
         body.state.columns.resize(COLUMNS * body.stride, 0.0);
     }
     let mut columns = ChunkColumns::take(body);
+    let mut windows = std::mem::take(&mut body.tiles.windows);
+    let tiles = std::mem::take(&mut body.tiles);
     keep_earlier(&mut body.state, settling);
     let mut memory = std::mem::take(&mut body.state.memory);
     let mut touched = std::mem::take(&mut body.state.touched);
@@ -149,9 +152,7 @@ fn lattice_body<K: Isa>(
         sums.resize(body.stride, 0.0);
         let shared = Shared::new(&mut sums);
         let sweep = Sweep::new(body, &mut columns, mode, newton, states);
-        par::two_colours(body.slabs(), |slab| {
-            states::slab::<K>(&sweep, sum, slab, &mut window(windows), &shared);
-        });
+        states::all::<K>(&sweep, sum, (&tiles, &mut windows), &shared);
         body.state.sums = sums;
     };
     if !kind.bond_based() {
@@ -167,8 +168,9 @@ fn lattice_body<K: Isa>(
     }
     (body.particle, body.scatter.stiffness) = (particle, stiffness);
     let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
-    par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
+    sweep.all::<K>((&tiles, &mut windows), f);
     columns.give(body);
+    body.tiles = Tiles { windows, ..tiles };
     (body.state.memory, body.state.touched) = (memory, touched);
     settling.held(&mut body.state);
 }

@@ -3,14 +3,17 @@
 use std::marker::PhantomData;
 
 use crate::energy::shares;
+use crate::families::LawKind;
 use crate::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
-use crate::families::{LawKind, Window};
+use crate::families::tiles::{TileWindow, Tiles};
 use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
 use crate::lattice::energies::Looking;
 use crate::lattice::forms::{self, run, run_term};
 use crate::lattice::kernels::Cells;
-use crate::lattice::sweep::{Sweep, extent, open};
+use crate::lattice::owed;
+use crate::lattice::sweep::{Room, Sweep};
+use crate::lattice::tiles::pass;
 use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{Moment, of_law};
 use perigrain_base::par::Shared;
@@ -116,25 +119,35 @@ pub enum Sum {
     NormLammps,
 }
 
-/// Adds the terms of the bonds of one slab's cells to `sums`, which has [`PAD`] entries before the first cell.
-pub fn slab<K: Isa>(sweep: &Sweep, sum: Sum, slab: usize, window: &mut Window, sums: &Shared<f64>) {
+/// Adds the terms of all bonds to `sums`, which has [`PAD`] entries before the first cell.
+pub(crate) fn all<K: Isa>(
+    sweep: &Sweep,
+    sum: Sum,
+    (tiles, windows): (&Tiles, &mut [TileWindow]),
+    sums: &Shared<f64>,
+) {
+    pass(
+        tiles,
+        (windows, &[]),
+        |at, window| tile::<K>(sweep, sum, (tiles, at), window),
+        |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
+    );
+}
+
+/// Adds the terms of the bonds of one tile's cells to its window; returns whether any was not at rest.
+fn tile<K: Isa>(sweep: &Sweep, sum: Sum, tile: (&Tiles, usize), window: &mut TileWindow) -> bool {
     match sum {
-        Sum::Dilatation => add_up::<K, Dilatation>(sweep, slab, window, sums),
-        Sum::Norm => add_up::<K, Norm>(sweep, slab, window, sums),
-        Sum::NormLammps => add_up::<K, NormLammps>(sweep, slab, window, sums),
+        Sum::Dilatation => add_up::<K, Dilatation>(sweep, tile, window),
+        Sum::Norm => add_up::<K, Norm>(sweep, tile, window),
+        Sum::NormLammps => add_up::<K, NormLammps>(sweep, tile, window),
     }
 }
 
-fn add_up<K: Isa, T: Term>(sweep: &Sweep, slab: usize, window: &mut Window, sums: &Shared<f64>) {
+fn add_up<K: Isa, T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
     let body = sweep.body();
-    let (own, first, last) = extent(body, slab);
-    let (base, stride) = open(window, body, first, (last - first, 1));
-    let mut touched = false;
-    for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
+    let mut room = Room { body, tiles, tile, components: 1, window, open: false };
+    for (slot, first) in room.rows() {
         let row = &body.rows[slot];
-        if row.len == 0 {
-            continue;
-        }
         let plan = sweep.plan(slot);
         for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
             let lo = row.lo + (chunk * LANES) as i32 - row.start as i32;
@@ -142,23 +155,16 @@ fn add_up<K: Isa, T: Term>(sweep: &Sweep, slab: usize, window: &mut Window, sums
             if rest && sweep.skips() {
                 continue;
             }
-            touched = true;
             let degree = sweep.degree(chunk, &plan);
-            let mut data =
-                sweep.chunk((slot, chunk * LANES), body.stencil.len(), window, (base, stride, first));
+            let cell = chunk * LANES;
+            let mut data = sweep.chunk((slot, cell), body.stencil.len(), room.at(cell, first));
             data.tables = &body.state.tables;
             let cells = sweep.states().cells(body, chunk);
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
             unsafe { run_term::<K, T>(&data, &cells, degree, !body.intact[chunk]) };
         }
     }
-    if touched {
-        // SAFETY: slabs that reach a cell run one after the other.
-        let sums = unsafe { sums.get(PAD + first..PAD + last) };
-        for (sum, part) in sums.iter_mut().zip(&window.force[base..base + last - first]) {
-            *sum += part;
-        }
-    }
+    room.open
 }
 
 /// Whether every chunk has a cell that is not at rest.

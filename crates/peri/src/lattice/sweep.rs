@@ -1,14 +1,16 @@
-//! Forces of a body on a lattice: slabs swept, forces handed back.
+//! Forces of a body on a lattice: tiles swept into their windows.
 //!
 //! Rows, stencil, bits of bonds and lengths of columns are as `build::lattice` makes them; of bodies from restart files
 //! `families::sound` has looked at each of them.
 
-use crate::families::Window;
 use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
+use crate::families::tiles::{TileWindow, Tiles};
 use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{self, Chunk, Various};
 use crate::lattice::leads::{ahead, find_leads, row_limit};
+use crate::lattice::owed;
 use crate::lattice::states::States;
+use crate::lattice::tiles::pass;
 use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
 use perigrain_base::par::Shared;
@@ -32,7 +34,7 @@ pub const MAY_BREAK: u8 = 1;
 /// Bonded pairs close enough for short-range contact.
 pub const SQUEEZED: u8 = 2;
 
-/// One body during one force evaluation, with the columns that its slabs write.
+/// One body during one force evaluation, with the columns that its tiles write.
 pub struct Sweep<'a> {
     body: &'a LatticeBody,
     tension: Shared<'a, f32>,
@@ -46,7 +48,7 @@ pub struct Sweep<'a> {
     states: States<'a>,
 }
 
-/// The body's columns by chunks and rows, taken out so that slabs can share the rest.
+/// The body's columns by chunks and rows, taken out so that tiles can share the rest.
 #[derive(Debug, Default)]
 pub struct ChunkColumns {
     tension: Vec<f32>,
@@ -115,31 +117,25 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Adds the forces of the bonds of one slab's cells to `f`: written are the particles of this slab and
-    /// of the next.
-    pub fn slab<K: Isa>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
-        let body = self.body;
-        let (own, first, last) = extent(body, slab);
-        let (base, stride) = open(window, body, first, (last - first, 3));
-        let mut touched = false;
-        for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
-            if body.rows[slot].len > 0 {
-                let plan = self.plan(slot);
-                touched |= self.row::<K>(slot, &plan, window, (base, stride, first));
-            }
+    /// Adds the forces of all bonds to `f`.
+    pub(crate) fn all<K: Isa>(&self, (tiles, windows): (&Tiles, &mut [TileWindow]), f: &Shared<[f64; 3]>) {
+        pass(
+            tiles,
+            (windows, &tiles.times),
+            |tile, window| self.tile::<K>((tiles, tile), window),
+            |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
+        );
+    }
+
+    /// Sweeps a tile: the forces of its cells' bonds go into its window. Returns whether any bond was not at rest; else the
+    /// window is not touched.
+    fn tile<K: Isa>(&self, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
+        let mut room = Room { body: self.body, tiles, tile, components: 3, window, open: false };
+        for (slot, first) in room.rows() {
+            let plan = self.plan(slot);
+            self.row::<K>(slot, &plan, &mut room, first);
         }
-        if !touched {
-            return;
-        }
-        let [fx, fy, fz] = [0, 1, 2].map(|k| &window.force[base + k * stride..][..last - first]);
-        for (c, &p) in body.particle[first..last].iter().enumerate() {
-            let p = p as usize;
-            if p < f.len() {
-                // SAFETY: in bounds; a particle has one cell, and slabs that reach it run one after the other.
-                let f = unsafe { &mut *f.as_ptr().add(p) };
-                *f = [f[0] + fx[c], f[1] + fy[c], f[2] + fz[c]];
-            }
-        }
+        room.open
     }
 
     /// The body.
@@ -159,7 +155,7 @@ impl<'a> Sweep<'a> {
 
     /// The degree of series that a chunk's bonds need.
     pub(crate) fn degree(&self, chunk: usize, plan: &RowPlan) -> usize {
-        // SAFETY: bounds are written by one slab, between sweeps that ask for degrees.
+        // SAFETY: bounds are written by one tile, between sweeps that ask for degrees.
         let (tension, compression) =
             unsafe { (self.tension.get(chunk..chunk + 1)[0], self.compression.get(chunk..chunk + 1)[0]) };
         degree(f64::from(tension.max(compression)) + plan.growth)
@@ -168,7 +164,7 @@ impl<'a> Sweep<'a> {
     /// Looks at the rows that a row's bonds lead to. How far these move is looked up in the first sweep of an evaluation.
     pub(crate) fn plan(&self, slot: usize) -> RowPlan {
         let body = self.body;
-        // SAFETY: a row belongs to one slab.
+        // SAFETY: a row belongs to one tile.
         let growth = unsafe { &mut self.growth.get(slot..slot + 1)[0] };
         let spread = self.states.spread;
         let motion = (!spread || self.states.kind.bond_based()).then(|| self.motion(slot));
@@ -205,19 +201,13 @@ impl<'a> Sweep<'a> {
         })
     }
 
-    /// Sweeps a row's chunks; returns whether any was not at rest.
-    fn row<K: Isa>(
-        &self,
-        slot: usize,
-        plan: &RowPlan,
-        window: &mut Window,
-        (base, stride, first): (usize, usize, usize),
-    ) -> bool {
+    /// Sweeps a row's chunks; `first` is the cell with which the window would begin were all its planes like this one.
+    fn row<K: Isa>(&self, slot: usize, plan: &RowPlan, room: &mut Room, first: usize) {
         let body = self.body;
         let row = &body.rows[slot];
         let entries = body.stencil.len();
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
-        // SAFETY: a row's chunks belong to it alone, and a row to one slab.
+        // SAFETY: a row's chunks belong to it alone, and a row to one tile.
         let (tension, compression, measure, floors, flagged) = unsafe {
             (
                 self.tension.get(chunks.clone()),
@@ -227,7 +217,6 @@ impl<'a> Sweep<'a> {
                 self.flagged.get(chunks.clone()),
             )
         };
-        let mut touched = false;
         for (k, chunk) in chunks.enumerate() {
             let lo = row.lo + (LANES * k) as i32;
             let rest = lo > plan.active.1 || lo + (LANES as i32) <= plan.active.0;
@@ -238,7 +227,6 @@ impl<'a> Sweep<'a> {
             if rest && self.mode.skip {
                 continue;
             }
-            touched = true;
             let before = f64::from(tension[k]);
             let (mut high, mut low) = (before + plan.growth, f64::from(compression[k]) + plan.growth);
             let bound = high.max(low);
@@ -249,7 +237,7 @@ impl<'a> Sweep<'a> {
             let due = fragile || squeezed || bound >= f64::from(measure[k]);
             let track = !rest && (due || !self.mode.advance);
             let cell = chunk * LANES;
-            let chunk_data = self.chunk((slot, cell), entries, window, (base, stride, first));
+            let chunk_data = self.chunk((slot, cell), entries, room.at(cell, first));
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
             let measured = unsafe { self.states.pull::<K>(body, chunk, &chunk_data, degree, track) };
             if track {
@@ -270,19 +258,12 @@ impl<'a> Sweep<'a> {
                 compression[k] = round_up(low);
             }
         }
-        touched
     }
 
-    pub(crate) fn chunk<'b>(
-        &'b self,
-        (slot, cell): (usize, usize),
-        entries: usize,
-        window: &'b mut Window,
-        (base, stride, first): (usize, usize, usize),
-    ) -> Chunk<'b> {
+    /// What the loop over a chunk's bonds needs, with the place of its cells in a window.
+    pub(crate) fn chunk(&self, (slot, cell): (usize, usize), entries: usize, f: [*mut f64; 3]) -> Chunk<'_> {
         let body = self.body;
         let u = body.u[1].as_ptr();
-        let f = window.force.as_mut_ptr();
         let various = (!body.cell_kind.is_empty()).then(|| Various {
             // SAFETY: within the column, which has a place for each cell and PAD more around.
             kind: unsafe { body.cell_kind.as_ptr().add(PAD + cell) },
@@ -295,8 +276,7 @@ impl<'a> Sweep<'a> {
         Chunk {
             // SAFETY: within `u`, as above.
             u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + cell) }),
-            // SAFETY: the window was opened for cells from `first` on that include this one.
-            f: [0, 1, 2].map(|k| unsafe { f.add(base + k * stride + cell - first) }),
+            f,
             alive: &body.alive[cell / LANES * entries..][..entries],
             to: body.leads_of(slot),
             tables: &body.tables,
@@ -305,33 +285,63 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// The planes of a slab, and the cells that its bonds touch: those of the slab and of what it reaches.
-pub(crate) fn extent(body: &LatticeBody, slab: usize) -> (std::ops::Range<usize>, usize, usize) {
-    let own = slab * body.thickness..((slab + 1) * body.thickness).min(body.planes);
-    let end = (own.end + body.reach[2] as usize).min(body.planes);
-    let first = body.rows[body.slot(own.start, 0)].start as usize;
-    let last = body.rows[body.slot(end, 0)].start as usize;
-    (own, first, last)
+/// A tile being swept, and its window, which is opened when the first of its bonds is not at rest.
+pub(crate) struct Room<'a> {
+    pub(crate) body: &'a LatticeBody,
+    pub(crate) tiles: &'a Tiles,
+    pub(crate) tile: usize,
+    /// Sums for each cell, at most three.
+    pub(crate) components: usize,
+    pub(crate) window: &'a mut TileWindow,
+    /// Whether it has been opened.
+    pub(crate) open: bool,
 }
 
-/// Makes room for so many components (at most 3) of forces of `cells` cells from `first` on, all zero. Returns where the first one
-/// lies and how far components are apart: not at the page offsets of the displacements of the same cells.
-pub(crate) fn open(
-    window: &mut Window,
-    body: &LatticeBody,
-    first: usize,
-    (cells, components): (usize, usize),
-) -> (usize, usize) {
-    let stride = staggered(cells);
-    let length = 3 * stride + PAGE + PAD;
-    if window.force.len() < length {
-        window.force.resize(length, 0.0);
+impl<'a> Room<'a> {
+    /// The row slots of the tile that have cells, with [`Reached::first`](crate::families::tiles::Reached::first) of their plane.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<'a> {
+        let (body, tile) = (self.body, &self.tiles.all[self.tile]);
+        let planes = tile.planes.clone().zip(self.tiles.reached(self.tile));
+        let slots = planes
+            .flat_map(move |(plane, at)| tile.rows.clone().map(move |row| (body.slot(plane, row), at.first)));
+        slots.filter(|(slot, _)| body.rows[*slot].len > 0)
     }
-    let page = |p: *const f64| p.addr() / size_of::<f64>() % PAGE;
-    let want = (page(body.u[1].as_ptr()) + PAD + first + 3 * STAGGER) % PAGE;
-    let base = PAD + (want + 2 * PAGE - page(window.force.as_ptr()) - PAD) % PAGE;
-    window.force[base - PAD..base + components * stride - PAD].fill(0.0);
-    (base, stride)
+
+    /// Where a cell's sums are: of one of the tile's own, in a plane whose window would begin with the cell `first`.
+    pub(crate) fn at(&mut self, cell: usize, first: usize) -> [*mut f64; 3] {
+        if !self.open {
+            self.open = true;
+            self.open();
+        }
+        let TileWindow { sums, base, stride, .. } = &mut *self.window;
+        let sums = sums.as_mut_ptr();
+        // All components lie within the window, which covers the tile's cells.
+        [0, 1, 2].map(|k| sums.wrapping_add(*base + k * *stride + cell - first))
+    }
+
+    /// Makes room for the sums of all cells that the tile's bonds reach, all zero. They do not lie at the page offsets of the
+    /// displacements of the same cells.
+    fn open(&mut self) {
+        let reached = self.tiles.reached(self.tile);
+        let [Some(bottom), Some(top)] = [reached.first(), reached.last()] else { return };
+        let stride = staggered(top.cells[1] - top.first);
+        let length = 3 * stride + PAGE + PAD;
+        self.window.sums = self.tiles.take_room();
+        let TileWindow { sums, .. } = &mut *self.window;
+        if sums.len() < length {
+            sums.resize(length, 0.0);
+        }
+        let page = |p: *const f64| p.addr() / size_of::<f64>() % PAGE;
+        let want = (page(self.body.u[1].as_ptr()) + PAD + bottom.first + 3 * STAGGER) % PAGE;
+        let base = PAD + (want + 2 * PAGE - page(sums.as_ptr()) - PAD) % PAGE;
+        for k in 0..self.components {
+            for at in reached {
+                let from = base + k * stride;
+                sums[from + at.cells[0] - at.first..from + at.cells[1] - at.first].fill(0.0);
+            }
+        }
+        (self.window.base, self.window.stride) = (base, stride);
+    }
 }
 
 /// A z no bond can break below, for (s00, alpha) and a bound of the bonds' z at the step before: the critical

@@ -22,4 +22,5 @@ mod strengths;
 mod textbook;
 #[path = "../../../../tests/common/threads.rs"]
 mod threads;
+mod tiles;
 mod waves;

@@ -1,7 +1,7 @@
 //! Whether a body on a lattice fits together: rows, stencil, bits of bonds, columns.
 
 use super::{Fault, at_home, equal, must, numbers, states, states_are_numbers};
-use crate::build::lattice::{Pruned, half_stencil, prune, reach, thickness};
+use crate::build::lattice::{Pruned, half_stencil, prune, reach};
 use crate::families::Law;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, RowMotion, staggered};
 use perigrain_base::math::cell::{point, reciprocal};
@@ -38,7 +38,6 @@ impl LatticeBody {
         must(self.planes > 0 && self.width > 2 * beside, "it has no rows")?;
         let slots = self.planes.checked_add(above + 1).and_then(|planes| planes.checked_mul(self.width));
         equal("the number of its rows is", self.rows.len(), slots.unwrap_or(usize::MAX))?;
-        equal("the thickness of its slabs is", self.thickness, thickness(self.planes, above))?;
         let mut next = 0u32;
         for (slot, row) in self.rows.iter().enumerate() {
             let (plane, across) = (slot / self.width, slot % self.width);

@@ -1,0 +1,157 @@
+//! What tiles owe to cells: windows added up and handed back.
+
+use crate::families::lattice::{LANES, LatticeBody, PAD};
+use crate::families::tiles::Tiles;
+use crate::lanes::isa::{Isa, Kernel};
+use crate::lattice::tiles::Windows;
+use perigrain_base::par::Shared;
+
+/// Cells that are added up together: they stay in the fastest memory.
+const PIECE: usize = 16 * LANES;
+
+/// What one window holds for cells of a plane.
+struct Part<'a, const N: usize> {
+    /// First and past the last cell.
+    cells: [usize; 2],
+    /// The numbers of these, by components.
+    sums: [&'a [f64]; N],
+}
+
+/// What is owed to a tile's cells in one plane: by the tile itself, then by those that reach into it, in their order. Tiles at rest owe
+/// nothing: they would add zeros.
+fn parts<'a, const N: usize>(
+    body: &LatticeBody,
+    (tiles, tile): (&Tiles, usize),
+    plane: usize,
+    windows: &'a Windows,
+    out: &mut Vec<Part<'a, N>>,
+) {
+    out.clear();
+    let rows = &tiles.all[tile].rows;
+    let start = |row: usize| body.rows[body.slot(plane, row)].start as usize;
+    for giver in std::iter::once(tile).chain(tiles.givers(tile).iter().map(|&giver| giver as usize)) {
+        // SAFETY: a tile settles when it and those that reach into it have been swept.
+        let window = unsafe { windows.get(giver) };
+        if !window.touched {
+            continue;
+        }
+        let Some(up) = plane.checked_sub(tiles.all[giver].planes.start) else { continue };
+        let Some(at) = tiles.reached(giver).get(up) else { continue };
+        let (low, high) = (at.rows[0].max(rows.start), at.rows[1].min(rows.end));
+        if low >= high {
+            continue;
+        }
+        let cells = [start(low), start(high)];
+        let from = |k: usize| window.base + k * window.stride + cells[0] - at.first;
+        if cells[0] < cells[1] {
+            let sums = std::array::from_fn(|k| &window.sums[from(k)..][..cells[1] - cells[0]]);
+            out.push(Part { cells, sums });
+        }
+    }
+}
+
+/// Adds to the forces on a tile's particles what is owed to them.
+pub(crate) fn forces<K: Isa>(
+    body: &LatticeBody,
+    (tiles, tile): (&Tiles, usize),
+    windows: Windows,
+    f: &Shared<[f64; 3]>,
+) {
+    let mut owed = Vec::with_capacity(1 + tiles.givers(tile).len());
+    for plane in tiles.all[tile].planes.clone() {
+        parts(body, (tiles, tile), plane, &windows, &mut owed);
+        if !owed.is_empty() {
+            let rows = &tiles.all[tile].rows;
+            let cells = [rows.start, rows.end].map(|row| body.rows[body.slot(plane, row)].start as usize);
+            // SAFETY: the processor has the set, which `Families::force` has chosen; each particle is in one cell of one tile.
+            unsafe { K::call(HandBack { cells, parts: &owed, particle: &body.particle, f }) };
+        }
+    }
+}
+
+/// Adds to sums by cells, which have [`PAD`] entries before the first one, what is owed to a tile's.
+pub(crate) fn sums(body: &LatticeBody, (tiles, tile): (&Tiles, usize), windows: Windows, sums: &Shared<f64>) {
+    let mut owed = Vec::with_capacity(1 + tiles.givers(tile).len());
+    for plane in tiles.all[tile].planes.clone() {
+        parts::<1>(body, (tiles, tile), plane, &windows, &mut owed);
+        for part in &owed {
+            // SAFETY: a tile's cells are its own.
+            let sums = unsafe { sums.get(PAD + part.cells[0]..PAD + part.cells[1]) };
+            sums.iter_mut().zip(part.sums[0]).for_each(|(sum, more)| *sum += more);
+        }
+    }
+}
+
+/// Forces for the particles of some cells.
+struct HandBack<'a, 'b> {
+    /// First and past the last cell.
+    cells: [usize; 2],
+    parts: &'a [Part<'b, 3>],
+    /// Of all cells.
+    particle: &'a [u32],
+    f: &'a Shared<'a, [f64; 3]>,
+}
+
+impl Kernel for HandBack<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        let mut sum = [[0.0; PIECE]; 3];
+        for first in (self.cells[0]..self.cells[1]).step_by(PIECE) {
+            let end = (first + PIECE).min(self.cells[1]);
+            add_up(&mut sum, self.parts, [first, end]);
+            let groups = self.particle[first..end].chunks_exact(LANES);
+            for (group, particles) in groups.enumerate() {
+                let Some(particles) = particles.first_chunk() else { break };
+                // SAFETY: the caller's promise.
+                unsafe { hand_back(particles, &sum, group * LANES, self.f) };
+            }
+        }
+    }
+}
+
+/// Adds up what is owed to the cells from one to another.
+#[inline(always)]
+fn add_up(sum: &mut [[f64; PIECE]; 3], parts: &[Part<3>], [first, end]: [usize; 2]) {
+    let mut parts = parts.iter();
+    let all = parts.clone().next().filter(|part| part.cells[0] <= first && part.cells[1] >= end);
+    match all {
+        Some(part) => {
+            parts.next();
+            for (sum, from) in sum.iter_mut().zip(part.sums) {
+                sum[..end - first].copy_from_slice(&from[first - part.cells[0]..end - part.cells[0]]);
+            }
+        }
+        None => sum.iter_mut().for_each(|sum| sum[..end - first].fill(0.0)),
+    }
+    for part in parts {
+        let (low, high) = (part.cells[0].max(first), part.cells[1].min(end));
+        if low >= high {
+            continue;
+        }
+        for (sum, more) in sum.iter_mut().zip(part.sums) {
+            let more = &more[low - part.cells[0]..high - part.cells[0]];
+            for (sum, more) in sum[low - first..high - first].iter_mut().zip(more) {
+                *sum += more;
+            }
+        }
+    }
+}
+
+/// Adds the sums from `at` on to the forces on some particles; vacant cells have none.
+///
+/// # Safety
+/// Nobody else may touch the forces on these particles.
+#[inline(always)]
+unsafe fn hand_back(particles: &[u32; LANES], sum: &[[f64; PIECE]; 3], at: usize, f: &Shared<[f64; 3]>) {
+    for (lane, &p) in particles.iter().enumerate() {
+        let p = p as usize;
+        if p < f.len() {
+            // SAFETY: in bounds; the caller's promise.
+            let f = unsafe { &mut *f.as_ptr().add(p) };
+            for (f, sum) in f.iter_mut().zip(sum) {
+                *f += sum[at + lane];
+            }
+        }
+    }
+}
