@@ -33,11 +33,13 @@ enum Kind {
     Meet,
 }
 
+/// A rank's sockets to the others, by rank; none to itself.
+type Sockets = Vec<Option<UnixStream>>;
+
 /// A rank beside others on the same machine.
 pub struct Local {
     rank: usize,
-    /// By rank; none for this one itself.
-    sockets: Vec<Option<UnixStream>>,
+    sockets: Sockets,
     /// Whether the ranks are processes; else they are threads of this one.
     apart: bool,
     /// The processes that the first rank has started.
@@ -186,7 +188,8 @@ impl Local {
         &self,
         kind: Kind,
         values: &mut [T],
-        (into, from): (fn(T) -> [u8; 8], fn([u8; 8]) -> T),
+        into: fn(T) -> [u8; 8],
+        from: fn([u8; 8]) -> T,
         add: impl Fn(T, T) -> T,
     ) {
         let eight = |bytes: &[u8]| {
@@ -206,9 +209,8 @@ impl Local {
 }
 
 /// A socket from each rank to each other one.
-fn mesh(size: usize) -> std::io::Result<Vec<Vec<Option<UnixStream>>>> {
-    let mut rows: Vec<Vec<Option<UnixStream>>> =
-        (0..size).map(|_| (0..size).map(|_| None).collect()).collect();
+fn mesh(size: usize) -> std::io::Result<Vec<Sockets>> {
+    let mut rows: Vec<Sockets> = (0..size).map(|_| (0..size).map(|_| None).collect()).collect();
     for a in 0..size {
         for b in a + 1..size {
             let (one, other) = UnixStream::pair()?;
@@ -289,11 +291,11 @@ impl Comm for Local {
     }
 
     fn sum(&self, values: &mut [i64]) {
-        self.numbers(Kind::Sum, values, (i64::to_le_bytes, i64::from_le_bytes), i64::wrapping_add);
+        self.numbers(Kind::Sum, values, i64::to_le_bytes, i64::from_le_bytes, i64::wrapping_add);
     }
 
     fn most(&self, values: &mut [f64]) {
-        self.numbers(Kind::Most, values, (f64::to_le_bytes, f64::from_le_bytes), f64::max);
+        self.numbers(Kind::Most, values, f64::to_le_bytes, f64::from_le_bytes, f64::max);
     }
 
     fn tell(&self, bytes: &mut Vec<u8>) {
