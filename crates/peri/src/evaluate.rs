@@ -300,7 +300,7 @@ impl Families {
         if advance && self.counts_losses {
             self.count_heat::<K>(view, cell);
         }
-        self.contact(view, f, &moved, advance, tallied.as_deref_mut());
+        self.contact::<K>(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {
             tally::<K>(self, view, t, (advance, cell));
         }
@@ -329,7 +329,7 @@ impl Families {
         list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, (&scratch.windows, cell));
     }
 
-    fn contact(
+    fn contact<K: Isa>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -341,11 +341,14 @@ impl Families {
             let (within, all) = self.ranges(view, moved, advance);
             self.update_near(view, within, all, advance)
         });
+        let (mut memory, mut rows) =
+            (std::mem::take(&mut self.scratch.contact), std::mem::take(&mut self.scratch.rows));
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
         if let Some(closer) = closer {
-            repel(self, closer, &mut repulsion);
+            repel::<K>(self, closer, &mut repulsion, (&mut memory, &mut rows));
         }
         push_apart(self, &mut repulsion);
+        (self.scratch.contact, self.scratch.rows) = (memory, rows);
     }
 
     /// Breaks bonds and makes this step the previous one.

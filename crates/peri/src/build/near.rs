@@ -32,6 +32,8 @@ impl Families {
     pub fn forget_near(&mut self) {
         self.near.allowed = [f64::NEG_INFINITY; 2];
         self.near.looked.clear();
+        self.near.pairs.iter_mut().for_each(Vec::clear);
+        self.scratch.contact.forget();
     }
 
     /// Brings the pairs up to date with positions. `within` and `all` are the ranges of displacement changes
@@ -82,22 +84,19 @@ impl Families {
             cells.fill(view.x, chosen.iter().copied(), &view.bounds, range);
             self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
         }
-        let joined = Joined::of(self);
-        let mut pairs = cells.gather(&view.bounds, range, |i, j, square| {
-            let bond = joined.bond(i, j);
+        let (joined, unbonded) = (Joined::of(self), (part == 0).then_some(false));
+        self.near.pairs[part] = cells.gather(&view.bounds, range, |i, j, square| {
             if square >= range * range
-                || bond.is_some() != (part == 0)
-                || bond == Some(true)
                 || self.table.get(view.kind[i as usize], view.kind[j as usize]).is_none()
             {
                 return None;
             }
-            let pair = self.near_pair(view, i, j, 0.0);
-            // Whoever cannot come into contact before the next search is not needed.
-            (f64::from(pair.after) <= self.near.allowed[part]).then_some(pair)
+            // What cannot come into contact before the next search is not needed.
+            let pair = self.near_pair(view, (i, j), square, 0.0);
+            let soon = f64::from(pair.after) <= self.near.allowed[part];
+            (soon && joined.bond(i, j) == unbonded).then_some(pair)
         });
-        pairs.sort_unstable_by_key(|pair| u64::from(pair.ends[0]) << 32 | u64::from(pair.ends[1]));
-        self.near.pairs[part] = pairs;
+        self.scratch.contact.near[part].clear();
         self.scratch.cells = cells;
         if part == 0 {
             self.looked_at(view);
@@ -145,17 +144,18 @@ impl Families {
         // Since a search in which places were kept, ways there and back are not added up: both may be a skin long.
         let skins = if self.near.looked.is_empty() { 1.0 } else { 2.0 };
         let range = CONTACT * self.options.lattice_spacing + skins * self.near.skin.max(0.0);
-        if distance(view, i, j).0 < range * range {
-            let pair = self.near_pair(view, i, j, self.near.spent[0]);
+        let square = distance(view, i, j).0;
+        if square < range * range {
+            let pair = self.near_pair(view, (i, j), square, self.near.spent[0]);
             self.near.pairs[0].push(pair);
         }
     }
 
-    /// Two particles that cannot touch before they have come closer by what lies between them now; `spent` is
-    /// what has been spent so far.
-    fn near_pair(&self, view: &PeriView, i: u32, j: u32, spent: f64) -> NearPair {
+    /// Two particles, the `square` of whose distance is given, that cannot touch before they have come closer by what lies between them now;
+    /// `spent` is what has been spent so far.
+    fn near_pair(&self, view: &PeriView, (i, j): (u32, u32), square: f64, spent: f64) -> NearPair {
         let contact = self.options.contact_range(view, i, j);
-        let gap = distance(view, i, j).0.sqrt() - contact;
+        let gap = square.sqrt() - contact;
         // Rounded down by more than f32 and the sum of many steps may lose.
         let after = if gap > 0.0 { (spent + gap) * (1.0 - 1e-6) } else { 0.0 };
         let within = contact * contact * (1.0 + 1e-6);

@@ -1,6 +1,7 @@
 //! Who belonged to one family at the start, and whether the bond between two still lives: contacts ask.
 
 use crate::families::Families;
+use crate::families::list::GROUP;
 
 impl Families {
     /// Whether two particles are kept from touching by their family: they belonged to one at the start, by their distance
@@ -34,8 +35,15 @@ impl Families {
         let body = self.body_of(i) as usize;
         let Some(lattice) = self.lattices.get(body) else {
             let (a, b) = (a - self.list.first_place, b - self.list.first_place);
+            let list = &self.list;
             let joins = |i: u32, j: u32| {
-                self.list.own(i as usize).any(|k| self.list.partner[k] == j && self.list.lives(k))
+                let groups = list.start[i as usize] as usize..list.start[i as usize + 1] as usize;
+                // Groups are compared as wholes.
+                groups.into_iter().filter(|group| list.alive[*group] != 0).any(|group| {
+                    let partners = &list.partner[GROUP * group..GROUP * (group + 1)];
+                    let equal = (0..GROUP).fold(0, |bits, k| bits | u8::from(partners[k] == j) << k);
+                    equal & list.alive[group] != 0
+                })
             };
             return joins(a, b) || joins(b, a);
         };

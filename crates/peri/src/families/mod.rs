@@ -20,6 +20,7 @@ mod sound;
 mod table;
 pub mod tiles;
 
+use crate::contact::Memory;
 pub use crate::damage::Neighbour;
 pub use bond_weights::{BondWeights, Factors, Weighed};
 pub use cell::Edges;
@@ -398,7 +399,7 @@ pub struct NearPair {
     pub ends: [u32; 2],
     /// What [`NearPairs::spent`] must reach before they can touch.
     pub after: f32,
-    /// The square of the distance at which they touch, or a little more.
+    /// The square of the distance at which they touch, or a little more: only restart files ask, whose layout stays.
     pub within: f32,
 }
 
@@ -409,6 +410,8 @@ pub struct Scratch {
     pub windows: Vec<Mutex<Window>>,
     /// Cells of the search for near pairs.
     pub cells: Cells,
+    /// Near pairs as they are evaluated.
+    pub(crate) contact: Memory,
     /// Cells of each body at the last search within bodies, if somebody has asked since.
     pub looked: Vec<Cells>,
     /// Energy and virial of rows.

@@ -39,7 +39,7 @@ macro_rules! partners {
         }
     };
 }
-pub(super) use partners;
+pub(crate) use partners;
 
 /// What [`Row::shape`] finds: z at the last step that advanced, and measures.
 pub const LAST: u8 = 0;
@@ -373,7 +373,7 @@ fn most(l: &[f64; rows::MOST], of: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// The shortest image of a difference.
 #[inline(always)]
-unsafe fn nearest<L: Lanes>(d: L, period: f64) -> L {
+pub(crate) unsafe fn nearest<L: Lanes>(d: L, period: f64) -> L {
     // SAFETY: passed on to the caller.
     unsafe {
         let half = L::splat(0.5 * period);

@@ -11,6 +11,7 @@ mod lanes;
 mod lattices;
 mod layouts;
 mod limits;
+mod near;
 mod patch;
 mod released;
 mod scene;

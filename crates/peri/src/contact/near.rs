@@ -1,0 +1,341 @@
+//! Pairs without a living bond that may come into short-range contact, by each of their ends: searched now and then, kept in between.
+//!
+//! A pair stands in the rows of both of its particles and is evaluated from both sides. So threads share nothing, whichever particles they
+//! take, and what a particle feels is added up at one place, in the order of its partners' numbers: sums depend neither on threads nor on when
+//! pairs were searched.
+
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+use crate::contact::hits::{Hits, Push, Rules};
+use crate::contact::meet::Meet;
+use crate::energy::Sums;
+use crate::families::list::GROUP;
+use crate::families::{Bounds, FamilyOptions, NearPair, PeriTally, PeriView};
+use crate::lanes::isa::Isa;
+use perigrain_base::math::vec3::SIX;
+use perigrain_base::par::{self, Shared};
+
+/// Particles in hand at once.
+pub const BLOCK: usize = 32;
+/// Pairs stand in rows that particles so much closer [lattice spacings] let touch: few, where a search finds pairs for far longer.
+const ROOM: f64 = 0.2;
+/// What the count of the partners of a member begins with.
+const MEMBER: u32 = 1 << 31;
+/// Particles of a part that threads share.
+const PART: usize = 8 * BLOCK;
+
+/// Where the partners of one particle stand.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Row {
+    first: u32,
+    count: u32,
+    /// Places, a multiple of [`GROUP`]; those beyond `count` lead to the particle itself, with which it never touches.
+    room: u32,
+}
+
+impl Row {
+    /// Those in use.
+    fn used(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+
+    /// Its places, those that are not in use too.
+    pub fn all(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.room) as usize
+    }
+}
+
+/// The pairs of [`crate::families::NearPairs`] as rows. Members are particles with pairs, in the order of their numbers.
+#[derive(Debug, Default)]
+pub struct Near {
+    /// How many pairs are taken in, of which those stand in rows that may touch while particles are no more than so much closer.
+    taken: usize,
+    until: f64,
+    /// The member that a particle is; `u32::MAX` without pairs.
+    member: Vec<u32>,
+    /// Members, in ascending order.
+    pub particle: Vec<u32>,
+    /// Their rows.
+    pub row: Vec<Row>,
+    /// How much closer particles must be than at the search before the first partner of a member can touch it, and before any pair can.
+    pub after: Vec<f32>,
+    least: f32,
+    /// Members by rows, in ascending order in each.
+    pub partner: Vec<u32>,
+    /// The distances at which they touch; 0 for places that are not in use.
+    pub contact: Vec<f64>,
+    /// Positions of members, wrapped into the box, and their volumes.
+    pub place: Vec<[f64; 4]>,
+}
+
+impl Near {
+    /// Forgets all pairs.
+    pub fn clear(&mut self) {
+        self.taken = 0;
+        self.particle.clear();
+        self.row.clear();
+        self.after.clear();
+        self.partner.clear();
+        self.contact.clear();
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        4 * (self.member.len() + self.particle.len() + self.after.len() + self.partner.len())
+            + 12 * self.row.len()
+            + 8 * self.contact.len()
+            + 32 * self.place.len()
+    }
+
+    /// Takes in pairs that have come since, and those that may touch by now, where particles may be `closer` than at the search, which is made
+    /// anew where they may be `allowed`.
+    pub fn follow(
+        &mut self,
+        pairs: &[NearPair],
+        (closer, allowed): (f64, f64),
+        (view, options): (&PeriView, &FamilyOptions),
+    ) {
+        if pairs.is_empty() {
+            return self.clear();
+        }
+        if pairs.len() == self.taken && closer <= self.until {
+            return;
+        }
+        let few = pairs.len() > self.taken && pairs.len() - self.taken < self.taken / 4;
+        if closer > self.until || !few || !self.add(&pairs[self.taken..], view, options) {
+            let room = ROOM * options.lattice_spacing;
+            self.until = if allowed - closer < 2.0 * room { f64::INFINITY } else { closer + room };
+            self.build(pairs, view, options);
+        }
+        self.taken = pairs.len();
+    }
+
+    fn build(&mut self, pairs: &[NearPair], view: &PeriView, options: &FamilyOptions) {
+        self.clear();
+        let until = self.until;
+        let soon = || pairs.iter().filter(|pair| f64::from(pair.after) <= until);
+        self.member.clear();
+        self.member.resize(view.x.len(), 0);
+        // Members are all that have pairs: the other ones may stand in rows soon.
+        for p in pairs.iter().flat_map(|pair| pair.ends) {
+            self.member[p as usize] = MEMBER;
+        }
+        for p in soon().flat_map(|pair| pair.ends) {
+            self.member[p as usize] += 1;
+        }
+        let mut first = 0;
+        for (p, member) in self.member.iter_mut().enumerate() {
+            let count = std::mem::replace(member, u32::MAX);
+            if count >= MEMBER {
+                *member = self.particle.len() as u32;
+                self.particle.push(p as u32);
+                let room = (count - MEMBER).next_multiple_of(GROUP as u32);
+                self.row.push(Row { first, count: 0, room });
+                first += room;
+            }
+        }
+        self.least = f32::INFINITY;
+        self.after.resize(self.particle.len(), f32::INFINITY);
+        self.partner.resize(first as usize, 0);
+        self.contact.resize(first as usize, 0.0);
+        for pair in soon() {
+            let [a, b] = pair.ends.map(|p| self.member[p as usize]);
+            for (own, other) in [(a, b), (b, a)] {
+                let row = &mut self.row[own as usize];
+                self.partner[(row.first + row.count) as usize] = other;
+                row.count += 1;
+                self.hasten(own, pair.after);
+            }
+        }
+        self.put_in_order(view, options);
+    }
+
+    /// A member may touch a partner as soon as particles are so much closer.
+    fn hasten(&mut self, member: u32, after: f32) {
+        let own = &mut self.after[member as usize];
+        *own = own.min(after);
+        self.least = self.least.min(after);
+    }
+
+    /// Sorts rows, fills them up and finds the distances of contact.
+    fn put_in_order(&mut self, view: &PeriView, options: &FamilyOptions) {
+        let Self { row, particle, partner, contact, .. } = self;
+        let (partner, contact) = (Shared::new(partner), Shared::new(contact));
+        in_parts(row.len(), |members| {
+            for own in members {
+                let row = row[own];
+                // SAFETY: rows share no places.
+                let (partner, contact) = unsafe { (partner.get(row.all()), contact.get(row.used())) };
+                let (partner, free) = partner.split_at_mut(row.count as usize);
+                partner.sort_unstable();
+                free.fill(own as u32);
+                for (contact, other) in contact.iter_mut().zip(partner) {
+                    *contact = options.contact_range(view, particle[own], particle[*other as usize]);
+                }
+            }
+        });
+    }
+
+    /// Takes in a few more pairs of members; false if that is not worth it.
+    fn add(&mut self, pairs: &[NearPair], view: &PeriView, options: &FamilyOptions) -> bool {
+        let until = self.until;
+        let soon = || pairs.iter().filter(|pair| f64::from(pair.after) <= until);
+        let known = |p: u32| self.member.get(p as usize).is_some_and(|member| *member != u32::MAX);
+        let used: u32 = self.row.iter().map(|row| row.room).sum();
+        // Rows that were full have left their places.
+        if self.partner.len() > 2 * used as usize || !soon().all(|p| p.ends.into_iter().all(known)) {
+            return false;
+        }
+        for pair in soon() {
+            let contact = options.contact_range(view, pair.ends[0], pair.ends[1]);
+            let [a, b] = pair.ends.map(|p| self.member[p as usize]);
+            for (own, other) in [(a, b), (b, a)] {
+                self.insert(own, other, contact);
+                self.hasten(own, pair.after);
+            }
+        }
+        true
+    }
+
+    fn insert(&mut self, own: u32, other: u32, contact: f64) {
+        let row = &mut self.row[own as usize];
+        if row.count == row.room {
+            let all = row.all();
+            row.first = self.partner.len() as u32;
+            row.room += GROUP as u32;
+            self.partner.extend_from_within(all.clone());
+            self.partner.resize(self.partner.len() + GROUP, own);
+            self.contact.extend_from_within(all);
+            self.contact.resize(self.contact.len() + GROUP, 0.0);
+        }
+        let used = row.used();
+        let at = used.start + self.partner[used.clone()].partition_point(|p| *p < other);
+        self.partner.copy_within(at..used.end, at + 1);
+        self.contact.copy_within(at..used.end, at + 1);
+        (self.partner[at], self.contact[at]) = (other, contact);
+        row.count += 1;
+    }
+
+    /// Positions of members, within the box along axes that repeat.
+    fn gather(&mut self, view: &PeriView) {
+        self.place.resize(self.particle.len(), [0.0; 4]);
+        let Bounds { lo, hi, periodic, .. } = view.bounds;
+        let repeats = periodic.map(|repeats| repeats && !view.bounds.tilted());
+        par::each((&mut self.place[..], &self.particle[..]), |_, (place, particle)| {
+            for (place, p) in place.iter_mut().zip(particle) {
+                let mut x = view.x[*p as usize];
+                for k in (0..3).filter(|k| repeats[*k]) {
+                    if x[k] < lo[k] || x[k] >= hi[k] {
+                        let length = hi[k] - lo[k];
+                        x[k] -= length * ((x[k] - lo[k]) / length).floor();
+                    }
+                }
+                *place = [x[0], x[1], x[2], view.volume[*p as usize]];
+            }
+        });
+    }
+
+    /// Adds the pushes of all pairs that touch to `f`, where particles may be `closer` by now than at the search. `rows` is scratch.
+    pub fn push<K: Isa>(
+        &mut self,
+        rules: &Rules,
+        closer: f64,
+        (f, tally): (&mut [[f64; 3]], Option<&mut PeriTally>),
+        (hits, rows): (&[Mutex<Hits>], &mut Vec<Sums>),
+    ) {
+        let most = f.len().min(rules.view.x.len());
+        if self.particle.last().is_none_or(|p| *p as usize >= most) || f64::from(self.least) > closer {
+            return;
+        }
+        self.gather(rules.view);
+        rows.clear();
+        rows.resize(if tally.is_some() { self.particle.len() } else { 0 }, [0.0; 7]);
+        let (f, sums) = (Shared::new(f), Shared::new(rows));
+        in_parts(self.particle.len(), |members| {
+            let mut hits = hits[par::slot() % hits.len()].lock().unwrap_or_else(PoisonError::into_inner);
+            for first in members.clone().step_by(BLOCK) {
+                let members = first..members.end.min(first + BLOCK);
+                let mut ends = [0; BLOCK];
+                hits.count = 0;
+                // SAFETY: the caller has chosen kernels that the processor has; rows lead to members.
+                unsafe {
+                    K::call(Meet {
+                        near: self,
+                        members: members.clone(),
+                        closer,
+                        rules,
+                        hits: &mut hits,
+                        ends: &mut ends,
+                    });
+                    K::call(Push(&mut hits));
+                }
+                self.hand_back(members, (&hits, &ends), (&f, &sums));
+            }
+        });
+        if let Some(t) = tally {
+            self.tally(rows, t);
+        }
+    }
+
+    /// Adds what pushes members to the forces on them, and sums up energies and virials if these are wanted.
+    fn hand_back(
+        &self,
+        members: Range<usize>,
+        (hits, ends): (&Hits, &[usize; BLOCK]),
+        (f, sums): (&Shared<[f64; 3]>, &Shared<Sums>),
+    ) {
+        let mut from = 0;
+        for (own, &end) in members.zip(ends) {
+            let all = std::mem::replace(&mut from, end)..end;
+            if all.is_empty() {
+                continue;
+            }
+            let p = self.particle[own] as usize;
+            let mut sum = [0.0; 3];
+            for at in all.clone() {
+                let push = hits.pull[at] * hits.volume[0][at];
+                (0..3).for_each(|k| sum[k] += hits.d[k][at] * push);
+            }
+            // SAFETY: each particle is one member, of one part.
+            let f = unsafe { &mut f.get(p..p + 1)[0] };
+            (0..3).for_each(|k| f[k] += sum[k]);
+            if !sums.is_empty() {
+                // SAFETY: as above.
+                unsafe { sums.get(own..own + 1)[0] = energies(self.place[own][3], all, hits) };
+            }
+        }
+    }
+
+    fn tally(&self, rows: &[Sums], t: &mut PeriTally) {
+        for (&p, row) in self.particle.iter().zip(rows) {
+            let p = p as usize;
+            t.energy += row[0];
+            t.virial.iter_mut().zip(&row[1..]).for_each(|(v, own)| *v += own);
+            if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+                atoms[p] += row[0];
+            }
+            if let Some(atoms) = t.per_atom_virial.as_deref_mut() {
+                atoms[p].iter_mut().zip(&row[1..]).for_each(|(v, own)| *v += own);
+            }
+        }
+    }
+}
+
+/// The energy of a particle of this volume under some pushes, and its half of their virial, which has the volumes of both ends.
+fn energies(own: f64, all: Range<usize>, hits: &Hits) -> Sums {
+    let mut sums = [0.0; 7];
+    for at in all {
+        sums[0] += hits.energy(at) * hits.volume[0][at];
+        let (d, half) = (hits.vector(at), 0.5 * hits.pull[at] * own * hits.volume[1][at]);
+        SIX.iter().zip(&mut sums[1..]).for_each(|(&(a, b), v)| *v += half * d[a] * d[b]);
+    }
+    sums
+}
+
+/// Calls `f` for parts of so many members.
+fn in_parts(members: usize, f: impl Fn(Range<usize>) + Sync) {
+    par::for_rows_if(members > PART, members.div_ceil(PART), |part| {
+        f(part * PART..members.min((part + 1) * PART));
+    });
+}
