@@ -9,10 +9,10 @@ use std::sync::Mutex;
 
 use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{Candidate, FamilyOptions, Window};
-use crate::lanes::isa::Isa;
+use crate::lanes::isa::{Isa, Kernel};
 use crate::lattice::sweep::Mode;
 use crate::law::series::stretch;
-use crate::list::kernel::{Block, LAST, Row, Rules};
+use crate::list::kernel::{Block, LAST, MOST, Row, Rules, partners};
 use crate::list::sweep::{in_slabs, reach_of, ring_start};
 use perigrain_base::par::Shared;
 
@@ -87,20 +87,23 @@ impl Judge {
 
     /// Notes which of the bonds in hand may break.
     #[inline]
-    pub fn note(&self, row: &Row, b: &Block, strained: &mut Vec<(u32, f64)>) {
+    pub fn note<K: Isa>(&self, row: &Row, b: &Block, strained: &mut Vec<(u32, f64)>) {
         if !self.breaking_enabled || b.high < self.floor {
             return;
         }
         let body = row.body;
-        for (k, z) in b.z[..b.count].chunks_exact(GROUP).enumerate() {
-            // Most groups have none: compared all together.
-            if !z.iter().fold(false, |any, z| any | (*z >= self.floor)) {
-                continue;
-            }
-            for (lane, &z) in z.iter().enumerate().filter(|(_, z)| **z >= self.floor) {
-                let bond = b.place[k] as usize + lane;
+        let mut weak = [0; MOST / GROUP];
+        // Several bonds at a time where limits are those of a pair of types, raised by measures.
+        let alike = self.known && !self.critical && !body.scatter.uneven();
+        // SAFETY: the kernels are those that the processor has; bonds in hand are those of the body.
+        unsafe { K::call(Weak { judge: self, row, b, alike, weak: &mut weak }) };
+        for (k, mut bits) in weak.into_iter().enumerate() {
+            while bits != 0 {
+                let at = GROUP * k + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let (bond, z) = (b.place(at), b.z[at]);
                 let ends = [row.i, body.partner[bond] as usize];
-                if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
+                if alike || !self.known || !self.bears(body, body.constants(bond), ends, z) {
                     strained.push((bond as u32, z));
                 }
             }
@@ -116,6 +119,58 @@ impl Judge {
         let s00 = pair.s00 * body.scatter.strength(ends);
         let limit = if self.critical { -most } else { s00 - 0.5 * pair.alpha * most };
         0.5 * z < limit - 1e-12 * limit.abs()
+    }
+}
+
+/// Finds the living bonds in hand that reach the floor of z, of each group; where limits are `alike`, without those that are sure to bear it as
+/// [`Judge::bears`] says.
+struct Weak<'a, 'b> {
+    judge: &'a Judge,
+    row: &'a Row<'b>,
+    b: &'a Block,
+    alike: bool,
+    weak: &'a mut [u8; MOST / GROUP],
+}
+
+impl Kernel for Weak<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        let Self { judge, row, b, alike, weak } = self;
+        let body = row.body;
+        // SAFETY: blocks hold `count` bonds of the body, whole groups; where measures are known, each record has one.
+        unsafe {
+            let (floor, z) = (L::splat(judge.floor), b.z.as_ptr());
+            for first in (0..b.count).step_by(GROUP) {
+                let mut bits = 0;
+                for v in (0..GROUP).step_by(L::WIDTH) {
+                    bits |= L::load(z.add(first + v)).ge(floor).bits() << v;
+                }
+                let place = *b.place.get_unchecked(first / GROUP) as usize;
+                bits &= *body.alive.get_unchecked(place / GROUP);
+                let pair = body.constants(place);
+                if bits != 0 && alike {
+                    let least = body.limits.least.as_ptr();
+                    let (half, rises) = (L::splat(0.5 * pair.alpha), pair.alpha != 0.0);
+                    let own = if rises { *least.add(row.i) } else { 0.0 };
+                    let mut reach = 0;
+                    for v in (0..GROUP).step_by(L::WIDTH) {
+                        let partner = body.partner.as_ptr().add(place + v);
+                        let mut most = L::splat(own);
+                        if rises {
+                            let far = partners!(L, 0.0, |k| *least.add(*partner.add(k) as usize));
+                            most = L::load(far.as_ptr()).max(most);
+                        }
+                        let limit = L::splat(pair.s00).sub(half.mul(most));
+                        let limit = limit.sub(L::splat(1e-12).mul(limit.abs()));
+                        let reaches = L::splat(0.5).mul(L::load(z.add(first + v))).ge(limit);
+                        reach |= reaches.bits() << v;
+                    }
+                    bits &= reach;
+                }
+                *weak.get_unchecked_mut(first / GROUP) = bits;
+            }
+        }
     }
 }
 

@@ -332,7 +332,7 @@ impl Sweep<'_> {
                 }
                 low = low.min(b.low);
                 *top = top.max(b.high);
-                judge.note(&row, b, strained);
+                judge.note::<K>(&row, b, strained);
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;
