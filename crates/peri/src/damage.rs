@@ -1,7 +1,7 @@
 //! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
-use crate::families::list::ListBody;
+use crate::families::list::{GROUP, ListBody};
 use crate::families::{Cell, Families, Law, LawKind, Moved, NearPair};
 use perigrain_base::par::{self, Shared};
 
@@ -59,11 +59,12 @@ impl Families {
         });
     }
 
-    /// The damage of many particles: where all of a body on a lattice are of one volume, their living bonds are counted first.
+    /// The damage of many particles: where all of a body on a lattice, or of the list, are of one volume, their living bonds are counted first.
     pub fn damages<'a>(&'a self, volume: &'a [f64]) -> Damages<'a> {
         let damaged = self.damaged.contains(&true);
-        let counted = self.lattices.iter().map(|body| damaged.then(|| Counted::of(body, volume)).flatten());
-        Damages { families: self, volume, counted: counted.collect() }
+        let lattices = self.lattices.iter().map(|body| damaged.then(|| Counted::of(body, volume)).flatten());
+        let list = damaged.then(|| Counted::of_list(&self.list, volume)).flatten();
+        Damages { families: self, volume, counted: lattices.chain([list]).collect() }
     }
 
     /// A particle's damage from what is found about its living bonds: their number, and the volume of their partners.
@@ -253,9 +254,10 @@ impl Damages<'_> {
         let f = self.families;
         let place = f.place.get(i).copied().unwrap_or(u32::MAX);
         let body = f.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
-        match self.counted.get(body) {
+        let first = f.lattices.get(body).map_or(f.list.first_place, |body| body.first_place);
+        match self.counted.get(body).filter(|_| place != u32::MAX) {
             Some(Some(counted)) => f.damage_from(i, || {
-                let live = counted.live[(place - f.lattices[body].first_place) as usize];
+                let live = counted.live[(place - first) as usize];
                 (live, counted.sums[usize::from(live)])
             }),
             _ => f.damage(i, self.volume),
@@ -263,9 +265,9 @@ impl Damages<'_> {
     }
 }
 
-/// Living bonds of a body on a lattice whose particles are of one volume.
+/// Living bonds of a body whose particles are of one volume.
 struct Counted {
-    /// Of each cell.
+    /// Of each cell or record.
     live: Vec<u16>,
     /// The volume of so many partners, added up one by one.
     sums: Vec<f64>,
@@ -283,12 +285,35 @@ const SPREAD: [[u16; LANES]; 256] = {
 };
 
 impl Counted {
-    fn of(body: &LatticeBody, volume: &[f64]) -> Option<Self> {
-        let mut all = body.particle.iter().filter(|&&p| p != u32::MAX).map(|&p| volume.get(p as usize));
+    /// The volume of all of these particles, if it is one.
+    fn one(particle: &[u32], volume: &[f64]) -> Option<f64> {
+        let mut all = particle.iter().filter(|&&p| p != u32::MAX).map(|&p| volume.get(p as usize));
         let one = *all.next()??;
-        if !all.all(|v| v == Some(&one)) {
-            return None;
+        all.all(|v| v == Some(&one)).then_some(one)
+    }
+
+    /// The volume of 0, 1, 2 … partners.
+    fn sums(one: f64, most: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; most + 1];
+        (1..sums.len()).for_each(|k| sums[k] = sums[k - 1] + one);
+        sums
+    }
+
+    fn of_list(list: &ListBody, volume: &[f64]) -> Option<Self> {
+        let one = Self::one(&list.particle, volume)?;
+        let mut live = vec![0u16; list.particle.len()];
+        for (group, &bits) in list.alive.iter().enumerate() {
+            live[list.owner[group] as usize] += bits.count_ones() as u16;
+            for k in (0..GROUP).filter(|k| bits >> k & 1 == 1) {
+                live[list.partner[GROUP * group + k] as usize] += 1;
+            }
         }
+        let most = live.iter().max().map_or(0, |most| usize::from(*most));
+        Some(Self { live, sums: Self::sums(one, most) })
+    }
+
+    fn of(body: &LatticeBody, volume: &[f64]) -> Option<Self> {
+        let one = Self::one(&body.particle, volume)?;
         let (entries, cells) = (body.stencil.len(), body.particle.len());
         let mut live = vec![0u16; cells];
         let counts = Shared::new(&mut live);
@@ -324,9 +349,7 @@ impl Counted {
             let counts = unsafe { counts.get(first..last) };
             counts.iter_mut().zip(&aside[PAD..]).for_each(|(count, more)| *count += more);
         });
-        let mut sums = vec![0.0; 2 * entries + 1];
-        (1..sums.len()).for_each(|k| sums[k] = sums[k - 1] + one);
-        Some(Self { live, sums })
+        Some(Self { live, sums: Self::sums(one, 2 * entries) })
     }
 }
 
@@ -367,7 +390,7 @@ fn end_bonds(list: &mut ListBody, record: usize, frees: Option<&Law>, cell: &Cel
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::families::{Bounds, FamilyOptions, PeriView, PmbCoeff, PmbTable};
+    use crate::families::{Bounds, FamilyOptions, Layout, PeriView, PmbCoeff, PmbTable};
 
     /// Damage of all particles of a brick with a cut and a hole is that of each looked at by itself, be all volumes alike or not.
     #[test]
@@ -378,15 +401,19 @@ mod tests {
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.1, s00: 1.0, alpha: 0.0 }).unwrap();
         let bounds = Bounds { lo: [-20.0; 3], hi: [20.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let various: Vec<f64> = (0..330).map(|i| 0.1 + 0.001 * f64::from(i % 7)).collect();
-        for volume in [vec![0.1; 330], various] {
-            let view = PeriView { x: &x, x0: &x, kind: &[1; 330], volume: &volume, bounds, excluded: None };
-            let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
+        let layouts = [Layout::Auto, Layout::List];
+        for (volume, layout) in
+            [vec![0.1; 330], various].iter().flat_map(|v| layouts.map(|layout| (v, layout)))
+        {
+            let view = PeriView { x: &x, x0: &x, kind: &[1; 330], volume, bounds, excluded: None };
+            let options = FamilyOptions { layout, ..FamilyOptions::new(1.0) };
+            let mut families = Families::build(&view, &table, options).unwrap();
             assert!(families.damages(&volume).counted.iter().all(Option::is_none), "nothing is damaged yet");
             families.cut(&view, |a, b| (a[0] + 0.3 * a[1] - 5.2) * (b[0] + 0.3 * b[1] - 5.2) < 0.0);
-            families.lattices[0].vacate(130);
+            families.lattices.iter_mut().for_each(|body| body.vacate(130));
             let mut all = vec![0.0; 330];
-            families.damage_all(&volume, &mut all);
-            let one: Vec<f64> = (0..330).map(|i| families.damage(i, &volume)).collect();
+            families.damage_all(volume, &mut all);
+            let one: Vec<f64> = (0..330).map(|i| families.damage(i, volume)).collect();
             assert_eq!(all, one);
             assert!(all.iter().filter(|d| **d > 0.0).count() > 50 && all.contains(&0.0));
         }
