@@ -9,7 +9,11 @@ use perigrain_base::par::Shared;
 /// Cells that are added up together: they stay in the fastest memory.
 const PIECE: usize = 16 * LANES;
 
+/// Windows that are added up without asking for memory; more come only where tiles are much smaller than bonds are long.
+const FEW: usize = 32;
+
 /// What one window holds for cells of a plane.
+#[derive(Clone, Copy)]
 struct Part<'a, const N: usize> {
     /// First and past the last cell.
     cells: [usize; 2],
@@ -17,16 +21,21 @@ struct Part<'a, const N: usize> {
     sums: [&'a [f64]; N],
 }
 
-/// What is owed to a tile's cells in one plane: by the tile itself, then by those that reach into it, in their order. Tiles at rest owe
+impl<const N: usize> Part<'_, N> {
+    /// Of no cells.
+    const NONE: Self = Self { cells: [0; 2], sums: [&[]; N] };
+}
+
+/// What is owed to a tile's cells in one plane, at the beginning of `room`, which has a place for each window: by the tile itself, then by those that reach into it, in their order. Tiles at rest owe
 /// nothing: they would add zeros.
-fn parts<'a, const N: usize>(
+fn parts<'a, 'r, const N: usize>(
     body: &LatticeBody,
     (tiles, tile): (&Tiles, usize),
     plane: usize,
     windows: &'a Windows,
-    out: &mut Vec<Part<'a, N>>,
-) {
-    out.clear();
+    room: &'r mut [Part<'a, N>],
+) -> &'r [Part<'a, N>] {
+    let mut owed = 0;
     let rows = &tiles.all[tile].rows;
     let start = |row: usize| body.rows[body.slot(plane, row)].start as usize;
     for giver in std::iter::once(tile).chain(tiles.givers(tile).iter().map(|&giver| giver as usize)) {
@@ -45,7 +54,33 @@ fn parts<'a, const N: usize>(
         let from = |k: usize| window.base + k * window.stride + cells[0] - at.first;
         if cells[0] < cells[1] {
             let sums = std::array::from_fn(|k| &window.sums[from(k)..][..cells[1] - cells[0]]);
-            out.push(Part { cells, sums });
+            room[owed] = Part { cells, sums };
+            owed += 1;
+        }
+    }
+    &room[..owed]
+}
+
+/// Calls `act` for each plane of a tile that is owed something, with what that is.
+fn by_planes<const N: usize>(
+    body: &LatticeBody,
+    (tiles, tile): (&Tiles, usize),
+    windows: &Windows,
+    mut act: impl FnMut(usize, &[Part<N>]),
+) {
+    let (mut few, mut many) = ([Part::NONE; FEW], vec![]);
+    let windows_at_most = 1 + tiles.givers(tile).len();
+    let room = match few.get_mut(..windows_at_most) {
+        Some(few) => few,
+        None => {
+            many.resize(windows_at_most, Part::NONE);
+            &mut many[..]
+        }
+    };
+    for plane in tiles.all[tile].planes.clone() {
+        let owed = parts(body, (tiles, tile), plane, windows, room);
+        if !owed.is_empty() {
+            act(plane, owed);
         }
     }
 }
@@ -57,29 +92,23 @@ pub(crate) fn forces<K: Isa>(
     windows: Windows,
     f: &Shared<[f64; 3]>,
 ) {
-    let mut owed = Vec::with_capacity(1 + tiles.givers(tile).len());
-    for plane in tiles.all[tile].planes.clone() {
-        parts(body, (tiles, tile), plane, &windows, &mut owed);
-        if !owed.is_empty() {
-            let rows = &tiles.all[tile].rows;
-            let cells = [rows.start, rows.end].map(|row| body.rows[body.slot(plane, row)].start as usize);
-            // SAFETY: the processor has the set, which `Families::force` has chosen; each particle is in one cell of one tile.
-            unsafe { K::call(HandBack { cells, parts: &owed, particle: &body.particle, f }) };
-        }
-    }
+    by_planes(body, (tiles, tile), &windows, |plane, parts| {
+        let rows = &tiles.all[tile].rows;
+        let cells = [rows.start, rows.end].map(|row| body.rows[body.slot(plane, row)].start as usize);
+        // SAFETY: the processor has the set, which `Families::force` has chosen; each particle is in one cell of one tile.
+        unsafe { K::call(HandBack { cells, parts, particle: &body.particle, f }) };
+    });
 }
 
 /// Adds to sums by cells, which have [`PAD`] entries before the first one, what is owed to a tile's.
 pub(crate) fn sums(body: &LatticeBody, (tiles, tile): (&Tiles, usize), windows: Windows, sums: &Shared<f64>) {
-    let mut owed = Vec::with_capacity(1 + tiles.givers(tile).len());
-    for plane in tiles.all[tile].planes.clone() {
-        parts::<1>(body, (tiles, tile), plane, &windows, &mut owed);
-        for part in &owed {
+    by_planes::<1>(body, (tiles, tile), &windows, |_, owed| {
+        for part in owed {
             // SAFETY: a tile's cells are its own.
             let sums = unsafe { sums.get(PAD + part.cells[0]..PAD + part.cells[1]) };
             sums.iter_mut().zip(part.sums[0]).for_each(|(sum, more)| *sum += more);
         }
-    }
+    });
 }
 
 /// Forces for the particles of some cells.
