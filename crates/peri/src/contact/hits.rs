@@ -100,23 +100,29 @@ pub struct Rules<'a> {
     unit: ForceUnit,
     compat: bool,
     /// 15 c/delta by pairs of types; NaN where there is no contact.
-    stiff: Vec<f64>,
+    stiff: &'a [f64],
     types: usize,
 }
 
 impl<'a> Rules<'a> {
-    /// Those of a scene.
-    pub fn new(view: &'a PeriView<'a>, table: &PmbTable, options: &FamilyOptions) -> Self {
+    /// Those of a scene; `stiff` is scratch.
+    pub fn new(
+        view: &'a PeriView<'a>,
+        table: &PmbTable,
+        options: &FamilyOptions,
+        stiff: &'a mut Vec<f64>,
+    ) -> Self {
         let types = table.types();
         let pairs = (0..types * types).map(|k| table.get((k / types + 1) as u16, (k % types + 1) as u16));
-        let stiff = pairs.map(|pair| pair.map_or(f64::NAN, |k| 15.0 * k.c / k.horizon)).collect();
+        stiff.clear();
+        stiff.extend(pairs.map(|pair| pair.map_or(f64::NAN, |k| 15.0 * k.c / k.horizon)));
         Self { view, unit: options.unit, compat: options.compat_lammps, stiff, types }
     }
 
     /// 15 c/delta of two particles, if they may touch.
     #[inline(always)]
     pub fn stiff(&self, i: u32, j: u32) -> Option<f64> {
-        let stiff = match self.stiff[..] {
+        let stiff = match *self.stiff {
             [only] => only,
             _ => {
                 let [a, b] = [i, j].map(|p| usize::from(self.view.kind[p as usize]) - 1);

@@ -39,6 +39,8 @@ pub struct Memory {
     hits: Vec<Mutex<Hits>>,
     close: Close,
     pressed: Vec<Pressed>,
+    /// Of [`Rules`].
+    stiff: Vec<f64>,
 }
 
 impl Memory {
@@ -120,8 +122,8 @@ pub fn repel<K: Isa>(
     repulsion: &mut Repulsion,
     (memory, rows): (&mut Memory, &mut Vec<Sums>),
 ) {
-    let rules = Rules::new(repulsion.view, &families.table, &families.options);
-    let Memory { near, hits, close, pressed } = memory;
+    let Memory { near, hits, close, pressed, stiff } = memory;
+    let rules = Rules::new(repulsion.view, &families.table, &families.options, stiff);
     hits.resize_with(par::most_threads().max(hits.len()), Mutex::default);
     let found = &families.near;
     for (part, near) in near.iter_mut().enumerate() {
