@@ -465,7 +465,7 @@ fn unknown(word: &str) -> Usage {
             return Usage::new(message)
                 .help("in a deck, `read_restart` and then `write_data` or `write_dump` do this");
         }
-        return Usage::new(message).help("leave it out: perigrain is one process with threads");
+        return Usage::new(message).help("leave it out: processors without accelerators do the work");
     }
     let names = SWITCHES.iter().filter(|s| !s.about.is_empty()).flat_map(|s| s.names.iter().copied());
     let usage = Usage::new(format!("unknown switch `{word}`"));

@@ -149,11 +149,10 @@ fn end(ranks: &dyn Comm, nodes: &[String], code: u8) {
         return ranks.close();
     }
     let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    let (me, said) = (ranks.rank(), if kept.is_empty() { "" } else { "\n" });
+    let me = ranks.rank();
     let waited =
         if failed { "has failed, and the others have not" } else { "is done, and the others are not" };
-    eprint!("error: rank {me} on {} {waited}: all ranks end{said}{kept}", nodes[me]);
-    eprintln!();
+    eprintln!("error: rank {me} on {} {waited}: all ranks end\n{kept}", nodes[me]);
     ranks.abort(i32::from(if code == OK { FAILED } else { code }))
 }
 

@@ -136,7 +136,7 @@ fn numbered(name: Pattern) -> Result<Pattern> {
 
 /// The refusal of a keyword about files of several processes.
 pub fn one_process(span: Span, word: &str) -> perigrain_base::diag::Diagnostics {
-    let text = format!("`{word}` divides a restart file among processors: there is one process here");
+    let text = format!("`{word}` divides a restart file among processors: one process writes it here");
     Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("leave it out").into()
 }
 

@@ -31,11 +31,11 @@ impl Session {
                 let style = args.choice("communication style", &["brick", "tiled"])?;
                 args.finish()?;
                 self.world.settings.tiled = style == "tiled";
-                "perigrain is one process with threads"
+                "the box is not divided among processes"
             }
             "balance" => {
                 balance(&mut args)?;
-                "perigrain is one process, and its threads share the work by themselves"
+                "the box is not divided among processes, and threads share the work by themselves"
             }
             _ => return Ok(false),
         };

@@ -51,16 +51,19 @@ impl Session {
         self.options.log.flush()?;
         match what.text.as_str() {
             "cd" => self.change_folder(&words[0]),
-            "mv" => self.tried(cmd.span, || std::fs::rename(&words[0].text, &words[1].text)),
-            "mkdir" => words.iter().for_each(|w| self.tried(w.span, || std::fs::create_dir(&w.text))),
-            "rmdir" => words.iter().for_each(|w| self.tried(w.span, || std::fs::remove_dir(&w.text))),
+            "mv" => self.tried(cmd.span, gate::once(|| std::fs::rename(&words[0].text, &words[1].text))),
+            "mkdir" => {
+                words.iter().for_each(|w| self.tried(w.span, gate::once(|| std::fs::create_dir(&w.text))));
+            }
+            "rmdir" => {
+                words.iter().for_each(|w| self.tried(w.span, gate::once(|| std::fs::remove_dir(&w.text))));
+            }
             "rm" => {
                 let silent = words[0].text == "-f";
                 for w in &words[usize::from(silent)..] {
-                    let known = self.notes.0.len();
-                    self.tried(w.span, || std::fs::remove_file(&w.text));
-                    if silent {
-                        self.notes.0.truncate(known);
+                    let outcome = gate::once(|| std::fs::remove_file(&w.text));
+                    if !silent {
+                        self.tried(w.span, outcome);
                     }
                 }
             }
@@ -89,7 +92,7 @@ impl Session {
                 *own = whole;
             }
         }
-        self.tried(folder.span, || std::env::set_current_dir(&folder.text));
+        self.tried(folder.span, gate::once(|| std::env::set_current_dir(&folder.text)));
     }
 
     /// A line for the system's shell, with the deck's environment.
@@ -112,9 +115,8 @@ impl Session {
         }
     }
 
-    /// Does something to files; of several ranks the first one does.
-    fn tried(&mut self, span: Span, act: impl FnOnce() -> std::io::Result<()>) {
-        if let Err(e) = gate::first(|| act().map(|()| vec![])) {
+    fn tried(&mut self, span: Span, outcome: std::io::Result<()>) {
+        if let Err(e) = outcome {
             self.warn(span, format!("this did not work: {e}"));
         }
     }

@@ -5,7 +5,7 @@
 
 mod ranks;
 
-pub use ranks::{first, written};
+pub use ranks::{first, once, written};
 
 use crate::comm;
 use crate::diag::{Code, Diagnostic};
@@ -205,7 +205,7 @@ fn way_in(gate: &Gate, path: &Path) -> bool {
 /// It does, or to something that is no plain file; a folder on the way that is not there.
 pub fn pass(path: &Path) -> Result<()> {
     let Some(gate) = closed() else { return Ok(()) };
-    first(|| inside(&gate, path).map(|_| vec![])).map(drop)
+    once(|| inside(&gate, path).map(drop))
 }
 
 /// As [`pass`], of this process alone.
@@ -324,11 +324,10 @@ pub fn list(folder: &Path) -> Result<ReadDir> {
 /// # Errors
 /// As [`open`].
 pub fn remove(path: &Path) -> Result<()> {
-    first(|| {
+    once(|| {
         passes(path)?;
-        fs::remove_file(path).map(|()| vec![])
+        fs::remove_file(path)
     })
-    .map(drop)
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ impl Style for CommModify {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "comm_modify [vel yes|no] [cutoff R] [mode single|multi|multi/old] [group ID] [cutoff/multi TYPE R] [reduce/multi]",
-            summary: "Accepted for the sake of LAMMPS decks: one process has nothing to communicate.",
+            summary: "Accepted for the sake of LAMMPS decks: every process has the whole box.",
             text: "All velocities are at hand, whatever `vel` says, and all particles, whatever their cutoffs.",
             example: "comm_modify vel yes",
         }
@@ -62,7 +62,7 @@ impl CommandStyle for CommModify {
                 }
             }
         }
-        let text = "comm_modify has no effect here: one process has nothing to communicate";
+        let text = "comm_modify has no effect here: every process has the whole box";
         cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
         Ok(setting(|_| Ok(())))
     }

@@ -1,4 +1,4 @@
-//! `processors`: LAMMPS' grid of processes; one process here.
+//! `processors`: LAMMPS' grid of processes; the box is not divided here.
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -20,7 +20,7 @@ impl Style for Processors {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "processors Px Py Pz [grid onelevel|numa] [map STYLE] [numa_nodes N]",
-            summary: "Accepted for the sake of LAMMPS decks: perigrain is one process with threads.",
+            summary: "Accepted for the sake of LAMMPS decks: the box is not divided among processes.",
             text: "Must come before the box. Each number is `*` or from 1. STYLE is `cart`, `cart/reorder` or an order of x, y and z. \
                    Threads are set on the command line.",
             example: "processors * * 1",
@@ -45,7 +45,7 @@ impl CommandStyle for Processors {
                 _ => return Err(bad_keyword(a, word, &["grid", "map", "numa_nodes"], &["part", "file"])),
             }
         }
-        let text = "processors has no effect here: perigrain is one process with threads";
+        let text = "processors has no effect here: the box is not divided among processes";
         cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
         Ok(setting(|_| Ok(())))
     }

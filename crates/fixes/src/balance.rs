@@ -1,4 +1,4 @@
-//! fix balance: read for the sake of LAMMPS decks; one process has nothing to balance.
+//! fix balance: read for the sake of LAMMPS decks; the box is not divided among processes.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -16,7 +16,7 @@ impl Style for Balance {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group balance N thresh shift DIMENSIONS ITERATIONS STOP | rcb  [weight STYLE …] [out FILE]",
-            summary: "Accepted for the sake of LAMMPS decks: one process has nothing to balance.",
+            summary: "Accepted for the sake of LAMMPS decks: the box is not divided among processes.",
             text: "Threads share the work by themselves. The fix offers no values, and no file is written.",
             example: "fix share all balance 1000 1.1 shift xyz 20 1.05",
         }
@@ -43,7 +43,7 @@ impl FixStyle for Balance {
                 _ => return Err(args.unknown(word, &["weight", "out"])),
             }
         }
-        let text = "`fix balance` is without effect here: perigrain is one process, and its threads share the work by themselves";
+        let text = "`fix balance` is without effect here: the box is not divided among processes, and threads share the work by themselves";
         cx.note(Diagnostic::note(Code::NO_EFFECT, cx.span, text));
         Ok(Box::new(Idle))
     }

@@ -53,7 +53,7 @@ impl Pattern {
         if text.contains('%') {
             let d =
                 Diagnostic::error(Code::NOT_SUPPORTED, None, "`%` in a file name, one file per processor");
-            return Err(d.help("there is one process here: leave the % out").into());
+            return Err(d.help("one process writes the file here: leave the % out").into());
         }
         if text.matches('*').count() > 1 {
             return fail(Code::BAD_VALUE, None, "more than one `*` in the file name");
@@ -147,12 +147,7 @@ pub fn replace_durably(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::i
 }
 
 fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let mut write = Some(write);
-    let outcome = gate::first(|| match write.take() {
-        Some(write) => put_here(path, durably, write).map(|()| vec![]),
-        None => Ok(vec![]),
-    });
-    outcome.map(drop).map_err(|e| trouble("write", path, &e).into())
+    gate::once(|| put_here(path, durably, write)).map_err(|e| trouble("write", path, &e).into())
 }
 
 fn put_here(

@@ -235,7 +235,7 @@ pub(super) const COMM_STYLE: Entry = (
     Doc {
         syntax: "comm_style brick|tiled",
         summary: "Taken for LAMMPS' decks, without effect.",
-        text: "perigrain is one process with threads; a note in the log says once that the line does nothing.",
+        text: "The box is not divided among processes; a note in the log says once that the line does nothing.",
         example: "comm_style tiled",
     },
 );

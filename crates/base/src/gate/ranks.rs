@@ -5,7 +5,7 @@ use crate::comm;
 use std::fs::File;
 use std::io::{Error, ErrorKind, Result, Seek};
 
-/// How an outcome ends that is told: nothing wrong, refused by the gate, an error of the system, another error.
+/// The last byte of an outcome that goes to other ranks: nothing wrong, refused by the gate, an error of the system, another error.
 const FINE: u8 = 0;
 const REFUSED: u8 = 1;
 const OF_SYSTEM: u8 = 2;
@@ -70,6 +70,14 @@ fn unpack(told: &[u8], how: u8) -> Result<Vec<u8>> {
         }
         _ => Err(Error::other("the first rank has failed")),
     }
+}
+
+/// Does something to files at the first rank alone; all ranks know whether it worked.
+///
+/// # Errors
+/// The first rank's.
+pub fn once(act: impl FnOnce() -> Result<()>) -> Result<()> {
+    first(|| act().map(|()| vec![])).map(drop)
 }
 
 /// A file that the first rank opens to read, on all ranks: the others have its bytes in memory.

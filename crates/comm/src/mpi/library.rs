@@ -53,7 +53,7 @@ functions! {
     MPI_Comm_size: fn(Handle, *mut c_int),
     MPI_Comm_dup: fn(Handle, *mut Handle),
     MPI_Abort: fn(Handle, c_int),
-    MPI_Isend: fn(*const c_void, c_int, Handle, c_int, c_int, Handle, *mut c_void),
+    MPI_Isend: fn(*mut c_void, c_int, Handle, c_int, c_int, Handle, *mut c_void),
     MPI_Irecv: fn(*mut c_void, c_int, Handle, c_int, c_int, Handle, *mut c_void),
     MPI_Waitall: fn(c_int, *mut c_void, *mut c_void),
     MPI_Test: fn(*mut c_void, *mut c_int, *mut c_void),

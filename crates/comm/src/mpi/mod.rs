@@ -18,6 +18,9 @@ type Handle = usize;
 /// Bytes that one call carries; its counts are C's `int`.
 const PIECE: usize = 1 << 30;
 
+/// `MPI_Isend` and `MPI_Irecv`, which begin a message.
+type Message = unsafe extern "C" fn(*mut c_void, c_int, Handle, c_int, c_int, Handle, *mut c_void) -> c_int;
+
 /// Messages between partners have this tag.
 const TAG: c_int = 7;
 
@@ -119,53 +122,30 @@ impl Comm for Mpi {
         let pieces = |length: usize| length.div_ceil(PIECE);
         let n: usize =
             out.iter().map(|o| pieces(o.1.len())).chain(into.iter().map(|i| pieces(i.1.len()))).sum();
-        // Entries of eight bytes or of four.
-        let mut requests = vec![0u64; n];
-        let wide = self.c.request;
-        let entry = |k: usize, requests: &mut [u64]| -> *mut c_void {
-            // SAFETY: entry `k` of `n` lies within the table.
-            unsafe { requests.as_mut_ptr().cast::<u8>().add(k * wide).cast() }
+        // Entries of eight bytes or of four, of which so many are in use.
+        let (mut requests, mut used) = (vec![0u64; n], 0);
+        let table = requests.as_mut_ptr().cast::<u8>();
+        let mut post = |act: Message, (piece, length): (*mut c_void, usize), partner: usize| {
+            let (byte, world, partner) = (self.c.byte, self.c.world, partner as c_int);
+            // SAFETY: the piece is in use until all are waited for below, while it is borrowed; there is an entry for each.
+            unsafe {
+                act(piece, count(length), byte, partner, TAG, world, table.add(used * self.c.request).cast())
+            };
+            used += 1;
         };
-        let mut k = 0;
         for (from, bytes) in into {
             for piece in bytes.chunks_mut(PIECE) {
-                let to = piece.as_mut_ptr().cast();
-                // SAFETY: the piece is written until all are waited for below, while it is borrowed.
-                unsafe {
-                    (self.f.MPI_Irecv)(
-                        to,
-                        count(piece.len()),
-                        self.c.byte,
-                        *from as c_int,
-                        TAG,
-                        self.c.world,
-                        entry(k, &mut requests),
-                    )
-                };
-                k += 1;
+                post(self.f.MPI_Irecv, (piece.as_mut_ptr().cast(), piece.len()), *from);
             }
         }
         for (to, bytes) in out {
             for piece in bytes.chunks(PIECE) {
-                // SAFETY: the piece is read until all are waited for below, while it is borrowed.
-                unsafe {
-                    (self.f.MPI_Isend)(
-                        piece.as_ptr().cast(),
-                        count(piece.len()),
-                        self.c.byte,
-                        *to as c_int,
-                        TAG,
-                        self.c.world,
-                        entry(k, &mut requests),
-                    )
-                };
-                k += 1;
+                // Only read: its C argument is `const`.
+                post(self.f.MPI_Isend, (piece.as_ptr().cast_mut().cast(), piece.len()), *to);
             }
         }
         // SAFETY: all requests made above; statuses are not wanted.
-        unsafe {
-            (self.f.MPI_Waitall)(count(n), requests.as_mut_ptr().cast(), self.c.no_statuses as *mut c_void)
-        };
+        unsafe { (self.f.MPI_Waitall)(count(n), table.cast(), self.c.no_statuses as *mut c_void) };
     }
 
     fn gather_all(&self, all: &mut [u8], counts: &[usize]) {

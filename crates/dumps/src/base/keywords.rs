@@ -79,7 +79,7 @@ impl Base {
             }
             "balance" => {
                 args.flag("balance")?;
-                let text = "without effect: there is one process";
+                let text = "without effect: one process writes the file";
                 cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
             }
             "types" => {

@@ -96,7 +96,7 @@ mod tests {
         }
         let times = (&[10; 4][..], &[1; 4][..]);
         assert_eq!(makespan(&tiles, times, 1), 44);
-        // Who ends the second tile has settled one before, and so on: two sweeps each, and two or three settle at the end.
+        // The worker that ends the second tile has settled one before, and so on: two sweeps each, and two or three settle at the end.
         assert!((22..=24).contains(&makespan(&tiles, times, 2)), "{}", makespan(&tiles, times, 2));
         assert!((11..=14).contains(&makespan(&tiles, times, 4)), "{}", makespan(&tiles, times, 4));
     }

@@ -170,7 +170,7 @@ fn add_up(sum: &mut [[f64; PIECE]; 3], parts: &[Part<3>], [first, end]: [usize; 
 /// Adds the sums from `at` on to the forces on some particles; vacant cells have none.
 ///
 /// # Safety
-/// Nobody else may touch the forces on these particles.
+/// Nothing else may touch the forces on these particles.
 #[inline(always)]
 unsafe fn hand_back(particles: &[u32; LANES], sum: &[[f64; PIECE]; 3], at: usize, f: &Shared<[f64; 3]>) {
     for (lane, &p) in particles.iter().enumerate() {

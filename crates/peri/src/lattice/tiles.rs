@@ -158,7 +158,7 @@ pub(crate) fn pass(
     let last = |count: &[AtomicU32], tile: usize| count[tile].fetch_sub(1, Ordering::AcqRel) == 1;
     let release = |tile: usize| {
         if last(&tiles.unsettled, tile) {
-            // SAFETY: nobody reads the window any more.
+            // SAFETY: all tiles that read the window have settled.
             let window = unsafe { &mut shared.get(tile..tile + 1)[0] };
             if window.touched {
                 tiles.give_room(std::mem::take(&mut window.sums));
