@@ -369,7 +369,7 @@ impl Session {
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
             let tiles =
-                self.world.families.as_ref().map(|families| families.told_of_tiles()).unwrap_or_default();
+                self.world.families.as_ref().map(|families| families.describe_tiles()).unwrap_or_default();
             if !tiles.is_empty() {
                 self.options.log.line(tiles.trim_end())?;
             }

@@ -24,7 +24,7 @@ impl Families {
 
     /// The tiles of each body on a lattice, one line each: how many and how large, the time of a sweep over all of them, and by how
     /// much some numbers of threads can be faster at most, from the times of tiles alone. Nothing where no time has been kept.
-    pub fn told_of_tiles(&self) -> String {
+    pub fn describe_tiles(&self) -> String {
         let mut text = String::new();
         for (k, body) in self.lattices.iter().enumerate() {
             let tiles = &body.tiles;
