@@ -4,12 +4,12 @@ use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{add, same, sub};
 use perigrain_base::par;
-use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way};
+use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Span as Rows, Stage, Tick, Way};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
 use perigrain_world::index::Index;
-use perigrain_world::{Domain, Extent, Kept, Particles, Seen, World, extent};
+use perigrain_world::{Domain, Extent, Kept, NeighborSettings, Particles, Seen, World, extent};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -40,6 +40,9 @@ impl Op for Reneighbor {
             Needs::new().read(X | TRAVEL | FAMILIES | TAG | X0).write(Fields::ALL),
         )
     }
+    fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
+        Rows::Asks
+    }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
             w.rebuild.builds = 0;
@@ -54,25 +57,29 @@ impl Op for Reneighbor {
             w.rebuild.builds += 1;
             return rebuild(w, t, self, true);
         }
-        let s = &w.settings.neighbor;
+        let NeighborSettings { skin, delay, every, check, once, .. } = w.settings.neighbor;
         let ago = t.step - w.rebuild.step;
-        if ago < s.delay || (s.every > 1 && ago % s.every != 0) || s.once {
+        if ago < delay || (every > 1 && ago % every != 0) || once {
             return Ok(());
         }
-        if s.check {
-            let half = 0.5 * (w.rebuild.room(s.skin) - corners_moved(w)).max(0.0);
+        if check {
+            let half = 0.5 * (w.rebuild.room(skin) - corners_moved(w)).max(0.0);
             if w.rebuild.seen.within(*w.travel, half) {
-                debug_assert!(farthest(w, t)? <= half * half, "somebody moves particles without a word");
+                debug_assert!(
+                    !w.is_whole(X) || farthest(w, t)? <= half * half,
+                    "particles have moved that no op has reported"
+                );
                 return Ok(());
             }
+            w.whole(X);
             let moved = farthest(w, t)?;
             w.rebuild.seen = Seen::now(*w.travel, moved.sqrt());
             if moved <= half * half {
                 return Ok(());
             }
-            let first_chance = ago == s.every.max(s.delay);
+            let first_chance = ago == every.max(delay);
             // Where lists are looked at in every step none is late; LAMMPS counts these too.
-            let late = w.settings.lammps() || s.delay.max(s.every) > 1;
+            let late = w.settings.lammps() || delay.max(every) > 1;
             w.rebuild.dangerous += u64::from(first_chance && late);
         }
         w.rebuild.builds += 1;
@@ -183,6 +190,7 @@ fn flip(w: &mut World) {
 
 /// `anew`: the scene may have changed, so that no list can stay.
 fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> {
+    w.whole(Fields::ALL);
     let n = w.n();
     let before = w.rebuild.generation;
     if !t.setup {
@@ -330,6 +338,9 @@ impl Op for ClearForces {
             w.tally.clear_atom_virial(t.atom_virial, w.particles.len());
         }
         Ok(())
+    }
+    fn span(&mut self, w: &mut World, _: &Tick) -> Rows {
+        if w.columns.past().property(*HEATFLOW).is_some() { Rows::All } else { Rows::Own }
     }
     fn way(&mut self, _: &mut World, t: &Tick, room: &mut Room) -> Way {
         if t.on {

@@ -5,7 +5,7 @@ mod context;
 use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
 use super::node::{FixNode, Graph};
-use super::values::{Evaluate, Keyword, Once, asks_forces};
+use super::values::{Evaluate, Keyword, Once, reads};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_out::log::Log;
@@ -299,11 +299,11 @@ impl<'a> Sealer<'a> {
         let shape = self.graph.variables.get(&r.name).copied().unwrap_or_default();
         let declared = self.declared();
         let (name, variable, span) = (format!("variable {}", r.name), r.name.clone(), r.span);
-        let asks_forces = asks_forces(&vars, &variable);
+        let reads = reads(&vars, &variable);
         // What a compute reads of particles is that of all.
         let group = if self.trail.iter().any(|name| name.starts_with("c_")) { 0 } else { self.group };
         let slot = self.evaluate(&format!("v_{}", r.name), stage, when, |slot| {
-            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage, asks_forces, group })
+            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage, reads, group })
         });
         self.world.slots.get_mut(slot).offers = shape.offers();
         Ok(match r.index.as_slice() {
@@ -374,7 +374,11 @@ impl<'a> Sealer<'a> {
             RefKind::Compute | RefKind::ComputeAtom => self.compute(&r.name, r.span, stage, when),
             RefKind::Fix | RefKind::FixAtom => match self.graph.find_fix(&r.name) {
                 Some(node) => {
-                    let slot = self.world.slots.id(&format!("f_{}", r.name));
+                    let name = format!("f_{}", r.name);
+                    let slot = self.world.slots.id(&name);
+                    if *when == When::Always {
+                        self.plan.watched.push(name);
+                    }
                     self.world.slots.get_mut(slot).offers = node.fix.shape().offers();
                     Ok(slot)
                 }

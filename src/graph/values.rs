@@ -8,7 +8,7 @@ use perigrain_lang::{Value, Vars};
 use perigrain_plan::{About, Needs, Op, OpClass, Stage, Tick};
 use perigrain_styles::FORMULAS;
 use perigrain_styles::act::no_number;
-use perigrain_world::field::{BONDS, BOX, F, LISTS, MASS, MEMO, SLOTS, TALLY, TORQUE};
+use perigrain_world::field::{BONDS, BOX, F, LISTS, MASS, MEMO, OMEGA, SLOTS, TALLY, TORQUE, V, X};
 use perigrain_world::{Fields, SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -83,27 +83,41 @@ pub(super) struct Evaluate {
     pub(super) slot: SlotId,
     /// The stage of its reader.
     pub(super) stage: Stage,
-    /// Whether its formula names forces or torques.
-    pub(super) asks_forces: bool,
+    /// What its formula reads of the scene.
+    pub(super) reads: Fields,
     /// The bit of the group that the reading fix acts on; 0 where no fix reads it.
     pub(super) group: u32,
 }
 
-/// Whether a variable's formula, or that of one it names, has a word for forces or torques in it.
-pub(super) fn asks_forces(vars: &Vars, name: &str) -> bool {
-    fn looks(vars: &Vars, name: &str, seen: &mut Vec<String>) -> bool {
+/// Words for forces and torques, and for all else that particles have which moves with them.
+const FORCES: [&str; 8] = ["fx", "fy", "fz", "fcm", "torque", "tqx", "tqy", "tqz"];
+const MOTION: [&str; 24] = [
+    "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "count", "mass", "charge", "gyration",
+    "ke", "xcm", "vcm", "fcm", "bound", "angmom", "torque", "omega", "inertia", "rmask", "grmask",
+];
+
+/// Whether a variable's formula, or that of one it names, has one of these words in it.
+fn names(vars: &Vars, name: &str, words: &[&str]) -> bool {
+    fn looks(vars: &Vars, name: &str, words: &[&str], seen: &mut Vec<String>) -> bool {
         if seen.iter().any(|s| s == name) {
             return false;
         }
         seen.push(name.to_string());
         let text = vars.definition(name).unwrap_or_default();
-        let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-        words.any(|word| {
-            ["fx", "fy", "fz", "fcm", "torque", "tqx", "tqy", "tqz"].contains(&word)
-                || word.strip_prefix("v_").is_some_and(|other| looks(vars, other, seen))
+        let mut found = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        found.any(|word| {
+            words.contains(&word)
+                || word.strip_prefix("v_").is_some_and(|other| looks(vars, other, words, seen))
         })
     }
-    looks(vars, name, &mut vec![])
+    looks(vars, name, words, &mut vec![])
+}
+
+/// What a variable's formula reads of the scene.
+pub(super) fn reads(vars: &Vars, name: &str) -> Fields {
+    let moves = X | V | OMEGA;
+    let motion = if names(vars, name, &MOTION) { FORMULAS } else { FORMULAS.without(moves) };
+    motion | if names(vars, name, &FORCES) { F | TORQUE } else { Fields::NONE }
 }
 
 impl Evaluate {
@@ -130,13 +144,7 @@ impl Op for Evaluate {
         About {
             in_setup: true,
             class: OpClass::Output,
-            ..About::new(
-                &self.name,
-                self.stage,
-                Needs::new()
-                    .read(FORMULAS | if self.asks_forces { F | TORQUE } else { Fields::NONE })
-                    .write(SLOTS),
-            )
+            ..About::new(&self.name, self.stage, Needs::new().read(self.reads).write(SLOTS))
         }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

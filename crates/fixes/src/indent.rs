@@ -164,7 +164,7 @@ impl Fix for Declared {
             publish(w, slot, t, energy, &reaction);
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.one_by_one().boxed()])
     }
 
     fn shape(&self) -> Shape {

@@ -26,7 +26,7 @@ pub fn first<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> Step
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    op.fusing(move |w, t, room| whole(w, (group, turning), t, Part::First, room), went)
+    op.fusing(move |w, t, room| whole(w, (group, turning), t, Part::First, room), went).without_sums()
 }
 
 /// The same for the op that ends a step, and can begin the next one.
@@ -35,7 +35,7 @@ where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
     let part = |t: &Tick| if t.on { Part::Both } else { Part::Second };
-    op.fusing(move |w, t, room| whole(w, (group, turning), t, part(t), room), went)
+    op.fusing(move |w, t, room| whole(w, (group, turning), t, part(t), room), went).without_sums()
 }
 
 /// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and

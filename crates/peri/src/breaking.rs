@@ -37,8 +37,8 @@ pub trait Bonds: Sync + Sized {
     fn particle(&self, site: u32) -> u32;
 }
 
-/// Breaks what has to break, except bonds of particles that are `spared`; `found` is scratch.
-pub fn break_bonds<K: Isa, B: Bonds>(
+/// Finds what has to break, except bonds of particles that are `spared`.
+pub fn find_broken<K: Isa, B: Bonds>(
     body: &mut B,
     options: &FamilyOptions,
     found: &mut Vec<Candidate>,
@@ -53,7 +53,6 @@ pub fn break_bonds<K: Isa, B: Bonds>(
     } else {
         found.retain(|c| c.stretch > c.s00);
     }
-    body.break_all(found);
 }
 
 /// Keeps the candidates that exceed their limit.

@@ -3,13 +3,13 @@
 use perigrain_base::math::periods::Periods;
 use std::sync::Mutex;
 
-use crate::breaking::break_bonds;
+use crate::breaking::{Bonds, find_broken};
 use crate::build::sites::{Carrier, carrier};
 use crate::build::spacing::spacings;
 use crate::build::{detect, lattice as cells, list as records, weights};
 use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
-use crate::families::lattice::RowMotion;
+use crate::families::shares::Shares;
 use crate::families::{
     AlmostLattice, Bounds, Candidate, Cell, Edges, Families, FamilyOptions, Law, LawKind, Layout, Moved,
     NearPairs, PeriTally, PeriView, PmbCoeff, PmbTable, Scratch,
@@ -26,9 +26,22 @@ use crate::lattice::sweep::Mode;
 use crate::lattice::tables;
 use crate::list;
 use crate::list::kernel::Rules;
+use crate::shares::{Broken, broken_everywhere, flagged_anywhere, forget_flags, square, squeezed_everywhere};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::{self, Shared};
 use perigrain_base::stop;
+
+/// An evaluation of forces of which the first half is done.
+#[derive(Debug)]
+pub struct Begun {
+    advance: bool,
+    /// How work is shared out to ranks, where this evaluation is.
+    shares: Option<Shares>,
+    /// The ranges of displacement changes.
+    changes: Option<(f64, f64)>,
+    /// Whether the second half looks at the places of all particles.
+    pub searches: bool,
+}
 
 impl Families {
     /// Finds all bonds: partners closer than the horizon of their types in the present positions. They are
@@ -132,6 +145,7 @@ impl Families {
             four_lanes: false,
             almost: vec![],
             weighed: None,
+            shares: None,
             scratch: Scratch::default(),
         }
     }
@@ -260,27 +274,53 @@ impl Families {
         advance: bool,
         tally: Option<&mut PeriTally>,
     ) {
+        let begun = self.begin(view, advance, tally.is_some());
+        self.finish(view, f, begun, tally);
+    }
+
+    /// Whether an evaluation that advances or not, is tallied or not, is shared out to ranks: each looks after its own particles, for
+    /// which it needs to know the places of those that bonds and near pairs join to them.
+    pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
+        self.shares.is_some() && advance && !tallied && !self.counts_losses
+    }
+
+    /// The first half of [`Families::force`]: what has moved, and by how much.
+    pub fn begin(&mut self, view: &PeriView, advance: bool, tallied: bool) -> Begun {
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && !self.four_lanes && has_avx512() {
-            return self.force_with::<Avx512>(view, f, advance, tally);
+            return self.begin_with::<Avx512>(view, advance, tallied);
         }
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && has_avx2() {
-            return self.force_with::<Avx2>(view, f, advance, tally);
+            return self.begin_with::<Avx2>(view, advance, tallied);
         }
-        self.force_with::<Portable>(view, f, advance, tally);
+        self.begin_with::<Portable>(view, advance, tallied)
     }
 
-    fn force_with<K: Isa>(
+    /// The second half. Where it [`Begun::searches`] for pairs the places of all particles have to be known.
+    pub fn finish(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
-        advance: bool,
-        mut tallied: Option<&mut PeriTally>,
+        begun: Begun,
+        tally: Option<&mut PeriTally>,
     ) {
+        #[cfg(target_arch = "x86_64")]
+        if !self.options.portable && !self.four_lanes && has_avx512() {
+            return self.finish_with::<Avx512>(view, f, begun, tally);
+        }
+        #[cfg(target_arch = "x86_64")]
+        if !self.options.portable && has_avx2() {
+            return self.finish_with::<Avx2>(view, f, begun, tally);
+        }
+        self.finish_with::<Portable>(view, f, begun, tally);
+    }
+
+    fn begin_with<K: Isa>(&mut self, view: &PeriView, advance: bool, tallied: bool) -> Begun {
         self.welcome(view);
+        let shared = self.is_shared(advance, tallied);
+        let shares = self.shares.take_if(|_| shared);
         self.late = 0.0;
-        let cell = &self.cell(view);
         if self.before != Edges::from(periods(&view.bounds)) {
             // Images have come nearer to each other.
             self.forget_near();
@@ -288,25 +328,51 @@ impl Families {
         let reference = self.reference.as_deref().unwrap_or(view.x0);
         // Bonded particles that were put close to each other before families were built push each other from the start.
         let repels = !self.options.no_repulsion;
-        for body in &mut self.lattices {
+        for (k, body) in self.lattices.iter_mut().enumerate() {
             let short_range = repels && body.contact >= 0.0;
-            // SAFETY: `force` has chosen kernels that the processor has.
-            unsafe { gather::<K>(body, view, reference, short_range) };
+            let follows = shares.as_ref().map(|shares| &shares.bodies[k].follows[..]);
+            // SAFETY: `begin` has chosen kernels that the processor has.
+            unsafe { gather::<K>(body, view, reference, short_range, follows) };
         }
         let short_range = repels && self.list.contact >= 0.0;
         let moved = list::gather(&mut self.list, view, short_range);
-        self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()));
+        let changes = repels.then(|| self.ranges(view, &moved, (advance, shares.as_ref())));
+        let searches = changes.is_some_and(|changes| self.searches(changes));
+        Begun { advance, shares, changes, searches }
+    }
+
+    fn finish_with<K: Isa>(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        begun: Begun,
+        mut tallied: Option<&mut PeriTally>,
+    ) {
+        let Begun { advance, mut shares, changes, .. } = begun;
+        if let Some(shares) = &shares {
+            forget_flags(&mut self.lattices, shares);
+        }
+        let cell = &self.cell(view);
+        self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()), shares.as_mut());
         self.sweep_list::<K>(view, f, (advance, tallied.is_some()), cell);
         if advance && self.counts_losses {
             self.count_heat::<K>(view, cell);
         }
-        self.contact::<K>(view, f, &moved, advance, tallied.as_deref_mut());
+        let [breaks, squeezed] = match &shares {
+            Some(_) => flagged_anywhere(&self.lattices),
+            None => [false; 2],
+        };
+        if let Some(shares) = shares.as_ref().filter(|_| squeezed) {
+            squeezed_everywhere(&mut self.lattices, shares);
+        }
+        self.contact::<K>(view, f, (changes, advance, shares.as_ref()), tallied.as_deref_mut());
         if let Some(t) = tallied {
             tally::<K>(self, view, t, (advance, cell));
         }
         if advance {
-            self.advance::<K>(view, cell);
+            self.advance::<K>(view, cell, shares.is_some().then_some(breaks));
         }
+        self.shares = self.shares.take().or(shares);
     }
 
     /// Adds the forces of all bonds that are kept as a list.
@@ -333,28 +399,28 @@ impl Families {
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
-        moved: &RowMotion,
-        advance: bool,
+        (changes, advance, shares): (Option<(f64, f64)>, bool, Option<&Shares>),
         tally: Option<&mut PeriTally>,
     ) {
-        let closer = (!self.options.no_repulsion).then(|| {
-            let (within, all) = self.ranges(view, moved, advance);
-            self.update_near(view, within, all, advance)
-        });
+        let closer = changes.map(|(within, all)| self.update_near(view, within, all, advance));
+        let own = shares.map(|shares| &shares.own[..]);
         let (mut memory, mut rows) =
             (std::mem::take(&mut self.scratch.contact), std::mem::take(&mut self.scratch.rows));
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
         if let Some(closer) = closer {
-            repel::<K>(self, closer, &mut repulsion, (&mut memory, &mut rows));
+            repel::<K>(self, (closer, own), &mut repulsion, (&mut memory, &mut rows));
         }
         push_apart(self, &mut repulsion);
         (self.scratch.contact, self.scratch.rows) = (memory, rows);
     }
 
-    /// Breaks bonds and makes this step the previous one.
-    fn advance<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
+    /// Breaks bonds and makes this step the previous one. `shared`: whether bonds of any rank may break, where work is shared out.
+    fn advance<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: Option<bool>) {
         if self.breaking_enabled {
-            self.break_and_count::<K>(view, cell);
+            match shared {
+                Some(breaks) => self.break_bonds::<K>(view, cell, breaks),
+                None => self.break_and_count::<K>(view, cell),
+            }
         }
         self.breaking_enabled = true;
         self.before = periods(&view.bounds).into();
@@ -365,18 +431,34 @@ impl Families {
         list::breaking::roll(&mut self.list);
     }
 
-    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
+    /// Breaks bonds; where some of other ranks may break too (`shared`), all ranks break the same.
+    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: bool) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
         let lasting = &self.lasting;
         let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
         let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
-        for body in &mut self.lattices {
-            break_bonds::<K, _>(body, &self.options, &mut found, &spared);
+        let mut all = vec![];
+        for (k, body) in self.lattices.iter_mut().enumerate() {
+            find_broken::<K, _>(body, &self.options, &mut found, &spared);
+            if shared {
+                let of = |bond: &Candidate| square(view, bond.ends.map(|cell| body.particle[cell as usize]));
+                all.extend(found.iter().map(|bond| Broken { body: k, bond: *bond, square: of(bond) }));
+                continue;
+            }
+            body.break_all(&found);
             for c in found.iter().filter(|_| frees) {
                 body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
             }
+            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
+        }
+        let all = if shared { broken_everywhere(all) } else { all };
+        for (k, body) in self.lattices.iter_mut().enumerate().filter(|_| shared) {
+            let own = all.iter().filter(|broken| broken.body == k).map(|broken| broken.bond);
+            found.clear();
+            found.extend(own);
+            body.break_all(&found);
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
         let rules = Rules::new(cell, &self.options, &self.law);
@@ -391,10 +473,12 @@ impl Families {
             self.list.free(c.bond as usize, &self.law, cell, Moved::Now);
         }
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
-        for &[i, j] in &ends {
+        for (k, &[i, j]) in ends.iter().enumerate() {
             self.damaged[i as usize] = true;
             self.damaged[j as usize] = true;
-            self.add_broken(view, i, j);
+            // Where the ends of bonds of others are now, these know alone.
+            let told = all.get(k).map(|broken| broken.square);
+            self.add_broken(view, (i, j), told.unwrap_or_else(|| square(view, [i, j])));
         }
         self.scratch.candidates = found;
         self.scratch.ends = ends;

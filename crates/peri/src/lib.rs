@@ -25,6 +25,7 @@ mod list;
 pub mod moduli;
 mod pulled;
 mod released;
+pub mod shares;
 /// What bonds that soften leave of their peak where they break, and where that is.
 pub mod softening {
     pub use super::law::{REST, last_of_area};

@@ -3,6 +3,7 @@
 use crate::breaking::banded;
 use crate::families::list::GROUP;
 use crate::families::{Families, PeriView};
+use crate::shares::square;
 use perigrain_base::diag::{Code, Result, fail};
 
 /// The critical and the smallest stretch of a particle's bonds.
@@ -51,7 +52,7 @@ impl Families {
             self.list.end(b);
             self.damaged[i as usize] = true;
             self.damaged[j as usize] = true;
-            self.add_broken(view, i, j);
+            self.add_broken(view, (i, j), square(view, [i, j]));
         }
         Ok(())
     }

@@ -2,10 +2,12 @@
 
 use super::acts::{Acts, BlockSums, Known, ParticleBlock, Pass, passes};
 use perigrain_base::math::body::Quat;
+use perigrain_base::math::real::largest;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par::{self, CHUNK, Split};
 use perigrain_world::{Lent, World};
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// Most ops of one fused pass.
 const MOST: usize = 6;
@@ -16,6 +18,9 @@ const BLOCK: usize = 256;
 /// acted one after the other.
 pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     came.clear();
+    if w.share.as_ref().is_some_and(|share| share.narrow) {
+        return fuse_own(w, acts, came);
+    }
     for which in acts.which.chunks(MOST) {
         let (all, columns) = columns(w);
         let acts = Acts { which, ..acts };
@@ -39,6 +44,38 @@ pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
         let sums = par::reduce_each(columns, whole, join).unwrap_or_default();
         came.extend_from_slice(&sums[..which.len()]);
     }
+}
+
+/// [`fuse`] on the rows of this rank, where others have the rest. What came is the largest value of all ranks; sums nobody reads then.
+fn fuse_own(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
+    let Some(share) = w.share.take() else { return };
+    for which in acts.which.chunks(MOST) {
+        let (all, mut rest) = columns(w);
+        let acts = Acts { which, ..acts };
+        let (mut pieces, mut at) = (vec![], 0);
+        for rows in &share.own {
+            for start in rows.clone().step_by(CHUNK) {
+                let end = rows.end.min(start + CHUNK);
+                let (_, from) = rest.cut(start - at);
+                let (own, later) = from.cut(end - start);
+                pieces.push(Mutex::new(Some((start, own))));
+                (rest, at) = (later, end);
+            }
+        }
+        let most = Mutex::new([0.0f64; MOST]);
+        par::for_rows(pieces.len(), |k| {
+            let piece = pieces[k].lock().unwrap_or_else(PoisonError::into_inner).take();
+            let Some((start, rows)) = piece else { return };
+            let mut sums = [BlockSums::default(); MOST];
+            chunk(acts, all, start, rows, &mut sums);
+            let mut most = most.lock().unwrap_or_else(PoisonError::into_inner);
+            most.iter_mut().zip(sums).for_each(|(most, own)| *most = largest(*most, own.most));
+        });
+        let most = most.into_inner().unwrap_or_else(PoisonError::into_inner);
+        came.extend(which.iter().zip(most).map(|(_, most)| BlockSums { sums: [f64::NAN; 3], most }));
+    }
+    share.agree(came.iter_mut().map(|came| &mut came.most));
+    w.share = Some(share);
 }
 
 type Columns<'a> = (Lent<'a, Vec3>, Lent<'a, Vec3>, Lent<'a, Vec3>, Turning<'a>);

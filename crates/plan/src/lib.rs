@@ -17,6 +17,7 @@ pub mod needs;
 pub mod op;
 pub mod run;
 pub mod schedule;
+pub mod share;
 mod step;
 
 pub use acts::{Acts, Beside, BlockSums, ParticleBlock, Pull, Room};
@@ -27,3 +28,4 @@ pub use meter::Meter;
 pub use needs::Needs;
 pub use op::{About, Op, OpClass, Stage, Tick, Way, When};
 pub use schedule::{LeftOut, Placed, StepPlan};
+pub use share::Span;

@@ -85,8 +85,19 @@ impl Needs {
         if self.writes == Fields::ALL { Fields::NONE } else { self.writes | self.adds }
     }
 
-    fn changed(&self) -> Fields {
+    /// What it writes, adds to and keeps.
+    pub(super) fn changed(&self) -> Fields {
         self.writes | self.adds | self.keeps
+    }
+
+    /// What it reads and does not change.
+    pub(super) fn read_alone(&self) -> Fields {
+        self.reads.without(self.changed())
+    }
+
+    /// All that it reads or changes.
+    pub(super) fn touched(&self) -> Fields {
+        self.reads | self.changed()
     }
 
     /// What is stated and can be found to be used: to read, to change.

@@ -1,7 +1,7 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
 use super::acts::{BlockSums, Room};
-use super::{Level, Needs, Phase};
+use super::{Level, Needs, Phase, Span};
 use perigrain_base::diag::Result;
 use perigrain_world::{Fields, World};
 use std::ops::Range;
@@ -215,6 +215,8 @@ pub struct Tick {
     pub atom_virial: bool,
     /// Who ends this step begins the next one in the same pass, as its fix (or it itself) does: nobody looks in between.
     pub on: bool,
+    /// What ops make of all particles together (sums of forces and the like) may be read after this step.
+    pub told: bool,
 }
 
 impl Tick {
@@ -245,6 +247,7 @@ impl Tick {
             contacts: false,
             atom_virial: false,
             on: false,
+            told: true,
         }
     }
 }
@@ -283,6 +286,8 @@ pub struct About {
     pub reports_travel: bool,
     /// Whether it may act on blocks of particles ([`Way::Blocks`]); it never rests then.
     pub fuses: bool,
+    /// Whether it makes something of all particles together, which others may read ([`Tick::told`]).
+    pub tells: bool,
     /// Whether `run` can begin the next step as well, where [`Tick::on`] asks for it.
     pub goes_on: bool,
     /// Whether it acts too, once the run is over, where that ended before its last step ([`Tick::ending`]): what saves the run.
@@ -302,7 +307,7 @@ impl About {
             _ => OpClass::Modify,
         };
         let (when, in_setup, level) = (When::Always, stage.in_setup(), Level::Outermost);
-        let (reports_travel, fuses, goes_on, at_parting) = (false, false, false, false);
+        let (reports_travel, fuses, tells, goes_on, at_parting) = (false, false, false, false, false);
         Self {
             name: name.into(),
             stage,
@@ -312,6 +317,7 @@ impl About {
             level,
             reports_travel,
             fuses,
+            tells,
             goes_on,
             at_parting,
             class,
@@ -357,6 +363,10 @@ pub trait Op: Send {
     /// How it acts at this tick. What it does to blocks of particles goes into the room, where it says [`Way::Blocks`].
     fn way(&mut self, _w: &mut World, _t: &Tick, _room: &mut Room) -> Way {
         Way::Alone
+    }
+    /// Of which rows it needs values at this tick, where particles are shared out to ranks; but for what it tells, see [`About::tells`].
+    fn span(&mut self, _w: &mut World, _t: &Tick) -> Span {
+        Span::All
     }
     /// Takes what came of all blocks.
     fn fused(&mut self, _w: &mut World, _t: &Tick, _sums: BlockSums) {}

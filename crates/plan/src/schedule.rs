@@ -6,7 +6,7 @@ use super::meter::{Stopwatch, Timing};
 use super::needs;
 use super::needs::Needs;
 use super::step::Rooms;
-use super::{About, Guard, Meter, Op, OpClass, Stage, Tick, When};
+use super::{About, Guard, Meter, Op, OpClass, Span as Rows, Stage, Tick, When, share};
 use perigrain_base::diag::{Diagnostics, Result, Span};
 use perigrain_world::field::{CONTACTS, RADIUS, X};
 use perigrain_world::named::Acting;
@@ -47,13 +47,24 @@ impl Placed {
         clock: &mut Stopwatch,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
+        let span = self.span(w, t);
+        share::before(w, span, std::iter::once(self.about.needs));
         begin_watch(w);
         let outcome = self.timed(w, t, clock, act);
         // Who fails may look around for words that help.
         if outcome.is_ok() {
             end_watch(w, std::iter::once(self.stated()));
         }
+        share::after(w, span, std::iter::once(self.about.needs));
         outcome
+    }
+
+    /// Of which rows the op needs values at this tick, where particles are shared out to ranks.
+    pub(super) fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
+        match w.share {
+            Some(_) if !(self.about.tells && t.told) => self.op.span(w, t),
+            _ => Rows::All,
+        }
     }
 
     /// Lets the op act, and adds up what that costs; `clock` is when the one before was done.
@@ -118,6 +129,8 @@ pub struct StepPlan {
     pub atom_energy: Vec<When>,
     /// When somebody reads per-particle virials.
     pub atom_virial: Vec<When>,
+    /// Fixes whose values something reads in every step.
+    pub watched: Vec<String>,
     /// Who watches the energy.
     pub guard: Option<Guard>,
     /// How many levels of steps there are (`run_style respa`), if more than one.
@@ -172,6 +185,7 @@ impl StepPlan {
             true => self.asked,
             false => self.asked_by(|w| t.ending || self.fires(w, t)),
         };
+        t.told = !self.is_quiet(t) || t.ending || t.step >= t.last || !self.watched.is_empty();
         t.energy = asked.energy;
         t.virial = asked.virial;
         t.atom_energy = asked.atom_energy;

@@ -4,7 +4,7 @@ use super::acts::Room;
 use super::ending::Ending;
 use super::fuse::Waiting;
 use super::schedule::{begin_watch, end_watch};
-use super::{Acts, BlockSums, FusedPass, Stage, StepPlan, Tick, Way, fuse, needs};
+use super::{Acts, BlockSums, FusedPass, Span, Stage, StepPlan, Tick, Way, fuse, needs, share};
 use perigrain_base::diag::Result;
 use perigrain_base::par::CHUNK;
 use perigrain_world::World;
@@ -77,7 +77,7 @@ impl StepPlan {
         more: &impl Fn(&World) -> bool,
     ) -> Result<bool> {
         let order = &ending.order[..];
-        let Some(force) = ending.force.filter(|_| !needs::collecting()) else {
+        let Some(force) = ending.force.filter(|_| !needs::collecting() && w.share.is_none()) else {
             return Ok(false);
         };
         if order.is_empty() || !order.iter().all(|k| self.ops[*k].about.fuses || self.rests(w, t, *k)) {
@@ -203,8 +203,12 @@ impl StepPlan {
             begin_watch(w);
             let (passed, last) = self.offer(w, t, (ending, &order[at..]), &more);
             if !self.rooms.ops.is_empty() {
-                let Rooms { acts, ops, came, .. } = &mut self.rooms;
+                let Self { rooms: Rooms { acts, ops, came, .. }, ops: all, .. } = self;
+                let tells = t.told && ops.iter().any(|&k| all[k].about.tells);
+                let span = if tells { Span::All } else { Span::Own };
+                share::before(w, span, ops.iter().map(|&k| all[k].about.needs));
                 fuse(w, Acts::new(acts, ops), came);
+                share::after(w, span, ops.iter().map(|&k| all[k].about.needs));
                 self.fused(w, t, last, clock.runs().then(|| clock.lap()));
                 // Who comes next may have been asked too.
                 let asked = &order[at..order.len().min(at + passed + 1)];

@@ -256,15 +256,21 @@ fn change_column<const N: usize>(
     let columns = (column, &world.particles.x[..], &world.particles.mask[..]);
     let chunk = |start: usize, (f, x, mask): (&mut [[f64; 3]], &[[f64; 3]], &[u32])| {
         let mut total = [0.0; N];
-        for (k, ((f, x), mask)) in f.iter_mut().zip(x).zip(mask).enumerate() {
-            if chosen.has(*mask, *x) {
-                let term = change(world, start + k, f);
-                (0..N).for_each(|k| total[k] += term[k]);
+        for rows in world.moved_in(start..start + x.len()) {
+            let own = rows.start - start..rows.end - start;
+            let (f, x, mask) = (&mut f[own.clone()], &x[own.clone()], &mask[own]);
+            for (k, ((f, x), mask)) in f.iter_mut().zip(x).zip(mask).enumerate() {
+                if chosen.has(*mask, *x) {
+                    let term = change(world, rows.start + k, f);
+                    (0..N).for_each(|k| total[k] += term[k]);
+                }
             }
         }
         total
     };
-    par::reduce_each(columns, chunk, add).unwrap_or([0.0; N])
+    let total = par::reduce_each(columns, chunk, add).unwrap_or([0.0; N]);
+    // Of this rank's rows alone there is no sum.
+    if world.is_narrow() { [f64::NAN; N] } else { total }
 }
 
 /// Adds to the virials that are wanted what each chosen particle has of a fix, `of(world, i)`: xx yy zz xy xz yz [energy].

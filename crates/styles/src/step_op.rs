@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::Result;
 use perigrain_base::par;
-use perigrain_plan::{About, Acts, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way, When, fuse};
+use perigrain_plan::{About, Acts, BlockSums, Level, Needs, Op, Room, Span, Stage, Tick, Way, When, fuse};
 use perigrain_world::field::Fields;
 use perigrain_world::field::SLOTS;
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -11,6 +11,8 @@ use perigrain_world::{GroupId, Slot, SlotId, World};
 pub struct StepOp<F> {
     about: About,
     fusing: Option<Fusing>,
+    /// Where particles are shared out to ranks.
+    span: Span,
     act: F,
 }
 
@@ -31,7 +33,7 @@ where
 {
     /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
     pub fn new(name: impl Into<String>, stage: Stage, access: Needs, act: F) -> Self {
-        Self { about: About::new(name, stage, access), fusing: None, act }
+        Self { about: About::new(name, stage, access), fusing: None, span: Span::All, act }
     }
 
     /// Acts at other times.
@@ -86,6 +88,21 @@ where
     ) -> Self {
         self.fusing =
             Some(Fusing { offer: Box::new(offer), took: Box::new(took), alone: Default::default() });
+        self.about.tells = true;
+        self
+    }
+
+    /// Changes each particle by itself, those alone that [`World::moved_in`] names, and makes sums of them.
+    #[must_use]
+    pub fn one_by_one(mut self) -> Self {
+        (self.span, self.about.tells) = (Span::Own, true);
+        self
+    }
+
+    /// What comes of blocks of particles is read by the account of ways alone.
+    #[must_use]
+    pub fn without_sums(mut self) -> Self {
+        self.about.tells = false;
         self
     }
 
@@ -116,6 +133,12 @@ where
         match &self.fusing {
             Some(fusing) if (fusing.offer)(w, t, room) => Way::Blocks,
             _ => Way::Alone,
+        }
+    }
+    fn span(&mut self, w: &mut World, t: &Tick) -> Span {
+        match &self.fusing {
+            Some(fusing) if (fusing.offer)(w, t, &mut Room::default()) => Span::Own,
+            _ => self.span,
         }
     }
     fn fused(&mut self, w: &mut World, t: &Tick, sums: BlockSums) {

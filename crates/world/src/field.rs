@@ -114,6 +114,11 @@ impl Fields {
         Fields(self.0 & !less.0)
     }
 
+    /// Those that are in both.
+    pub const fn and_only(self, these: Fields) -> Fields {
+        Fields(self.0 & these.0)
+    }
+
     /// Whether there is none in it.
     pub const fn is_empty(self) -> bool {
         self.0 == 0

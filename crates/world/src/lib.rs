@@ -40,6 +40,7 @@ pub mod rebuild;
 pub mod region;
 pub mod resume;
 pub mod settings;
+pub mod share;
 pub mod slots;
 pub mod surface;
 pub mod tally;
@@ -82,6 +83,7 @@ pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
 pub use resume::{Resume, Said};
 pub use settings::{Compat, MOST_SHORT, NeighborSettings, Newton, Respa, RunStyle, Settings};
+pub use share::Share;
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;
@@ -164,6 +166,9 @@ pub struct World {
     /// The files read so far.
     #[serde(skip)]
     pub read_files: reading::ReadFiles,
+    /// How rows are shared out to ranks, during a run of several.
+    #[serde(skip)]
+    pub share: Option<Share>,
     /// State that rooms above own: families, contact histories, materials.
     #[serde(skip)]
     pub parts: Tracked<Parts>,

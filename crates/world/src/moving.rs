@@ -111,6 +111,7 @@ impl World {
             properties: _,
             folder: _,
             read_files: _,
+            share: _,
             parts: _,
         } = self;
         if turns {

@@ -4,7 +4,7 @@ use super::scatter::Scatter;
 use super::{Pair, Solid, bond_weights, pulled, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
-use perigrain_plan::{About, Level, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Level, Needs, Op, Span, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
@@ -98,9 +98,15 @@ impl Op for Force {
             true => w.settings.lammps() && !first && !t.unchanged,
             false => !t.trial,
         };
-        let mut f = std::mem::take(&mut w.particles.f);
         let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
-        families.force(&view(w)?, &mut f, advance, tally);
+        let begun = families.begin(&view(w)?, advance, tally.is_some());
+        let searches = begun.searches;
+        if searches {
+            // On ranks: those that come near may be anywhere.
+            w.whole(X);
+        }
+        let mut f = std::mem::take(&mut w.particles.f);
+        families.finish(&view(w)?, &mut f, begun, tally);
         if advance && families.options.reunite && families.parted(|i| reunion::outside(w, i)) {
             // Contacts are looked for anew in the next step.
             w.rebuild.due = true;
@@ -113,7 +119,17 @@ impl Op for Force {
             *total += part;
         }
         w.families = Some(families).into();
+        if searches {
+            w.link();
+        }
         Ok(())
+    }
+
+    fn span(&mut self, w: &mut World, t: &Tick) -> Span {
+        let tallied = t.energy || t.virial || t.atom_energy || t.atom_virial;
+        let shared = w.families.past().as_ref().is_some_and(|families| families.is_shared(!t.trial, tallied));
+        let same = self.adapted == w.adaptations();
+        if shared && same && !t.setup { Span::Near } else { Span::All }
     }
 }
 

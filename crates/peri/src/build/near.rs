@@ -6,10 +6,11 @@
 //! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search. Where that is
 //! used up, neighbours may have moved far less than the ends of the body: they are looked at place by place ([`super::wear`]).
 
-use crate::build::detect::distance;
 use crate::build::joined::Joined;
 use crate::families::lattice::RowMotion;
+use crate::families::shares::Shares;
 use crate::families::{Families, NearPair, PeriView};
+use crate::shares::agreed_motion;
 
 /// Contact between unbonded particles never reaches farther than this many lattice spacings.
 const CONTACT: f64 = 1.35;
@@ -34,6 +35,15 @@ impl Families {
         self.near.looked.clear();
         self.near.pairs.iter_mut().for_each(Vec::clear);
         self.scratch.contact.forget();
+    }
+
+    /// Whether pairs are to be searched anew, or looked at place by place, after such changes; see [`Families::update_near`].
+    pub(crate) fn searches(&self, (within, all): (f64, f64)) -> bool {
+        let near = &self.near;
+        [within, all]
+            .into_iter()
+            .enumerate()
+            .any(|(part, change)| near.spent[part] + change >= near.allowed[part])
     }
 
     /// Brings the pairs up to date with positions. `within` and `all` are the ranges of displacement changes
@@ -139,12 +149,11 @@ impl Families {
         (bonded.chain(loose).collect(), 0.0)
     }
 
-    /// Keeps a pair whose bond has just broken in view.
-    pub(crate) fn add_broken(&mut self, view: &PeriView, i: u32, j: u32) {
+    /// Keeps a pair in view whose bond has just broken; `square` is that of its distance.
+    pub(crate) fn add_broken(&mut self, view: &PeriView, (i, j): (u32, u32), square: f64) {
         // Since a search in which places were kept, ways there and back are not added up: both may be a skin long.
         let skins = if self.near.looked.is_empty() { 1.0 } else { 2.0 };
         let range = CONTACT * self.options.lattice_spacing + skins * self.near.skin.max(0.0);
-        let square = distance(view, i, j).0;
         if square < range * range {
             let pair = self.near_pair(view, (i, j), square, self.near.spent[0]);
             self.near.pairs[0].push(pair);
@@ -162,12 +171,22 @@ impl Families {
         NearPair { ends: [i.min(j), i.max(j)], after: after as f32, within: within as f32 }
     }
 
-    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here.
-    pub(crate) fn ranges(&mut self, view: &PeriView, list: &RowMotion, advance: bool) -> (f64, f64) {
+    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here. Of several ranks each knows
+    /// those of its `own` rows, and all agree.
+    pub(crate) fn ranges(
+        &mut self,
+        view: &PeriView,
+        list: &RowMotion,
+        (advance, shares): (bool, Option<&Shares>),
+    ) -> (f64, f64) {
         let mut all = *list;
         let mut within = diagonal(list);
+        let mut agreed =
+            shares.map(|shares| agreed_motion(&self.lattices, shares)).unwrap_or_default().into_iter();
         for body in &self.lattices {
-            let motion = body.motion.iter().fold(RowMotion::NONE, |m, row| m.with(row));
+            let motion = agreed.next();
+            let motion =
+                motion.unwrap_or_else(|| body.motion.iter().fold(RowMotion::NONE, |m, row| m.with(row)));
             within = within.max(diagonal(&motion));
             all = all.with(&motion);
         }

@@ -5,6 +5,7 @@ mod meet;
 pub mod near;
 pub mod pressed;
 
+use std::ops::Range;
 use std::sync::Mutex;
 
 use crate::energy::Sums;
@@ -118,7 +119,7 @@ pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pu
 /// All repulsion of one step: near pairs that may be `closer` by now than their gap was, then squeezed bonds. `rows` is scratch.
 pub fn repel<K: Isa>(
     families: &Families,
-    closer: [f64; 2],
+    (closer, own): ([f64; 2], Option<&[Range<usize>]>),
     repulsion: &mut Repulsion,
     (memory, rows): (&mut Memory, &mut Vec<Sums>),
 ) {
@@ -131,7 +132,7 @@ pub fn repel<K: Isa>(
         let scene = (repulsion.view, &families.options);
         near.follow(&found.pairs[part], (closer, found.allowed[part]), scene);
         let to = (&mut *repulsion.f, repulsion.tally.as_deref_mut());
-        near.push::<K>(&rules, closer, to, (hits, rows));
+        near.push::<K>(&rules, (closer, own), to, (hits, rows));
     }
     pressed::squeezed::<K>(families, &rules, (close, pressed), repulsion);
 }

@@ -162,7 +162,7 @@ impl Near {
     fn put_in_order(&mut self, view: &PeriView, options: &FamilyOptions) {
         let Self { row, particle, partner, contact, .. } = self;
         let (partner, contact) = (Shared::new(partner), Shared::new(contact));
-        in_parts(row.len(), |members| {
+        in_parts(0..row.len(), |members| {
             for own in members {
                 let row = row[own];
                 // SAFETY: rows share no places.
@@ -236,11 +236,12 @@ impl Near {
         });
     }
 
-    /// Adds the pushes of all pairs that touch to `f`, where particles may be `closer` by now than at the search. `rows` is scratch.
+    /// Adds the pushes of all pairs that touch to `f`, where particles may be `closer` by now than at the search; of several ranks each looks
+    /// after its `own` particles. `rows` is scratch.
     pub fn push<K: Isa>(
         &mut self,
         rules: &Rules,
-        closer: f64,
+        (closer, own): (f64, Option<&[Range<usize>]>),
         (f, tally): (&mut [[f64; 3]], Option<&mut PeriTally>),
         (hits, rows): (&[Mutex<Hits>], &mut Vec<Sums>),
     ) {
@@ -252,26 +253,33 @@ impl Near {
         rows.clear();
         rows.resize(if tally.is_some() { self.particle.len() } else { 0 }, [0.0; 7]);
         let (f, sums) = (Shared::new(f), Shared::new(rows));
-        in_parts(self.particle.len(), |members| {
-            let mut hits = hits[par::slot() % hits.len()].lock().unwrap_or_else(PoisonError::into_inner);
-            for first in members.clone().step_by(BLOCK) {
-                let members = first..members.end.min(first + BLOCK);
-                let mut ends = [0; BLOCK];
-                hits.count = 0;
-                // SAFETY: the caller has chosen kernels that the processor has; rows lead to members.
-                unsafe {
-                    K::call(Meet {
-                        near: self,
-                        members: members.clone(),
-                        closer,
-                        rules,
-                        hits: &mut hits,
-                        ends: &mut ends,
-                    });
-                    K::call(Push(&mut hits));
+        let members = self.particle.len();
+        // Those of other ranks find their forces there.
+        let place = |particle: usize| self.particle.partition_point(|p| (*p as usize) < particle);
+        let some = own.into_iter().flatten().map(|own| place(own.start)..place(own.end));
+        let all = own.is_none().then_some(0..members);
+        some.chain(all).for_each(|some| {
+            in_parts(some, |members| {
+                let mut hits = hits[par::slot() % hits.len()].lock().unwrap_or_else(PoisonError::into_inner);
+                for first in members.clone().step_by(BLOCK) {
+                    let members = first..members.end.min(first + BLOCK);
+                    let mut ends = [0; BLOCK];
+                    hits.count = 0;
+                    // SAFETY: the caller has chosen kernels that the processor has; rows lead to members.
+                    unsafe {
+                        K::call(Meet {
+                            near: self,
+                            members: members.clone(),
+                            closer,
+                            rules,
+                            hits: &mut hits,
+                            ends: &mut ends,
+                        });
+                        K::call(Push(&mut hits));
+                    }
+                    self.hand_back(members, (&hits, &ends), (&f, &sums));
                 }
-                self.hand_back(members, (&hits, &ends), (&f, &sums));
-            }
+            })
         });
         if let Some(t) = tally {
             self.tally(rows, t);
@@ -334,8 +342,9 @@ fn energies(own: f64, all: Range<usize>, hits: &Hits) -> Sums {
 }
 
 /// Calls `f` for parts of so many members.
-fn in_parts(members: usize, f: impl Fn(Range<usize>) + Sync) {
-    par::for_rows_if(members > PART, members.div_ceil(PART), |part| {
-        f(part * PART..members.min((part + 1) * PART));
+fn in_parts(members: Range<usize>, f: impl Fn(Range<usize>) + Sync) {
+    let Range { start, end } = members;
+    par::for_rows_if(members.len() > PART, members.len().div_ceil(PART), |part| {
+        f(start + part * PART..end.min(start + (part + 1) * PART));
     });
 }

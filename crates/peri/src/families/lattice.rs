@@ -4,6 +4,7 @@ use crate::families::law::SiteState;
 use crate::families::tiles::Tiles;
 use crate::families::{Measures, Scatter};
 use perigrain_base::math::cell::{Basis, point};
+use std::ops::Range;
 
 /// Cells per chunk: alive bits of a chunk's bonds along one stencil vector are one byte.
 pub const LANES: usize = 8;
@@ -22,6 +23,18 @@ pub struct Row {
     pub lo: i32,
     /// Local type (from 0) of all its particles; [`MIXED`] where they differ.
     pub kind: u16,
+}
+
+impl Row {
+    /// Its cells.
+    pub fn cells(&self) -> Range<usize> {
+        self.start as usize..(self.start + self.len) as usize
+    }
+
+    /// Its chunks.
+    pub fn chunks(&self) -> Range<usize> {
+        self.start as usize / LANES..(self.start + self.len) as usize / LANES
+    }
 }
 
 /// The kind of a row with particles of several types.

@@ -16,6 +16,7 @@ pub mod law;
 pub mod list;
 mod measures;
 mod scatter;
+pub mod shares;
 mod sound;
 mod table;
 pub mod tiles;
@@ -358,6 +359,9 @@ pub struct Families {
     /// What weighing bonds one at a time has come to, when they were found.
     #[serde(skip)]
     pub weighed: Option<Weighed>,
+    /// How work is shared out to ranks, while it is.
+    #[serde(skip)]
+    pub shares: Option<shares::Shares>,
     /// Scratch that is not state.
     #[serde(skip)]
     pub scratch: Scratch,

@@ -6,7 +6,7 @@ use crate::lanes::isa::{Isa, Kernel};
 use perigrain_base::par::{self, Shared};
 
 /// Gathers displacements from positions into `u[1]`, and what moved since `u[0]`. Where contact is `short_range` even
-/// between undisplaced particles, nothing is at rest.
+/// between undisplaced particles, nothing is at rest. Row slots that nobody `follows` are left out.
 ///
 /// # Safety
 /// The processor must have the kernels' instruction set.
@@ -15,12 +15,16 @@ pub unsafe fn gather<K: Isa>(
     view: &PeriView,
     reference: &[[f64; 3]],
     short_range: bool,
+    follows: Option<&[bool]>,
 ) {
     let [old, new] = &mut body.u;
     let (new, motion) = (Shared::new(new), Shared::new(&mut body.motion));
     let (rows, particle, stride, width) = (&body.rows, &body.particle, body.stride, body.width);
     par::for_rows(body.planes, |plane| {
         for slot in plane * width..(plane + 1) * width {
+            if follows.is_some_and(|follows| !follows[slot]) {
+                continue;
+            }
             let row = rows[slot];
             let cells = row.start as usize..(row.start + row.len) as usize;
             // SAFETY: rows do not share cells, and each row belongs to one plane.

@@ -20,6 +20,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::law::COLUMNS;
+use crate::families::shares::{BodyShare, Shares};
 use crate::families::tiles::Tiles;
 use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
 use crate::lanes::isa::Isa;
@@ -38,19 +39,21 @@ impl Families {
         constants::weigh_list(&mut self.list, cell, &self.law);
     }
 
-    /// Adds the forces of all bonds of bodies on lattices.
+    /// Adds the forces of all bonds of bodies on lattices; where work is shared out to ranks, to the particles of this one.
     pub(crate) fn sweep_lattices<K: Isa>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
+        shares: Option<&mut Shares>,
     ) {
         let Self { lattices, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
         let settling = settling((law, table), options, (advance, tallied, *counts_losses));
         let f = Shared::new(f);
+        let mut shares = shares.into_iter().flat_map(|shares| &mut shares.bodies);
         for body in lattices {
-            lattice_body::<K>(body, view, &f, (mode, options), &settling);
+            lattice_body::<K>(body, view, &f, (mode, options), (&settling, shares.next()));
         }
     }
 
@@ -111,7 +114,7 @@ fn lattice_body<K: Isa>(
     view: &PeriView,
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
-    settling: &Settling,
+    (settling, share): (&Settling, Option<&mut BodyShare>),
 ) {
     let kind = settling.law.kind;
     let spreads = kind.spreads();
@@ -168,7 +171,7 @@ fn lattice_body<K: Isa>(
     }
     (body.particle, body.scatter.stiffness) = (particle, stiffness);
     let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
-    sweep.all::<K>((&tiles, &mut windows), f);
+    sweep.all::<K>((&tiles, &mut windows), share, f);
     columns.give(body);
     body.tiles = Tiles { windows, ..tiles };
     (body.state.memory, body.state.touched) = (memory, touched);

@@ -4,6 +4,7 @@ use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::tiles::Tiles;
 use crate::lanes::isa::{Isa, Kernel};
 use crate::lattice::tiles::Windows;
+use crate::shares::dues::overlap;
 use perigrain_base::par::Shared;
 
 /// Cells that are added up together: they stay in the fastest memory.
@@ -36,27 +37,17 @@ fn parts<'a, 'r, const N: usize>(
     room: &'r mut [Part<'a, N>],
 ) -> &'r [Part<'a, N>] {
     let mut owed = 0;
-    let rows = &tiles.all[tile].rows;
-    let start = |row: usize| body.rows[body.slot(plane, row)].start as usize;
     for giver in std::iter::once(tile).chain(tiles.givers(tile).iter().map(|&giver| giver as usize)) {
         // SAFETY: a tile settles when it and those that reach into it have been swept.
         let window = unsafe { windows.get(giver) };
         if !window.touched {
             continue;
         }
-        let Some(up) = plane.checked_sub(tiles.all[giver].planes.start) else { continue };
-        let Some(at) = tiles.reached(giver).get(up) else { continue };
-        let (low, high) = (at.rows[0].max(rows.start), at.rows[1].min(rows.end));
-        if low >= high {
-            continue;
-        }
-        let cells = [start(low), start(high)];
+        let Some((cells, at)) = overlap(body, (tiles, giver, tile), plane) else { continue };
         let from = |k: usize| window.base + k * window.stride + cells[0] - at.first;
-        if cells[0] < cells[1] {
-            let sums = std::array::from_fn(|k| &window.sums[from(k)..][..cells[1] - cells[0]]);
-            room[owed] = Part { cells, sums };
-            owed += 1;
-        }
+        let sums = std::array::from_fn(|k| &window.sums[from(k)..][..cells[1] - cells[0]]);
+        room[owed] = Part { cells, sums };
+        owed += 1;
     }
     &room[..owed]
 }

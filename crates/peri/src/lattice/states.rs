@@ -13,7 +13,7 @@ use crate::lattice::forms::{self, run, run_term};
 use crate::lattice::kernels::Cells;
 use crate::lattice::owed;
 use crate::lattice::sweep::{Room, Sweep};
-use crate::lattice::tiles::pass;
+use crate::lattice::tiles::{Over, pass};
 use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{Moment, of_law};
 use perigrain_base::par::Shared;
@@ -127,8 +127,7 @@ pub(crate) fn all<K: Isa>(
     sums: &Shared<f64>,
 ) {
     pass(
-        tiles,
-        (windows, &[]),
+        Over { tiles, windows, times: &[], share: None },
         |at, window| tile::<K>(sweep, sum, (tiles, at), window),
         |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
     );

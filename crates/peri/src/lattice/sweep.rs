@@ -4,15 +4,17 @@
 //! `families::sound` has looked at each of them.
 
 use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
+use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
 use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{self, Chunk, Various};
 use crate::lattice::leads::{ahead, find_leads, row_limit};
 use crate::lattice::owed;
 use crate::lattice::states::States;
-use crate::lattice::tiles::pass;
+use crate::lattice::tiles::{HandOver, Over, pass};
 use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
+use crate::shares::dues::hand_over;
 use perigrain_base::par::Shared;
 
 /// How one force evaluation treats the bonds of a body.
@@ -118,10 +120,27 @@ impl<'a> Sweep<'a> {
     }
 
     /// Adds the forces of all bonds to `f`.
-    pub(crate) fn all<K: Isa>(&self, (tiles, windows): (&Tiles, &mut [TileWindow]), f: &Shared<[f64; 3]>) {
+    /// Of several ranks each sweeps its share.
+    pub(crate) fn all<K: Isa>(
+        &self,
+        (tiles, windows): (&Tiles, &mut [TileWindow]),
+        share: Option<&mut BodyShare>,
+        f: &Shared<[f64; 3]>,
+    ) {
+        let (own, waits, mut dues) = match share {
+            None => (None, &[][..], None),
+            Some(BodyShare { mine, waits, gives, takes, .. }) => {
+                (Some(mine.clone()), &waits[..], Some((gives, takes)))
+            }
+        };
+        let mut exchange = |windows: &mut [TileWindow]| {
+            if let Some((gives, takes)) = &mut dues {
+                hand_over(self.body, tiles, windows, (gives, takes), 3);
+            }
+        };
+        let share = own.map(|own| HandOver { own, waits, exchange: &mut exchange });
         pass(
-            tiles,
-            (windows, &tiles.times),
+            Over { tiles, windows, times: &tiles.times, share },
             |tile, window| self.tile::<K>((tiles, tile), window),
             |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
         );

@@ -141,22 +141,51 @@ fn along_curve([mut x, mut y]: [usize; 2], n: usize) -> usize {
     at
 }
 
+/// What a pass goes over.
+pub(crate) struct Over<'a> {
+    /// The tiles.
+    pub(crate) tiles: &'a Tiles,
+    /// Their windows.
+    pub(crate) windows: &'a mut [TileWindow],
+    /// Their times, where these are kept.
+    pub(crate) times: &'a [[AtomicU64; 2]],
+    /// This rank's share of them, where others have the rest; how to hand windows over.
+    pub(crate) share: Option<HandOver<'a>>,
+}
+
+/// A rank's share of tiles, and the exchange of windows with other ranks.
+pub(crate) struct HandOver<'a> {
+    /// This rank's tiles.
+    pub(crate) own: Range<usize>,
+    /// Those of them that others' bonds reach.
+    pub(crate) waits: &'a [usize],
+    /// Hands windows over to other ranks and takes theirs.
+    pub(crate) exchange: &'a mut dyn FnMut(&mut [TileWindow]),
+}
+
 /// Sweeps each tile into its window (`sweep(tile, window)` says whether any bond was not at rest), and settles a tile as soon as all whose
 /// bonds reach into it have been swept: `settle(tile, windows)`. In which order tiles settle makes no difference: each adds up the
-/// windows of its givers in their order, to cells that no other tile has.
+/// windows of its givers in their order, to cells that no other tile has. Tiles that wait for other ranks settle after these have sent
+/// their windows.
 pub(crate) fn pass(
-    tiles: &Tiles,
-    (windows, times): (&mut [TileWindow], &[[AtomicU64; 2]]),
+    over: Over,
     sweep: impl Fn(usize, &mut TileWindow) -> bool + Sync,
     settle: impl Fn(usize, Windows) + Sync,
 ) {
-    for (k, (unswept, unsettled)) in tiles.unswept.iter().zip(&tiles.unsettled).enumerate() {
-        unswept.store(tiles.givers(k).len() as u32 + 1, Ordering::Relaxed);
-        unsettled.store(tiles.takers(k).len() as u32, Ordering::Relaxed);
+    let Over { tiles, windows, times, share } = over;
+    let own = share.as_ref().map_or(0..tiles.all.len(), |share| share.own.clone());
+    let here = |tile: u32| own.contains(&(tile as usize));
+    // With one more for other ranks, where these give or take something.
+    let count = |list: &[u32]| {
+        let some = list.iter().filter(|tile| here(**tile)).count();
+        (some + usize::from(some < list.len())) as u32
+    };
+    for k in own.clone() {
+        tiles.unswept[k].store(1 + count(tiles.givers(k)), Ordering::Relaxed);
+        tiles.unsettled[k].store(count(tiles.takers(k)), Ordering::Relaxed);
     }
-    let shared = Shared::new(windows);
     let last = |count: &[AtomicU32], tile: usize| count[tile].fetch_sub(1, Ordering::AcqRel) == 1;
-    let release = |tile: usize| {
+    let release = |tile: usize, shared: &Shared<TileWindow>| {
         if last(&tiles.unsettled, tile) {
             // SAFETY: all tiles that read the window have settled.
             let window = unsafe { &mut shared.get(tile..tile + 1)[0] };
@@ -165,18 +194,33 @@ pub(crate) fn pass(
             }
         }
     };
-    par::for_rows(tiles.all.len(), |k| {
+    let done = |taker: usize, shared: &Shared<TileWindow>| {
+        timed(times, (taker, 1), || settle(taker, Windows(shared)));
+        release(taker, shared);
+        tiles.givers(taker).iter().filter(|giver| here(**giver)).for_each(|g| release(*g as usize, shared));
+    };
+    let shared = Shared::new(&mut *windows);
+    par::for_rows(own.len(), |k| {
+        let k = own.start + k;
         // SAFETY: each tile is swept once, and its window is read after that alone.
         let window = unsafe { &mut shared.get(k..k + 1)[0] };
         window.touched = timed(times, (k, 0), || sweep(k, window));
-        for &taker in tiles.takers(k) {
+        for &taker in tiles.takers(k).iter().filter(|taker| here(**taker)) {
             // What was written before is seen by the thread that settles.
             let taker = taker as usize;
             if last(&tiles.unswept, taker) {
-                timed(times, (taker, 1), || settle(taker, Windows(&shared)));
-                release(taker);
-                tiles.givers(taker).iter().for_each(|&giver| release(giver as usize));
+                done(taker, &shared);
             }
+        }
+    });
+    let Some(HandOver { waits, exchange, .. }) = share else { return };
+    exchange(windows);
+    let shared = Shared::new(windows);
+    let given = |tile: usize| tiles.takers(tile).iter().any(|taker| !here(*taker));
+    own.clone().filter(|tile| given(*tile)).for_each(|tile| release(tile, &shared));
+    par::for_rows(waits.len(), |k| {
+        if last(&tiles.unswept, waits[k]) {
+            done(waits[k], &shared);
         }
     });
 }

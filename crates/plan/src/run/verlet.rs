@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_base::stop;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::named::Acting;
-use perigrain_world::{Halt, World};
+use perigrain_world::{Fields, Halt, World};
 use std::time::{Duration, Instant};
 
 /// How a run ended.
@@ -107,8 +107,14 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     w.travel.begin(plan.guard.is_none() && plan.reports_travel());
     // A guard may take steps back.
     let sure = plan.guard.is_none();
+    plan.deal(w, &tick(w, false));
     let outcome =
         steps(plan, w, watch, |plan, w, t, looked| plan.step(w, t, |w| sure && !looked && !over(w)));
+    match outcome {
+        Ok(_) => w.undeal(),
+        // Ranks need not have come to the same place.
+        Err(_) => w.share = None,
+    }
     w.travel.begin(false);
     outcome
 }
@@ -188,6 +194,7 @@ pub(super) fn steps(
             let (done, total) = (c.step - first, last - first);
             watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
             if looked {
+                w.whole(Fields::ALL);
                 watch.scene(w);
             }
             if let Some(trial) = &mut trial {

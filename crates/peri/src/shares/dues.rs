@@ -1,0 +1,115 @@
+//! What tiles of one rank owe to those of another, as messages.
+
+use std::ops::Range;
+
+use crate::families::lattice::{LatticeBody, PAD, staggered};
+use crate::families::shares::Dues;
+use crate::families::tiles::{Reached, TileWindow, Tiles};
+use perigrain_base::comm;
+
+/// Bytes of a number.
+const NUMBER: usize = size_of::<f64>();
+
+/// What of the window of one tile belongs to another, in one plane: first and past the last cell, and where the plane is in the window.
+pub(crate) fn overlap<'a>(
+    body: &LatticeBody,
+    (tiles, giver, taker): (&'a Tiles, usize, usize),
+    plane: usize,
+) -> Option<([usize; 2], &'a Reached)> {
+    let up = plane.checked_sub(tiles.all[giver].planes.start)?;
+    let at = tiles.reached(giver).get(up)?;
+    let rows = &tiles.all[taker].rows;
+    let (low, high) = (at.rows[0].max(rows.start), at.rows[1].min(rows.end));
+    if low >= high {
+        return None;
+    }
+    let cells = [low, high].map(|row| body.rows[body.slot(plane, row)].start as usize);
+    (cells[0] < cells[1]).then_some((cells, at))
+}
+
+/// All that one tile's window has for another tile: cells, and where they begin in the window, counted from its base.
+fn parts<'a>(
+    body: &'a LatticeBody,
+    tiles: &'a Tiles,
+    [giver, taker]: [usize; 2],
+) -> impl Iterator<Item = (Range<usize>, usize)> + use<'a> {
+    let planes = tiles.all[taker].planes.clone();
+    let found = planes.filter_map(move |plane| overlap(body, (tiles, giver, taker), plane));
+    found.map(|([low, high], at)| (low..high, low - at.first))
+}
+
+/// How long a message is: of each pair of tiles whether anything is owed, and the numbers.
+fn length(body: &LatticeBody, tiles: &Tiles, dues: &Dues, components: usize) -> usize {
+    let cells = |pair: &[usize; 2]| parts(body, tiles, *pair).map(|(cells, _)| cells.len()).sum::<usize>();
+    dues.pairs.iter().map(|pair| 1 + NUMBER * components * cells(pair)).sum()
+}
+
+/// Hands the windows of this rank's tiles over to the ranks whose tiles they reach, and puts those of others in their places.
+pub(crate) fn hand_over(
+    body: &LatticeBody,
+    tiles: &Tiles,
+    windows: &mut [TileWindow],
+    (gives, takes): (&mut [Dues], &mut [Dues]),
+    components: usize,
+) {
+    for dues in &mut *gives {
+        dues.bytes.resize(length(body, tiles, dues, components), 0);
+        let mut bytes = &mut dues.bytes[..];
+        for &pair in &dues.pairs {
+            let window = &windows[pair[0]];
+            bytes[0] = u8::from(window.touched);
+            bytes = &mut bytes[1..];
+            for (cells, from) in parts(body, tiles, pair) {
+                for k in 0..components {
+                    let (own, rest) = bytes.split_at_mut(NUMBER * cells.len());
+                    if window.touched {
+                        let from = window.base + k * window.stride + from;
+                        let numbers = &window.sums[from..from + cells.len()];
+                        own.chunks_exact_mut(NUMBER)
+                            .zip(numbers)
+                            .for_each(|(to, number)| to.copy_from_slice(&number.to_ne_bytes()));
+                    }
+                    bytes = rest;
+                }
+            }
+        }
+    }
+    for dues in &mut *takes {
+        dues.bytes.resize(length(body, tiles, dues, components), 0);
+    }
+    let out: Vec<(usize, &[u8])> = gives.iter().map(|d| (d.with, &d.bytes[..])).collect();
+    let mut into: Vec<(usize, &mut [u8])> = takes.iter_mut().map(|d| (d.with, &mut d.bytes[..])).collect();
+    comm::present().swap(&out, &mut into);
+    for dues in &*takes {
+        let mut bytes = &dues.bytes[..];
+        for &pair in &dues.pairs {
+            let window = &mut windows[pair[0]];
+            open(window, tiles.reached(pair[0]), components);
+            window.touched = bytes[0] != 0;
+            bytes = &bytes[1..];
+            for (cells, from) in parts(body, tiles, pair) {
+                for k in 0..components {
+                    let (own, rest) = bytes.split_at(NUMBER * cells.len());
+                    if window.touched {
+                        let from = window.base + k * window.stride + from;
+                        let numbers = &mut window.sums[from..from + cells.len()];
+                        for (number, bytes) in numbers.iter_mut().zip(own.as_chunks::<NUMBER>().0) {
+                            *number = f64::from_ne_bytes(*bytes);
+                        }
+                    }
+                    bytes = rest;
+                }
+            }
+        }
+    }
+}
+
+/// Gives the window of another rank's tile its room, which stays: only what this rank's tiles take is written and read.
+fn open(window: &mut TileWindow, reached: &[Reached], components: usize) {
+    let Some(top) = reached.last() else { return };
+    let (base, stride) = (PAD, staggered(top.cells[1] - top.first));
+    (window.base, window.stride) = (base, stride);
+    if window.sums.len() < base + components * stride {
+        window.sums.resize(base + components * stride, 0.0);
+    }
+}

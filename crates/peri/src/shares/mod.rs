@@ -1,0 +1,10 @@
+//! Bodies on lattices shared out to ranks: which rank sweeps which tiles, what is handed over, what all agree upon.
+
+mod agreed;
+pub(crate) mod deal;
+pub(crate) mod dues;
+mod whole;
+
+pub(crate) use agreed::{
+    Broken, agreed_motion, broken_everywhere, flagged_anywhere, forget_flags, square, squeezed_everywhere,
+};

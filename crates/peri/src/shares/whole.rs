@@ -1,0 +1,110 @@
+//! What ranks know of their tiles alone, handed to all.
+
+use std::ops::Range;
+
+use crate::families::Families;
+use crate::families::lattice::{LatticeBody, PAD, RowMotion};
+
+/// Numbers on their way into a message or out of one.
+enum Way<'a> {
+    Count(usize),
+    Out(&'a mut Vec<u8>),
+    In(&'a [u8]),
+}
+
+/// A number with bytes.
+trait Number: Copy {
+    const BYTES: usize;
+    fn write(self, to: &mut Vec<u8>);
+    fn read(from: &[u8]) -> Self;
+}
+
+macro_rules! numbers {
+    ($($name:ty)*) => {$(
+        impl Number for $name {
+            const BYTES: usize = size_of::<$name>();
+            fn write(self, to: &mut Vec<u8>) {
+                to.extend_from_slice(&self.to_ne_bytes());
+            }
+            fn read(from: &[u8]) -> Self {
+                from.first_chunk().map_or(Self::default(), |bytes| Self::from_ne_bytes(*bytes))
+            }
+        }
+    )*};
+}
+
+numbers! { f64 f32 i32 u8 }
+
+impl Way<'_> {
+    fn numbers<T: Number>(&mut self, numbers: &mut [T]) {
+        match self {
+            Way::Count(n) => *n += T::BYTES * numbers.len(),
+            Way::Out(bytes) => numbers.iter().for_each(|number| number.write(bytes)),
+            Way::In(bytes) => {
+                let (own, rest) = bytes.split_at(T::BYTES * numbers.len());
+                numbers.iter_mut().zip(own.chunks_exact(T::BYTES)).for_each(|(to, from)| *to = T::read(from));
+                *bytes = rest;
+            }
+        }
+    }
+}
+
+impl Families {
+    /// How many bytes a rank has that others do not know.
+    pub fn piece_bytes(&mut self, rank: usize) -> usize {
+        let mut way = Way::Count(0);
+        self.piece(rank, &mut way);
+        if let Way::Count(n) = way { n } else { 0 }
+    }
+
+    /// Appends what a rank alone knows: this one.
+    pub fn write_piece(&mut self, rank: usize, bytes: &mut Vec<u8>) {
+        self.piece(rank, &mut Way::Out(bytes));
+    }
+
+    /// Takes in what another rank alone knew.
+    pub fn read_piece(&mut self, rank: usize, bytes: &[u8]) {
+        self.piece(rank, &mut Way::In(bytes));
+    }
+
+    fn piece(&mut self, rank: usize, way: &mut Way) {
+        let Self { lattices, shares, .. } = self;
+        let Some(shares) = shares else { return };
+        for (body, share) in lattices.iter_mut().zip(&shares.bodies) {
+            for slot in slots_of(body, &share.tiles[rank]) {
+                piece_of_row(body, slot, way);
+            }
+        }
+    }
+}
+
+/// The row slots of some tiles.
+fn slots_of(body: &LatticeBody, tiles: &Range<usize>) -> Vec<usize> {
+    let tiles = body.tiles.all[tiles.clone()].iter();
+    tiles
+        .flat_map(|tile| {
+            let slots = |plane: usize| body.slot(plane, tile.rows.start)..body.slot(plane, tile.rows.end);
+            tile.planes.clone().flat_map(slots)
+        })
+        .collect()
+}
+
+/// What sweeps and motion leave of one row.
+fn piece_of_row(body: &mut LatticeBody, slot: usize, way: &mut Way) {
+    let (chunks, cells) = (body.rows[slot].chunks(), body.rows[slot].cells());
+    for column in [&mut body.tension, &mut body.compression, &mut body.measure, &mut body.floor] {
+        way.numbers(&mut column[chunks.clone()]);
+    }
+    way.numbers(&mut body.flagged[chunks]);
+    for u in &mut body.u {
+        for k in 0..3 {
+            let first = k * body.stride + PAD;
+            way.numbers(&mut u[first + cells.start..first + cells.end]);
+        }
+    }
+    let RowMotion { lo, hi, least, most } = &mut body.motion[slot];
+    way.numbers(std::slice::from_mut(lo));
+    way.numbers(std::slice::from_mut(hi));
+    way.numbers(least);
+    way.numbers(most);
+}

@@ -1,0 +1,318 @@
+//! Rows of particles shared out to ranks during a run: which rank moves which, and where their values are up to date.
+//!
+//! Every rank has all rows, at the same places. Of a body that is shared out it moves its own ones and keeps those near them up to date; the
+//! others stay as they were until something asks for all of them ([`World::whole`]). Particles of no such body are moved by all ranks alike.
+
+use super::World;
+use super::field::{F, FAMILIES, Fields, OMEGA, QUAT, TORQUE, V, X};
+use perigrain_base::comm::{self, Comm};
+use perigrain_peri::families::shares::ranges;
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The fields of which a rank may have some rows only.
+pub const SHARED: Fields = X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(FAMILIES);
+
+/// How rows are shared out.
+#[derive(Clone)]
+pub struct Share {
+    comm: Arc<dyn Comm>,
+    /// Rows that this rank moves: its own, and those that all move.
+    pub own: Vec<Range<usize>>,
+    /// Rows that each rank alone moves.
+    alone: Vec<Vec<Range<usize>>>,
+    /// Rows to hand out to, and to take from, each other rank.
+    links: Vec<Link>,
+    /// Fields that are up to date in this rank's own rows alone.
+    stale: Fields,
+    /// Those of them that are up to date in the rows near these as well.
+    near: Fields,
+    /// What particles there were, in which places.
+    roster: [u64; 2],
+    /// Whether the op at work acts on this rank's rows alone.
+    pub narrow: bool,
+    /// Messages, used again.
+    bytes: Vec<u8>,
+}
+
+/// Rows that two ranks hand to each other.
+#[derive(Clone, Debug, Default)]
+struct Link {
+    with: usize,
+    out: Vec<Range<usize>>,
+    into: Vec<Range<usize>>,
+    bytes: [Vec<u8>; 2],
+}
+
+impl fmt::Debug for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { own, stale, near, .. } = self;
+        f.debug_struct("Share").field("own", own).field("stale", stale).field("near", near).finish()
+    }
+}
+
+impl Share {
+    /// Puts the largest of all ranks in the place of each number; what is no number counts as larger than all.
+    pub fn agree<'a>(&self, numbers: impl Iterator<Item = &'a mut f64>) {
+        let numbers: Vec<&mut f64> = numbers.collect();
+        let mut most: Vec<f64> =
+            numbers.iter().map(|a| if a.is_nan() { f64::INFINITY } else { **a }).collect();
+        self.comm.most(&mut most);
+        numbers.into_iter().zip(most).for_each(|(a, most)| *a = most);
+    }
+}
+
+/// Bytes of a number.
+const NUMBER: usize = size_of::<f64>();
+
+impl World {
+    /// Shares rows out to ranks, where there are several and some body can be. All rows are up to date before.
+    pub fn deal(&mut self) {
+        self.share = None;
+        let comm = comm::present();
+        let (me, ranks) = (comm.rank(), comm.size());
+        if ranks < 2 {
+            return;
+        }
+        let (n, roster) = (self.n(), self.roster());
+        let Some(families) = self.families.past_mut().as_mut().filter(|families| families.place.len() == n)
+        else {
+            return;
+        };
+        if !families.deal(me, ranks) {
+            return;
+        }
+        let Some(shares) = &families.shares else { return };
+        let of = |rank: usize| {
+            let rows = shares.owner.iter().enumerate().filter(|(_, owner)| usize::from(**owner) == rank);
+            ranges(rows.map(|(row, _)| row))
+        };
+        let alone = (0..ranks).map(of).collect();
+        let own = shares.own.clone();
+        let (stale, near, bytes) = (Fields::NONE, Fields::NONE, vec![]);
+        let links = vec![];
+        self.share = Some(Share { comm, own, alone, links, stale, near, roster, narrow: false, bytes });
+        self.link();
+    }
+
+    /// Finds anew which rows ranks need of each other.
+    pub fn link(&mut self) {
+        let (Some(share), Some(families)) = (&mut self.share, self.families.past()) else { return };
+        let me = share.comm.rank();
+        let needed = families.needed();
+        let rows = |rows: &[u32]| ranges(rows.iter().map(|row| *row as usize));
+        let others = (0..needed.len()).filter(|with| *with != me);
+        let links = others.map(|with| Link {
+            with,
+            out: rows(&needed[with][me]),
+            into: rows(&needed[me][with]),
+            bytes: Default::default(),
+        });
+        share.links = links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect();
+        // Rows that are near since now have not been handed over.
+        share.near = Fields::NONE;
+    }
+
+    /// Takes the shares back; all rows are up to date then.
+    pub fn undeal(&mut self) {
+        if self.share.is_some() {
+            self.whole(Fields::ALL);
+            self.share = None;
+        }
+        if let Some(families) = self.families.past_mut() {
+            families.undeal();
+        }
+    }
+
+    /// What tells whether particles are still those that were shared out.
+    fn roster(&self) -> [u64; 2] {
+        let rebuild = self.rebuild.past();
+        [rebuild.roster, rebuild.places]
+    }
+
+    /// Whether particles have come, gone or changed places since they were shared out.
+    pub fn is_misdealt(&self) -> bool {
+        let Some(share) = &self.share else { return false };
+        let known = |families: &super::Families| {
+            families.shares.as_ref().is_some_and(|shares| shares.owner.len() == self.n())
+        };
+        share.roster != self.roster() || !self.families.past().as_ref().is_some_and(known)
+    }
+
+    /// Whether all rows of these fields are up to date here.
+    pub fn is_whole(&self, fields: Fields) -> bool {
+        self.share.as_ref().is_none_or(|share| !share.stale.has(fields))
+    }
+
+    /// Has all rows of these fields on all ranks. All ranks ask for the same at the same place.
+    pub fn whole(&mut self, fields: Fields) {
+        let Some(mut share) = self.share.take() else { return };
+        let missing = share.stale.and_only(fields);
+        if !missing.is_empty() {
+            self.gather_rows(&mut share, missing);
+            share.stale = share.stale.without(missing);
+            share.near = share.near.without(missing);
+        }
+        self.share = Some(share);
+    }
+
+    /// Has the rows of these fields that are near this rank's own.
+    pub fn halo(&mut self, fields: Fields) {
+        let Some(mut share) = self.share.take() else { return };
+        let missing = share.stale.and_only(fields).without(share.near).without(FAMILIES);
+        if !missing.is_empty() {
+            self.swap_rows(&mut share, missing);
+            share.near |= missing;
+        }
+        self.share = Some(share);
+    }
+
+    /// The rows among these that the op at work acts on: all, or those of this rank.
+    pub fn moved_in(&self, rows: Range<usize>) -> impl Iterator<Item = Range<usize>> + use<'_> {
+        let own = self.share.as_ref().filter(|share| share.narrow).map(|share| &share.own[..]);
+        let all = own.is_none().then(|| rows.clone());
+        let own = own.unwrap_or_default();
+        let own = &own[own.partition_point(|own| own.end <= rows.start)..];
+        let end = rows.end;
+        let some = own.iter().take_while(move |own| own.start < end);
+        all.into_iter().chain(some.map(move |own| own.start.max(rows.start)..own.end.min(end)))
+    }
+
+    /// Whether the op at work acts on the rows of this rank alone.
+    pub fn is_narrow(&self) -> bool {
+        self.share.as_ref().is_some_and(|share| share.narrow)
+    }
+
+    /// An op has changed these fields in this rank's own rows alone.
+    pub fn strays(&mut self, fields: Fields) {
+        let Some(share) = &mut self.share else { return };
+        let changed = SHARED.and_only(fields);
+        share.stale |= changed;
+        share.near = share.near.without(changed);
+        #[cfg(debug_assertions)]
+        self.spoil(changed);
+    }
+
+    fn gather_rows(&mut self, share: &mut Share, fields: Fields) {
+        let mut bytes = std::mem::take(&mut share.bytes);
+        bytes.clear();
+        let me = share.comm.rank();
+        let mut counts = vec![];
+        for rank in 0..share.alone.len() {
+            let before = bytes.len();
+            let mut length = 0;
+            self.columns_of(fields, |numbers, width| {
+                let rows: usize = share.alone[rank].iter().map(Range::len).sum();
+                length += NUMBER * width * rows;
+                if rank == me {
+                    write(numbers, width, &share.alone[rank], &mut bytes);
+                }
+            });
+            if let Some(families) = self.families.past_mut().as_mut().filter(|_| fields.has(FAMILIES)) {
+                length += families.piece_bytes(rank);
+                if rank == me {
+                    families.write_piece(rank, &mut bytes);
+                }
+            }
+            bytes.resize(before + length, 0);
+            counts.push(length);
+        }
+        share.comm.gather_all(&mut bytes, &counts);
+        let mut rest = &bytes[..];
+        for (rank, count) in counts.iter().enumerate() {
+            let (mut piece, after) = rest.split_at(*count);
+            rest = after;
+            if rank == me {
+                continue;
+            }
+            self.columns_of(fields, |numbers, width| {
+                piece = read(numbers, width, &share.alone[rank], piece);
+            });
+            if let Some(families) = self.families.past_mut().as_mut().filter(|_| fields.has(FAMILIES)) {
+                families.read_piece(rank, piece);
+            }
+        }
+        share.bytes = bytes;
+    }
+
+    fn swap_rows(&mut self, share: &mut Share, fields: Fields) {
+        for link in &mut share.links {
+            let [out, into] = &mut link.bytes;
+            out.clear();
+            let mut length = 0;
+            self.columns_of(fields, |numbers, width| {
+                write(numbers, width, &link.out, out);
+                length += NUMBER * width * link.into.iter().map(Range::len).sum::<usize>();
+            });
+            into.resize(length, 0);
+        }
+        let mut out: Vec<(usize, &[u8])> = vec![];
+        let mut into: Vec<(usize, &mut [u8])> = vec![];
+        for Link { with, bytes: [own, others], .. } in &mut share.links {
+            if !own.is_empty() {
+                out.push((*with, own));
+            }
+            if !others.is_empty() {
+                into.push((*with, others));
+            }
+        }
+        share.comm.swap(&out, &mut into);
+        for link in &share.links {
+            let mut piece = &link.bytes[1][..];
+            self.columns_of(fields, |numbers, width| piece = read(numbers, width, &link.into, piece));
+        }
+    }
+
+    /// Calls `f(numbers, numbers per row)` for the columns of these fields that have rows.
+    fn columns_of(&mut self, fields: Fields, mut f: impl FnMut(&mut [f64], usize)) {
+        let p = &mut self.particles;
+        for (field, column) in
+            [(X, &mut p.x), (V, &mut p.v), (F, &mut p.f), (OMEGA, &mut p.omega), (TORQUE, &mut p.torque)]
+        {
+            if fields.has(field) && !column.is_empty() {
+                f(column.past_mut().as_flattened_mut(), 3);
+            }
+        }
+        if fields.has(QUAT) && !p.quat.is_empty() {
+            f(p.quat.past_mut().as_flattened_mut(), 4);
+        }
+    }
+
+    /// Makes numbers that are not up to date such that whatever reads them is found out.
+    #[cfg(debug_assertions)]
+    fn spoil(&mut self, fields: Fields) {
+        let Some(share) = self.share.take() else { return };
+        let me = share.comm.rank();
+        let others = share.alone.iter().enumerate().filter(|(rank, _)| *rank != me);
+        let rows: Vec<Range<usize>> = others.flat_map(|(_, rows)| rows.clone()).collect();
+        self.columns_of(fields, |numbers, width| {
+            rows.iter().for_each(|rows| numbers[width * rows.start..width * rows.end].fill(f64::NAN));
+        });
+        self.share = Some(share);
+    }
+}
+
+/// Appends some rows.
+fn write(numbers: &[f64], width: usize, rows: &[Range<usize>], bytes: &mut Vec<u8>) {
+    for rows in rows {
+        let numbers = &numbers[width * rows.start..width * rows.end];
+        let at = bytes.len();
+        bytes.resize(at + NUMBER * numbers.len(), 0);
+        let to = bytes[at..].chunks_exact_mut(NUMBER);
+        to.zip(numbers).for_each(|(to, number)| to.copy_from_slice(&number.to_ne_bytes()));
+    }
+}
+
+/// Takes some rows in; what is left of the bytes.
+fn read<'a>(numbers: &mut [f64], width: usize, rows: &[Range<usize>], mut bytes: &'a [u8]) -> &'a [u8] {
+    for rows in rows {
+        let numbers = &mut numbers[width * rows.start..width * rows.end];
+        let (own, rest) = bytes.split_at(NUMBER * numbers.len());
+        for (number, bytes) in numbers.iter_mut().zip(own.as_chunks::<NUMBER>().0) {
+            *number = f64::from_ne_bytes(*bytes);
+        }
+        bytes = rest;
+    }
+    bytes
+}
