@@ -65,13 +65,9 @@ impl Op for Reneighbor {
         if check {
             let half = 0.5 * (w.rebuild.room(skin) - corners_moved(w)).max(0.0);
             if w.rebuild.seen.within(*w.travel, half) {
-                debug_assert!(
-                    !w.is_whole(X) || farthest(w, t)? <= half * half,
-                    "particles have moved that no op has reported"
-                );
+                debug_assert!(farthest(w, t)? <= half * half, "particles have moved that no op has reported");
                 return Ok(());
             }
-            w.whole(X);
             let moved = farthest(w, t)?;
             w.rebuild.seen = Seen::now(*w.travel, moved.sqrt());
             if moved <= half * half {
@@ -132,13 +128,23 @@ fn carry(domain: &Domain, p: &mut Particles) {
     }
 }
 
-/// Largest squared displacement since the last rebuild.
-fn farthest(w: &World, t: &Tick) -> Result<f64> {
+/// Largest squared displacement since the last rebuild, on all ranks.
+fn farthest(w: &mut World, t: &Tick) -> Result<f64> {
     let (x, held) = (&w.particles.x, w.held());
-    let most = extent::farthest(x, held);
+    let most = match &w.share {
+        None => extent::farthest(x, held),
+        Some(share) => {
+            let own = share.own.iter().map(|rows| extent::farthest(&x[rows.clone()], &held[rows.clone()]));
+            let mut most = own.fold(0.0, f64::max);
+            share.agree(std::iter::once(&mut most));
+            most
+        }
+    };
     if most.is_finite() {
         return Ok(most);
     }
+    w.whole(Fields::ALL);
+    let (x, held) = (&w.particles.x, w.held());
     let lost = |i: &usize| !extent::farthest(&x[*i..=*i], &held[*i..=*i]).is_finite();
     Err(not_finite(w, (0..x.len()).find(lost).unwrap_or(0), t))
 }

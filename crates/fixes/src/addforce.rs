@@ -134,7 +134,7 @@ impl Fix for Declared {
             publish(w, slot, t, e, &before);
             Ok(())
         });
-        Ok(vec![op.one_by_one().when(when).boxed()])
+        Ok(vec![op.one_by_one().with_sums().when(when).boxed()])
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {

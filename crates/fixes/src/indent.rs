@@ -164,7 +164,7 @@ impl Fix for Declared {
             publish(w, slot, t, energy, &reaction);
             Ok(())
         });
-        Ok(vec![op.one_by_one().boxed()])
+        Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
     fn shape(&self) -> Shape {

@@ -208,14 +208,14 @@ impl Fix for Declared {
             }
             Ok(())
         });
-        let mut ops = vec![first.in_setup(true).boxed()];
+        let mut ops = vec![first.in_setup(true).one_by_one().boxed()];
         if free.contains(&true) {
             let access = Needs::new().read(F | MASS | MASK | TYPE_MASS | KIND).write(V);
             let second = StepOp::new(name, Stage::FinalIntegrate, access, move |w, t| {
                 kick(w, group, free, t.dt);
                 Ok(())
             });
-            ops.push(second.boxed());
+            ops.push(second.one_by_one().boxed());
         }
         Ok(ops)
     }
@@ -266,8 +266,9 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
     let columns =
         (&mut places[..], &mut velocities[..], &world.particles.f[..], &world.particles.mask[..], start);
     par::each(columns, |first, (x, v, f, mask, start)| {
-        for (k, ((((x, v), f), mask), start)) in x.iter_mut().zip(v).zip(f).zip(mask).zip(start).enumerate() {
-            if mask & bit == 0 {
+        for k in world.moved_in(first..first + mask.len()).flatten().map(|row| row - first) {
+            let (x, v, f, start) = (&mut x[k], &mut v[k], &f[k], &start[k]);
+            if mask[k] & bit == 0 {
                 continue;
             }
             let given = path.at(world, first + k, *start, time, readings);

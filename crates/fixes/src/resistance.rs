@@ -127,16 +127,16 @@ impl Resistance {
             let motion = motion_in(&world.particles);
             let p = &world.particles;
             par::each((&mut against[..], motion, &p.mask[..]), |start, (against, motion, mask)| {
-                for (k, ((against, motion), mask)) in against.iter_mut().zip(motion).zip(mask).enumerate() {
-                    if mask & bit != 0 {
+                for k in world.moved_in(start..start + mask.len()).flatten().map(|row| row - start) {
+                    if mask[k] & bit != 0 {
                         let drag = gamma * factors.of(world, start + k);
-                        (0..3).for_each(|d| against[d] -= drag * motion[d]);
+                        (0..3).for_each(|d| against[k][d] -= drag * motion[k][d]);
                     }
                 }
             });
             *against_in(&mut w.particles) = against;
             Ok(())
         });
-        Ok(op.boxed())
+        Ok(op.one_by_one().boxed())
     }
 }

@@ -78,7 +78,7 @@ impl Fix for Declared {
             publish_levels(w, slot, t, &before);
             Ok(())
         });
-        Ok(vec![op.fusing(hold, told).one_by_one().in_every_level().boxed()])
+        Ok(vec![op.fusing(hold, told).one_by_one().with_sums().in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {

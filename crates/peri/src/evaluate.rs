@@ -459,6 +459,9 @@ impl Families {
             found.clear();
             found.extend(own);
             body.break_all(&found);
+            for c in found.iter().filter(|_| frees) {
+                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
+            }
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
         let rules = Rules::new(cell, &self.options, &self.law);

@@ -48,6 +48,9 @@ impl Placed {
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
         let span = self.span(w, t);
+        if span == Rows::Near {
+            w.list_rows(&self.about.name, || self.op.listed());
+        }
         share::before(w, span, std::iter::once(self.about.needs));
         begin_watch(w);
         let outcome = self.timed(w, t, clock, act);

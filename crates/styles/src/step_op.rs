@@ -92,10 +92,17 @@ where
         self
     }
 
-    /// Changes each particle by itself, those alone that [`World::moved_in`] names, and makes sums of them.
+    /// Reads and changes each particle by itself: of several ranks each looks after those that [`World::moved_in`] names.
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
-        (self.span, self.about.tells) = (Span::Own, true);
+        self.span = Span::Own;
+        self
+    }
+
+    /// Makes sums over particles that others may read.
+    #[must_use]
+    pub fn with_sums(mut self) -> Self {
+        self.about.tells = true;
         self
     }
 

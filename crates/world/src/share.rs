@@ -7,6 +7,7 @@ use super::World;
 use super::field::{F, FAMILIES, Fields, OMEGA, QUAT, TORQUE, V, X};
 use perigrain_base::comm::{self, Comm};
 use perigrain_peri::families::shares::ranges;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,6 +25,8 @@ pub struct Share {
     alone: Vec<Vec<Range<usize>>>,
     /// Rows to hand out to, and to take from, each other rank.
     links: Vec<Link>,
+    /// Rows that lists of ops name, by the op, with the generation of lists.
+    listed: BTreeMap<String, (u64, Vec<u32>)>,
     /// Fields that are up to date in this rank's own rows alone.
     stale: Fields,
     /// Those of them that are up to date in the rows near these as well.
@@ -91,8 +94,9 @@ impl World {
         let alone = (0..ranks).map(of).collect();
         let own = shares.own.clone();
         let (stale, near, bytes) = (Fields::NONE, Fields::NONE, vec![]);
-        let links = vec![];
-        self.share = Some(Share { comm, own, alone, links, stale, near, roster, narrow: false, bytes });
+        let (links, listed) = (vec![], BTreeMap::new());
+        self.share =
+            Some(Share { comm, own, alone, links, listed, stale, near, roster, narrow: false, bytes });
         self.link();
     }
 
@@ -100,7 +104,8 @@ impl World {
     pub fn link(&mut self) {
         let (Some(share), Some(families)) = (&mut self.share, self.families.past()) else { return };
         let me = share.comm.rank();
-        let needed = families.needed();
+        let listed = share.listed.values().flat_map(|(_, rows)| rows.iter().copied());
+        let needed = families.needed(listed);
         let rows = |rows: &[u32]| ranges(rows.iter().map(|row| *row as usize));
         let others = (0..needed.len()).filter(|with| *with != me);
         let links = others.map(|with| Link {
@@ -112,6 +117,21 @@ impl World {
         share.links = links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect();
         // Rows that are near since now have not been handed over.
         share.near = Fields::NONE;
+    }
+
+    /// Hands the rows that an op's lists name to all ranks from now on, where shares are dealt and that is not done for the present lists.
+    pub fn list_rows(&mut self, op: &str, rows: impl FnOnce() -> Vec<u32>) {
+        let now = self.rebuild.past().generation;
+        let Some(share) = &mut self.share else { return };
+        if share.listed.get(op).is_some_and(|(generation, _)| *generation == now) {
+            return;
+        }
+        let rows = rows();
+        let known = share.listed.insert(op.to_string(), (now, rows));
+        let same = known.map_or(share.listed[op].1.is_empty(), |(_, before)| before == share.listed[op].1);
+        if !same {
+            self.link();
+        }
     }
 
     /// Takes the shares back; all rows are up to date then.
@@ -138,11 +158,6 @@ impl World {
             families.shares.as_ref().is_some_and(|shares| shares.owner.len() == self.n())
         };
         share.roster != self.roster() || !self.families.past().as_ref().is_some_and(known)
-    }
-
-    /// Whether all rows of these fields are up to date here.
-    pub fn is_whole(&self, fields: Fields) -> bool {
-        self.share.as_ref().is_none_or(|share| !share.stale.has(fields))
     }
 
     /// Has all rows of these fields on all ranks. All ranks ask for the same at the same place.

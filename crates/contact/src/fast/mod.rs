@@ -26,7 +26,7 @@ use lists::{Short, Slab};
 use memory::Book;
 pub use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::has_avx2;
-use perigrain_base::math::lanes::PLACE_BITS;
+use perigrain_base::math::lanes::{PLACE_BITS, place};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
@@ -251,6 +251,18 @@ impl Fast {
     /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
     pub fn span(&self, largest: f64) -> f64 {
         self.laws.span(largest)
+    }
+
+    /// All grains that stand in some list, ascending.
+    pub fn listed(&self) -> Vec<u32> {
+        let mut rows = vec![];
+        for long in self.lists.iter().map(|list| &list.long) {
+            let pairs = long.i.iter().zip(&long.w).filter(|(_, w)| **w >> PLACE_BITS != NOWHERE);
+            rows.extend(pairs.flat_map(|(i, w)| [*i, place(*w) as u32]));
+        }
+        rows.sort_unstable();
+        rows.dedup();
+        rows
     }
 
     /// Number of grains the lists were made for.

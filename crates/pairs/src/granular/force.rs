@@ -14,7 +14,7 @@ use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
 use perigrain_contact::mdr::Manner;
 use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Span, Stage, Tick};
 use perigrain_world::Fields;
 use perigrain_world::contacts::{Contacts, Deep, PairDeeds};
 use perigrain_world::field::{
@@ -377,6 +377,25 @@ impl Op for Force {
             self.act(w, t, how)?;
         }
         Ok(told)
+    }
+
+    fn span(&mut self, w: &mut World, t: &Tick) -> Span {
+        let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_deeds.is_some();
+        let plain = !asked && !t.setup && self.press.is_none() && !conducts(&self.rules);
+        let listed = self.generation == Some(w.rebuild.past().generation);
+        if plain && listed { Span::Near } else { Span::All }
+    }
+
+    fn listed(&self) -> Vec<u32> {
+        match (&self.fast, self.is_fast) {
+            (Some(fast), true) => fast.listed(),
+            _ => {
+                let mut rows: Vec<u32> = self.plain.list.iter().flat_map(|pair| [pair.i, pair.j]).collect();
+                rows.sort_unstable();
+                rows.dedup();
+                rows
+            }
+        }
     }
 
     fn settle(&mut self, changed: Fields) {

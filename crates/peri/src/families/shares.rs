@@ -37,6 +37,21 @@ pub struct BodyShare {
     pub takes: Vec<Dues>,
     /// Tiles of this rank that others' bonds reach.
     pub waits: Vec<usize>,
+    /// Rows whose sums other ranks need, and whose sums this one needs of them.
+    pub rows: Vec<RowLink>,
+}
+
+/// Row slots whose sites two ranks tell each other of.
+#[derive(Clone, Debug, Default)]
+pub struct RowLink {
+    /// The other rank.
+    pub with: usize,
+    /// Rows of this rank that bonds of the other one lead to.
+    pub out: Vec<usize>,
+    /// Rows of the other one that bonds of this one lead to.
+    pub into: Vec<usize>,
+    /// The messages.
+    pub bytes: [Vec<u8>; 2],
 }
 
 /// Windows that one rank hands over to another.

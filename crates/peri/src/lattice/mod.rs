@@ -27,6 +27,7 @@ use crate::lanes::isa::Isa;
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
 use crate::law::Moment;
 use crate::law::settle::{Settling, Sites, columns_of, moment};
+use crate::shares::dues::share_sums;
 use perigrain_base::par::{self, Shared};
 use states::{States, Sum, find_active};
 
@@ -114,12 +115,12 @@ fn lattice_body<K: Isa>(
     view: &PeriView,
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
-    (settling, share): (&Settling, Option<&mut BodyShare>),
+    (settling, mut share): (&Settling, Option<&mut BodyShare>),
 ) {
     let kind = settling.law.kind;
     let spreads = kind.spreads();
     if spreads {
-        find_active(body, kind.memory() > 0);
+        find_active(body, kind.memory() > 0, share.as_deref());
     }
     if columns_of(kind, settling.compat) > 0 {
         body.state.columns.resize(COLUMNS * body.stride, 0.0);
@@ -149,24 +150,27 @@ fn lattice_body<K: Isa>(
     let (stride, kinds) = (body.stride, view.kind);
     let sites =
         Sites { count, pad: PAD, stride, particle: &particle, kind: kinds, only, stiffness: &stiffness };
-    let mut add_up = |body: &mut LatticeBody, sum, states| {
+    let mut add_up = |body: &mut LatticeBody, sum, states, mut share: Option<&mut BodyShare>| {
         let mut sums = std::mem::take(&mut body.state.sums);
         sums.clear();
         sums.resize(body.stride, 0.0);
         let shared = Shared::new(&mut sums);
         let sweep = Sweep::new(body, &mut columns, mode, newton, states);
-        states::all::<K>(&sweep, sum, (&tiles, &mut windows), &shared);
+        states::all::<K>(&sweep, sum, (&tiles, &mut windows), share.as_deref_mut(), &shared);
+        if let Some(share) = share {
+            share_sums(body, &mut share.rows, &mut sums);
+        }
         body.state.sums = sums;
     };
     if !kind.bond_based() {
-        add_up(body, Sum::Dilatation, states);
+        add_up(body, Sum::Dilatation, states, share.as_deref_mut());
         settling.dilatations(&mut body.state, &sites);
     }
     if kind == LawKind::Shaped {
         settling.stiffen(&mut body.state, &sites);
     }
     if kind == LawKind::ElasticPlastic {
-        add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread);
+        add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread, None);
         settling.flow(&mut body.state, &sites);
     }
     (body.particle, body.scatter.stiffness) = (particle, stiffness);

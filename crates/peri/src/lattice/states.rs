@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use crate::energy::shares;
 use crate::families::LawKind;
 use crate::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
+use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
 use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
@@ -12,10 +13,11 @@ use crate::lattice::energies::Looking;
 use crate::lattice::forms::{self, run, run_term};
 use crate::lattice::kernels::Cells;
 use crate::lattice::owed;
-use crate::lattice::sweep::{Room, Sweep};
+use crate::lattice::sweep::{Room, Sweep, with_share};
 use crate::lattice::tiles::{Over, pass};
 use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{Moment, of_law};
+use crate::shares::agreed;
 use perigrain_base::par::Shared;
 
 /// What the sites and bonds of a body have under their law, during one evaluation.
@@ -124,13 +126,16 @@ pub(crate) fn all<K: Isa>(
     sweep: &Sweep,
     sum: Sum,
     (tiles, windows): (&Tiles, &mut [TileWindow]),
+    share: Option<&mut BodyShare>,
     sums: &Shared<f64>,
 ) {
-    pass(
-        Over { tiles, windows, times: &[], share: None },
-        |at, window| tile::<K>(sweep, sum, (tiles, at), window),
-        |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
-    );
+    with_share((sweep.body(), tiles, 1), share, |share| {
+        pass(
+            Over { tiles, windows, times: &[], share },
+            |at, window| tile::<K>(sweep, sum, (tiles, at), window),
+            |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
+        )
+    });
 }
 
 /// Adds the terms of the bonds of one tile's cells to its window; returns whether any was not at rest.
@@ -166,20 +171,25 @@ fn add_up<K: Isa, T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window
     room.open
 }
 
-/// Whether every chunk has a cell that is not at rest.
-fn all_move(body: &LatticeBody) -> bool {
+/// Whether every chunk of these row slots has a cell that is not at rest.
+fn all_move(body: &LatticeBody, own: impl Fn(usize) -> bool) -> bool {
     let moves = |row: &Row, motion: &RowMotion| {
         motion.lo < row.lo + LANES as i32 && motion.hi >= row.lo + row.len as i32 - LANES as i32
     };
-    body.rows.iter().zip(&body.motion).all(|(row, motion)| row.len == 0 || moves(row, motion))
+    let rows = body.rows.iter().zip(&body.motion).enumerate().filter(|(slot, _)| own(*slot));
+    rows.map(|(_, row)| row).all(|(row, motion)| row.len == 0 || moves(row, motion))
 }
 
 /// Finds for each row the coordinates beyond which no site has a dilatation, or under a law with memory has ever had; for no
-/// row where none is at rest.
-pub fn find_active(body: &mut LatticeBody, remembers: bool) {
+/// row where none is at rest. Of several ranks each knows its share of rows.
+pub fn find_active(body: &mut LatticeBody, remembers: bool, share: Option<&BodyShare>) {
     let mut active = std::mem::take(&mut body.state.active);
     active.clear();
-    if !remembers && all_move(body) {
+    let all = || match share {
+        None => all_move(body, |_| true),
+        Some(share) => agreed(all_move(body, |slot| share.own[slot])),
+    };
+    if !remembers && all() {
         body.state.active = active;
         return;
     }

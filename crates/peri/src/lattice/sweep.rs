@@ -127,23 +127,13 @@ impl<'a> Sweep<'a> {
         share: Option<&mut BodyShare>,
         f: &Shared<[f64; 3]>,
     ) {
-        let (own, waits, mut dues) = match share {
-            None => (None, &[][..], None),
-            Some(BodyShare { mine, waits, gives, takes, .. }) => {
-                (Some(mine.clone()), &waits[..], Some((gives, takes)))
-            }
-        };
-        let mut exchange = |windows: &mut [TileWindow]| {
-            if let Some((gives, takes)) = &mut dues {
-                hand_over(self.body, tiles, windows, (gives, takes), 3);
-            }
-        };
-        let share = own.map(|own| HandOver { own, waits, exchange: &mut exchange });
-        pass(
-            Over { tiles, windows, times: &tiles.times, share },
-            |tile, window| self.tile::<K>((tiles, tile), window),
-            |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
-        );
+        with_share((self.body, tiles, 3), share, |share| {
+            pass(
+                Over { tiles, windows, times: &tiles.times, share },
+                |tile, window| self.tile::<K>((tiles, tile), window),
+                |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
+            );
+        });
     }
 
     /// Sweeps a tile: the forces of its cells' bonds go into its window. Returns whether any bond was not at rest; else the
@@ -361,6 +351,18 @@ impl<'a> Room<'a> {
         }
         (self.window.base, self.window.stride) = (base, stride);
     }
+}
+
+/// Calls `pass` with a rank's share of a body's tiles, if there is one, whose windows have so many components.
+pub(crate) fn with_share(
+    (body, tiles, components): (&LatticeBody, &Tiles, usize),
+    share: Option<&mut BodyShare>,
+    pass: impl FnOnce(Option<HandOver>),
+) {
+    let Some(BodyShare { mine, waits, gives, takes, .. }) = share else { return pass(None) };
+    let mut exchange =
+        |windows: &mut [TileWindow]| hand_over(body, tiles, windows, (&mut *gives, &mut *takes), components);
+    pass(Some(HandOver { own: mine.clone(), waits, exchange: &mut exchange }));
 }
 
 /// A z no bond can break below, for (s00, alpha) and a bound of the bonds' z at the step before: the critical

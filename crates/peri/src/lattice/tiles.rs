@@ -142,7 +142,7 @@ fn along_curve([mut x, mut y]: [usize; 2], n: usize) -> usize {
 }
 
 /// What a pass goes over.
-pub(crate) struct Over<'a> {
+pub(crate) struct Over<'a, 's> {
     /// The tiles.
     pub(crate) tiles: &'a Tiles,
     /// Their windows.
@@ -150,7 +150,7 @@ pub(crate) struct Over<'a> {
     /// Their times, where these are kept.
     pub(crate) times: &'a [[AtomicU64; 2]],
     /// This rank's share of them, where others have the rest; how to hand windows over.
-    pub(crate) share: Option<HandOver<'a>>,
+    pub(crate) share: Option<HandOver<'s>>,
 }
 
 /// A rank's share of tiles, and the exchange of windows with other ranks.

@@ -40,6 +40,13 @@ pub(crate) fn flagged_anywhere(bodies: &[LatticeBody]) -> [bool; 2] {
     any.map(|any| any > 0.0)
 }
 
+/// Whether something holds on all ranks.
+pub(crate) fn agreed(own: bool) -> bool {
+    let mut fails = [f64::from(u8::from(!own))];
+    comm::present().most(&mut fails);
+    fails == [0.0]
+}
+
 /// Hands bytes to all other ranks; what these have handed out.
 fn to_all(bytes: &[u8]) -> Vec<(usize, Vec<u8>)> {
     let ranks = comm::present();

@@ -3,16 +3,18 @@
 use std::ops::Range;
 
 use crate::families::lattice::LatticeBody;
-use crate::families::shares::{ALL, BodyShare, Dues, Shares, ranges};
+use crate::families::shares::{ALL, BodyShare, Dues, RowLink, Shares, ranges};
 use crate::families::{Families, LawKind};
 use crate::lattice::tiles::lay_tiles;
 
 impl Families {
     /// Deals tiles out to ranks, the same way on each: neighbours in the order of tiles to one rank, as many particles to each as to any
-    /// other. `false` where all of them do all work: no body on a lattice, bonds with more than a stretch.
+    /// other. `false` where all of them do all work: no body on a lattice, bonds that remember.
     pub fn deal(&mut self, me: usize, ranks: usize) -> bool {
         self.shares = None;
-        let plain = self.law.kind == LawKind::Pmb && !self.options.compress && !self.options.reunite;
+        let kind = self.law.kind;
+        let forgets = kind.memory() == 0 && (kind.bond_based() || kind == LawKind::Lps);
+        let plain = forgets && !self.options.compress && !self.options.reunite;
         let tiles: usize = self
             .lattices
             .iter_mut()
@@ -57,8 +59,9 @@ impl Families {
         self.shares = None;
     }
 
-    /// Which particles' places each rank needs of each other one: by the rank that needs them and the one that has them, ascending.
-    pub fn needed(&self) -> Vec<Vec<Vec<u32>>> {
+    /// Which particles' places each rank needs of each other one: by the rank that needs them and the one that has them, ascending. Those
+    /// that are `listed` all need.
+    pub fn needed(&self, listed: impl Iterator<Item = u32>) -> Vec<Vec<Vec<u32>>> {
         let Some(shares) = &self.shares else { return vec![] };
         let ranks = shares.ranks;
         let mut needs = vec![vec![vec![]; ranks]; ranks];
@@ -82,6 +85,12 @@ impl Families {
                 }
                 let who = if of == ALL { 0..ranks } else { usize::from(of)..usize::from(of) + 1 };
                 who.for_each(|rank| needs[rank][usize::from(needed)].push(p));
+            }
+        }
+        for p in listed {
+            let owner = shares.owner[p as usize];
+            if owner != ALL {
+                needs.iter_mut().for_each(|needs| needs[usize::from(owner)].push(p));
             }
         }
         for (rank, needs) in needs.iter_mut().enumerate() {
@@ -125,13 +134,46 @@ fn followed(body: &LatticeBody, tiles: &Range<usize>) -> Vec<bool> {
     follows
 }
 
-fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShare {
+/// The row slots of some tiles.
+fn rows_of(body: &LatticeBody, tiles: &Range<usize>) -> Vec<bool> {
     let mut own = vec![false; body.rows.len()];
-    for tile in &body.tiles.all[tiles[me].clone()] {
+    for tile in &body.tiles.all[tiles.clone()] {
         for plane in tile.planes.clone() {
             own[body.slot(plane, tile.rows.start)..body.slot(plane, tile.rows.end)].fill(true);
         }
     }
+    own
+}
+
+/// The row slots that bonds of some tiles lead to.
+fn reached(body: &LatticeBody, tiles: &Range<usize>) -> Vec<bool> {
+    let mut reached = vec![false; body.rows.len()];
+    for tile in tiles.clone() {
+        for (plane, at) in (body.tiles.all[tile].planes.start..).zip(body.tiles.reached(tile)) {
+            reached[body.slot(plane, at.rows[0])..body.slot(plane, at.rows[1])].fill(true);
+        }
+    }
+    reached
+}
+
+/// Rows of which one rank tells each other one.
+fn row_links(body: &LatticeBody, me: usize, tiles: &[Range<usize>]) -> Vec<RowLink> {
+    let both = |a: &[bool], b: &[bool]| -> Vec<usize> {
+        a.iter().zip(b).enumerate().filter(|(_, (a, b))| **a && **b).map(|(slot, _)| slot).collect()
+    };
+    let (own, needs) = (rows_of(body, &tiles[me]), reached(body, &tiles[me]));
+    let others = (0..tiles.len()).filter(|with| *with != me);
+    let links = others.map(|with| RowLink {
+        with,
+        out: both(&reached(body, &tiles[with]), &own),
+        into: both(&needs, &rows_of(body, &tiles[with])),
+        bytes: Default::default(),
+    });
+    links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect()
+}
+
+fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShare {
+    let own = rows_of(body, &tiles[me]);
     let pairs = |from: &Range<usize>, to: &Range<usize>| {
         let takers =
             |giver: usize| body.tiles.takers(giver).iter().map(move |taker| [giver, *taker as usize]);
@@ -146,5 +188,6 @@ fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShar
     waits.sort_unstable();
     waits.dedup();
     let (mine, follows) = (tiles[me].clone(), followed(body, &tiles[me]));
-    BodyShare { mine, follows, own, gives, takes, waits, tiles }
+    let rows = row_links(body, me, &tiles);
+    BodyShare { mine, follows, own, gives, takes, waits, rows, tiles }
 }

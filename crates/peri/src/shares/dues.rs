@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::families::lattice::{LatticeBody, PAD, staggered};
-use crate::families::shares::Dues;
+use crate::families::shares::{Dues, RowLink};
 use crate::families::tiles::{Reached, TileWindow, Tiles};
 use perigrain_base::comm;
 
@@ -111,5 +111,36 @@ fn open(window: &mut TileWindow, reached: &[Reached], components: usize) {
     (window.base, window.stride) = (base, stride);
     if window.sums.len() < base + components * stride {
         window.sums.resize(base + components * stride, 0.0);
+    }
+}
+
+/// Hands the sums of this rank's sites to the ranks whose bonds lead to them, and takes those of others; columns of sites have [`PAD`]
+/// entries before the first.
+pub(crate) fn share_sums(body: &LatticeBody, links: &mut [RowLink], sums: &mut [f64]) {
+    let cells = |slots: &[usize]| slots.iter().map(|slot| body.rows[*slot].len as usize).sum::<usize>();
+    for RowLink { out, into, bytes, .. } in &mut *links {
+        let [own, others] = bytes;
+        own.clear();
+        for slot in &*out {
+            let cells = body.rows[*slot].cells();
+            own.extend(sums[PAD + cells.start..PAD + cells.end].iter().flat_map(|sum| sum.to_ne_bytes()));
+        }
+        others.resize(NUMBER * cells(into), 0);
+    }
+    let (mut out, mut into): (Vec<(usize, &[u8])>, Vec<(usize, &mut [u8])>) = (vec![], vec![]);
+    for RowLink { with, bytes: [own, others], .. } in &mut *links {
+        if !own.is_empty() {
+            out.push((*with, own));
+        }
+        if !others.is_empty() {
+            into.push((*with, others));
+        }
+    }
+    comm::present().swap(&out, &mut into);
+    for RowLink { into, bytes, .. } in links {
+        let mut numbers = bytes[1].as_chunks::<NUMBER>().0.iter();
+        for cell in into.iter().flat_map(|slot| body.rows[*slot].cells()) {
+            sums[PAD + cell] = numbers.next().map_or(0.0, |bytes| f64::from_ne_bytes(*bytes));
+        }
     }
 }

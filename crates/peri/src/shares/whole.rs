@@ -102,6 +102,12 @@ fn piece_of_row(body: &mut LatticeBody, slot: usize, way: &mut Way) {
             way.numbers(&mut u[first + cells.start..first + cells.end]);
         }
     }
+    let state = &mut body.state;
+    let freed = &mut state.freed;
+    let sites = [&mut state.theta, &mut freed.gone, &mut freed.slip, &mut freed.spread, &mut freed.sum];
+    for column in sites.into_iter().filter(|column| !column.is_empty()) {
+        way.numbers(&mut column[PAD + cells.start..PAD + cells.end]);
+    }
     let RowMotion { lo, hi, least, most } = &mut body.motion[slot];
     way.numbers(std::slice::from_mut(lo));
     way.numbers(std::slice::from_mut(hi));
