@@ -81,12 +81,22 @@ fn same(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>, what
     }
 }
 
+/// What makes a scene; bodies have more planes than elsewhere, so that they have several tiles, which are dealt out.
+fn made(scene: &Scene) -> String {
+    let deep = [
+        ("block 0 7 0 5 0 5", "block 0 7 0 5 0 23"),
+        ("-0.006 0.006 -0.003 0.009", "-0.006 0.006 -0.025 0.009"),
+        ("-0.0035 0.0035 -0.001 0.001", "-0.0035 0.0035 -0.0225 0.001"),
+    ];
+    deep.iter().fold(scene.make.to_string(), |make, (few, more)| make.replace(few, more))
+}
+
 /// A scene with everything that is written, and read back.
 fn deck_of(scene: &Scene) -> String {
     format!(
         "{}{}dump all all custom 7 dump.*.txt id type x y z vx vy vz\ndump_modify all format float %.17g\n\
          restart 11 often.*.restart\nrun {}\nwrite_restart end.restart\nwrite_data end.data\n",
-        scene.make,
+        made(scene),
         scene.again,
         scene.steps.min(24)
     )
@@ -103,6 +113,44 @@ fn every_family_has_the_same_bytes_on_any_number_of_ranks() {
         let several = left_by(&deck, &[&["-ranks", ranks, "-threads", threads], list].concat());
         same(&alone, &several, &format!("{} on {ranks} ranks of {threads} threads", scene.name));
     }
+}
+
+/// What acts in every step of a measured plan on ranks: op, of which rows, how often all rows of something were handed to all in quiet
+/// steps.
+fn exchanged(said: &str) -> Vec<(String, String, u64)> {
+    let of = |line: &str| {
+        let (op, rest) = line.trim().split_once("every step")?;
+        let (rows, rest) = rest.split_once(" rows: ")?;
+        let rows = rows.rsplit(' ').next()?.to_string();
+        let gathers = rest.split(' ').next()?.parse().ok()?;
+        Some((op.trim().to_string(), rows, gathers))
+    };
+    said.lines().filter_map(of).collect()
+}
+
+/// The measured plans of a deck's runs on three ranks.
+fn measured(folder: &Path, words: &[&str]) -> Vec<(String, String, u64)> {
+    let o = perigrain(folder, &[&["plan", "--measure", "-ranks", "3", "-threads", "1"], words].concat());
+    assert!(o.status.success(), "{words:?}: {}", said(&o));
+    exchanged(&said(&o))
+}
+
+#[test]
+fn bodies_on_lattices_are_shared_out_and_quiet_steps_gather_nothing() {
+    let mut shared = vec![];
+    for scene in &SCENES {
+        let folder = tempfile::tempdir().unwrap();
+        let deck = format!("{}{}thermo 10\nrun 20\n", made(scene), scene.again);
+        fs::write(folder.path().join("in.deck"), deck).unwrap();
+        let list: &[&str] = if scene.list { &["-layout", "list"] } else { &[] };
+        let ops = measured(folder.path(), &[&["in.deck"], list].concat());
+        for (op, rows, gathers) in &ops {
+            assert_eq!(*gathers, 0, "{}: `{op}` needs {rows} rows", scene.name);
+        }
+        shared.extend((!ops.is_empty()).then_some(scene.name));
+    }
+    // Bonds that remember, lists, grains and beams are worked on by all ranks alike.
+    assert_eq!(shared, ["lattice", "scattered", "lps", "shaped", "averages", "impact"]);
 }
 
 #[test]

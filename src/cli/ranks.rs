@@ -25,10 +25,10 @@ static KEPT: Mutex<String> = Mutex::new(String::new());
 ///
 /// # Errors
 /// Ranks that cannot be joined.
-pub(super) fn work_off(o: &Options) -> Result<u8, Usage> {
+pub(super) fn work_off(o: &Options, mode: Mode) -> Result<u8, Usage> {
     match join(o)? {
-        None => Ok(deck::work_off(o, Mode::Run)),
-        Some(ranks) => comm::run_as(ranks.clone(), || together(&*ranks, o)),
+        None => Ok(deck::work_off(o, mode)),
+        Some(ranks) => comm::run_as(ranks.clone(), || together(&*ranks, o, mode)),
     }
 }
 
@@ -119,7 +119,7 @@ fn unjoined(by: &Launched, why: &str) -> Usage {
 }
 
 /// Works the deck off together with the others; the exit code.
-fn together(ranks: &dyn Comm, o: &Options) -> Result<u8, Usage> {
+fn together(ranks: &dyn Comm, o: &Options, mode: Mode) -> Result<u8, Usage> {
     let mut o = o.clone();
     let nodes = comm::nodes(ranks);
     if let Some(usage) = differs(ranks, &nodes) {
@@ -137,7 +137,7 @@ fn together(ranks: &dyn Comm, o: &Options) -> Result<u8, Usage> {
         // The first rank shows everything.
         (o.screen, o.report, o.view) = (Target::None, None, None);
     }
-    let code = deck::work_off(&o, Mode::Run);
+    let code = deck::work_off(&o, mode);
     end(ranks, &nodes, code);
     Ok(code)
 }

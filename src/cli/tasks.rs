@@ -253,6 +253,7 @@ impl Task {
         match self {
             Task::Run(o) if o.world.is_some() => None,
             Task::Run(o) if !o.partition.is_empty() => Some("`-partition` starts processes of its own"),
+            Task::Plan { measure: true, .. } => None,
             Task::Run(_) | Task::Ranks(_) | Task::Text(_) | Task::Explain(_) | Task::Worker => None,
             Task::Doc(_) | Task::Help(_) => None,
             Task::Repl(_) => Some("lines are typed into one"),

@@ -5,7 +5,7 @@ mod context;
 use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
 use super::node::{FixNode, Graph};
-use super::values::{Evaluate, Keyword, Once, reads};
+use super::values::{Evaluate, Keyword, Once, groups_alone, reads};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_out::log::Log;
@@ -13,7 +13,7 @@ use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
 use perigrain_styles::fix::Facts;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{Reading, SealCx, Shape};
-use perigrain_world::{SlotId, World};
+use perigrain_world::{GroupId, SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -299,11 +299,28 @@ impl<'a> Sealer<'a> {
         let shape = self.graph.variables.get(&r.name).copied().unwrap_or_default();
         let declared = self.declared();
         let (name, variable, span) = (format!("variable {}", r.name), r.name.clone(), r.span);
-        let reads = reads(&vars, &variable);
+        let (reads, common) = (reads(&vars, &variable), None);
+        let fixed = |id: &GroupId| self.world.groups.is_fixed(*id);
+        let bit = |group: String| self.world.groups.find(&group).filter(fixed).map(|id| id.bit());
+        let groups = groups_alone(&vars, &variable)
+            .and_then(|groups| groups.into_iter().map(bit).try_fold(0, |all, bit| Some(all | bit?)));
         // What a compute reads of particles is that of all.
         let group = if self.trail.iter().any(|name| name.starts_with("c_")) { 0 } else { self.group };
         let slot = self.evaluate(&format!("v_{}", r.name), stage, when, |slot| {
-            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage, reads, group })
+            Box::new(Evaluate {
+                declared,
+                name,
+                variable,
+                span,
+                vars,
+                from,
+                slot,
+                stage,
+                reads,
+                groups,
+                common,
+                group,
+            })
         });
         self.world.slots.get_mut(slot).offers = shape.offers();
         Ok(match r.index.as_slice() {

@@ -3,9 +3,10 @@
 use super::answers::Declared;
 use super::env::RunEnv;
 use super::keywords::{self, Sources};
+use super::measure;
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Value, Vars};
-use perigrain_plan::{About, Needs, Op, OpClass, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, OpClass, Span as Rows, Stage, Tick};
 use perigrain_styles::FORMULAS;
 use perigrain_styles::act::no_number;
 use perigrain_world::field::{BONDS, BOX, F, LISTS, MASS, MEMO, OMEGA, SLOTS, TALLY, TORQUE, V, X};
@@ -85,12 +86,20 @@ pub(super) struct Evaluate {
     pub(super) stage: Stage,
     /// What its formula reads of the scene.
     pub(super) reads: Fields,
+    /// The bits of the groups whose particles alone it asks for, if it names no others.
+    pub(super) groups: Option<u32>,
+    /// Whether all ranks move all of these alike, as long as particles are what they are.
+    pub(super) common: Option<([u64; 2], bool)>,
     /// The bit of the group that the reading fix acts on; 0 where no fix reads it.
     pub(super) group: u32,
 }
 
 /// Words for forces and torques, and for all else that particles have which moves with them.
 const FORCES: [&str; 8] = ["fx", "fy", "fz", "fcm", "torque", "tqx", "tqy", "tqz"];
+const ATTRIBUTES: [&str; 17] = [
+    "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax", "omegay", "omegaz", "tqx", "tqy", "tqz",
+    "rmask", "grmask",
+];
 const MOTION: [&str; 24] = [
     "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "count", "mass", "charge", "gyration",
     "ke", "xcm", "vcm", "fcm", "bound", "angmom", "torque", "omega", "inertia", "rmask", "grmask",
@@ -111,6 +120,39 @@ fn names(vars: &Vars, name: &str, words: &[&str]) -> bool {
         })
     }
     looks(vars, name, words, &mut vec![])
+}
+
+/// The groups that a variable's formula, and those that it names, ask group functions about, if they ask about no other particles.
+pub(super) fn groups_alone(vars: &Vars, name: &str) -> Option<Vec<String>> {
+    fn look(vars: &Vars, name: &str, seen: &mut Vec<String>, groups: &mut Vec<String>) -> bool {
+        if seen.iter().any(|s| s == name) {
+            return true;
+        }
+        seen.push(name.to_string());
+        let text = vars.definition(name).unwrap_or_default();
+        let mut rest = &text[..];
+        while let Some(start) = rest.find(|c: char| c.is_alphanumeric() || c == '_') {
+            rest = &rest[start..];
+            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+            let (word, after) = rest.split_at(end);
+            rest = after;
+            if let Some(inside) =
+                after.trim_start().strip_prefix('(').filter(|_| measure::NAMES.contains(&word))
+            {
+                let Some((args, after)) = inside.split_once(')') else { return false };
+                groups.push(args.split(',').next().unwrap_or_default().trim().to_string());
+                rest = after;
+                continue;
+            }
+            let other = word.strip_prefix("v_").is_none_or(|other| look(vars, other, seen, groups));
+            if !other || ATTRIBUTES.contains(&word) {
+                return false;
+            }
+        }
+        true
+    }
+    let mut groups = vec![];
+    look(vars, name, &mut vec![], &mut groups).then_some(groups)
 }
 
 /// What a variable's formula reads of the scene.
@@ -146,6 +188,13 @@ impl Op for Evaluate {
             class: OpClass::Output,
             ..About::new(&self.name, self.stage, Needs::new().read(self.reads).write(SLOTS))
         }
+    }
+    fn span(&mut self, w: &mut World, _: &Tick) -> Rows {
+        let Some(bits) = self.groups else { return Rows::All };
+        let rebuild = w.rebuild.past();
+        let now = [rebuild.roster, rebuild.places];
+        let (then, common) = *self.common.get_or_insert_with(|| (now, w.is_common(bits)));
+        if common && then == now { Rows::Asks } else { Rows::All }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let mut env = RunEnv::new(w, &self.declared, &self.from);

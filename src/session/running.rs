@@ -11,6 +11,7 @@ use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::spatial;
+use perigrain_base::comm;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::gate;
 use perigrain_fixes::Minimizing;
@@ -370,7 +371,8 @@ impl Session {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
             let tiles =
                 self.world.families.as_ref().map(|families| families.describe_tiles()).unwrap_or_default();
-            if !tiles.is_empty() {
+            // A rank knows the times of its own tiles.
+            if !tiles.is_empty() && !comm::several() {
                 self.options.log.line(tiles.trim_end())?;
             }
         }

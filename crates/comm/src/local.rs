@@ -279,15 +279,20 @@ impl Comm for Local {
     fn gather_all(&self, all: &mut [u8], counts: &[usize]) {
         let start = |rank: usize| counts[..rank].iter().sum::<usize>();
         if self.rank > 0 {
-            let at = start(self.rank);
-            self.send(0, Kind::Gather, &all[at..at + counts[self.rank]]);
-            return self.receive(0, Kind::Gather, all);
+            // What this rank has, the first one need not send back.
+            let own = start(self.rank)..start(self.rank) + counts[self.rank];
+            self.send(0, Kind::Gather, &all[own.clone()]);
+            self.receive(0, Kind::Gather, &mut all[..own.start]);
+            return self.receive(0, Kind::Gather, &mut all[own.end..]);
         }
         for from in 1..self.size() {
             let at = start(from);
             self.receive(from, Kind::Gather, &mut all[at..at + counts[from]]);
         }
-        (1..self.size()).for_each(|to| self.send(to, Kind::Gather, all));
+        for to in 1..self.size() {
+            self.send(to, Kind::Gather, &all[..start(to)]);
+            self.send(to, Kind::Gather, &all[start(to) + counts[to]..]);
+        }
     }
 
     fn sum(&self, values: &mut [i64]) {

@@ -99,7 +99,7 @@ fn the_first_rank_finds_out_and_all_know() {
         assert!(several());
         // Only the first one is asked.
         let number = told::number(|| if is_first() { 2.5 } else { panic!("not asked") });
-        let flag = told::truth(|| is_first());
+        let flag = told::truth(is_first);
         let none = told::text(|| None);
         (number, flag, none, told::text(|| Some("a b".into())), told::bytes(|| vec![0; 100_000]).len())
     });

@@ -5,7 +5,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::{BuildCx, Doc, Style};
-use perigrain_world::field::{FAMILIES, MASK};
+use perigrain_world::field::{FAMILIES, MASK, SITES};
 
 /// The style.
 pub struct DilatationAtom;
@@ -31,7 +31,7 @@ impl ComputeStyle for DilatationAtom {
         let known = Known {
             name: self.name(),
             by: &["peri/lps", "peri/ves", "peri/eps"],
-            reads: FAMILIES | MASK,
+            reads: FAMILIES | SITES | MASK,
             value: |_, f| Box::new(|i| f.dilatation(i)),
         };
         of_families(known, args, cx)

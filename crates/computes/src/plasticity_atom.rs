@@ -5,7 +5,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::{BuildCx, Doc, Style};
-use perigrain_world::field::{FAMILIES, MASK};
+use perigrain_world::field::{FAMILIES, MASK, SITES};
 
 /// The style.
 pub struct PlasticityAtom;
@@ -31,7 +31,7 @@ impl ComputeStyle for PlasticityAtom {
         let known = Known {
             name: self.name(),
             by: &["peri/eps"],
-            reads: FAMILIES | MASK,
+            reads: FAMILIES | SITES | MASK,
             value: |_, f| Box::new(|i| f.plastic_strain(i)),
         };
         of_families(known, args, cx)

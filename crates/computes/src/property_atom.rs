@@ -14,7 +14,7 @@ use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{BOND_FACTORS, HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
     BOX, CHARGE, COLUMNS, F, FAMILIES, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, MU, OMEGA, QUAT, RADIUS,
-    TAG, TORQUE, TYPE_MASS, V, VOLUME, X, X0,
+    SITES, TAG, TORQUE, TYPE_MASS, V, VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
 use perigrain_world::{AtomStyle, GroupId, Numbers, SlotId, World};
@@ -346,6 +346,7 @@ impl Compute for Declared {
             X | BOX
                 | COLUMNS
                 | FAMILIES
+                | SITES
                 | TAG
                 | IMAGE
                 | MASK

@@ -80,7 +80,7 @@ impl Fix for Declared {
             publish(w, slot, t, 0.0, &total);
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
     fn shape(&self) -> Shape {

@@ -114,7 +114,7 @@ impl Fix for Declared {
         let (rule, style, span) = (self.rule, cx.bonds(), cx.span());
         let mut probes = cx.probes()?;
         let reads = X | V | RADIUS | MASS | TYPE_MASS | KIND | VOLUME | FAMILIES | CONTACTS;
-        Ok(self.follower.ops(cx, reads, move |w| {
+        Ok(self.follower.ops(cx, (reads, false), move |w| {
             let (solids, grains) = (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
             let bonds = rule.bonds.step(w, style.as_deref(), span)?;
             Ok(rule.step(w, solids, grains, bonds))

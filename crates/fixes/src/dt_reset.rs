@@ -96,7 +96,7 @@ impl Rule {
             // What is longer than the longest step does not matter, nor what is longer than that of somebody else.
             let mut least = self.longest.unwrap_or(f64::INFINITY);
             let mut bounds = self.bounds(least, units.ftm2v, root);
-            for i in range.filter(|&i| p.mask[i] & bit != 0) {
+            for i in w.moved_in(range).flatten().filter(|&i| p.mask[i] & bit != 0) {
                 let (v, f, mass) = (p.v[i], p.f[i], masses.get(i));
                 if longer(square(v), square(f), mass, bounds) {
                     continue;
@@ -109,7 +109,8 @@ impl Rule {
             }
             least
         };
-        let limit = par::reduce(p.len(), chunk, f64::min).unwrap_or(f64::INFINITY);
+        let mut limit = par::reduce(p.len(), chunk, f64::min).unwrap_or(f64::INFINITY);
+        w.agree_on_least(&mut limit);
         let mut dt = if limit.is_infinite() && self.longest.is_none() { w.clock.dt } else { limit };
         if let Some(t) = self.shortest {
             dt = dt.max(t);
@@ -185,7 +186,7 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (rule, span) = (self.rule, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(self.follower.ops(cx, V | F | MASS | MASK, move |w| Ok(rule.step(w))))
+        Ok(self.follower.ops(cx, (V | F | MASS | MASK, true), move |w| Ok(rule.step(w))))
     }
 
     fn shape(&self) -> Shape {

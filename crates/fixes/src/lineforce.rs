@@ -83,7 +83,7 @@ impl Fix for Held {
             });
             Ok(())
         });
-        Ok(vec![op.in_every_level().boxed()])
+        Ok(vec![op.one_by_one().in_every_level().boxed()])
     }
 
     fn facts(&self, _: &World) -> Facts {

@@ -102,7 +102,7 @@ impl Fix for Declared {
                 publish(w, slot, t, energy, &[]);
                 Ok(())
             });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
     fn shape(&self) -> Shape {

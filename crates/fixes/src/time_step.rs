@@ -41,11 +41,12 @@ impl Follower {
     }
 
     /// The op that looks in the setup of a run and every so many steps; `step` says how long a step is to be. A run that merely
-    /// continues another one looks at no other steps than one long run would.
+    /// continues another one looks at no other steps than one long run would. On ranks `step` asks for the rows it needs, or looks at those
+    /// of its rank (`one_by_one`), and all agree.
     pub fn ops(
         &self,
         cx: &mut dyn SealCx,
-        reads: Fields,
+        (reads, one_by_one): (Fields, bool),
         mut step: impl FnMut(&mut World) -> Result<f64> + Send + 'static,
     ) -> Vec<Box<dyn Op>> {
         let (memo, slot) = (self.memo(), cx.slot(&format!("f_{}", self.id)));
@@ -88,6 +89,7 @@ impl Follower {
                 .keep(MEMO),
             look,
         );
-        vec![op.when(When::Every(self.every).or(When::First)).in_setup(true).boxed()]
+        let op = op.when(When::Every(self.every).or(When::First)).in_setup(true);
+        vec![if one_by_one { op.one_by_one() } else { op }.boxed()]
     }
 }

@@ -408,7 +408,7 @@ mod tests {
             let view = PeriView { x: &x, x0: &x, kind: &[1; 330], volume, bounds, excluded: None };
             let options = FamilyOptions { layout, ..FamilyOptions::new(1.0) };
             let mut families = Families::build(&view, &table, options).unwrap();
-            assert!(families.damages(&volume).counted.iter().all(Option::is_none), "nothing is damaged yet");
+            assert!(families.damages(volume).counted.iter().all(Option::is_none), "nothing is damaged yet");
             families.cut(&view, |a, b| (a[0] + 0.3 * a[1] - 5.2) * (b[0] + 0.3 * b[1] - 5.2) < 0.0);
             families.lattices.iter_mut().for_each(|body| body.vacate(130));
             let mut all = vec![0.0; 330];

@@ -2,6 +2,7 @@
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::law::{COLUMNS, SiteState};
+use crate::families::shares::Shares;
 use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
 use crate::lanes::isa::Isa;
 use crate::lanes::single::Single;
@@ -11,6 +12,7 @@ use crate::law::settle::{columns_of, moment};
 use crate::law::weighing::{Weighing, banded};
 use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
 use crate::list;
+use crate::shares::rows_everywhere;
 use perigrain_base::par::{self, Shared};
 
 /// Energy and virial of one row of cells or one record.
@@ -26,7 +28,7 @@ pub fn tally<K: Isa>(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
-    (advanced, cell): (bool, &Cell),
+    (advanced, cell, shares): (bool, &Cell, Option<&Shares>),
 ) {
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
@@ -39,15 +41,24 @@ pub fn tally<K: Isa>(
             own(families, view, p, (&body.state, PAD + cell), scale(p), t);
         }
         let one = |slot: usize, t: &mut PeriTally| one_by_one(families, view, (body, slot), (advanced, t));
+        let share = shares.map(|shares| &shares.bodies[k]);
+        let own = share.map(|share| &share.own[..]);
         if t.per_atom() {
             (0..body.rows.len()).for_each(|slot| one(slot, t));
-        } else if !body.cell_kind.is_empty() {
-            apart(body.rows.len(), &mut rows, one);
-            collect(&rows, t);
-        } else {
-            in_lanes::<K>(families, k, view, advanced, &mut rows);
-            collect(&rows, t);
+            continue;
         }
+        match body.cell_kind.is_empty() {
+            false => apart(body.rows.len(), &mut rows, |slot, t| {
+                if own.is_none_or(|own| own[slot]) {
+                    one(slot, t);
+                }
+            }),
+            true => in_lanes::<K>(families, k, view, (advanced, own), &mut rows),
+        }
+        if let Some((share, shares)) = share.zip(shares).filter(|_| !rows.is_empty()) {
+            rows_everywhere(&families.lattices[k], (share, shares.me), &mut rows);
+        }
+        collect(&rows, t);
     }
     families.scratch.rows = rows;
     let list = &families.list;
@@ -83,13 +94,13 @@ pub(super) fn collect(rows: &[Sums], t: &mut PeriTally) {
     }
 }
 
-/// Energy and virial of each row of a body whose constants are per row, several cells at a time. Constants hold the volumes of
+/// Energy and virial of each row (of the `own` ones, where others have the rest) of a body whose constants are per row, several cells at a time. Constants hold the volumes of
 /// forces, and one of those of energies; `newton` says that forces are true.
 fn whole_rows(
     body: &LatticeBody,
     view: &PeriView,
     rows: &mut Vec<Sums>,
-    newton: bool,
+    (newton, own): (bool, Option<&[bool]>),
     of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS] + Sync,
 ) {
     rows.clear();
@@ -101,7 +112,7 @@ fn whole_rows(
     let shared = Shared::new(rows);
     par::for_rows(n.div_ceil(ROWS), |part| {
         for slot in part * ROWS..n.min((part + 1) * ROWS) {
-            if body.rows[slot].len == 0 {
+            if body.rows[slot].len == 0 || own.is_some_and(|own| !own[slot]) {
                 continue;
             }
             let mut row = whole_row(body, slot, &of_chunk);
@@ -144,7 +155,7 @@ fn in_lanes<K: Isa>(
     families: &mut Families,
     body: usize,
     view: &PeriView,
-    advanced: bool,
+    (advanced, own): (bool, Option<&[bool]>),
     rows: &mut Vec<Sums>,
 ) {
     let state = &mut families.lattices[body].state;
@@ -169,7 +180,7 @@ fn in_lanes<K: Isa>(
             unsafe { states.sums::<K>(body, chunk, data, advanced) }
         };
         let newton = families.options.unit == ForceUnit::Newton;
-        whole_rows(body, view, rows, newton, of_chunk);
+        whole_rows(body, view, rows, (newton, own), of_chunk);
     }
     let state = &mut families.lattices[body].state;
     if earlier.is_empty() {

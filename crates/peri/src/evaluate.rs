@@ -3,7 +3,6 @@
 use perigrain_base::math::periods::Periods;
 use std::sync::Mutex;
 
-use crate::breaking::{Bonds, find_broken};
 use crate::build::sites::{Carrier, carrier};
 use crate::build::spacing::spacings;
 use crate::build::{detect, lattice as cells, list as records, weights};
@@ -11,8 +10,8 @@ use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::shares::Shares;
 use crate::families::{
-    AlmostLattice, Bounds, Candidate, Cell, Edges, Families, FamilyOptions, Law, LawKind, Layout, Moved,
-    NearPairs, PeriTally, PeriView, PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Cell, Edges, Families, FamilyOptions, Law, LawKind, Layout, NearPairs, PeriTally,
+    PeriView, PmbCoeff, PmbTable, Scratch,
 };
 #[cfg(target_arch = "x86_64")]
 use crate::lanes::Avx2;
@@ -25,8 +24,7 @@ use crate::lattice::gather::gather;
 use crate::lattice::sweep::Mode;
 use crate::lattice::tables;
 use crate::list;
-use crate::list::kernel::Rules;
-use crate::shares::{Broken, broken_everywhere, flagged_anywhere, forget_flags, square, squeezed_everywhere};
+use crate::shares::{flagged_anywhere, forget_flags, squeezed_everywhere};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::{self, Shared};
 use perigrain_base::stop;
@@ -281,7 +279,9 @@ impl Families {
     /// Whether an evaluation that advances or not, is tallied or not, is shared out to ranks: each looks after its own particles, for
     /// which it needs to know the places of those that bonds and near pairs join to them.
     pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
-        self.shares.is_some() && advance && !tallied && !self.counts_losses
+        // The energies of dilatations are added up one site after the other.
+        let rows = !tallied || self.law.kind.bond_based();
+        self.shares.is_some() && advance && rows && !self.counts_losses
     }
 
     /// The first half of [`Families::force`]: what has moved, and by how much.
@@ -363,14 +363,19 @@ impl Families {
             None => [false; 2],
         };
         if let Some(shares) = shares.as_ref().filter(|_| squeezed) {
-            squeezed_everywhere(&mut self.lattices, shares);
+            squeezed_everywhere(&mut self.lattices, shares, tallied.is_some());
         }
-        self.contact::<K>(view, f, (changes, advance, shares.as_ref()), tallied.as_deref_mut());
+        // Of all pairs where their energies are added up.
+        let own = shares.as_ref().filter(|_| tallied.is_none());
+        self.contact::<K>(view, f, (changes, advance, own), tallied.as_deref_mut());
         if let Some(t) = tallied {
-            tally::<K>(self, view, t, (advance, cell));
+            tally::<K>(self, view, t, (advance, cell, shares.as_ref()));
         }
         if advance {
             self.advance::<K>(view, cell, shares.is_some().then_some(breaks));
+        }
+        if let Some(shares) = &mut shares {
+            shares.sent += shares.dues() as u64;
         }
         self.shares = self.shares.take().or(shares);
     }
@@ -412,79 +417,6 @@ impl Families {
         }
         push_apart(self, &mut repulsion);
         (self.scratch.contact, self.scratch.rows) = (memory, rows);
-    }
-
-    /// Breaks bonds and makes this step the previous one. `shared`: whether bonds of any rank may break, where work is shared out.
-    fn advance<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: Option<bool>) {
-        if self.breaking_enabled {
-            match shared {
-                Some(breaks) => self.break_bonds::<K>(view, cell, breaks),
-                None => self.break_and_count::<K>(view, cell),
-            }
-        }
-        self.breaking_enabled = true;
-        self.before = periods(&view.bounds).into();
-        for body in &mut self.lattices {
-            body.u.swap(0, 1);
-        }
-        list::keep(&mut self.list);
-        list::breaking::roll(&mut self.list);
-    }
-
-    /// Breaks bonds; where some of other ranks may break too (`shared`), all ranks break the same.
-    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: bool) {
-        let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
-        let mut ends = std::mem::take(&mut self.scratch.ends);
-        ends.clear();
-        let lasting = &self.lasting;
-        let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
-        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
-        let mut all = vec![];
-        for (k, body) in self.lattices.iter_mut().enumerate() {
-            find_broken::<K, _>(body, &self.options, &mut found, &spared);
-            if shared {
-                let of = |bond: &Candidate| square(view, bond.ends.map(|cell| body.particle[cell as usize]));
-                all.extend(found.iter().map(|bond| Broken { body: k, bond: *bond, square: of(bond) }));
-                continue;
-            }
-            body.break_all(&found);
-            for c in found.iter().filter(|_| frees) {
-                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
-            }
-            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
-        }
-        let all = if shared { broken_everywhere(all) } else { all };
-        for (k, body) in self.lattices.iter_mut().enumerate().filter(|_| shared) {
-            let own = all.iter().filter(|broken| broken.body == k).map(|broken| broken.bond);
-            found.clear();
-            found.extend(own);
-            body.break_all(&found);
-            for c in found.iter().filter(|_| frees) {
-                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
-            }
-            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
-        }
-        let rules = Rules::new(cell, &self.options, &self.law);
-        list::breaking::candidates::<K>(
-            &mut self.list,
-            (&rules, &self.options),
-            &self.scratch.windows,
-            &mut found,
-        );
-        self.list.break_all(&mut found, &spared);
-        for c in found.iter().filter(|_| frees) {
-            self.list.free(c.bond as usize, &self.law, cell, Moved::Now);
-        }
-        ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
-        for (k, &[i, j]) in ends.iter().enumerate() {
-            self.damaged[i as usize] = true;
-            self.damaged[j as usize] = true;
-            // Where the ends of bonds of others are now, these know alone.
-            let told = all.get(k).map(|broken| broken.square);
-            self.add_broken(view, (i, j), told.unwrap_or_else(|| square(view, [i, j])));
-        }
-        self.scratch.candidates = found;
-        self.scratch.ends = ends;
     }
 }
 

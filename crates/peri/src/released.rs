@@ -178,7 +178,7 @@ impl Families {
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
-        tally::<K>(self, view, &mut sum, (true, cell));
+        tally::<K>(self, view, &mut sum, (true, cell, None));
         let total = sum.energy;
         if dense { atoms.iter().zip(view.volume).map(|(e, v)| e * v).sum() } else { total }
     }

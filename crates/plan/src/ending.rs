@@ -28,7 +28,7 @@ impl Usually {
     fn take(&mut self, ops: &[Placed]) {
         self.ops.clear();
         for (stage, end) in Stage::ALL.into_iter().zip(&mut self.ends) {
-            let acts = |p: &Placed| p.about.stage == stage && p.about.when == When::Always;
+            let acts = |p: &Placed| p.about.stage == stage && p.about.when.is_always();
             self.ops.extend(ops.iter().enumerate().filter(|(_, p)| acts(p)).map(|(k, _)| k));
             *end = self.ops.len();
         }
@@ -55,16 +55,16 @@ impl StepPlan {
             return;
         }
         let sums = [&self.energy, &self.virial, &self.atom_energy, &self.atom_virial].into_iter().flatten();
-        let all = self.ops.iter().map(|p| &p.about.when).chain(sums).filter(|w| **w != When::Always);
+        let all = self.ops.iter().map(|p| &p.about.when).chain(sums).filter(|w| !w.is_always());
         let next = all.map(|w| w.next(t.step, t.last)).min().unwrap_or(i64::MAX);
         self.quiet = (t.step..next, t.last);
         self.usually.take(&self.ops);
-        self.asked = self.asked_by(|w| *w == When::Always);
+        self.asked = self.asked_by(When::is_always);
     }
 
     /// Whether what acts at such steps acts at this tick.
     pub(super) fn fires(&self, when: &When, t: &Tick) -> bool {
-        matches!(when, When::Always) || (!self.is_quiet(t) && when.fires(t))
+        when.is_always() || (!self.is_quiet(t) && when.fires(t))
     }
 
     /// Whether only what acts in every step acts at this tick.
@@ -110,8 +110,7 @@ impl StepPlan {
     /// The op that clears forces, if nobody reads them between the beginning of a step and there.
     fn clears_early(&mut self) -> Option<usize> {
         let first = self.ops.iter().position(|p| p.about.stage >= Stage::PreForce)?;
-        let clears =
-            self.ops[first].about.stage == Stage::PreForce && self.ops[first].about.when == When::Always;
+        let clears = self.ops[first].about.stage == Stage::PreForce && self.ops[first].about.when.is_always();
         let reads = |p: &Placed| p.about.stage > Stage::InitialIntegrate && p.about.needs.reads(F | TORQUE);
         let before = &self.ops[..first];
         let unread = *self.unread.get_or_insert_with(|| !before.iter().any(reads));
@@ -130,7 +129,7 @@ impl StepPlan {
         else {
             return None;
         };
-        let one = a.from == b.from && a.about.when == When::Always && b.about.when == When::Always;
+        let one = a.from == b.from && a.about.when.is_always() && b.about.when.is_always();
         // The virial of constraints comes from what the first half of a step does to velocities. Short steps that others follow
         // have the number of the long one, in which nobody looks at them.
         let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };

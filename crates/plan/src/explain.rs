@@ -1,6 +1,7 @@
 //! The plan as text, with and without measurements.
 
 use super::{Stage, StepPlan};
+use perigrain_world::share::Traffic;
 use std::fmt::Write;
 
 /// The sealed plan, one line per op, then what was left out.
@@ -28,6 +29,11 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
                         " {:>9.2} MB/call",
                         p.meter.bytes as f64 / 1e6 / p.meter.looks.max(1) as f64
                     );
+                }
+                if let Some(rows) = p.meter.rows {
+                    let Traffic { gathers, sent } = p.meter.traffic;
+                    let each = sent as f64 / 1e6 / p.meter.exchanges.max(1) as f64;
+                    let _ = write!(s, "   {rows} rows: {gathers} gathers, {each:.3} MB a call");
                 }
             } else {
                 let _ = write!(s, " {}", p.about.needs);

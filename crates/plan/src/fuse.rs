@@ -46,7 +46,7 @@ pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     }
 }
 
-/// [`fuse`] on the rows of this rank, where others have the rest. What came is the largest value of all ranks; sums nobody reads then.
+/// [`fuse`] on the rows of this rank, where others have the rest. What came is the largest value of all ranks; no op reads sums then.
 fn fuse_own(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     let Some(share) = w.share.take() else { return };
     for which in acts.which.chunks(MOST) {

@@ -1,6 +1,7 @@
 //! Time and calls per op, kept by the plan itself.
 
-use super::Tick;
+use super::{Span, Tick};
+use perigrain_world::share::Traffic;
 use std::time::{Duration, Instant};
 
 /// What an op has cost so far.
@@ -14,6 +15,12 @@ pub struct Meter {
     pub bytes: u64,
     /// How many calls were.
     pub looks: u64,
+    /// Of which rows it needs values in quiet steps, where particles are shared out to ranks.
+    pub rows: Option<Span>,
+    /// What ranks have exchanged for it in these.
+    pub traffic: Traffic,
+    /// In how many.
+    pub exchanges: u64,
 }
 
 impl Meter {
@@ -21,6 +28,13 @@ impl Meter {
     pub fn reckon(&mut self, bytes: u64) {
         self.bytes += bytes;
         self.looks += 1;
+    }
+
+    /// Ranks have exchanged so much for a call in a quiet step, which needed values of these rows.
+    pub fn exchange(&mut self, rows: Span, traffic: Traffic) {
+        self.rows = self.rows.max(Some(rows));
+        self.traffic += traffic;
+        self.exchanges += 1;
     }
 }
 

@@ -122,6 +122,15 @@ impl When {
         }
     }
 
+    /// Whether the op acts in every step, and in setups.
+    pub fn is_always(&self) -> bool {
+        match self {
+            When::Always | When::Every(1) => true,
+            When::Any(list) => list.iter().any(When::is_always),
+            _ => false,
+        }
+    }
+
     /// The first step from `step` on at which it may act, in a run up to `last`: the end of time if there is none. Steps before
     /// it are silent but for the setup and an early end of a run.
     pub fn next(&self, step: i64, last: i64) -> i64 {
@@ -217,6 +226,8 @@ pub struct Tick {
     pub on: bool,
     /// What ops make of all particles together (sums of forces and the like) may be read after this step.
     pub told: bool,
+    /// Only what acts in every step acts.
+    pub quiet: bool,
 }
 
 impl Tick {
@@ -248,6 +259,7 @@ impl Tick {
             atom_virial: false,
             on: false,
             told: true,
+            quiet: false,
         }
     }
 }

@@ -10,6 +10,7 @@ use super::{About, Guard, Meter, Op, OpClass, Span as Rows, Stage, Tick, When, s
 use perigrain_base::diag::{Diagnostics, Result, Span};
 use perigrain_world::field::{CONTACTS, RADIUS, X};
 use perigrain_world::named::Acting;
+use perigrain_world::share::Traffic;
 use perigrain_world::{Fields, World};
 use std::ops::Range;
 use std::time::Duration;
@@ -47,8 +48,8 @@ impl Placed {
         clock: &mut Stopwatch,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
-        let span = self.span(w, t);
-        if span == Rows::Near {
+        let (span, before) = (self.span(w, t), w.traffic());
+        if span == Rows::Listed {
             w.list_rows(&self.about.name, || self.op.listed());
         }
         share::before(w, span, std::iter::once(self.about.needs));
@@ -58,8 +59,16 @@ impl Placed {
         if outcome.is_ok() {
             end_watch(w, std::iter::once(self.stated()));
         }
-        share::after(w, span, std::iter::once(self.about.needs));
+        share::after(w, std::iter::once(self.about.needs));
+        self.note(w, t, (span, before));
         outcome
+    }
+
+    /// Keeps what ranks have exchanged for the op in a quiet step.
+    pub(super) fn note(&mut self, w: &World, t: &Tick, (span, before): (Rows, Traffic)) {
+        if w.share.is_some() && t.quiet {
+            self.meter.exchange(span, w.traffic().since(before));
+        }
     }
 
     /// Of which rows the op needs values at this tick, where particles are shared out to ranks.
@@ -134,6 +143,8 @@ pub struct StepPlan {
     pub atom_virial: Vec<When>,
     /// Fixes whose values something reads in every step.
     pub watched: Vec<String>,
+    /// Quiet steps in a row in which rows were gathered from all ranks.
+    pub(super) gathering: u32,
     /// Who watches the energy.
     pub guard: Option<Guard>,
     /// How many levels of steps there are (`run_style respa`), if more than one.
@@ -188,7 +199,8 @@ impl StepPlan {
             true => self.asked,
             false => self.asked_by(|w| t.ending || self.fires(w, t)),
         };
-        t.told = !self.is_quiet(t) || t.ending || t.step >= t.last || !self.watched.is_empty();
+        t.quiet = self.is_quiet(t) && !t.ending && t.step < t.last;
+        t.told = !t.quiet || !self.watched.is_empty();
         t.energy = asked.energy;
         t.virial = asked.virial;
         t.atom_energy = asked.atom_energy;

@@ -1,21 +1,35 @@
 //! Ops on ranks: what an op asks for before it acts, where rows are shared out, and what is up to date afterwards.
 
-use super::{Needs, Stage, StepPlan, Tick, When};
+use super::{Needs, StepPlan, Tick};
 use perigrain_world::World;
-use perigrain_world::share::SHARED;
+use perigrain_world::share::Traffic;
 
 /// Of which rows an op has the values it reads, where particles are shared out to ranks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Span {
     /// Reads and changes rows of its own rank, each by itself.
     Own,
     /// Also reads those near them.
     Near,
+    /// Also reads those that its lists name ([`super::Op::listed`]): all ranks evaluate them alike.
+    Listed,
     /// Asks for what it needs itself ([`World::whole`]), and changes all rows alike on all ranks.
     Asks,
     /// All ranks do the same to all rows.
     #[default]
     All,
+}
+
+impl std::fmt::Display for Span {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Span::Own => "own",
+            Span::Near => "near",
+            Span::Listed => "listed",
+            Span::Asks => "asked",
+            Span::All => "all",
+        })
+    }
 }
 
 /// Before ops act: rows of what they touch.
@@ -25,47 +39,49 @@ pub(super) fn before(w: &mut World, span: Span, needs: impl Iterator<Item = Need
     }
     match span {
         Span::All => needs.for_each(|needs| w.whole(needs.touched())),
-        Span::Near => needs.for_each(|needs| w.halo(needs.read_alone())),
+        Span::Near => needs.for_each(|needs| w.halo(needs.read_alone(), false)),
+        Span::Listed => needs.for_each(|needs| w.halo(needs.read_alone(), true)),
         Span::Own | Span::Asks => {}
     }
     if let Some(share) = &mut w.share {
-        share.narrow = matches!(span, Span::Own | Span::Near);
+        share.narrow = matches!(span, Span::Own | Span::Near | Span::Listed);
     }
 }
 
 /// After they have acted.
-pub(super) fn after(w: &mut World, span: Span, needs: impl Iterator<Item = Needs>) {
+pub(super) fn after(w: &mut World, needs: impl Iterator<Item = Needs>) {
     let Some(share) = &mut w.share else { return };
     if std::mem::take(&mut share.narrow) {
         needs.for_each(|needs| w.strays(needs.changed()));
-    } else if span == Span::Asks || span == Span::All {
-        if w.is_misdealt() {
-            w.deal();
-        }
+    } else if w.is_misdealt() {
+        w.deal();
     }
 }
 
+/// Runs of fewer steps are not worth dealing.
+const FEW: i64 = 8;
+
+/// After so many quiet steps in a row in which rows were gathered, shares are taken back.
+const ENOUGH: u32 = 4;
+
 impl StepPlan {
-    /// Shares particles out to ranks, where that spares work: where what acts in every step does so on the rows of one rank.
-    pub(super) fn deal(&mut self, w: &mut World, t: &Tick) {
-        if self.guard.is_some() || self.levels.is_some() {
+    /// Shares particles out to ranks, where there are several and a run of so many steps begins.
+    pub(super) fn deal(&mut self, w: &mut World, steps: i64) {
+        self.gathering = 0;
+        if self.guard.is_none() && self.levels.is_none() && steps >= FEW {
+            w.deal();
+        }
+    }
+
+    /// Takes shares back where what acts in every step has rows gathered again and again: `before` is what ranks had exchanged before this
+    /// step.
+    pub(super) fn judge_shares(&mut self, w: &mut World, t: &Tick, before: Traffic) {
+        if w.share.is_none() || !t.quiet {
             return;
         }
-        w.deal();
-        let quiet = Tick { told: !self.watched.is_empty(), ..t.clone() };
-        let mut everywhere = vec![];
-        let mut strays = perigrain_world::Fields::NONE;
-        for p in self.ops.iter_mut().filter(|p| p.about.when == When::Always) {
-            if w.share.is_none() {
-                return;
-            }
-            match p.span(w, &quiet) {
-                Span::All if p.about.stage != Stage::Output => everywhere.push(p.about.needs.touched()),
-                Span::Own | Span::Near => strays |= p.about.needs.changed().and_only(SHARED),
-                _ => {}
-            }
-        }
-        if everywhere.iter().any(|touched| touched.has(strays)) {
+        let gathers = w.traffic().since(before).gathers > 0;
+        self.gathering = if gathers { self.gathering + 1 } else { 0 };
+        if self.gathering >= ENOUGH {
             w.undeal();
         }
     }

@@ -206,9 +206,15 @@ impl StepPlan {
                 let Self { rooms: Rooms { acts, ops, came, .. }, ops: all, .. } = self;
                 let tells = t.told && ops.iter().any(|&k| all[k].about.tells);
                 let span = if tells { Span::All } else { Span::Own };
+                let before = w.traffic();
                 share::before(w, span, ops.iter().map(|&k| all[k].about.needs));
                 fuse(w, Acts::new(acts, ops), came);
-                share::after(w, span, ops.iter().map(|&k| all[k].about.needs));
+                share::after(w, ops.iter().map(|&k| all[k].about.needs));
+                // What was gathered for one of them was gathered for all; the first one has the bytes.
+                let first = ops[0];
+                for &k in &*ops {
+                    all[k].note(w, t, (span, if k == first { before } else { w.traffic() }));
+                }
                 self.fused(w, t, last, clock.runs().then(|| clock.lap()));
                 // Who comes next may have been asked too.
                 let asked = &order[at..order.len().min(at + passed + 1)];

@@ -77,6 +77,9 @@ fields! {
     BONDS "bonds" Nothing;
     /// Peridynamic bonds; owned by the pair style of solids.
     FAMILIES "families" Nothing;
+    /// What the last evaluation has left at the sites of peridynamic bodies: displacements, dilatations. An op that
+    /// reads it reads `FAMILIES` too.
+    SITES "sites" Nothing;
     /// What touching grains remember; owned by the pair style of grains.
     CONTACTS "contacts" Springs;
     /// What grains touching walls remember; owned by the walls.

@@ -116,6 +116,12 @@ impl Groups {
         self.set_surface(id, None);
     }
 
+    /// Whether particles neither join nor leave the group within a run.
+    pub fn is_fixed(&self, id: GroupId) -> bool {
+        let again = |(own, surface): &(GroupId, Surface)| *own == id && surface.every.is_some();
+        self.dynamic(id).is_none() && !self.surfaces.iter().any(again)
+    }
+
     /// How a dynamic group chooses; nothing for static groups.
     pub fn dynamic(&self, id: GroupId) -> Option<&Dynamic> {
         self.dynamic[id.0 as usize].as_ref()

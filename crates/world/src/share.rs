@@ -4,7 +4,7 @@
 //! others stay as they were until something asks for all of them ([`World::whole`]). Particles of no such body are moved by all ranks alike.
 
 use super::World;
-use super::field::{F, FAMILIES, Fields, OMEGA, QUAT, TORQUE, V, X};
+use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, X};
 use perigrain_base::comm::{self, Comm};
 use perigrain_peri::families::shares::ranges;
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The fields of which a rank may have some rows only.
-pub const SHARED: Fields = X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(FAMILIES);
+pub const SHARED: Fields = X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(SITES);
 
 /// How rows are shared out.
 #[derive(Clone)]
@@ -23,20 +23,47 @@ pub struct Share {
     pub own: Vec<Range<usize>>,
     /// Rows that each rank alone moves.
     alone: Vec<Vec<Range<usize>>>,
-    /// Rows to hand out to, and to take from, each other rank.
-    links: Vec<Link>,
+    /// Rows to hand out to, and to take from, each other rank: those near bodies' own ones, and those that lists name.
+    links: [Vec<Link>; 2],
     /// Rows that lists of ops name, by the op, with the generation of lists.
     listed: BTreeMap<String, (u64, Vec<u32>)>,
     /// Fields that are up to date in this rank's own rows alone.
     stale: Fields,
-    /// Those of them that are up to date in the rows near these as well.
-    near: Fields,
+    /// Those of them that are up to date in the rows of these links as well.
+    near: [Fields; 2],
     /// What particles there were, in which places.
     roster: [u64; 2],
     /// Whether the op at work acts on this rank's rows alone.
     pub narrow: bool,
     /// Messages, used again.
     bytes: Vec<u8>,
+    traffic: Traffic,
+}
+
+/// What ranks have exchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// How often all rows of something were handed to all.
+    pub gathers: u64,
+    /// Bytes that this rank has sent.
+    pub sent: u64,
+}
+
+impl Traffic {
+    /// What has come since an earlier look.
+    pub fn since(self, before: Self) -> Self {
+        // Counts begin anew where shares are dealt anew.
+        let [gathers, sent] = [(self.gathers, before.gathers), (self.sent, before.sent)]
+            .map(|(now, before)| now.checked_sub(before).unwrap_or(now));
+        Self { gathers, sent }
+    }
+}
+
+impl std::ops::AddAssign for Traffic {
+    fn add_assign(&mut self, more: Self) {
+        self.gathers += more.gathers;
+        self.sent += more.sent;
+    }
 }
 
 /// Rows that two ranks hand to each other.
@@ -93,10 +120,21 @@ impl World {
         };
         let alone = (0..ranks).map(of).collect();
         let own = shares.own.clone();
-        let (stale, near, bytes) = (Fields::NONE, Fields::NONE, vec![]);
-        let (links, listed) = (vec![], BTreeMap::new());
-        self.share =
-            Some(Share { comm, own, alone, links, listed, stale, near, roster, narrow: false, bytes });
+        let (stale, near, bytes) = (Fields::NONE, [Fields::NONE; 2], vec![]);
+        let (links, listed) = ([vec![], vec![]], BTreeMap::new());
+        self.share = Some(Share {
+            comm,
+            own,
+            alone,
+            links,
+            listed,
+            stale,
+            near,
+            roster,
+            narrow: false,
+            bytes,
+            traffic: Traffic::default(),
+        });
         self.link();
     }
 
@@ -105,18 +143,19 @@ impl World {
         let (Some(share), Some(families)) = (&mut self.share, self.families.past()) else { return };
         let me = share.comm.rank();
         let listed = share.listed.values().flat_map(|(_, rows)| rows.iter().copied());
-        let needed = families.needed(listed);
-        let rows = |rows: &[u32]| ranges(rows.iter().map(|row| *row as usize));
-        let others = (0..needed.len()).filter(|with| *with != me);
-        let links = others.map(|with| Link {
-            with,
-            out: rows(&needed[with][me]),
-            into: rows(&needed[me][with]),
-            bytes: Default::default(),
+        share.links = [families.needed(), families.needed_by_lists(listed)].map(|needed| {
+            let rows = |rows: &[u32]| ranges(rows.iter().map(|row| *row as usize));
+            let others = (0..needed.len()).filter(|with| *with != me);
+            let links = others.map(|with| Link {
+                with,
+                out: rows(&needed[with][me]),
+                into: rows(&needed[me][with]),
+                bytes: Default::default(),
+            });
+            links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect()
         });
-        share.links = links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect();
-        // Rows that are near since now have not been handed over.
-        share.near = Fields::NONE;
+        // Rows that are linked since now have not been handed over.
+        share.near = [Fields::NONE; 2];
     }
 
     /// Hands the rows that an op's lists name to all ranks from now on, where shares are dealt and that is not done for the present lists.
@@ -136,10 +175,13 @@ impl World {
 
     /// Takes the shares back; all rows are up to date then.
     pub fn undeal(&mut self) {
-        if self.share.is_some() {
-            self.whole(Fields::ALL);
-            self.share = None;
-        }
+        self.whole(Fields::ALL);
+        self.abandon();
+    }
+
+    /// Forgets that rows are shared out, without a word to other ranks: where something has failed.
+    pub fn abandon(&mut self) {
+        self.share = None;
         if let Some(families) = self.families.past_mut() {
             families.undeal();
         }
@@ -167,20 +209,29 @@ impl World {
         if !missing.is_empty() {
             self.gather_rows(&mut share, missing);
             share.stale = share.stale.without(missing);
-            share.near = share.near.without(missing);
+            share.near = share.near.map(|near| near.without(missing));
         }
         self.share = Some(share);
     }
 
-    /// Has the rows of these fields that are near this rank's own.
-    pub fn halo(&mut self, fields: Fields) {
+    /// Has the rows of these fields that are near this rank's own, or (`listed`) that lists of ops name.
+    pub fn halo(&mut self, fields: Fields, listed: bool) {
         let Some(mut share) = self.share.take() else { return };
-        let missing = share.stale.and_only(fields).without(share.near).without(FAMILIES);
+        let which = usize::from(listed);
+        let missing = share.stale.and_only(fields).without(share.near[which]).without(SITES);
         if !missing.is_empty() {
-            self.swap_rows(&mut share, missing);
-            share.near |= missing;
+            self.swap_rows(&mut share, (missing, which));
+            share.near[which] |= missing;
         }
         self.share = Some(share);
+    }
+
+    /// What this rank has exchanged with others since shares were dealt.
+    pub fn traffic(&self) -> Traffic {
+        let Some(share) = &self.share else { return Traffic::default() };
+        let shares = self.families.past().as_ref().and_then(|families| families.shares.as_ref());
+        let within = shares.map_or(0, |shares| shares.sent);
+        Traffic { sent: share.traffic.sent + within, ..share.traffic }
     }
 
     /// The rows among these that the op at work acts on: all, or those of this rank.
@@ -194,6 +245,22 @@ impl World {
         all.into_iter().chain(some.map(move |own| own.start.max(rows.start)..own.end.min(end)))
     }
 
+    /// Puts the least of all ranks in the place of a number, where the op at work acts on the rows of one.
+    pub fn agree_on_least(&self, number: &mut f64) {
+        if let Some(share) = self.share.as_ref().filter(|share| share.narrow) {
+            let mut most = -*number;
+            share.agree(std::iter::once(&mut most));
+            *number = -most;
+        }
+    }
+
+    /// Whether all particles with one of these group bits are moved by all ranks alike.
+    pub fn is_common(&self, bits: u32) -> bool {
+        let Some(share) = &self.share else { return true };
+        let mask = self.particles.mask.past();
+        !share.alone.iter().flatten().any(|rows| mask[rows.clone()].iter().any(|mask| mask & bits != 0))
+    }
+
     /// Whether the op at work acts on the rows of this rank alone.
     pub fn is_narrow(&self) -> bool {
         self.share.as_ref().is_some_and(|share| share.narrow)
@@ -204,7 +271,7 @@ impl World {
         let Some(share) = &mut self.share else { return };
         let changed = SHARED.and_only(fields);
         share.stale |= changed;
-        share.near = share.near.without(changed);
+        share.near = share.near.map(|near| near.without(changed));
         #[cfg(debug_assertions)]
         self.spoil(changed);
     }
@@ -224,7 +291,7 @@ impl World {
                     write(numbers, width, &share.alone[rank], &mut bytes);
                 }
             });
-            if let Some(families) = self.families.past_mut().as_mut().filter(|_| fields.has(FAMILIES)) {
+            if let Some(families) = self.families.past_mut().as_mut().filter(|_| fields.has(SITES)) {
                 length += families.piece_bytes(rank);
                 if rank == me {
                     families.write_piece(rank, &mut bytes);
@@ -234,6 +301,7 @@ impl World {
             counts.push(length);
         }
         share.comm.gather_all(&mut bytes, &counts);
+        share.traffic += Traffic { gathers: 1, sent: counts[me] as u64 };
         let mut rest = &bytes[..];
         for (rank, count) in counts.iter().enumerate() {
             let (mut piece, after) = rest.split_at(*count);
@@ -244,15 +312,16 @@ impl World {
             self.columns_of(fields, |numbers, width| {
                 piece = read(numbers, width, &share.alone[rank], piece);
             });
-            if let Some(families) = self.families.past_mut().as_mut().filter(|_| fields.has(FAMILIES)) {
+            if let Some(families) = self.families.past_mut().as_mut().filter(|_| fields.has(SITES)) {
                 families.read_piece(rank, piece);
             }
         }
         share.bytes = bytes;
     }
 
-    fn swap_rows(&mut self, share: &mut Share, fields: Fields) {
-        for link in &mut share.links {
+    fn swap_rows(&mut self, share: &mut Share, (fields, which): (Fields, usize)) {
+        let links = &mut share.links[which];
+        for link in &mut *links {
             let [out, into] = &mut link.bytes;
             out.clear();
             let mut length = 0;
@@ -264,7 +333,7 @@ impl World {
         }
         let mut out: Vec<(usize, &[u8])> = vec![];
         let mut into: Vec<(usize, &mut [u8])> = vec![];
-        for Link { with, bytes: [own, others], .. } in &mut share.links {
+        for Link { with, bytes: [own, others], .. } in &mut *links {
             if !own.is_empty() {
                 out.push((*with, own));
             }
@@ -272,8 +341,9 @@ impl World {
                 into.push((*with, others));
             }
         }
+        share.traffic.sent += out.iter().map(|(_, bytes)| bytes.len() as u64).sum::<u64>();
         share.comm.swap(&out, &mut into);
-        for link in &share.links {
+        for link in &*links {
             let mut piece = &link.bytes[1][..];
             self.columns_of(fields, |numbers, width| piece = read(numbers, width, &link.into, piece));
         }

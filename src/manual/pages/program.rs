@@ -50,7 +50,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     written: see [In your editor](../editor/README.md). `plan` prints what each step of \
     the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
-    particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
+    particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--measure -ranks N` also which rows of particles each \
+    part needs in a quiet step and what ranks send for it, with `--dot` it \
     prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
     their numbers: see [verify](verify.md). `report` writes a web page about a run that is over, from its log and dumps: see [Look at a run](../howto/report.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \

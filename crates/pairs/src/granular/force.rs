@@ -383,7 +383,7 @@ impl Op for Force {
         let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_deeds.is_some();
         let plain = !asked && !t.setup && self.press.is_none() && !conducts(&self.rules);
         let listed = self.generation == Some(w.rebuild.past().generation);
-        if plain && listed { Span::Near } else { Span::All }
+        if plain && listed { Span::Listed } else { Span::All }
     }
 
     fn listed(&self) -> Vec<u32> {

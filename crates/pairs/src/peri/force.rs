@@ -8,8 +8,8 @@ use perigrain_plan::{About, Level, Needs, Op, Span, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
-    BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG,
-    TALLY, VOLUME, X, X0,
+    BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS,
+    SITES, TAG, TALLY, VOLUME, X, X0,
 };
 use perigrain_world::{Crack, Key, Numbers, World};
 
@@ -69,7 +69,7 @@ impl Op for Force {
                             | factors,
                     )
                     .add(F)
-                    .write(LISTS | FAMILIES | TALLY | FACTS)
+                    .write(LISTS | FAMILIES | SITES | TALLY | FACTS)
                     .keep(MASS),
             )
         }
@@ -99,6 +99,10 @@ impl Op for Force {
             false => !t.trial,
         };
         let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
+        if tally.is_some() {
+            // On ranks: pairs are few, and each rank adds up all of them.
+            w.whole(X);
+        }
         let begun = families.begin(&view(w)?, advance, tally.is_some());
         let searches = begun.searches;
         if searches {
@@ -126,9 +130,9 @@ impl Op for Force {
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Span {
-        let tallied = t.energy || t.virial || t.atom_energy || t.atom_virial;
+        let tallied = t.energy || t.virial;
         let shared = w.families.past().as_ref().is_some_and(|families| families.is_shared(!t.trial, tallied));
-        let same = self.adapted == w.adaptations();
+        let same = self.adapted == w.adaptations() && !t.atom_energy && !t.atom_virial;
         if shared && same && !t.setup { Span::Near } else { Span::All }
     }
 }

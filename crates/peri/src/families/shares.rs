@@ -18,6 +18,8 @@ pub struct Shares {
     pub owner: Vec<u16>,
     /// This rank's particles, and those of all.
     pub own: Vec<Range<usize>>,
+    /// Bytes that this rank has sent to others within evaluations.
+    pub sent: u64,
 }
 
 /// One body's tiles on ranks.
@@ -61,11 +63,22 @@ pub struct Dues {
     pub with: usize,
     /// The tile that gives, and the one that takes.
     pub pairs: Vec<[usize; 2]>,
+    /// Whether the first tile of each pair owes anything in the present sweep.
+    pub owes: Vec<u8>,
     /// The message.
     pub bytes: Vec<u8>,
 }
 
 impl Shares {
+    /// Bytes that this rank's tiles hand over to others in one sweep.
+    pub fn dues(&self) -> usize {
+        let all = self.bodies.iter().map(|body| {
+            let dues = body.gives.iter().map(|dues| dues.bytes.len());
+            dues.chain(body.rows.iter().map(|rows| rows.bytes[0].len())).sum::<usize>()
+        });
+        all.sum()
+    }
+
     /// Whether a particle's forces are this rank's to find.
     pub fn moves(&self, particle: usize) -> bool {
         let owner = self.owner[particle];

@@ -8,6 +8,7 @@ use crate::families::{Candidate, FamilyOptions, Measures};
 use crate::lanes::isa::Isa;
 use crate::lattice::bond_stretch::{FindLeast, FindStrained, Side, Strained, Watched};
 use crate::lattice::chunk::constant;
+use crate::lattice::leads::ahead;
 use crate::lattice::sweep::MAY_BREAK;
 use crate::law::series::stretch;
 use perigrain_base::par::{self, Shared};
@@ -89,6 +90,18 @@ impl LatticeBody {
             }
             sides.push(Side { to, place: table, e: e as u16, pair, bits, behind: false });
         }
+    }
+
+    /// The row slots with bonds that may break, and those that such bonds lead to, ascending.
+    fn looked_at(&self) -> Vec<usize> {
+        let mut looked = vec![false; self.rows.len()];
+        for (slot, row) in self.rows.iter().enumerate() {
+            if self.flagged[row.chunks()].iter().any(|flag| flag & MAY_BREAK != 0) {
+                looked[slot] = true;
+                self.steps.iter().for_each(|step| looked[ahead(self, slot, *step)] = true);
+            }
+        }
+        (0..looked.len()).filter(|slot| looked[*slot]).collect()
     }
 
     /// Finds where bonds lead back to from a row's cells.
@@ -274,10 +287,14 @@ impl Bonds for LatticeBody {
         let Slackest { bond, bound: mut bounds } = std::mem::take(&mut self.slackest);
         bounds.resize(cells + 2 * PAD, f64::INFINITY);
         if bond.len() == cells {
-            let body = &*self;
-            par::each((&mut bounds[PAD..PAD + cells], &bond[..]), |start, (bounds, bond)| {
-                for (k, (bounds, bond)) in bounds.iter_mut().zip(bond).enumerate() {
-                    *bounds = bound(body, start + k, *bond).unwrap_or(f64::INFINITY);
+            let (body, looked) = (&*self, self.looked_at());
+            let shared = Shared::new(&mut bounds);
+            par::for_rows(looked.len(), |k| {
+                let cells = body.rows[looked[k]].cells();
+                // SAFETY: rows share no cells, and each is looked at once.
+                let bounds = unsafe { shared.get(PAD + cells.start..PAD + cells.end) };
+                for (cell, (bounds, bond)) in cells.clone().zip(bounds.iter_mut().zip(&bond[cells])) {
+                    *bounds = bound(body, cell, *bond).unwrap_or(f64::INFINITY);
                 }
             });
         }

@@ -6,7 +6,7 @@ use crate::lanes::isa::{Isa, Kernel};
 use perigrain_base::par::{self, Shared};
 
 /// Gathers displacements from positions into `u[1]`, and what moved since `u[0]`. Where contact is `short_range` even
-/// between undisplaced particles, nothing is at rest. Row slots that nobody `follows` are left out.
+/// between undisplaced particles, nothing is at rest. Row slots that are not among those that a rank `follows` are left out.
 ///
 /// # Safety
 /// The processor must have the kernels' instruction set.

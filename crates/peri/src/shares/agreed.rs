@@ -1,9 +1,10 @@
 //! What all ranks agree upon in a step: how far bodies have moved, what is squeezed, what breaks.
 
 use crate::families::lattice::{LANES, LatticeBody, RowMotion};
-use crate::families::shares::Shares;
+use crate::families::shares::{BodyShare, Shares};
 use crate::families::{Candidate, PeriView};
 use crate::lattice::sweep::{MAY_BREAK, SQUEEZED};
+use crate::shares::whole::slots_of;
 use perigrain_base::comm;
 
 /// What has moved in each body, on all ranks together.
@@ -59,8 +60,8 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
     bytes.as_chunks::<4>().0.iter().map(|word| u32::from_ne_bytes(*word))
 }
 
-/// Flags the chunks with squeezed bonds of other ranks too, where these reach this rank's particles.
-pub(crate) fn squeezed_everywhere(bodies: &mut [LatticeBody], shares: &Shares) {
+/// Flags the chunks with squeezed bonds of other ranks too, where these reach this rank's particles, or `all` of them.
+pub(crate) fn squeezed_everywhere(bodies: &mut [LatticeBody], shares: &Shares, all: bool) {
     let mut own = vec![];
     for (k, body) in bodies.iter().enumerate() {
         let squeezed = body.flagged.iter().enumerate().filter(|(_, flag)| **flag & SQUEEZED != 0);
@@ -70,10 +71,29 @@ pub(crate) fn squeezed_everywhere(bodies: &mut [LatticeBody], shares: &Shares) {
         let words: Vec<u32> = words(&bytes).collect();
         for &[body, chunk] in words.as_chunks::<2>().0 {
             let (k, chunk) = (body as usize, chunk as usize);
-            if shares.bodies[k].follows[bodies[k].slot_of(chunk * LANES)] {
+            if all || shares.bodies[k].follows[bodies[k].slot_of(chunk * LANES)] {
                 bodies[k].flagged[chunk] |= SQUEEZED;
             }
         }
+    }
+}
+
+/// Has what ranks have found of their rows, a few numbers each, on all of them.
+pub(crate) fn rows_everywhere<const N: usize>(
+    body: &LatticeBody,
+    (share, me): (&BodyShare, usize),
+    rows: &mut [[f64; N]],
+) {
+    let slots: Vec<Vec<usize>> = share.tiles.iter().map(|tiles| slots_of(body, tiles)).collect();
+    let counts: Vec<usize> = slots.iter().map(|slots| slots.len() * N * size_of::<f64>()).collect();
+    let mut bytes = vec![0; counts.iter().sum()];
+    let first: usize = counts[..me].iter().sum();
+    let own = slots[me].iter().flat_map(|slot| rows[*slot]).flat_map(f64::to_ne_bytes);
+    bytes[first..first + counts[me]].iter_mut().zip(own).for_each(|(to, byte)| *to = byte);
+    comm::present().gather_all(&mut bytes, &counts);
+    let mut numbers = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_ne_bytes(*bytes));
+    for slot in slots.into_iter().flatten() {
+        rows[slot] = std::array::from_fn(|_| numbers.next().unwrap_or_default());
     }
 }
 

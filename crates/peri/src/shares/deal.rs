@@ -48,7 +48,7 @@ impl Families {
             }
             bodies.push(share);
         }
-        let mut shares = Shares { me, ranks, bodies, owner, own: vec![] };
+        let mut shares = Shares { me, ranks, bodies, owner, own: vec![], sent: 0 };
         shares.own = ranges((0..shares.owner.len()).filter(|p| shares.moves(*p)));
         self.shares = Some(shares);
         true
@@ -59,9 +59,21 @@ impl Families {
         self.shares = None;
     }
 
-    /// Which particles' places each rank needs of each other one: by the rank that needs them and the one that has them, ascending. Those
-    /// that are `listed` all need.
-    pub fn needed(&self, listed: impl Iterator<Item = u32>) -> Vec<Vec<Vec<u32>>> {
+    /// Which particles all ranks need that lists name: by the rank that needs them and the one that has them, ascending.
+    pub fn needed_by_lists(&self, listed: impl Iterator<Item = u32>) -> Vec<Vec<Vec<u32>>> {
+        let Some(shares) = &self.shares else { return vec![] };
+        let mut needs = vec![vec![vec![]; shares.ranks]; shares.ranks];
+        for p in listed {
+            let owner = shares.owner[p as usize];
+            if owner != ALL {
+                needs.iter_mut().for_each(|needs| needs[usize::from(owner)].push(p));
+            }
+        }
+        in_order(needs)
+    }
+
+    /// Which particles' places each rank needs of each other one for bodies and pairs near each other, in the same form.
+    pub fn needed(&self) -> Vec<Vec<Vec<u32>>> {
         let Some(shares) = &self.shares else { return vec![] };
         let ranks = shares.ranks;
         let mut needs = vec![vec![vec![]; ranks]; ranks];
@@ -83,25 +95,24 @@ impl Families {
                 if needed == ALL || of == needed {
                     continue;
                 }
-                let who = if of == ALL { 0..ranks } else { usize::from(of)..usize::from(of) + 1 };
-                who.for_each(|rank| needs[rank][usize::from(needed)].push(p));
+                let by = if of == ALL { 0..ranks } else { usize::from(of)..usize::from(of) + 1 };
+                by.for_each(|rank| needs[rank][usize::from(needed)].push(p));
             }
         }
-        for p in listed {
-            let owner = shares.owner[p as usize];
-            if owner != ALL {
-                needs.iter_mut().for_each(|needs| needs[usize::from(owner)].push(p));
-            }
-        }
-        for (rank, needs) in needs.iter_mut().enumerate() {
-            needs[rank].clear();
-            for list in needs {
-                list.sort_unstable();
-                list.dedup();
-            }
-        }
-        needs
+        in_order(needs)
     }
+}
+
+/// Without what ranks need of themselves, each particle once, ascending.
+fn in_order(mut needs: Vec<Vec<Vec<u32>>>) -> Vec<Vec<Vec<u32>>> {
+    for (rank, needs) in needs.iter_mut().enumerate() {
+        needs[rank].clear();
+        for list in needs {
+            list.sort_unstable();
+            list.dedup();
+        }
+    }
+    needs
 }
 
 /// Particles of each tile.
@@ -180,7 +191,7 @@ fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShar
         from.clone().flat_map(takers).filter(|[_, taker]| to.contains(taker)).collect::<Vec<_>>()
     };
     let others = || (0..tiles.len()).filter(|with| *with != me);
-    let dues = |with: usize, pairs: Vec<[usize; 2]>| Dues { with, pairs, bytes: vec![] };
+    let dues = |with: usize, pairs: Vec<[usize; 2]>| Dues { with, pairs, ..Dues::default() };
     let gives = others().map(|r| dues(r, pairs(&tiles[me], &tiles[r]))).filter(|d| !d.pairs.is_empty());
     let takes = others().map(|r| dues(r, pairs(&tiles[r], &tiles[me]))).filter(|d| !d.pairs.is_empty());
     let (gives, takes): (Vec<_>, Vec<_>) = (gives.collect(), takes.collect());

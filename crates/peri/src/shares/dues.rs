@@ -38,13 +38,24 @@ fn parts<'a>(
     found.map(|([low, high], at)| (low..high, low - at.first))
 }
 
-/// How long a message is: of each pair of tiles whether anything is owed, and the numbers.
+/// How long a message is: the numbers of pairs of tiles of which the first one owes something.
 fn length(body: &LatticeBody, tiles: &Tiles, dues: &Dues, components: usize) -> usize {
     let cells = |pair: &[usize; 2]| parts(body, tiles, *pair).map(|(cells, _)| cells.len()).sum::<usize>();
-    dues.pairs.iter().map(|pair| 1 + NUMBER * components * cells(pair)).sum()
+    let owing = dues.pairs.iter().zip(&dues.owes).filter(|(_, owes)| **owes != 0);
+    owing.map(|(pair, _)| NUMBER * components * cells(pair)).sum()
 }
 
-/// Hands the windows of this rank's tiles over to the ranks whose tiles they reach, and puts those of others in their places.
+/// Sends something of each of some dues to its rank, and receives the same of others from theirs.
+fn swap(gives: &mut [Dues], takes: &mut [Dues], what: impl for<'a> Fn(&'a mut Dues) -> &'a mut Vec<u8>) {
+    let out: Vec<(usize, &[u8])> = gives.iter_mut().map(|d| (d.with, &what(d)[..])).collect();
+    let out: Vec<(usize, &[u8])> = out.into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect();
+    let into = takes.iter_mut().map(|d| (d.with, &mut what(d)[..]));
+    let mut into: Vec<(usize, &mut [u8])> = into.filter(|(_, bytes)| !bytes.is_empty()).collect();
+    comm::present().swap(&out, &mut into);
+}
+
+/// Hands the windows of this rank's tiles over to the ranks whose tiles they reach, and puts those of others in their places. What is at rest
+/// owes nothing: ranks first tell each other which tiles owe something.
 pub(crate) fn hand_over(
     body: &LatticeBody,
     tiles: &Tiles,
@@ -53,50 +64,47 @@ pub(crate) fn hand_over(
     components: usize,
 ) {
     for dues in &mut *gives {
-        dues.bytes.resize(length(body, tiles, dues, components), 0);
-        let mut bytes = &mut dues.bytes[..];
-        for &pair in &dues.pairs {
+        dues.owes.clear();
+        dues.owes.extend(dues.pairs.iter().map(|pair| u8::from(windows[pair[0]].touched)));
+    }
+    takes.iter_mut().for_each(|dues| dues.owes.resize(dues.pairs.len(), 0));
+    swap(gives, takes, |dues| &mut dues.owes);
+    for dues in gives.iter_mut().chain(&mut *takes) {
+        let length = length(body, tiles, dues, components);
+        dues.bytes.resize(length, 0);
+    }
+    for Dues { pairs, owes, bytes, .. } in &mut *gives {
+        let mut bytes = &mut bytes[..];
+        for (&pair, _) in pairs.iter().zip(owes).filter(|(_, owes)| **owes != 0) {
             let window = &windows[pair[0]];
-            bytes[0] = u8::from(window.touched);
-            bytes = &mut bytes[1..];
             for (cells, from) in parts(body, tiles, pair) {
                 for k in 0..components {
                     let (own, rest) = bytes.split_at_mut(NUMBER * cells.len());
-                    if window.touched {
-                        let from = window.base + k * window.stride + from;
-                        let numbers = &window.sums[from..from + cells.len()];
-                        own.chunks_exact_mut(NUMBER)
-                            .zip(numbers)
-                            .for_each(|(to, number)| to.copy_from_slice(&number.to_ne_bytes()));
-                    }
+                    let from = window.base + k * window.stride + from;
+                    let to = own.as_chunks_mut::<NUMBER>().0.iter_mut();
+                    to.zip(&window.sums[from..]).for_each(|(to, number)| *to = number.to_ne_bytes());
                     bytes = rest;
                 }
             }
         }
     }
-    for dues in &mut *takes {
-        dues.bytes.resize(length(body, tiles, dues, components), 0);
-    }
-    let out: Vec<(usize, &[u8])> = gives.iter().map(|d| (d.with, &d.bytes[..])).collect();
-    let mut into: Vec<(usize, &mut [u8])> = takes.iter_mut().map(|d| (d.with, &mut d.bytes[..])).collect();
-    comm::present().swap(&out, &mut into);
-    for dues in &*takes {
-        let mut bytes = &dues.bytes[..];
-        for &pair in &dues.pairs {
+    swap(gives, takes, |dues| &mut dues.bytes);
+    for Dues { pairs, owes, bytes, .. } in takes {
+        let mut bytes = &bytes[..];
+        for (&pair, owes) in pairs.iter().zip(owes) {
             let window = &mut windows[pair[0]];
+            window.touched = *owes != 0;
+            if !window.touched {
+                continue;
+            }
             open(window, tiles.reached(pair[0]), components);
-            window.touched = bytes[0] != 0;
-            bytes = &bytes[1..];
             for (cells, from) in parts(body, tiles, pair) {
                 for k in 0..components {
                     let (own, rest) = bytes.split_at(NUMBER * cells.len());
-                    if window.touched {
-                        let from = window.base + k * window.stride + from;
-                        let numbers = &mut window.sums[from..from + cells.len()];
-                        for (number, bytes) in numbers.iter_mut().zip(own.as_chunks::<NUMBER>().0) {
-                            *number = f64::from_ne_bytes(*bytes);
-                        }
-                    }
+                    let from = window.base + k * window.stride + from;
+                    let numbers = window.sums[from..].iter_mut();
+                    let own = own.as_chunks::<NUMBER>().0.iter();
+                    numbers.zip(own).for_each(|(number, bytes)| *number = f64::from_ne_bytes(*bytes));
                     bytes = rest;
                 }
             }
@@ -127,7 +135,8 @@ pub(crate) fn share_sums(body: &LatticeBody, links: &mut [RowLink], sums: &mut [
         }
         others.resize(NUMBER * cells(into), 0);
     }
-    let (mut out, mut into): (Vec<(usize, &[u8])>, Vec<(usize, &mut [u8])>) = (vec![], vec![]);
+    let mut out: Vec<(usize, &[u8])> = vec![];
+    let mut into: Vec<(usize, &mut [u8])> = vec![];
     for RowLink { with, bytes: [own, others], .. } in &mut *links {
         if !own.is_empty() {
             out.push((*with, own));

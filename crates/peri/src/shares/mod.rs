@@ -6,6 +6,6 @@ pub(crate) mod dues;
 mod whole;
 
 pub(crate) use agreed::{
-    Broken, agreed, agreed_motion, broken_everywhere, flagged_anywhere, forget_flags, square,
-    squeezed_everywhere,
+    Broken, agreed, agreed_motion, broken_everywhere, flagged_anywhere, forget_flags, rows_everywhere,
+    square, squeezed_everywhere,
 };

@@ -13,21 +13,25 @@ enum Way<'a> {
 }
 
 /// A number with bytes.
-trait Number: Copy {
-    const BYTES: usize;
-    fn write(self, to: &mut Vec<u8>);
-    fn read(from: &[u8]) -> Self;
+trait Number: Copy + Default {
+    /// How many.
+    const BYTES: usize = size_of::<Self>();
+    /// Writes numbers to so many places.
+    fn write(numbers: &[Self], to: &mut [u8]);
+    /// Reads numbers from so many places.
+    fn read(numbers: &mut [Self], from: &[u8]);
 }
 
 macro_rules! numbers {
     ($($name:ty)*) => {$(
         impl Number for $name {
-            const BYTES: usize = size_of::<$name>();
-            fn write(self, to: &mut Vec<u8>) {
-                to.extend_from_slice(&self.to_ne_bytes());
+            fn write(numbers: &[Self], to: &mut [u8]) {
+                let to = to.as_chunks_mut::<{ size_of::<$name>() }>().0;
+                to.iter_mut().zip(numbers).for_each(|(to, number)| *to = number.to_ne_bytes());
             }
-            fn read(from: &[u8]) -> Self {
-                from.first_chunk().map_or(Self::default(), |bytes| Self::from_ne_bytes(*bytes))
+            fn read(numbers: &mut [Self], from: &[u8]) {
+                let from = from.as_chunks::<{ size_of::<$name>() }>().0;
+                numbers.iter_mut().zip(from).for_each(|(number, from)| *number = Self::from_ne_bytes(*from));
             }
         }
     )*};
@@ -39,10 +43,14 @@ impl Way<'_> {
     fn numbers<T: Number>(&mut self, numbers: &mut [T]) {
         match self {
             Way::Count(n) => *n += T::BYTES * numbers.len(),
-            Way::Out(bytes) => numbers.iter().for_each(|number| number.write(bytes)),
+            Way::Out(bytes) => {
+                let at = bytes.len();
+                bytes.resize(at + T::BYTES * numbers.len(), 0);
+                T::write(numbers, &mut bytes[at..]);
+            }
             Way::In(bytes) => {
                 let (own, rest) = bytes.split_at(T::BYTES * numbers.len());
-                numbers.iter_mut().zip(own.chunks_exact(T::BYTES)).for_each(|(to, from)| *to = T::read(from));
+                T::read(numbers, own);
                 *bytes = rest;
             }
         }
@@ -79,7 +87,7 @@ impl Families {
 }
 
 /// The row slots of some tiles.
-fn slots_of(body: &LatticeBody, tiles: &Range<usize>) -> Vec<usize> {
+pub(super) fn slots_of(body: &LatticeBody, tiles: &Range<usize>) -> Vec<usize> {
     let tiles = body.tiles.all[tiles.clone()].iter();
     tiles
         .flat_map(|tile| {

@@ -107,13 +107,13 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     w.travel.begin(plan.guard.is_none() && plan.reports_travel());
     // A guard may take steps back.
     let sure = plan.guard.is_none();
-    plan.deal(w, &tick(w, false));
+    plan.deal(w, w.clock.last - w.clock.step);
     let outcome =
         steps(plan, w, watch, |plan, w, t, looked| plan.step(w, t, |w| sure && !looked && !over(w)));
     match outcome {
         Ok(_) => w.undeal(),
         // Ranks need not have come to the same place.
-        Err(_) => w.share = None,
+        Err(_) => w.abandon(),
     }
     w.travel.begin(false);
     outcome
@@ -178,8 +178,10 @@ pub(super) fn steps(
             let looked = watch.looks(w);
             match &mut guard {
                 None => {
+                    let traffic = w.traffic();
                     step(plan, w, &t, looked)?;
                     plan.run(w, &t, &OUTPUTS)?;
+                    plan.judge_shares(w, &t, traffic);
                 }
                 Some(guard) => {
                     let made = step(plan, w, &t, looked);
