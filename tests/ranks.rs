@@ -115,6 +115,25 @@ fn every_family_has_the_same_bytes_on_any_number_of_ranks() {
     }
 }
 
+#[test]
+fn particles_come_and_go_while_bodies_are_shared_out() {
+    let scene = &SCENES[0];
+    let goes = "fix go all evaporate 4 3 part 8311\nregion part block 0 0.002 0 0.003 0 0.02 units box\n";
+    let comes = "region drop block 0 0.005 0 0.004 0.028 0.03 units box\nfix come all deposit 3 1 5 77 region drop id next\n";
+    let (region, fix) = (goes.lines().nth(1).unwrap(), goes.lines().next().unwrap());
+    for (what, lines) in [("evaporate", format!("{region}\n{fix}\n")), ("deposit", comes.to_string())] {
+        let made = made(scene).replacen("region blk", "region all block -5 15 -5 15 -5 35\nregion blk", 1);
+        let made = made.replace("create_box 1 blk", "create_box 1 all");
+        let deck = format!(
+            "{made}{}{lines}dump all all custom 4 dump.*.txt id type x y z vx vy vz\n\
+             dump_modify all format float %.17g\nrun 40\nwrite_restart end.restart\n",
+            scene.again
+        );
+        let alone = left_by(&deck, &["-threads", "1"]);
+        same(&alone, &left_by(&deck, &["-ranks", "3", "-threads", "1"]), what);
+    }
+}
+
 /// What acts in every step of a measured plan on ranks: op, of which rows, how often all rows of something were handed to all in quiet
 /// steps.
 fn exchanged(said: &str) -> Vec<(String, String, u64)> {

@@ -1,8 +1,9 @@
 //! Ops on ranks: what an op asks for before it acts, where rows are shared out, and what is up to date afterwards.
 
 use super::{Needs, StepPlan, Tick};
-use perigrain_world::World;
+use perigrain_world::field::{FAMILIES, SITES, TAG};
 use perigrain_world::share::Traffic;
+use perigrain_world::{Fields, World};
 
 /// Of which rows an op has the values it reads, where particles are shared out to ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,13 +33,22 @@ impl std::fmt::Display for Span {
     }
 }
 
+/// The fields of which an op of all rows has all of them up to date: those it touches, or all where particles come, go or change places.
+fn asked(needs: &Needs) -> Fields {
+    match needs.changes(TAG) {
+        true => Fields::ALL,
+        false if needs.changes(FAMILIES) => needs.touched() | SITES,
+        false => needs.touched(),
+    }
+}
+
 /// Before ops act: rows of what they touch.
 pub(super) fn before(w: &mut World, span: Span, needs: impl Iterator<Item = Needs>) {
     if w.share.is_none() {
         return;
     }
     match span {
-        Span::All => needs.for_each(|needs| w.whole(needs.touched())),
+        Span::All => needs.for_each(|needs| w.whole(asked(&needs))),
         Span::Near => needs.for_each(|needs| w.halo(needs.read_alone(), false)),
         Span::Listed => needs.for_each(|needs| w.halo(needs.read_alone(), true)),
         Span::Own | Span::Asks => {}

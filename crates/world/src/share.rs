@@ -99,7 +99,7 @@ const NUMBER: usize = size_of::<f64>();
 impl World {
     /// Shares rows out to ranks, where there are several and some body can be. All rows are up to date before.
     pub fn deal(&mut self) {
-        self.share = None;
+        self.abandon();
         let comm = comm::present();
         let (me, ranks) = (comm.rank(), comm.size());
         if ranks < 2 {
