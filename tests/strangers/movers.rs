@@ -381,7 +381,7 @@ fn wrong(name: &str, under: Under, before: &World, now: &World, lines: &str) -> 
         ("bonds", Under::Nothing) => {
             now.bonds.list == before.bonds.list && now.bonds.turned == before.bonds.turned
         }
-        ("families", Under::Nothing) => now.families.is_none(),
+        ("families" | "sites", Under::Nothing) => now.families.is_none(),
         // Of no particle, or of the order in which they stand.
         ("rank" | "memo" | "controls" | "box" | "regions" | "travel" | "clock" | "facts", Under::Nothing) => {
             true

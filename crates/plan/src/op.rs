@@ -380,10 +380,6 @@ pub trait Op: Send {
     fn span(&mut self, _w: &mut World, _t: &Tick) -> Span {
         Span::All
     }
-    /// Rows that its lists name, ascending: all ranks look at them alike, and get their values where it asks for rows near its own.
-    fn listed(&self) -> Vec<u32> {
-        vec![]
-    }
     /// Takes what came of all blocks.
     fn fused(&mut self, _w: &mut World, _t: &Tick, _sums: BlockSums) {}
     /// What the run's end should do (close files, print a fact).

@@ -49,9 +49,6 @@ impl Placed {
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
         let (span, before) = (self.span(w, t), w.traffic());
-        if span == Rows::Listed {
-            w.list_rows(&self.about.name, || self.op.listed());
-        }
         share::before(w, span, std::iter::once(self.about.needs));
         begin_watch(w);
         let outcome = self.timed(w, t, clock, act);

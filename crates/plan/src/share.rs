@@ -12,7 +12,7 @@ pub enum Span {
     Own,
     /// Also reads those near them.
     Near,
-    /// Also reads those that its lists name ([`super::Op::listed`]): all ranks evaluate them alike.
+    /// Also reads those that its lists name ([`World::list_rows`]): all ranks evaluate them alike.
     Listed,
     /// Asks for what it needs itself ([`World::whole`]), and changes all rows alike on all ranks.
     Asks,

@@ -3,11 +3,10 @@
 //! Every rank has all rows, at the same places. Of a body that is shared out it moves its own ones and keeps those near them up to date; the
 //! others stay as they were until something asks for all of them ([`World::whole`]). Particles of no such body are moved by all ranks alike.
 
-use super::World;
 use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, X};
+use super::{Key, Named, World};
 use perigrain_base::comm::{self, Comm};
 use perigrain_peri::families::shares::ranges;
-use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -25,8 +24,8 @@ pub struct Share {
     alone: Vec<Vec<Range<usize>>>,
     /// Rows to hand out to, and to take from, each other rank: those near bodies' own ones, and those that lists name.
     links: [Vec<Link>; 2],
-    /// Rows that lists of ops name, by the op, with the generation of lists.
-    listed: BTreeMap<String, (u64, Vec<u32>)>,
+    /// Rows that lists of ops name, by where these keep contacts, with the generation of lists.
+    listed: Named<Listed>,
     /// Fields that are up to date in this rank's own rows alone.
     stale: Fields,
     /// Those of them that are up to date in the rows of these links as well.
@@ -38,6 +37,13 @@ pub struct Share {
     /// Messages, used again.
     bytes: Vec<u8>,
     traffic: Traffic,
+}
+
+/// Rows that the lists of an op name.
+#[derive(Clone, Debug, Default)]
+pub struct Listed {
+    generation: u64,
+    rows: Vec<u32>,
 }
 
 /// What ranks have exchanged.
@@ -121,7 +127,7 @@ impl World {
         let alone = (0..ranks).map(of).collect();
         let own = shares.own.clone();
         let (stale, near, bytes) = (Fields::NONE, [Fields::NONE; 2], vec![]);
-        let (links, listed) = ([vec![], vec![]], BTreeMap::new());
+        let (links, listed) = ([vec![], vec![]], Named::default());
         self.share = Some(Share {
             comm,
             own,
@@ -142,7 +148,7 @@ impl World {
     pub fn link(&mut self) {
         let (Some(share), Some(families)) = (&mut self.share, self.families.past()) else { return };
         let me = share.comm.rank();
-        let listed = share.listed.values().flat_map(|(_, rows)| rows.iter().copied());
+        let listed = share.listed.values().flat_map(|listed| listed.rows.iter().copied());
         share.links = [families.needed(), families.needed_by_lists(listed)].map(|needed| {
             let rows = |rows: &[u32]| ranges(rows.iter().map(|row| *row as usize));
             let others = (0..needed.len()).filter(|with| *with != me);
@@ -159,15 +165,16 @@ impl World {
     }
 
     /// Hands the rows that an op's lists name to all ranks from now on, where shares are dealt and that is not done for the present lists.
-    pub fn list_rows(&mut self, op: &str, rows: impl FnOnce() -> Vec<u32>) {
-        let now = self.rebuild.past().generation;
+    pub fn list_rows(&mut self, by: Key<Listed>, rows: impl FnOnce() -> Vec<u32>) {
+        let generation = self.rebuild.past().generation;
         let Some(share) = &mut self.share else { return };
-        if share.listed.get(op).is_some_and(|(generation, _)| *generation == now) {
+        let known = share.listed.get(by);
+        if known.is_some_and(|listed| listed.generation == generation) {
             return;
         }
         let rows = rows();
-        let known = share.listed.insert(op.to_string(), (now, rows));
-        let same = known.map_or(share.listed[op].1.is_empty(), |(_, before)| before == share.listed[op].1);
+        let same = known.map_or(rows.is_empty(), |known| known.rows == rows);
+        share.listed.insert(by, Listed { generation, rows });
         if !same {
             self.link();
         }

@@ -140,6 +140,17 @@ impl Force {
         Ok(())
     }
 
+    /// All particles that stand in some list, ascending.
+    fn rows(&self) -> Vec<u32> {
+        if let Some(fast) = self.fast.as_ref().filter(|_| self.is_fast) {
+            return fast.listed();
+        }
+        let mut rows: Vec<u32> = self.plain.list.iter().flat_map(|pair| [pair.i, pair.j]).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        rows
+    }
+
     /// The fast loop gives its contacts back to the world.
     fn hand_over(&mut self, w: &mut World) {
         if let Some(fast) = self.fast.as_mut().filter(|_| std::mem::take(&mut self.is_fast)) {
@@ -383,19 +394,11 @@ impl Op for Force {
         let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_deeds.is_some();
         let plain = !asked && !t.setup && self.press.is_none() && !conducts(&self.rules);
         let listed = self.generation == Some(w.rebuild.past().generation);
-        if plain && listed { Span::Listed } else { Span::All }
-    }
-
-    fn listed(&self) -> Vec<u32> {
-        match (&self.fast, self.is_fast) {
-            (Some(fast), true) => fast.listed(),
-            _ => {
-                let mut rows: Vec<u32> = self.plain.list.iter().flat_map(|pair| [pair.i, pair.j]).collect();
-                rows.sort_unstable();
-                rows.dedup();
-                rows
-            }
+        if !plain || !listed {
+            return Span::All;
         }
+        w.list_rows(self.key.of(), || self.rows());
+        Span::Listed
     }
 
     fn settle(&mut self, changed: Fields) {
