@@ -74,7 +74,7 @@ impl Families {
         for (k, &[i, j]) in ends.iter().enumerate() {
             self.damaged[i as usize] = true;
             self.damaged[j as usize] = true;
-            // Where the ends of bonds of others are now, these know alone.
+            // The ends of other ranks' bonds are up to date on those ranks alone, which have sent the square.
             let told = all.get(k).map(|broken| broken.square);
             self.add_broken(view, (i, j), told.unwrap_or_else(|| square(view, [i, j])));
         }

@@ -276,8 +276,8 @@ impl Families {
         self.finish(view, f, begun, tally);
     }
 
-    /// Whether an evaluation that advances or not, is tallied or not, is shared out to ranks: each looks after its own particles, for
-    /// which it needs to know the places of those that bonds and near pairs join to them.
+    /// Whether an evaluation that advances or not, is tallied or not, is shared out to ranks: each computes the forces on its own particles,
+    /// which takes the places of those that bonds and near pairs join to them.
     pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
         // The energies of dilatations are added up one site after the other.
         let rows = !tallied || self.law.kind.bond_based();

@@ -376,7 +376,8 @@ pub trait Op: Send {
     fn way(&mut self, _w: &mut World, _t: &Tick, _room: &mut Room) -> Way {
         Way::Alone
     }
-    /// Of which rows it needs values at this tick, where particles are shared out to ranks; but for what it tells, see [`About::tells`].
+    /// Of which rows it needs values at this tick, where particles are shared out to ranks; all rows where its sums may be read, see
+    /// [`About::tells`].
     fn span(&mut self, _w: &mut World, _t: &Tick) -> Span {
         Span::All
     }

@@ -1,4 +1,4 @@
-//! Ops on ranks: what an op asks for before it acts, where rows are shared out, and what is up to date afterwards.
+//! Ops on ranks: which rows are brought up to date before an op acts, where rows are shared out, and which are up to date afterwards.
 
 use super::{Needs, StepPlan, Tick};
 use perigrain_world::field::{FAMILIES, SITES, TAG};
@@ -14,7 +14,7 @@ pub enum Span {
     Near,
     /// Also reads those that its lists name ([`World::list_rows`]): all ranks evaluate them alike.
     Listed,
-    /// Asks for what it needs itself ([`World::whole`]), and changes all rows alike on all ranks.
+    /// Calls [`World::whole`] for what it needs, and changes all rows alike on all ranks.
     Asks,
     /// All ranks do the same to all rows.
     #[default]

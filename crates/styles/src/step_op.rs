@@ -92,7 +92,7 @@ where
         self
     }
 
-    /// Reads and changes each particle by itself: of several ranks each looks after those that [`World::moved_in`] names.
+    /// Reads and changes each particle by itself: each of several ranks does so for those that [`World::moved_in`] names.
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
         self.span = Span::Own;

@@ -1,7 +1,7 @@
 //! Rows of particles shared out to ranks during a run: which rank moves which, and where their values are up to date.
 //!
 //! Every rank has all rows, at the same places. Of a body that is shared out it moves its own ones and keeps those near them up to date; the
-//! others stay as they were until something asks for all of them ([`World::whole`]). Particles of no such body are moved by all ranks alike.
+//! others stay as they were until all of them are gathered ([`World::whole`]). Particles of no such body are moved by all ranks alike.
 
 use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, X};
 use super::{Key, Named, World};
@@ -194,7 +194,7 @@ impl World {
         }
     }
 
-    /// What tells whether particles are still those that were shared out.
+    /// Counters that change when particles come, go or change places.
     fn roster(&self) -> [u64; 2] {
         let rebuild = self.rebuild.past();
         [rebuild.roster, rebuild.places]
@@ -209,7 +209,7 @@ impl World {
         share.roster != self.roster() || !self.families.past().as_ref().is_some_and(known)
     }
 
-    /// Has all rows of these fields on all ranks. All ranks ask for the same at the same place.
+    /// Brings all rows of these fields up to date on all ranks, which all call this with the same fields at the same place.
     pub fn whole(&mut self, fields: Fields) {
         let Some(mut share) = self.share.take() else { return };
         let missing = share.stale.and_only(fields);

@@ -48,7 +48,7 @@ impl World {
             (field::REGIONS, self.regions.take_marks()),
             (field::BONDS, self.bonds.take_marks()),
             (field::FAMILIES, self.families.take_marks()),
-            // Within the families, whose mark is theirs.
+            // Part of the families, which have the mark.
             (field::SITES, (false, false)),
             (field::CONTACTS, self.contacts.take_marks()),
             (field::WALL_CONTACTS, self.wall_contacts.take_marks()),

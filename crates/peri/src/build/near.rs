@@ -171,7 +171,7 @@ impl Families {
         NearPair { ends: [i.min(j), i.max(j)], after: after as f32, within: within as f32 }
     }
 
-    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here. Of several ranks each knows
+    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here. Each of several ranks has
     /// those of its `own` rows, and all agree.
     pub(crate) fn ranges(
         &mut self,

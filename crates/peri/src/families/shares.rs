@@ -43,7 +43,7 @@ pub struct BodyShare {
     pub rows: Vec<RowLink>,
 }
 
-/// Row slots whose sites two ranks tell each other of.
+/// Row slots whose sums two ranks exchange.
 #[derive(Clone, Debug, Default)]
 pub struct RowLink {
     /// The other rank.

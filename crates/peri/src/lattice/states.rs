@@ -181,7 +181,7 @@ fn all_move(body: &LatticeBody, own: impl Fn(usize) -> bool) -> bool {
 }
 
 /// Finds for each row the coordinates beyond which no site has a dilatation, or under a law with memory has ever had; for no
-/// row where none is at rest. Of several ranks each knows its share of rows.
+/// row where none is at rest. Each of several ranks has the motion of its share of rows.
 pub fn find_active(body: &mut LatticeBody, remembers: bool, share: Option<&BodyShare>) {
     let mut active = std::mem::take(&mut body.state.active);
     active.clear();

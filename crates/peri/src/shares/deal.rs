@@ -167,7 +167,7 @@ fn reached(body: &LatticeBody, tiles: &Range<usize>) -> Vec<bool> {
     reached
 }
 
-/// Rows of which one rank tells each other one.
+/// Rows whose sums one rank exchanges with each other one.
 fn row_links(body: &LatticeBody, me: usize, tiles: &[Range<usize>]) -> Vec<RowLink> {
     let both = |a: &[bool], b: &[bool]| -> Vec<usize> {
         a.iter().zip(b).enumerate().filter(|(_, (a, b))| **a && **b).map(|(slot, _)| slot).collect()

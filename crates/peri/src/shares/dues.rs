@@ -55,7 +55,7 @@ fn swap(gives: &mut [Dues], takes: &mut [Dues], what: impl for<'a> Fn(&'a mut Du
 }
 
 /// Hands the windows of this rank's tiles over to the ranks whose tiles they reach, and puts those of others in their places. What is at rest
-/// owes nothing: ranks first tell each other which tiles owe something.
+/// owes nothing: a first message says which tiles owe something.
 pub(crate) fn hand_over(
     body: &LatticeBody,
     tiles: &Tiles,

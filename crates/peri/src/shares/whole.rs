@@ -1,4 +1,4 @@
-//! What ranks know of their tiles alone, handed to all.
+//! What is up to date on one rank alone (bounds, displacements, dilatations, motion of its tiles' rows), handed to all.
 
 use std::ops::Range;
 
@@ -58,19 +58,19 @@ impl Way<'_> {
 }
 
 impl Families {
-    /// How many bytes a rank has that others do not know.
+    /// How many bytes are up to date on one rank alone.
     pub fn piece_bytes(&mut self, rank: usize) -> usize {
         let mut way = Way::Count(0);
         self.piece(rank, &mut way);
         if let Way::Count(n) = way { n } else { 0 }
     }
 
-    /// Appends what a rank alone knows: this one.
+    /// Appends what is up to date on this rank alone.
     pub fn write_piece(&mut self, rank: usize, bytes: &mut Vec<u8>) {
         self.piece(rank, &mut Way::Out(bytes));
     }
 
-    /// Takes in what another rank alone knew.
+    /// Takes in what was up to date on another rank alone.
     pub fn read_piece(&mut self, rank: usize, bytes: &[u8]) {
         self.piece(rank, &mut Way::In(bytes));
     }
