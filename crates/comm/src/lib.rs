@@ -15,6 +15,7 @@ mod host;
 mod launcher;
 #[cfg(unix)]
 mod local;
+pub mod numbers;
 mod present;
 pub mod told;
 

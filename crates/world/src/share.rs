@@ -5,6 +5,7 @@
 
 use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, X};
 use super::{Key, Named, World};
+use perigrain_base::comm::numbers::{put, take};
 use perigrain_base::comm::{self, Comm};
 use perigrain_peri::families::shares::ranges;
 use std::fmt;
@@ -388,23 +389,14 @@ impl World {
 /// Appends some rows.
 fn write(numbers: &[f64], width: usize, rows: &[Range<usize>], bytes: &mut Vec<u8>) {
     for rows in rows {
-        let numbers = &numbers[width * rows.start..width * rows.end];
-        let at = bytes.len();
-        bytes.resize(at + NUMBER * numbers.len(), 0);
-        let to = bytes[at..].chunks_exact_mut(NUMBER);
-        to.zip(numbers).for_each(|(to, number)| to.copy_from_slice(&number.to_ne_bytes()));
+        put(bytes, &numbers[width * rows.start..width * rows.end]);
     }
 }
 
 /// Takes some rows in; what is left of the bytes.
 fn read<'a>(numbers: &mut [f64], width: usize, rows: &[Range<usize>], mut bytes: &'a [u8]) -> &'a [u8] {
     for rows in rows {
-        let numbers = &mut numbers[width * rows.start..width * rows.end];
-        let (own, rest) = bytes.split_at(NUMBER * numbers.len());
-        for (number, bytes) in numbers.iter_mut().zip(own.as_chunks::<NUMBER>().0) {
-            *number = f64::from_ne_bytes(*bytes);
-        }
-        bytes = rest;
+        take(&mut bytes, &mut numbers[width * rows.start..width * rows.end]);
     }
     bytes
 }

@@ -6,6 +6,7 @@ use crate::families::{Candidate, PeriView};
 use crate::lattice::sweep::{MAY_BREAK, SQUEEZED};
 use crate::shares::whole::slots_of;
 use perigrain_base::comm;
+use perigrain_base::comm::numbers::{next, put, take};
 
 /// What has moved in each body, on all ranks together.
 pub(crate) fn agreed_motion(bodies: &[LatticeBody], shares: &Shares) -> Vec<RowMotion> {
@@ -55,22 +56,16 @@ fn to_all(bytes: &[u8]) -> Vec<(usize, Vec<u8>)> {
     ranks.exchange(others.map(|rank| (rank, bytes.to_vec())).collect())
 }
 
-/// Numbers of a message.
-fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
-    bytes.as_chunks::<4>().0.iter().map(|word| u32::from_ne_bytes(*word))
-}
-
 /// Flags the chunks with squeezed bonds of other ranks too, where these reach this rank's particles, or `all` of them.
 pub(crate) fn squeezed_everywhere(bodies: &mut [LatticeBody], shares: &Shares, all: bool) {
     let mut own = vec![];
     for (k, body) in bodies.iter().enumerate() {
         let squeezed = body.flagged.iter().enumerate().filter(|(_, flag)| **flag & SQUEEZED != 0);
-        own.extend(squeezed.flat_map(|(chunk, _)| [k as u32, chunk as u32]).flat_map(u32::to_ne_bytes));
+        squeezed.for_each(|(chunk, _)| put(&mut own, &[k as u32, chunk as u32]));
     }
     for (_, bytes) in to_all(&own) {
-        let words: Vec<u32> = words(&bytes).collect();
-        for &[body, chunk] in words.as_chunks::<2>().0 {
-            let (k, chunk) = (body as usize, chunk as usize);
+        let mut bytes = &bytes[..];
+        while let Some([k, chunk]) = next(&mut bytes).map(|words| words.map(|word: u32| word as usize)) {
             if all || shares.bodies[k].follows[bodies[k].slot_of(chunk * LANES)] {
                 bodies[k].flagged[chunk] |= SQUEEZED;
             }
@@ -86,15 +81,12 @@ pub(crate) fn rows_everywhere<const N: usize>(
 ) {
     let slots: Vec<Vec<usize>> = share.tiles.iter().map(|tiles| slots_of(body, tiles)).collect();
     let counts: Vec<usize> = slots.iter().map(|slots| slots.len() * N * size_of::<f64>()).collect();
-    let mut bytes = vec![0; counts.iter().sum()];
-    let first: usize = counts[..me].iter().sum();
-    let own = slots[me].iter().flat_map(|slot| rows[*slot]).flat_map(f64::to_ne_bytes);
-    bytes[first..first + counts[me]].iter_mut().zip(own).for_each(|(to, byte)| *to = byte);
+    let mut bytes = vec![0; counts[..me].iter().sum()];
+    slots[me].iter().for_each(|slot| put(&mut bytes, &rows[*slot]));
+    bytes.resize(counts.iter().sum(), 0);
     comm::present().gather_all(&mut bytes, &counts);
-    let mut numbers = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_ne_bytes(*bytes));
-    for slot in slots.into_iter().flatten() {
-        rows[slot] = std::array::from_fn(|_| numbers.next().unwrap_or_default());
-    }
+    let mut bytes = &bytes[..];
+    slots.into_iter().flatten().for_each(|slot| take(&mut bytes, &mut rows[slot]));
 }
 
 /// A bond that breaks, with the body that has it and the square of its length.
@@ -108,18 +100,15 @@ pub(crate) struct Broken {
 pub(crate) fn broken_everywhere(mut own: Vec<Broken>) -> Vec<Broken> {
     let mut bytes = vec![];
     for Broken { body, bond, square } in &own {
-        let words = [*body as u32, bond.ends[0], bond.ends[1], bond.bond];
-        bytes.extend(words.into_iter().flat_map(u32::to_ne_bytes).chain(square.to_ne_bytes()));
+        put(&mut bytes, &[*body as u32, bond.ends[0], bond.ends[1], bond.bond]);
+        put(&mut bytes, &[*square]);
     }
     for (_, bytes) in to_all(&bytes) {
-        for bytes in bytes.as_chunks::<24>().0 {
-            let mut words = words(bytes);
-            let mut next = || words.next().unwrap_or_default();
-            let (body, ends, bond) = (next() as usize, [next(), next()], next());
-            let (stretch, s00, alpha) = (0.0, 0.0, 0.0);
-            let bond = Candidate { ends, bond, stretch, s00, alpha };
-            let [.., a, b, c, d, e, f, g, h] = *bytes;
-            own.push(Broken { body, bond, square: f64::from_ne_bytes([a, b, c, d, e, f, g, h]) });
+        let mut bytes = &bytes[..];
+        while let (Some([body, i, j, bond]), Some([square])) = (next(&mut bytes), next(&mut bytes)) {
+            let bond = Candidate { ends: [i, j], bond, stretch: 0.0, s00: 0.0, alpha: 0.0 };
+            let body: u32 = body;
+            own.push(Broken { body: body as usize, bond, square });
         }
     }
     // A chunk is one rank's, so that its own order stays.

@@ -6,6 +6,7 @@ use crate::families::lattice::{LatticeBody, PAD, staggered};
 use crate::families::shares::{Dues, RowLink};
 use crate::families::tiles::{Reached, TileWindow, Tiles};
 use perigrain_base::comm;
+use perigrain_base::comm::numbers::{put, take};
 
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f64>();
@@ -69,21 +70,18 @@ pub(crate) fn hand_over(
     }
     takes.iter_mut().for_each(|dues| dues.owes.resize(dues.pairs.len(), 0));
     swap(gives, takes, |dues| &mut dues.owes);
-    for dues in gives.iter_mut().chain(&mut *takes) {
+    for dues in &mut *takes {
         let length = length(body, tiles, dues, components);
         dues.bytes.resize(length, 0);
     }
     for Dues { pairs, owes, bytes, .. } in &mut *gives {
-        let mut bytes = &mut bytes[..];
+        bytes.clear();
         for (&pair, _) in pairs.iter().zip(owes).filter(|(_, owes)| **owes != 0) {
             let window = &windows[pair[0]];
             for (cells, from) in parts(body, tiles, pair) {
                 for k in 0..components {
-                    let (own, rest) = bytes.split_at_mut(NUMBER * cells.len());
                     let from = window.base + k * window.stride + from;
-                    let to = own.as_chunks_mut::<NUMBER>().0.iter_mut();
-                    to.zip(&window.sums[from..]).for_each(|(to, number)| *to = number.to_ne_bytes());
-                    bytes = rest;
+                    put(bytes, &window.sums[from..from + cells.len()]);
                 }
             }
         }
@@ -100,12 +98,8 @@ pub(crate) fn hand_over(
             open(window, tiles.reached(pair[0]), components);
             for (cells, from) in parts(body, tiles, pair) {
                 for k in 0..components {
-                    let (own, rest) = bytes.split_at(NUMBER * cells.len());
                     let from = window.base + k * window.stride + from;
-                    let numbers = window.sums[from..].iter_mut();
-                    let own = own.as_chunks::<NUMBER>().0.iter();
-                    numbers.zip(own).for_each(|(number, bytes)| *number = f64::from_ne_bytes(*bytes));
-                    bytes = rest;
+                    take(&mut bytes, &mut window.sums[from..from + cells.len()]);
                 }
             }
         }
@@ -131,7 +125,7 @@ pub(crate) fn share_sums(body: &LatticeBody, links: &mut [RowLink], sums: &mut [
         own.clear();
         for slot in &*out {
             let cells = body.rows[*slot].cells();
-            own.extend(sums[PAD + cells.start..PAD + cells.end].iter().flat_map(|sum| sum.to_ne_bytes()));
+            put(own, &sums[PAD + cells.start..PAD + cells.end]);
         }
         others.resize(NUMBER * cells(into), 0);
     }
@@ -147,9 +141,9 @@ pub(crate) fn share_sums(body: &LatticeBody, links: &mut [RowLink], sums: &mut [
     }
     comm::present().swap(&out, &mut into);
     for RowLink { into, bytes, .. } in links {
-        let mut numbers = bytes[1].as_chunks::<NUMBER>().0.iter();
-        for cell in into.iter().flat_map(|slot| body.rows[*slot].cells()) {
-            sums[PAD + cell] = numbers.next().map_or(0.0, |bytes| f64::from_ne_bytes(*bytes));
+        let mut bytes = &bytes[1][..];
+        for cells in into.iter().map(|slot| body.rows[*slot].cells()) {
+            take(&mut bytes, &mut sums[PAD + cells.start..PAD + cells.end]);
         }
     }
 }

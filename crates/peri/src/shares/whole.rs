@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::families::Families;
 use crate::families::lattice::{LatticeBody, PAD, RowMotion};
+use perigrain_base::comm::numbers::{Number, put, take};
 
 /// Numbers on their way into a message or out of one.
 enum Way<'a> {
@@ -12,47 +13,12 @@ enum Way<'a> {
     In(&'a [u8]),
 }
 
-/// A number with bytes.
-trait Number: Copy + Default {
-    /// How many.
-    const BYTES: usize = size_of::<Self>();
-    /// Writes numbers to so many places.
-    fn write(numbers: &[Self], to: &mut [u8]);
-    /// Reads numbers from so many places.
-    fn read(numbers: &mut [Self], from: &[u8]);
-}
-
-macro_rules! numbers {
-    ($($name:ty)*) => {$(
-        impl Number for $name {
-            fn write(numbers: &[Self], to: &mut [u8]) {
-                let to = to.as_chunks_mut::<{ size_of::<$name>() }>().0;
-                to.iter_mut().zip(numbers).for_each(|(to, number)| *to = number.to_ne_bytes());
-            }
-            fn read(numbers: &mut [Self], from: &[u8]) {
-                let from = from.as_chunks::<{ size_of::<$name>() }>().0;
-                numbers.iter_mut().zip(from).for_each(|(number, from)| *number = Self::from_ne_bytes(*from));
-            }
-        }
-    )*};
-}
-
-numbers! { f64 f32 i32 u8 }
-
 impl Way<'_> {
     fn numbers<T: Number>(&mut self, numbers: &mut [T]) {
         match self {
             Way::Count(n) => *n += T::BYTES * numbers.len(),
-            Way::Out(bytes) => {
-                let at = bytes.len();
-                bytes.resize(at + T::BYTES * numbers.len(), 0);
-                T::write(numbers, &mut bytes[at..]);
-            }
-            Way::In(bytes) => {
-                let (own, rest) = bytes.split_at(T::BYTES * numbers.len());
-                T::read(numbers, own);
-                *bytes = rest;
-            }
+            Way::Out(bytes) => put(bytes, numbers),
+            Way::In(bytes) => take(bytes, numbers),
         }
     }
 }
