@@ -134,6 +134,19 @@ fn particles_come_and_go_while_bodies_are_shared_out() {
     }
 }
 
+#[test]
+fn forces_are_all_known_where_energies_of_particles_are() {
+    let scene = &SCENES[0];
+    let deck = format!(
+        "{}{}compute e all pe/atom\ncompute s all stress/atom NULL\ndump all all custom 5 dump.*.txt id fx fy fz c_e c_s[1]\n\
+         dump_modify all format float %.17g\nthermo 3\nrun 20\n",
+        made(scene),
+        scene.again
+    );
+    let alone = left_by(&deck, &["-threads", "1"]);
+    same(&alone, &left_by(&deck, &["-ranks", "2", "-threads", "1"]), "energies of particles");
+}
+
 /// What acts in every step of a measured plan on ranks: op, of which rows, how often all rows of something were handed to all in quiet
 /// steps.
 fn exchanged(said: &str) -> Vec<(String, String, u64)> {

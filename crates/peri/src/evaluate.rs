@@ -272,7 +272,7 @@ impl Families {
         advance: bool,
         tally: Option<&mut PeriTally>,
     ) {
-        let begun = self.begin(view, advance, tally.is_some());
+        let begun = self.begin(view, advance, false);
         self.finish(view, f, begun, tally);
     }
 
@@ -284,17 +284,18 @@ impl Families {
         self.shares.is_some() && advance && rows && !self.counts_losses
     }
 
-    /// The first half of [`Families::force`]: what has moved, and by how much.
-    pub fn begin(&mut self, view: &PeriView, advance: bool, tallied: bool) -> Begun {
+    /// The first half of [`Families::force`]: what has moved, and by how much. `shared` says that work is shared out to ranks, where it can be
+    /// ([`Families::is_shared`]) and nothing is added up by particle; elsewhere everything has to be up to date.
+    pub fn begin(&mut self, view: &PeriView, advance: bool, shared: bool) -> Begun {
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && !self.four_lanes && has_avx512() {
-            return self.begin_with::<Avx512>(view, advance, tallied);
+            return self.begin_with::<Avx512>(view, advance, shared);
         }
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && has_avx2() {
-            return self.begin_with::<Avx2>(view, advance, tallied);
+            return self.begin_with::<Avx2>(view, advance, shared);
         }
-        self.begin_with::<Portable>(view, advance, tallied)
+        self.begin_with::<Portable>(view, advance, shared)
     }
 
     /// The second half. Where it [`Begun::searches`] for pairs the places of all particles have to be known.
@@ -316,9 +317,8 @@ impl Families {
         self.finish_with::<Portable>(view, f, begun, tally);
     }
 
-    fn begin_with<K: Isa>(&mut self, view: &PeriView, advance: bool, tallied: bool) -> Begun {
+    fn begin_with<K: Isa>(&mut self, view: &PeriView, advance: bool, shared: bool) -> Begun {
         self.welcome(view);
-        let shared = self.is_shared(advance, tallied);
         let shares = self.shares.take_if(|_| shared);
         self.late = 0.0;
         if self.before != Edges::from(periods(&view.bounds)) {

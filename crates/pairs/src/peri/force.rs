@@ -103,7 +103,7 @@ impl Op for Force {
             // On ranks: pairs are few, and each rank adds up all of them.
             w.whole(X);
         }
-        let begun = families.begin(&view(w)?, advance, tally.is_some());
+        let begun = families.begin(&view(w)?, advance, w.is_narrow());
         let searches = begun.searches;
         if searches {
             // On ranks: those that come near may be anywhere.
