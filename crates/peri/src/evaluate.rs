@@ -365,9 +365,7 @@ impl Families {
         if let Some(shares) = shares.as_ref().filter(|_| squeezed) {
             squeezed_everywhere(&mut self.lattices, shares, tallied.is_some());
         }
-        // Of all pairs where their energies are added up.
-        let own = shares.as_ref().filter(|_| tallied.is_none());
-        self.contact::<K>(view, f, (changes, advance, own), tallied.as_deref_mut());
+        self.contact::<K>(view, f, (changes, advance, shares.as_ref()), tallied.as_deref_mut());
         if let Some(t) = tallied {
             tally::<K>(self, view, t, (advance, cell, shares.as_ref()));
         }
@@ -407,13 +405,12 @@ impl Families {
         (changes, advance, shares): (Option<(f64, f64)>, bool, Option<&Shares>),
         tally: Option<&mut PeriTally>,
     ) {
-        let closer = changes.map(|(within, all)| self.update_near(view, within, all, advance));
-        let own = shares.map(|shares| &shares.own[..]);
+        let closer = changes.map(|changes| self.update_near(view, changes.0, changes.1, advance));
         let (mut memory, mut rows) =
             (std::mem::take(&mut self.scratch.contact), std::mem::take(&mut self.scratch.rows));
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
         if let Some(closer) = closer {
-            repel::<K>(self, (closer, own), &mut repulsion, (&mut memory, &mut rows));
+            repel::<K>(self, (closer, shares), &mut repulsion, (&mut memory, &mut rows));
         }
         push_apart(self, &mut repulsion);
         (self.scratch.contact, self.scratch.rows) = (memory, rows);

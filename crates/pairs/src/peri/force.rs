@@ -100,7 +100,7 @@ impl Op for Force {
         };
         let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
         if tally.is_some() {
-            // On ranks: pairs are few, and each rank adds up all of them.
+            // On ranks: squeezed bonds are few, and each rank adds up all of them.
             w.whole(X);
         }
         let begun = families.begin(&view(w)?, advance, w.is_narrow());

@@ -5,10 +5,10 @@ mod meet;
 pub mod near;
 pub mod pressed;
 
-use std::ops::Range;
 use std::sync::Mutex;
 
 use crate::energy::Sums;
+use crate::families::shares::Shares;
 use crate::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
 use crate::lanes::isa::Isa;
 use hits::{Hits, Rules};
@@ -116,10 +116,11 @@ pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pu
     }
 }
 
-/// All repulsion of one step: near pairs that may be `closer` by now than their gap was, then squeezed bonds. `rows` is scratch.
+/// All repulsion of one step: near pairs that may be `closer` by now than their gap was, then squeezed bonds; of several ranks each evaluates
+/// pairs of its own particles where `shares` are given. `rows` is scratch.
 pub fn repel<K: Isa>(
     families: &Families,
-    (closer, own): ([f64; 2], Option<&[Range<usize>]>),
+    (closer, shares): ([f64; 2], Option<&Shares>),
     repulsion: &mut Repulsion,
     (memory, rows): (&mut Memory, &mut Vec<Sums>),
 ) {
@@ -130,9 +131,9 @@ pub fn repel<K: Isa>(
     for (part, near) in near.iter_mut().enumerate() {
         let closer = closer[part];
         let scene = (repulsion.view, &families.options);
-        near.follow(&found.pairs[part], (closer, found.allowed[part]), scene);
+        near.follow(&found.pairs[part], (closer, found.allowed[part]), scene, shares);
         let to = (&mut *repulsion.f, repulsion.tally.as_deref_mut());
-        near.push::<K>(&rules, (closer, own), to, (hits, rows));
+        near.push::<K>(&rules, (closer, shares), to, (hits, rows));
     }
     pressed::squeezed::<K>(families, &rules, (close, pressed), repulsion);
 }

@@ -11,8 +11,10 @@ use crate::contact::hits::{Hits, Push, Rules};
 use crate::contact::meet::Meet;
 use crate::energy::Sums;
 use crate::families::list::GROUP;
+use crate::families::shares::Shares;
 use crate::families::{Bounds, FamilyOptions, NearPair, PeriTally, PeriView};
 use crate::lanes::isa::Isa;
+use crate::shares::sums_everywhere;
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 
@@ -52,6 +54,8 @@ pub struct Near {
     /// How many pairs are taken in, of which those stand in rows that may touch while particles are no more than so much closer.
     taken: usize,
     until: f64,
+    /// Whether only pairs of this rank's particles stand in rows, each in the rows of those; other members have empty rows.
+    narrow: bool,
     /// The member that a particle is; `u32::MAX` without pairs.
     member: Vec<u32>,
     /// Members, in ascending order.
@@ -72,7 +76,7 @@ pub struct Near {
 impl Near {
     /// Forgets all pairs.
     pub fn clear(&mut self) {
-        self.taken = 0;
+        (self.taken, self.narrow) = (0, false);
         self.particle.clear();
         self.row.clear();
         self.after.clear();
@@ -89,30 +93,40 @@ impl Near {
     }
 
     /// Takes in pairs that have come since, and those that may touch by now, where particles may be `closer` than at the search, which is made
-    /// anew where they may be `allowed`.
+    /// anew where they may be `allowed`. Of several ranks that share the work out each needs the rows of its own particles.
     pub fn follow(
         &mut self,
         pairs: &[NearPair],
         (closer, allowed): (f64, f64),
         (view, options): (&PeriView, &FamilyOptions),
+        shares: Option<&Shares>,
     ) {
         if pairs.is_empty() {
             return self.clear();
         }
-        if pairs.len() == self.taken && closer <= self.until {
+        // Rows of all particles serve one rank as well, until they are built anew.
+        let lacks = self.narrow && shares.is_none();
+        if pairs.len() == self.taken && closer <= self.until && !lacks {
             return;
         }
         let few = pairs.len() > self.taken && pairs.len() - self.taken < self.taken / 4;
-        if closer > self.until || !few || !self.add(&pairs[self.taken..], view, options) {
+        if lacks || closer > self.until || !few || !self.add(&pairs[self.taken..], (view, options), shares) {
             let room = ROOM * options.lattice_spacing;
             self.until = if allowed - closer < 2.0 * room { f64::INFINITY } else { closer + room };
-            self.build(pairs, view, options);
+            self.build(pairs, (view, options), shares);
         }
         self.taken = pairs.len();
     }
 
-    fn build(&mut self, pairs: &[NearPair], view: &PeriView, options: &FamilyOptions) {
+    fn build(
+        &mut self,
+        pairs: &[NearPair],
+        (view, options): (&PeriView, &FamilyOptions),
+        shares: Option<&Shares>,
+    ) {
         self.clear();
+        self.narrow = shares.is_some();
+        let own = |p: u32| shares.is_none_or(|shares| shares.moves(p as usize));
         let until = self.until;
         let soon = || pairs.iter().filter(|pair| f64::from(pair.after) <= until);
         self.member.clear();
@@ -121,7 +135,7 @@ impl Near {
         for p in pairs.iter().flat_map(|pair| pair.ends) {
             self.member[p as usize] = MEMBER;
         }
-        for p in soon().flat_map(|pair| pair.ends) {
+        for p in soon().flat_map(|pair| pair.ends).filter(|p| own(*p)) {
             self.member[p as usize] += 1;
         }
         let mut first = 0;
@@ -143,8 +157,10 @@ impl Near {
             let [a, b] = pair.ends.map(|p| self.member[p as usize]);
             for (own, other) in [(a, b), (b, a)] {
                 let row = &mut self.row[own as usize];
-                self.partner[(row.first + row.count) as usize] = other;
-                row.count += 1;
+                if row.room > 0 {
+                    self.partner[(row.first + row.count) as usize] = other;
+                    row.count += 1;
+                }
                 self.hasten(own, pair.after);
             }
         }
@@ -178,7 +194,13 @@ impl Near {
     }
 
     /// Takes in a few more pairs of members; false if that is not worth it.
-    fn add(&mut self, pairs: &[NearPair], view: &PeriView, options: &FamilyOptions) -> bool {
+    fn add(
+        &mut self,
+        pairs: &[NearPair],
+        (view, options): (&PeriView, &FamilyOptions),
+        shares: Option<&Shares>,
+    ) -> bool {
+        let shares = shares.filter(|_| self.narrow);
         let until = self.until;
         let soon = || pairs.iter().filter(|pair| f64::from(pair.after) <= until);
         let known = |p: u32| self.member.get(p as usize).is_some_and(|member| *member != u32::MAX);
@@ -190,8 +212,10 @@ impl Near {
         for pair in soon() {
             let contact = options.contact_range(view, pair.ends[0], pair.ends[1]);
             let [a, b] = pair.ends.map(|p| self.member[p as usize]);
-            for (own, other) in [(a, b), (b, a)] {
-                self.insert(own, other, contact);
+            for (own, other, p) in [(a, b, pair.ends[0]), (b, a, pair.ends[1])] {
+                if shares.is_none_or(|shares| shares.moves(p as usize)) {
+                    self.insert(own, other, contact);
+                }
                 self.hasten(own, pair.after);
             }
         }
@@ -236,16 +260,17 @@ impl Near {
         });
     }
 
-    /// Adds the pushes of all pairs that touch to `f`, where particles may be `closer` by now than at the search; of several ranks each looks
-    /// after its `own` particles. `rows` is scratch.
+    /// Adds the pushes of all pairs that touch to `f`, where particles may be `closer` by now than at the search; of several ranks that share
+    /// the work out each looks after its own particles. `rows` is scratch.
     pub fn push<K: Isa>(
         &mut self,
         rules: &Rules,
-        (closer, own): (f64, Option<&[Range<usize>]>),
+        (closer, shares): (f64, Option<&Shares>),
         (f, tally): (&mut [[f64; 3]], Option<&mut PeriTally>),
         (hits, rows): (&[Mutex<Hits>], &mut Vec<Sums>),
     ) {
         let most = f.len().min(rules.view.x.len());
+        // All ranks come to the same end: rows of each have at least all pairs that may touch by now.
         if self.particle.last().is_none_or(|p| *p as usize >= most) || f64::from(self.least) > closer {
             return;
         }
@@ -256,8 +281,9 @@ impl Near {
         let members = self.particle.len();
         // Those of other ranks find their forces there.
         let place = |particle: usize| self.particle.partition_point(|p| (*p as usize) < particle);
-        let some = own.into_iter().flatten().map(|own| place(own.start)..place(own.end));
-        let all = own.is_none().then_some(0..members);
+        let own = shares.map(|shares| &shares.own[..]).into_iter().flatten();
+        let some = own.map(|own| place(own.start)..place(own.end));
+        let all = shares.is_none().then_some(0..members);
         some.chain(all).for_each(|some| {
             in_parts(some, |members| {
                 let mut hits = hits[par::slot() % hits.len()].lock().unwrap_or_else(PoisonError::into_inner);
@@ -282,6 +308,9 @@ impl Near {
             })
         });
         if let Some(t) = tally {
+            if let Some(shares) = shares {
+                sums_everywhere(&self.particle, rows, shares);
+            }
             self.tally(rows, t);
         }
     }

@@ -50,7 +50,7 @@ pub(crate) fn agreed(own: bool) -> bool {
 }
 
 /// Hands bytes to all other ranks; what these have handed out.
-fn to_all(bytes: &[u8]) -> Vec<(usize, Vec<u8>)> {
+pub(super) fn to_all(bytes: &[u8]) -> Vec<(usize, Vec<u8>)> {
     let ranks = comm::present();
     let others = (0..ranks.size()).filter(|rank| *rank != ranks.rank());
     ranks.exchange(others.map(|rank| (rank, bytes.to_vec())).collect())

@@ -3,9 +3,11 @@
 mod agreed;
 pub(crate) mod deal;
 pub(crate) mod dues;
+mod near;
 mod whole;
 
 pub(crate) use agreed::{
     Broken, agreed, agreed_motion, broken_everywhere, flagged_anywhere, forget_flags, rows_everywhere,
     square, squeezed_everywhere,
 };
+pub(crate) use near::sums_everywhere;

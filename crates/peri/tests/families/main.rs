@@ -13,6 +13,8 @@ mod layouts;
 mod limits;
 mod near;
 mod patch;
+#[cfg(unix)]
+mod ranks;
 mod released;
 mod scene;
 mod slackest;
