@@ -405,7 +405,7 @@ impl Families {
         (changes, advance, shares): (Option<(f64, f64)>, bool, Option<&Shares>),
         tally: Option<&mut PeriTally>,
     ) {
-        let closer = changes.map(|changes| self.update_near(view, changes.0, changes.1, advance));
+        let closer = changes.map(|changes| self.update_near(view, changes, (advance, shares)));
         let (mut memory, mut rows) =
             (std::mem::take(&mut self.scratch.contact), std::mem::take(&mut self.scratch.rows));
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };

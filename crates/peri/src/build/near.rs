@@ -10,7 +10,7 @@ use crate::build::joined::Joined;
 use crate::families::lattice::RowMotion;
 use crate::families::shares::Shares;
 use crate::families::{Families, NearPair, PeriView};
-use crate::shares::agreed_motion;
+use crate::shares::{agreed_motion, pairs_everywhere};
 
 /// Contact between unbonded particles never reaches farther than this many lattice spacings.
 const CONTACT: f64 = 1.35;
@@ -48,15 +48,20 @@ impl Families {
 
     /// Brings the pairs up to date with positions. `within` and `all` are the ranges of displacement changes
     /// since the last step that advanced: the largest in one body, and that of all particles together. Returns
-    /// how much closer particles may be now than when pairs were searched.
-    pub fn update_near(&mut self, view: &PeriView, within: f64, all: f64, advance: bool) -> [f64; 2] {
+    /// how much closer particles may be now than when pairs were searched. Several ranks may share the search out.
+    pub(crate) fn update_near(
+        &mut self,
+        view: &PeriView,
+        changes: (f64, f64),
+        (advance, shares): (bool, Option<&Shares>),
+    ) -> [f64; 2] {
         let mut closer = [0.0; 2];
-        for (part, change) in [within, all].into_iter().enumerate() {
+        for (part, change) in [changes.0, changes.1].into_iter().enumerate() {
             let spent = self.near.spent[part] + change;
             if spent >= self.near.allowed[part] {
                 // Where nothing is kept there may be a way back, which has not been added up.
                 if !(part == 0 && advance && self.lasts(view, spent)) {
-                    self.search(view, part);
+                    self.search(view, part, shares);
                     continue;
                 }
             }
@@ -79,7 +84,7 @@ impl Families {
         true
     }
 
-    fn search(&mut self, view: &PeriView, part: usize) {
+    fn search(&mut self, view: &PeriView, part: usize, shares: Option<&Shares>) {
         let lc = self.options.lattice_spacing;
         let range = (CONTACT + SKIN) * lc;
         let mut cells = std::mem::take(&mut self.scratch.cells);
@@ -95,7 +100,8 @@ impl Families {
             self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
         }
         let (joined, unbonded) = (Joined::of(self), (part == 0).then_some(false));
-        self.near.pairs[part] = cells.gather(&view.bounds, range, |i, j, square| {
+        let rows = shares.map_or(0..cells.rows(), |shares| cells.part(shares.me, shares.ranks));
+        let found = cells.gather(&view.bounds, (range, rows), |i, j, square| {
             if square >= range * range
                 || self.table.get(view.kind[i as usize], view.kind[j as usize]).is_none()
             {
@@ -106,6 +112,10 @@ impl Families {
             let soon = f64::from(pair.after) <= self.near.allowed[part];
             (soon && joined.bond(i, j) == unbonded).then_some(pair)
         });
+        self.near.pairs[part] = match shares {
+            Some(shares) => pairs_everywhere(found, shares.me),
+            None => found,
+        };
         self.scratch.contact.near[part].clear();
         self.scratch.cells = cells;
         if part == 0 {

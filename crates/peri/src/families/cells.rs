@@ -96,19 +96,19 @@ impl Cells {
     }
 
     /// What `keep` makes of the pairs of points no farther apart than `range`, which is no longer than the reach; each pair once, by
-    /// rows of cells that threads share.
+    /// rows of cells that threads share. Of pairs of points in different rows the earlier row has them.
     pub fn gather<T: Send>(
         &self,
         bounds: &Bounds,
-        range: f64,
+        (range, rows): (f64, Range<usize>),
         keep: impl Fn(u32, u32, f64) -> Option<T> + Sync,
     ) -> Vec<T> {
-        let mut found: Vec<Vec<T>> = std::iter::repeat_with(Vec::new).take(self.rows()).collect();
-        let rows = Shared::new(&mut found);
-        par::for_rows_if(self.member.len() > par::CHUNK, self.rows(), |row| {
+        let mut found: Vec<Vec<T>> = std::iter::repeat_with(Vec::new).take(rows.len()).collect();
+        let of_row = Shared::new(&mut found);
+        par::for_rows_if(self.member.len() > par::CHUNK, rows.len(), |k| {
             // SAFETY: each row is worked on once.
-            let found = unsafe { &mut rows.get(row..row + 1)[0] };
-            self.touching(row, |own, run| {
+            let found = unsafe { &mut of_row.get(k..k + 1)[0] };
+            self.touching(rows.start + k, |own, run| {
                 self.pairs(bounds, range, (own, run), |i, j, square, _| found.extend(keep(i, j, square)));
             });
         });
@@ -118,6 +118,17 @@ impl Cells {
     /// How many rows of cells there are.
     pub fn rows(&self) -> usize {
         self.count[1] * self.count[2]
+    }
+
+    /// The rows of cells of one of so many parts, which follow each other and have about as many members each.
+    pub fn part(&self, part: usize, parts: usize) -> Range<usize> {
+        let before: Vec<usize> =
+            (0..self.rows()).map(|row| self.start[row * self.count[0]] as usize).collect();
+        let first = |part: usize| match part < parts {
+            true => before.partition_point(|before| before * parts < part * self.member.len()),
+            false => before.len(),
+        };
+        first(part)..first(part + 1)
     }
 
     /// How many cells there are along each axis; they are numbered along the first one first.
@@ -248,7 +259,13 @@ mod tests {
             let mut found = Vec::new();
             cells.within(&bounds, 0.9, |i, j, square, wraps| found.push((i.min(j), i.max(j), square, wraps)));
             found.sort_unstable_by_key(|(i, j, ..)| (*i, *j));
-            let mut gathered = cells.gather(&bounds, 0.9, |i, j, square| Some((i.min(j), i.max(j), square)));
+            let gather =
+                |rows| cells.gather(&bounds, (0.9, rows), |i, j, square| Some((i.min(j), i.max(j), square)));
+            let mut gathered = gather(0..cells.rows());
+            for parts in [1, 2, 3, 7, 50] {
+                let of_parts: Vec<_> = (0..parts).flat_map(|part| gather(cells.part(part, parts))).collect();
+                assert_eq!(of_parts, gathered, "{parts} parts");
+            }
             gathered.sort_unstable_by_key(|(i, j, _)| (*i, *j));
             assert_eq!(gathered, found.iter().map(|&(i, j, square, _)| (i, j, square)).collect::<Vec<_>>());
             let mut expected = vec![];

@@ -10,4 +10,4 @@ pub(crate) use agreed::{
     Broken, agreed, agreed_motion, broken_everywhere, flagged_anywhere, forget_flags, rows_everywhere,
     square, squeezed_everywhere,
 };
-pub(crate) use near::sums_everywhere;
+pub(crate) use near::{pairs_everywhere, sums_everywhere};
