@@ -1,8 +1,12 @@
 //! Pairs in short-range contact, in columns, and how hard they push each other: several at a time.
 
+use std::ops::Range;
+
+use crate::energy::Sums;
 use crate::families::{FamilyOptions, ForceUnit, PeriView, PmbTable};
 use crate::lanes::isa::{Isa, Kernel};
 use crate::lanes::rows::MOST;
+use perigrain_base::math::vec3::SIX;
 
 /// Pairs that touch, or a few more: columns of which the first `count` numbers are in use.
 #[derive(Debug, Default)]
@@ -61,6 +65,17 @@ impl Hits {
     pub fn energy(&self, at: usize) -> f64 {
         let gap = self.contact[at] - self.square[at].sqrt();
         0.25 * self.stiff[at] * gap * gap
+    }
+
+    /// The energy of a particle of this volume under some pushes, and its half of their virial, which has the volumes of both ends.
+    pub fn sums(&self, own: f64, all: Range<usize>) -> Sums {
+        let mut sums = [0.0; 7];
+        for at in all {
+            sums[0] += self.energy(at) * self.volume[0][at];
+            let (d, half) = (self.vector(at), 0.5 * self.pull[at] * own * self.volume[1][at]);
+            SIX.iter().zip(&mut sums[1..]).for_each(|(&(a, b), v)| *v += half * d[a] * d[b]);
+        }
+        sums
     }
 }
 

@@ -114,8 +114,9 @@ unsafe fn note(
     [own, other]: [usize; 2],
     [x, y, z, square, contact, far]: [f64; 6],
 ) {
-    let Some(stiff) = rules.stiff(near.particle[own], near.particle[other]) else { return };
-    let (at, volume) = (hits.count, rules.volume(near.place[own][3], far, own < other));
+    let [p, q] = [near.particle[own], near.particle[other]];
+    let Some(stiff) = rules.stiff(p, q) else { return };
+    let (at, volume) = (hits.count, rules.volume(near.place[own][3], far, p < q));
     // SAFETY: by the caller's promise.
     unsafe {
         *hits.d[0].get_unchecked_mut(at) = x;

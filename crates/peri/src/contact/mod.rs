@@ -51,6 +51,11 @@ impl Memory {
         self.close.clear();
     }
 
+    /// Forgets rows of one rank's particles: others are its own now.
+    pub fn forget_own(&mut self) {
+        self.near.iter_mut().filter(|near| near.narrow).for_each(Near::clear);
+    }
+
     /// Memory held by rows.
     pub fn bytes(&self) -> usize {
         self.near.iter().map(Near::bytes).sum()

@@ -11,11 +11,10 @@ use crate::contact::hits::{Hits, Push, Rules};
 use crate::contact::meet::Meet;
 use crate::energy::Sums;
 use crate::families::list::GROUP;
-use crate::families::shares::Shares;
+use crate::families::shares::{Shares, ranges};
 use crate::families::{Bounds, FamilyOptions, NearPair, PeriTally, PeriView};
 use crate::lanes::isa::Isa;
 use crate::shares::sums_everywhere;
-use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 
 /// Particles in hand at once.
@@ -48,25 +47,29 @@ impl Row {
     }
 }
 
-/// The pairs of [`crate::families::NearPairs`] as rows. Members are particles with pairs, in the order of their numbers.
+/// The pairs of [`crate::families::NearPairs`] as rows. Members are particles with pairs: first those of the search in the order of their
+/// numbers, then those that have come since.
 #[derive(Debug, Default)]
 pub struct Near {
     /// How many pairs are taken in, of which those stand in rows that may touch while particles are no more than so much closer.
     taken: usize,
     until: f64,
     /// Whether only pairs of this rank's particles stand in rows, each in the rows of those; other members have empty rows.
-    narrow: bool,
+    pub narrow: bool,
     /// The member that a particle is; `u32::MAX` without pairs.
     member: Vec<u32>,
-    /// Members, in ascending order.
+    /// Members, of which so many are in ascending order.
     pub particle: Vec<u32>,
+    ascending: usize,
     /// Their rows.
     pub row: Vec<Row>,
     /// How much closer particles must be than at the search before the first partner of a member can touch it, and before any pair can.
     pub after: Vec<f32>,
     least: f32,
-    /// Members by rows, in ascending order in each.
+    /// Members by rows, in each in the order of their particles.
     pub partner: Vec<u32>,
+    /// Places of present rows among these: rows that were full have left theirs.
+    used: usize,
     /// The distances at which they touch; 0 for places that are not in use.
     pub contact: Vec<f64>,
     /// Positions of members, wrapped into the box, and their volumes.
@@ -149,6 +152,7 @@ impl Near {
                 first += room;
             }
         }
+        (self.ascending, self.used) = (self.particle.len(), first as usize);
         self.least = f32::INFINITY;
         self.after.resize(self.particle.len(), f32::INFINITY);
         self.partner.resize(first as usize, 0);
@@ -193,7 +197,7 @@ impl Near {
         });
     }
 
-    /// Takes in a few more pairs of members; false if that is not worth it.
+    /// Takes in a few more pairs; false if that is not worth it.
     fn add(
         &mut self,
         pairs: &[NearPair],
@@ -203,11 +207,15 @@ impl Near {
         let shares = shares.filter(|_| self.narrow);
         let until = self.until;
         let soon = || pairs.iter().filter(|pair| f64::from(pair.after) <= until);
-        let known = |p: u32| self.member.get(p as usize).is_some_and(|member| *member != u32::MAX);
-        let used: u32 = self.row.iter().map(|row| row.room).sum();
-        // Rows that were full have left their places.
-        if self.partner.len() > 2 * used as usize || !soon().all(|p| p.ends.into_iter().all(known)) {
+        let late = self.particle.len() - self.ascending;
+        if self.partner.len() > 2 * self.used || late > self.ascending / 4 {
             return false;
+        }
+        if !soon().all(|pair| (pair.ends[1] as usize) < self.member.len()) {
+            return false;
+        }
+        for p in soon().flat_map(|pair| pair.ends) {
+            self.admit(p);
         }
         for pair in soon() {
             let contact = options.contact_range(view, pair.ends[0], pair.ends[1]);
@@ -222,19 +230,32 @@ impl Near {
         true
     }
 
+    /// Makes a particle a member.
+    fn admit(&mut self, p: u32) {
+        let member = &mut self.member[p as usize];
+        if *member == u32::MAX {
+            *member = self.particle.len() as u32;
+            self.particle.push(p);
+            self.row.push(Row { first: self.partner.len() as u32, ..Row::default() });
+            self.after.push(f32::INFINITY);
+        }
+    }
+
     fn insert(&mut self, own: u32, other: u32, contact: f64) {
         let row = &mut self.row[own as usize];
         if row.count == row.room {
             let all = row.all();
             row.first = self.partner.len() as u32;
             row.room += GROUP as u32;
+            self.used += GROUP;
             self.partner.extend_from_within(all.clone());
             self.partner.resize(self.partner.len() + GROUP, own);
             self.contact.extend_from_within(all);
             self.contact.resize(self.contact.len() + GROUP, 0.0);
         }
         let used = row.used();
-        let at = used.start + self.partner[used.clone()].partition_point(|p| *p < other);
+        let particle = |member: u32| self.particle[member as usize];
+        let at = used.start + self.partner[used.clone()].partition_point(|p| particle(*p) < particle(other));
         self.partner.copy_within(at..used.end, at + 1);
         self.contact.copy_within(at..used.end, at + 1);
         (self.partner[at], self.contact[at]) = (other, contact);
@@ -269,22 +290,18 @@ impl Near {
         (f, tally): (&mut [[f64; 3]], Option<&mut PeriTally>),
         (hits, rows): (&[Mutex<Hits>], &mut Vec<Sums>),
     ) {
-        let most = f.len().min(rules.view.x.len());
+        let all = f.len().min(rules.view.x.len()) >= self.member.len();
         // All ranks come to the same end: rows of each have at least all pairs that may touch by now.
-        if self.particle.last().is_none_or(|p| *p as usize >= most) || f64::from(self.least) > closer {
+        if self.particle.is_empty() || !all || f64::from(self.least) > closer {
             return;
         }
         self.gather(rules.view);
         rows.clear();
         rows.resize(if tally.is_some() { self.particle.len() } else { 0 }, [0.0; 7]);
         let (f, sums) = (Shared::new(f), Shared::new(rows));
-        let members = self.particle.len();
         // Those of other ranks find their forces there.
-        let place = |particle: usize| self.particle.partition_point(|p| (*p as usize) < particle);
-        let own = shares.map(|shares| &shares.own[..]).into_iter().flatten();
-        let some = own.map(|own| place(own.start)..place(own.end));
-        let all = shares.is_none().then_some(0..members);
-        some.chain(all).for_each(|some| {
+        let own = shares.map_or(vec![0..self.particle.len()], |shares| self.members_of(shares));
+        own.into_iter().for_each(|some| {
             in_parts(some, |members| {
                 let mut hits = hits[par::slot() % hits.len()].lock().unwrap_or_else(PoisonError::into_inner);
                 for first in members.clone().step_by(BLOCK) {
@@ -309,10 +326,19 @@ impl Near {
         });
         if let Some(t) = tally {
             if let Some(shares) = shares {
-                sums_everywhere(&self.particle, rows, shares);
+                sums_everywhere((&self.particle, &self.member), rows, shares);
             }
             self.tally(rows, t);
         }
+    }
+
+    /// The members that are this rank's.
+    fn members_of(&self, shares: &Shares) -> Vec<Range<usize>> {
+        let (ordered, late) = self.particle.split_at(self.ascending);
+        let place = |particle: usize| ordered.partition_point(|p| (*p as usize) < particle);
+        let late = late.iter().enumerate().filter(|(_, p)| shares.moves(**p as usize));
+        let late = ranges(late.map(|(k, _)| self.ascending + k));
+        shares.own.iter().map(|own| place(own.start)..place(own.end)).chain(late).collect()
     }
 
     /// Adds what pushes members to the forces on them, and sums up energies and virials if these are wanted.
@@ -339,13 +365,17 @@ impl Near {
             (0..3).for_each(|k| f[k] += sum[k]);
             if !sums.is_empty() {
                 // SAFETY: as above.
-                unsafe { sums.get(own..own + 1)[0] = energies(self.place[own][3], all, hits) };
+                unsafe { sums.get(own..own + 1)[0] = hits.sums(self.place[own][3], all) };
             }
         }
     }
 
     fn tally(&self, rows: &[Sums], t: &mut PeriTally) {
-        for (&p, row) in self.particle.iter().zip(rows) {
+        let mut members: Vec<(u32, &Sums)> = self.particle.iter().copied().zip(rows).collect();
+        if self.ascending < members.len() {
+            members.sort_unstable_by_key(|(p, _)| *p);
+        }
+        for (p, row) in members {
             let p = p as usize;
             t.energy += row[0];
             t.virial.iter_mut().zip(&row[1..]).for_each(|(v, own)| *v += own);
@@ -357,17 +387,6 @@ impl Near {
             }
         }
     }
-}
-
-/// The energy of a particle of this volume under some pushes, and its half of their virial, which has the volumes of both ends.
-fn energies(own: f64, all: Range<usize>, hits: &Hits) -> Sums {
-    let mut sums = [0.0; 7];
-    for at in all {
-        sums[0] += hits.energy(at) * hits.volume[0][at];
-        let (d, half) = (hits.vector(at), 0.5 * hits.pull[at] * own * hits.volume[1][at]);
-        SIX.iter().zip(&mut sums[1..]).for_each(|(&(a, b), v)| *v += half * d[a] * d[b]);
-    }
-    sums
 }
 
 /// Calls `f` for parts of so many members.

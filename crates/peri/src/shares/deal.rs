@@ -12,7 +12,7 @@ impl Families {
     /// other. `false` where all of them do all work: no body on a lattice, bonds that remember.
     pub fn deal(&mut self, me: usize, ranks: usize) -> bool {
         self.shares = None;
-        self.scratch.contact.forget();
+        self.scratch.contact.forget_own();
         let kind = self.law.kind;
         let forgets = kind.memory() == 0 && (kind.bond_based() || kind == LawKind::Lps);
         let plain = forgets && !self.options.compress && !self.options.reunite;

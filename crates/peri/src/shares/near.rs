@@ -30,8 +30,8 @@ pub(crate) fn pairs_everywhere(own: Vec<NearPair>, me: usize) -> Vec<NearPair> {
     all
 }
 
-/// Has the sums that ranks have found of their own particles, which are listed in ascending order, on all of them.
-pub(crate) fn sums_everywhere(particles: &[u32], sums: &mut [Sums], shares: &Shares) {
+/// Has the sums that ranks have found of their own particles, which are members of some list, on all of them.
+pub(crate) fn sums_everywhere((particles, member): (&[u32], &[u32]), sums: &mut [Sums], shares: &Shares) {
     let mut bytes = vec![];
     for (p, sums) in particles.iter().zip(&*sums) {
         let alone = usize::from(shares.owner[*p as usize]) == shares.me;
@@ -44,8 +44,9 @@ pub(crate) fn sums_everywhere(particles: &[u32], sums: &mut [Sums], shares: &Sha
     for (_, bytes) in to_all(&bytes) {
         let mut bytes = &bytes[..];
         while let (Some([p]), Some(own)) = (next(&mut bytes), next(&mut bytes)) {
-            if let Ok(at) = particles.binary_search(&p) {
-                sums[at] = own;
+            let p: u32 = p;
+            if let Some(sums) = sums.get_mut(member[p as usize] as usize) {
+                *sums = own;
             }
         }
     }
