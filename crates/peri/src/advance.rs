@@ -60,12 +60,7 @@ impl Families {
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
         let rules = Rules::new(cell, &self.options, &self.law);
-        list::breaking::candidates::<K>(
-            &mut self.list,
-            (&rules, &self.options),
-            &self.scratch.windows,
-            &mut found,
-        );
+        list::breaking::candidates::<K>(&mut self.list, (&rules, &self.options), &mut found);
         self.list.break_all(&mut found, &spared);
         for c in found.iter().filter(|_| frees) {
             self.list.free(c.bond as usize, &self.law, cell, Moved::Now);

@@ -227,15 +227,12 @@ impl Families {
 
     /// Memory held.
     pub fn bytes(&self) -> usize {
-        let windows: usize =
-            self.scratch.windows.iter().map(|w| w.lock().map_or(0, |w| 8 * w.force.len())).sum();
         let reference = self.reference.as_ref().map_or(0, |r| 24 * r.len());
         let near: usize = self.near.pairs.iter().map(|p| size_of::<NearPair>() * p.capacity()).sum();
         let near = near + 24 * self.near.looked.len() + self.scratch.contact.bytes();
         self.lattices.iter().map(crate::families::lattice::LatticeBody::bytes).sum::<usize>()
             + self.list.bytes()
             + 14 * self.place.len()
-            + windows
             + reference
             + near
     }

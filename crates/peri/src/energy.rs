@@ -19,7 +19,7 @@ use perigrain_base::par::{self, Shared};
 pub(super) type Sums = [f64; SUMS];
 
 /// Rows per part when rows are summed.
-pub(super) const ROWS: usize = 16;
+const ROWS: usize = 16;
 
 /// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. Under
 /// bond-based laws LAMMPS gives each end half of ½ c w V s² |xi|, and the virial one factor V. Under state-based ones the energy

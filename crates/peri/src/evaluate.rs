@@ -1,7 +1,6 @@
 //! Peridynamic families at work: building them, the forces of a step, breaking, damage.
 
 use perigrain_base::math::periods::Periods;
-use std::sync::Mutex;
 
 use crate::build::sites::{Carrier, carrier};
 use crate::build::spacing::spacings;
@@ -26,7 +25,7 @@ use crate::lattice::tables;
 use crate::list;
 use crate::shares::{flagged_anywhere, forget_flags, squeezed_everywhere};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::par::{self, Shared};
+use perigrain_base::par::Shared;
 use perigrain_base::stop;
 
 /// An evaluation of forces of which the first half is done.
@@ -386,16 +385,15 @@ impl Families {
         (advance, tallied): (bool, bool),
         cell: &Cell,
     ) {
-        let Self { list, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
+        let Self { list, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
-        scratch.windows.resize_with(par::most_threads().max(scratch.windows.len()), Mutex::default);
         let settling = lattice::settling((law, table), options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.
             list::measure(list, law, cell);
         }
         let f = Shared::new(f);
-        list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, (&scratch.windows, cell));
+        list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, cell);
     }
 
     fn contact<K: Isa>(

@@ -2,6 +2,7 @@
 
 use crate::families::Scatter;
 use crate::families::law::SiteState;
+use crate::families::tiles::ListTiles;
 
 /// What a bond needs to know of one end; one cache line.
 #[repr(C, align(64))]
@@ -48,11 +49,13 @@ pub struct ListBody {
     pub record: Vec<Record>,
     /// Displacements at the last step that advanced.
     pub last: Vec<[f64; 3]>,
-    /// First record of each slab, and the end. Bonds lead to the same or the next slab; those of the last
-    /// slab may lead to the first if `ring`.
+    /// First record of each slab, and the end. Bonds lead to later records of the same slab, to later slabs, or if `ring` on to earlier ones.
     pub slab: Vec<u32>,
     /// See `slab`.
     pub ring: bool,
+    /// Slabs as tiles.
+    #[serde(skip)]
+    pub tiles: ListTiles,
     /// Whether a slab has displacements that are not zero.
     pub moving: Vec<bool>,
     /// Local type of each record.
@@ -198,5 +201,6 @@ impl ListBody {
             + 8 * (self.close.len() + self.inverse.len() + self.influence.len() + self.own_weight.len())
             + 8 * (self.limits.least.len() + self.limits.next.len())
             + self.state.bytes()
+            + self.tiles.bytes()
     }
 }

@@ -1,7 +1,5 @@
 //! Peridynamic families: what bonds exist, what they are made of, and which still live.
 
-use std::sync::Mutex;
-
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::SIX;
 
@@ -410,8 +408,6 @@ pub struct NearPair {
 /// Memory kept between steps that holds nothing a step depends on; a clone starts empty.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    /// One per thread.
-    pub windows: Vec<Mutex<Window>>,
     /// Cells of the search for near pairs.
     pub cells: Cells,
     /// Near pairs as they are evaluated.
@@ -445,11 +441,4 @@ pub struct Candidate {
     pub s00: f64,
     /// Its rise under compression.
     pub alpha: f64,
-}
-
-/// What one thread needs for a slab of a list.
-#[derive(Debug, Default)]
-pub struct Window {
-    /// Forces of a slab and of what it reaches.
-    pub force: Vec<f64>,
 }

@@ -9,26 +9,23 @@ pub mod forms;
 pub mod gather;
 pub mod kernels;
 pub mod leads;
-mod measured;
 pub(crate) mod owed;
 pub mod states;
 pub mod sweep;
 pub mod tables;
 pub(crate) mod tiles;
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::law::COLUMNS;
 use crate::families::shares::{BodyShare, Shares};
 use crate::families::tiles::Tiles;
-use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
+use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
 use crate::lanes::isa::Isa;
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
 use crate::law::Moment;
 use crate::law::settle::{Settling, Sites, columns_of, moment};
 use crate::shares::dues::share_sums;
-use perigrain_base::par::{self, Shared};
+use perigrain_base::par::Shared;
 use states::{States, Sum, find_active};
 
 impl Families {
@@ -102,11 +99,6 @@ pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Sett
         true => state.earlier.clone_from(&state.memory),
         false => state.earlier.clear(),
     }
-}
-
-/// One thread's window.
-pub fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
-    windows[par::slot() % windows.len()].lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The sweeps over one body on a lattice.

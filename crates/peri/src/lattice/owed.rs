@@ -3,7 +3,7 @@
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::tiles::Tiles;
 use crate::lanes::isa::{Isa, Kernel};
-use crate::lattice::tiles::Windows;
+use crate::pass::Windows;
 use crate::shares::dues::overlap;
 use perigrain_base::par::Shared;
 
@@ -37,7 +37,7 @@ fn parts<'a, 'r, const N: usize>(
     room: &'r mut [Part<'a, N>],
 ) -> &'r [Part<'a, N>] {
     let mut owed = 0;
-    for giver in std::iter::once(tile).chain(tiles.givers(tile).iter().map(|&giver| giver as usize)) {
+    for giver in std::iter::once(tile).chain(tiles.graph.givers(tile).iter().map(|&giver| giver as usize)) {
         // SAFETY: a tile settles when it and those that reach into it have been swept.
         let window = unsafe { windows.get(giver) };
         if !window.touched {
@@ -60,7 +60,7 @@ fn by_planes<const N: usize>(
     mut act: impl FnMut(usize, &[Part<N>]),
 ) {
     let (mut few, mut many) = ([Part::NONE; FEW], vec![]);
-    let windows_at_most = 1 + tiles.givers(tile).len();
+    let windows_at_most = 1 + tiles.graph.givers(tile).len();
     let room = match few.get_mut(..windows_at_most) {
         Some(few) => few,
         None => {

@@ -14,9 +14,9 @@ use crate::lattice::forms::{self, run, run_term};
 use crate::lattice::kernels::Cells;
 use crate::lattice::owed;
 use crate::lattice::sweep::{Room, Sweep, with_share};
-use crate::lattice::tiles::{Over, pass};
 use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{Moment, of_law};
+use crate::pass::{Over, pass};
 use crate::shares::agreed;
 use perigrain_base::par::Shared;
 
@@ -131,7 +131,7 @@ pub(crate) fn all<K: Isa>(
 ) {
     with_share((sweep.body(), tiles, 1), share, |share| {
         pass(
-            Over { tiles, windows, times: &[], share },
+            Over { graph: &tiles.graph, windows, times: &[], share },
             |at, window| tile::<K>(sweep, sum, (tiles, at), window),
             |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
         )

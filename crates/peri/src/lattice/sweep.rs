@@ -11,9 +11,9 @@ use crate::lattice::chunk::{self, Chunk, Various};
 use crate::lattice::leads::{ahead, find_leads, row_limit};
 use crate::lattice::owed;
 use crate::lattice::states::States;
-use crate::lattice::tiles::{HandOver, Over, pass};
 use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
+use crate::pass::{HandOver, Over, pass};
 use crate::shares::dues::hand_over;
 use perigrain_base::par::Shared;
 
@@ -129,7 +129,7 @@ impl<'a> Sweep<'a> {
     ) {
         with_share((self.body, tiles, 3), share, |share| {
             pass(
-                Over { tiles, windows, times: &tiles.times, share },
+                Over { graph: &tiles.graph, windows, times: &tiles.graph.times, share },
                 |tile, window| self.tile::<K>((tiles, tile), window),
                 |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
             );
@@ -335,7 +335,7 @@ impl<'a> Room<'a> {
         let [Some(bottom), Some(top)] = [reached.first(), reached.last()] else { return };
         let stride = staggered(top.cells[1] - top.first);
         let length = 3 * stride + PAGE + PAD;
-        self.window.sums = self.tiles.take_room();
+        self.window.sums = self.tiles.graph.take_room();
         let TileWindow { sums, .. } = &mut *self.window;
         if sums.len() < length {
             sums.resize(length, 0.0);

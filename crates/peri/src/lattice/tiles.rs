@@ -1,12 +1,9 @@
-//! Cutting a body on a lattice into tiles, and passes over them.
+//! Cutting a body on a lattice into tiles.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::time::Instant;
 
 use crate::families::lattice::{LatticeBody, PAGE};
-use crate::families::tiles::{Reached, Tile, TileWindow, Tiles};
-use perigrain_base::par::{self, Shared};
+use crate::families::tiles::{Reached, Tile, TileGraph, TileWindow, Tiles};
 
 /// Rows of a tile at most. Fewer cost more than the windows they make smaller: what a row's bonds reach has to be fetched once more on
 /// either side of a cut (measured: three tiles of 12 rows and all planes take 1.06 of the time, 32 of all 34 rows and 2 planes 1.01).
@@ -59,12 +56,10 @@ fn lay_out(body: &LatticeBody) -> Tiles {
         let first = tiles.reached.len();
         tiles.reached.extend(window_of(body, &planes, &rows));
         let reached = first..tiles.reached.len();
-        tiles.all.push(Tile { planes, rows, reached, givers: 0..0, takers: 0..0 });
+        tiles.all.push(Tile { planes, rows, reached });
     }
-    introduce(&mut tiles, body);
+    tiles.graph = graph_of(&tiles, body);
     tiles.windows.resize_with(tiles.all.len(), TileWindow::default);
-    tiles.unswept.resize_with(tiles.all.len(), Default::default);
-    tiles.unsettled.resize_with(tiles.all.len(), Default::default);
     tiles
 }
 
@@ -94,8 +89,8 @@ fn window_of(body: &LatticeBody, planes: &Range<usize>, rows: &Range<usize>) -> 
     window
 }
 
-/// Finds which tiles reach into which.
-fn introduce(tiles: &mut Tiles, body: &LatticeBody) {
+/// Which tiles reach into which.
+fn graph_of(tiles: &Tiles, body: &LatticeBody) -> TileGraph {
     let reaches = |giver: usize, taker: &Tile| {
         let own = tiles.all[giver].planes.start;
         let mut window = (own..).zip(tiles.reached(giver));
@@ -105,21 +100,12 @@ fn introduce(tiles: &mut Tiles, body: &LatticeBody) {
             taker.planes.contains(&plane) && slots.into_iter().any(|slot| body.rows[slot].len > 0)
         })
     };
-    let n = tiles.all.len();
-    let mut givers = vec![vec![]; n];
-    let mut takers: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
-    for taker in 0..n {
-        for giver in (0..n).filter(|&giver| giver != taker && reaches(giver, &tiles.all[taker])) {
-            givers[taker].push(giver as u32);
-            takers[giver].push(taker as u32);
-        }
-    }
-    for (tile, (givers, takers)) in tiles.all.iter_mut().zip(givers.iter().zip(&takers)) {
-        tile.givers = tiles.givers.len()..tiles.givers.len() + givers.len();
-        tile.takers = tiles.takers.len()..tiles.takers.len() + takers.len();
-        tiles.givers.extend(givers);
-        tiles.takers.extend(takers);
-    }
+    let giving = |(taker, tile): (usize, &Tile)| {
+        let others = (0..tiles.all.len()).filter(|giver| *giver != taker && reaches(*giver, tile));
+        others.map(|giver| giver as u32).collect()
+    };
+    let givers: Vec<Vec<u32>> = tiles.all.iter().enumerate().map(giving).collect();
+    TileGraph::of(&givers)
 }
 
 /// How far along a Hilbert curve through `n` by `n` places (or the next power of two) one of them lies: what lies near each other on the
@@ -139,113 +125,4 @@ fn along_curve([mut x, mut y]: [usize; 2], n: usize) -> usize {
         side /= 2;
     }
     at
-}
-
-/// What a pass goes over.
-pub(crate) struct Over<'a, 's> {
-    /// The tiles.
-    pub(crate) tiles: &'a Tiles,
-    /// Their windows.
-    pub(crate) windows: &'a mut [TileWindow],
-    /// Their times, where these are kept.
-    pub(crate) times: &'a [[AtomicU64; 2]],
-    /// This rank's share of them, where others have the rest; how to hand windows over.
-    pub(crate) share: Option<HandOver<'s>>,
-}
-
-/// A rank's share of tiles, and the exchange of windows with other ranks.
-pub(crate) struct HandOver<'a> {
-    /// This rank's tiles.
-    pub(crate) own: Range<usize>,
-    /// Those of them that others' bonds reach.
-    pub(crate) waits: &'a [usize],
-    /// Hands windows over to other ranks and takes theirs.
-    pub(crate) exchange: &'a mut dyn FnMut(&mut [TileWindow]),
-}
-
-/// Sweeps each tile into its window (`sweep(tile, window)` says whether any bond was not at rest), and settles a tile as soon as all whose
-/// bonds reach into it have been swept: `settle(tile, windows)`. In which order tiles settle makes no difference: each adds up the
-/// windows of its givers in their order, to cells that no other tile has. Tiles that wait for other ranks settle after these have sent
-/// their windows.
-pub(crate) fn pass(
-    over: Over,
-    sweep: impl Fn(usize, &mut TileWindow) -> bool + Sync,
-    settle: impl Fn(usize, Windows) + Sync,
-) {
-    let Over { tiles, windows, times, share } = over;
-    let own = share.as_ref().map_or(0..tiles.all.len(), |share| share.own.clone());
-    let here = |tile: u32| own.contains(&(tile as usize));
-    // With one more for other ranks, where these give or take something.
-    let count = |list: &[u32]| {
-        let some = list.iter().filter(|tile| here(**tile)).count();
-        (some + usize::from(some < list.len())) as u32
-    };
-    for k in own.clone() {
-        tiles.unswept[k].store(1 + count(tiles.givers(k)), Ordering::Relaxed);
-        tiles.unsettled[k].store(count(tiles.takers(k)), Ordering::Relaxed);
-    }
-    let last = |count: &[AtomicU32], tile: usize| count[tile].fetch_sub(1, Ordering::AcqRel) == 1;
-    let release = |tile: usize, shared: &Shared<TileWindow>| {
-        if last(&tiles.unsettled, tile) {
-            // SAFETY: all tiles that read the window have settled.
-            let window = unsafe { &mut shared.get(tile..tile + 1)[0] };
-            if window.touched {
-                tiles.give_room(std::mem::take(&mut window.sums));
-            }
-        }
-    };
-    let done = |taker: usize, shared: &Shared<TileWindow>| {
-        timed(times, (taker, 1), || settle(taker, Windows(shared)));
-        release(taker, shared);
-        tiles.givers(taker).iter().filter(|giver| here(**giver)).for_each(|g| release(*g as usize, shared));
-    };
-    let shared = Shared::new(&mut *windows);
-    par::for_rows(own.len(), |k| {
-        let k = own.start + k;
-        // SAFETY: each tile is swept once, and its window is read after that alone.
-        let window = unsafe { &mut shared.get(k..k + 1)[0] };
-        window.touched = timed(times, (k, 0), || sweep(k, window));
-        for &taker in tiles.takers(k).iter().filter(|taker| here(**taker)) {
-            // What was written before is seen by the thread that settles.
-            let taker = taker as usize;
-            if last(&tiles.unswept, taker) {
-                done(taker, &shared);
-            }
-        }
-    });
-    let Some(HandOver { waits, exchange, .. }) = share else { return };
-    exchange(windows);
-    let shared = Shared::new(windows);
-    let given = |tile: usize| tiles.takers(tile).iter().any(|taker| !here(*taker));
-    own.clone().filter(|tile| given(*tile)).for_each(|tile| release(tile, &shared));
-    par::for_rows(waits.len(), |k| {
-        if last(&tiles.unswept, waits[k]) {
-            done(waits[k], &shared);
-        }
-    });
-}
-
-/// Does a tile's work, and notes how long that took if it is the least time so far and times are kept.
-fn timed<R>(times: &[[AtomicU64; 2]], (tile, which): (usize, usize), work: impl FnOnce() -> R) -> R {
-    let Some(times) = times.get(tile) else { return work() };
-    let start = Instant::now();
-    let done = work();
-    times[which].fetch_min(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
-    done
-}
-
-/// Windows of tiles, of which those that reach into a tile that settles have been swept.
-#[derive(Clone, Copy)]
-pub(crate) struct Windows<'a>(&'a Shared<'a, TileWindow>);
-
-impl Windows<'_> {
-    /// The window of a tile.
-    ///
-    /// # Safety
-    /// The tile must have been swept in this pass.
-    pub(crate) unsafe fn get(&self, tile: usize) -> &TileWindow {
-        assert!(tile < self.0.len());
-        // SAFETY: in bounds; nothing is written to the window of a tile that has been swept.
-        unsafe { &*self.0.as_ptr().add(tile) }
-    }
 }

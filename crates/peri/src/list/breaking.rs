@@ -5,15 +5,14 @@
 //! while bonds are near their limits; where they have not and a bond may break, a sweep over the last step's places finds
 //! the same numbers.
 
-use std::sync::Mutex;
-
 use crate::families::list::{GROUP, ListBody, PairConstants};
-use crate::families::{Candidate, FamilyOptions, Window};
+use crate::families::tiles::TileWindow;
+use crate::families::{Candidate, FamilyOptions};
 use crate::lanes::isa::{Isa, Kernel};
 use crate::lattice::sweep::Mode;
 use crate::law::series::stretch;
 use crate::list::kernel::{Block, LAST, MOST, Row, Rules, partners};
-use crate::list::sweep::{in_slabs, reach_of, ring_start};
+use crate::list::tiles::{self, ROW};
 use perigrain_base::par::Shared;
 
 /// Bonds keep measures when the most stretched of them has come this close to its limit.
@@ -191,22 +190,18 @@ fn lowered(s: f64) -> f64 {
     if s > -1.0 { s * (2.0 + s) } else { f64::NEG_INFINITY }
 }
 
-/// Zero forces and no measures for so many records of a window.
-pub fn clear(window: &mut Window, records: usize) {
-    let length = 4 * records;
-    if window.force.len() < length {
-        window.force.resize(length, 0.0);
-    }
-    for row in window.force[..length].chunks_exact_mut(4) {
-        row.copy_from_slice(&[0.0, 0.0, 0.0, f64::INFINITY]);
-    }
+/// A record's row of a window before anything has come to it: no force, and no bond.
+pub const FORCE_AND_MEASURE: [f64; ROW] = [0.0, 0.0, 0.0, f64::INFINITY];
+
+/// Adds forces and finds the least measure.
+pub fn add_rows(sum: &mut [f64; ROW], row: &[f64; ROW]) {
+    *sum = [sum[0] + row[0], sum[1] + row[1], sum[2] + row[2], sum[3].min(row[3])];
 }
 
 /// Finds the bonds that break in this step.
 pub fn candidates<K: Isa>(
     body: &mut ListBody,
     (rules, options): (&Rules, &FamilyOptions),
-    windows: &[Mutex<Window>],
     found: &mut Vec<Candidate>,
 ) {
     found.clear();
@@ -219,7 +214,7 @@ pub fn candidates<K: Isa>(
         for b in body.broken.clone() {
             body.set(b as usize, true);
         }
-        body.limits.least = least::<K>(body, rules, &judge, windows);
+        body.limits.least = least::<K>(body, rules, &judge);
         for b in body.broken.clone() {
             body.set(b as usize, false);
         }
@@ -248,15 +243,15 @@ impl ListBody {
 }
 
 /// The least measures of all families in the last step that advanced.
-fn least<K: Isa>(body: &ListBody, rules: &Rules, judge: &Judge, windows: &[Mutex<Window>]) -> Vec<f64> {
+fn least<K: Isa>(body: &mut ListBody, rules: &Rules, judge: &Judge) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; body.record.len()];
-    let shared = Shared::new(&mut least);
-    in_slabs(body, windows, |slab, window| {
-        let (own, next) = reach_of(body, slab);
-        clear(window, own.len() + next.len());
+    let mut windows = std::mem::take(&mut body.tiles.windows);
+    let (list, shared): (&ListBody, _) = (body, Shared::new(&mut least));
+    let act = |slab: usize, window: &mut TileWindow| {
+        let rows = tiles::open(list, slab, window, FORCE_AND_MEASURE);
         let b = &mut Block::new();
-        for i in own.clone() {
-            let row = Row { body, i, first: ring_start(body, slab), rules };
+        for i in list.records(slab) {
+            let row = Row { body: list, i, first: list.ring_start(slab), rules };
             let mut next = row.start();
             while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has.
@@ -264,24 +259,22 @@ fn least<K: Isa>(body: &ListBody, rules: &Rules, judge: &Judge, windows: &[Mutex
                 judge.measure(&row, b);
                 for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
                     for row in [i, *target as usize] {
-                        let least = &mut window.force[4 * (row - own.start) + 3];
+                        // SAFETY: the window covers the slab's records and those that its bonds lead to.
+                        let least = unsafe { &mut *rows.wrapping_add(ROW * row + 3) };
                         *least = least.min(*measure);
                     }
                 }
             }
         }
-        hand_back(own.chain(next), window, &shared);
+        true
+    };
+    tiles::sweep(list, (&mut windows, false), act, (FORCE_AND_MEASURE, add_rows), |records, rows| {
+        // SAFETY: each record settles once.
+        let least = unsafe { shared.get(records) };
+        least.iter_mut().zip(rows).for_each(|(least, row)| *least = row[3]);
     });
+    body.tiles.windows = windows;
     least
-}
-
-/// Merges the measures of a window, those of `records` in their order.
-pub fn hand_back(records: impl Iterator<Item = usize>, window: &Window, least: &Shared<f64>) {
-    for (k, i) in records.enumerate() {
-        // SAFETY: slabs that reach a record run one after the other.
-        let least = unsafe { &mut least.get(i..i + 1)[0] };
-        *least = least.min(window.force[4 * k + 3]);
-    }
 }
 
 /// Makes the measures of this step, which has advanced, those of the last one.

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use crate::energy::{ROWS, Sums, collect, shares};
+use crate::energy::{Sums, collect, shares};
 use crate::families::list::ListBody;
 use crate::families::{Cell, Families, ForceUnit, PeriTally};
 use crate::lanes::isa::Isa;
@@ -14,6 +14,9 @@ use crate::list::laws::{self, Acting, Hand};
 use crate::list::sweep::in_rows;
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
+
+/// Records whose energies are added up together.
+pub(crate) const PART: usize = 16;
 
 /// What energies need besides a record.
 struct Energies<'a> {
@@ -63,11 +66,11 @@ impl Energies<'_> {
             return;
         }
         rows.clear();
-        rows.resize(n.div_ceil(ROWS), [0.0; 7]);
+        rows.resize(n.div_ceil(PART), [0.0; 7]);
         let shared = Shared::new(rows);
-        par::for_rows(n.div_ceil(ROWS), |part| {
+        par::for_rows(n.div_ceil(PART), |part| {
             let (b, mut sum) = (&mut Block::new(), PeriTally::default());
-            for i in part * ROWS..n.min((part + 1) * ROWS) {
+            for i in part * PART..n.min((part + 1) * PART) {
                 self.record::<K, W>(i, b, &mut sum);
             }
             let v = sum.virial;

@@ -5,6 +5,7 @@ pub mod energy;
 pub mod kernel;
 mod laws;
 pub mod sweep;
+pub(crate) mod tiles;
 
 use crate::families::lattice::RowMotion;
 use crate::families::list::{GROUP, ListBody, PairConstants};

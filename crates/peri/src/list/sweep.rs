@@ -4,21 +4,21 @@
 //! looked at each of them.
 
 use std::marker::PhantomData;
-use std::ops::Range;
-use std::sync::Mutex;
 
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
-use crate::families::{Cell, FamilyOptions, LawKind, PeriView, Window};
+use crate::families::tiles::TileWindow;
+use crate::families::{Cell, FamilyOptions, LawKind, PeriView};
 use crate::lanes::isa::Isa;
+use crate::lattice::keep_earlier;
 use crate::lattice::sweep::Mode;
-use crate::lattice::{keep_earlier, window};
 use crate::law::settle::{Settling, Sites, columns_of};
 use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{BondLaw, Moment, of_law};
-use crate::list::breaking::{self, Judge, clear};
+use crate::list::breaking::{FORCE_AND_MEASURE, Judge, add_rows};
 use crate::list::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
 use crate::list::laws::{Acting, AddUp, Hand, Pull};
+use crate::list::tiles::{self, lay_slabs};
 use perigrain_base::par::{self, Shared};
 
 const _: () = assert!(size_of::<Record>() == 64);
@@ -30,12 +30,13 @@ pub fn forces<K: Isa>(
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
     settling: &Settling,
-    (windows, cell): (&[Mutex<Window>], &Cell),
+    cell: &Cell,
 ) {
     let n = list.record.len();
     if n == 0 {
         return;
     }
+    lay_slabs(list);
     let kind = settling.law.kind;
     let judge = Judge::new(list, mode, options);
     let mut rules = Rules::new(cell, options, settling.law);
@@ -68,15 +69,14 @@ pub fn forces<K: Isa>(
         only,
         stiffness: &stiffness,
     };
-    let sweep = |list: &mut ListBody, numbers: usize, task: &(dyn Fn(&Sweep, usize, &mut Window) + Sync)| {
+    let sweep = |list: &mut ListBody, numbers: usize, act: &dyn Fn(&Sweep, &mut [TileWindow])| {
         let mut memory = std::mem::take(&mut list.state.memory);
         let mut touched = std::mem::take(&mut list.state.touched);
         let mut lowest = std::mem::take(&mut list.lowest);
-        let mut limits = std::mem::take(&mut list.limits);
         let mut sums = std::mem::take(&mut list.state.sums);
-        let mut strained = std::mem::take(&mut limits.strained);
-        let mut next = std::mem::take(&mut limits.next);
-        list.limits = limits;
+        let mut strained = std::mem::take(&mut list.limits.strained);
+        let mut next = std::mem::take(&mut list.limits.next);
+        let mut windows = std::mem::take(&mut list.tiles.windows);
         let sweep = Sweep {
             body: list,
             ends: &in_rows(&list.state, n, numbers),
@@ -91,10 +91,11 @@ pub fn forces<K: Isa>(
             rules: &rules,
             moment: now,
         };
-        in_slabs(list, windows, |slab, window| task(&sweep, slab, window));
+        act(&sweep, &mut windows);
         (list.state.memory, list.state.touched, list.state.sums) = (memory, touched, sums);
         list.lowest = lowest;
         (list.limits.strained, list.limits.next) = (strained, next);
+        list.tiles.windows = windows;
     };
     let clear_sums = |list: &mut ListBody| {
         list.state.sums.clear();
@@ -102,7 +103,7 @@ pub fn forces<K: Isa>(
     };
     if !kind.bond_based() {
         clear_sums(list);
-        sweep(list, 0, &|s, slab, w| s.add_up::<K, Dilatation>(slab, &moving, w));
+        sweep(list, 0, &|s, windows| s.add_up::<K, Dilatation>(&moving, windows));
         settling.dilatations(&mut list.state, &sites);
     }
     if kind == LawKind::Shaped {
@@ -110,20 +111,15 @@ pub fn forces<K: Isa>(
     }
     if kind == LawKind::ElasticPlastic {
         clear_sums(list);
-        sweep(list, Norm::COLUMNS, &|s, slab, w| match settling.compat {
-            true => s.add_up::<K, NormLammps>(slab, active, w),
-            false => s.add_up::<K, Norm>(slab, active, w),
+        sweep(list, Norm::COLUMNS, &|s, windows| match settling.compat {
+            true => s.add_up::<K, NormLammps>(active, windows),
+            false => s.add_up::<K, Norm>(active, windows),
         });
         settling.flow(&mut list.state, &sites);
     }
     let columns = columns_of(kind, settling.compat);
-    let pulls = |s: &Sweep, slab: usize, w: &mut Window| of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w));
-    sweep(list, columns, &|s, slab, w| {
-        if pulls(s, slab, w) {
-            let (own, next) = reach_of(s.body, slab);
-            hand_back(s.body, &particle, own.chain(next), w, f);
-        }
-    });
+    let pull = |s: &Sweep, slab: usize, w: &mut TileWindow| of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w));
+    sweep(list, columns, &|s, windows| s.pull_all(windows, |slab, w| pull(s, slab, w), &particle, f));
     (list.particle, list.moving, list.scatter.stiffness) = (particle, moving, stiffness);
     settling.held(&mut list.state);
 }
@@ -137,76 +133,27 @@ fn only(list: &ListBody) -> Option<u16> {
 pub fn in_rows(state: &SiteState, n: usize, numbers: usize) -> Vec<f64> {
     let stride = Acting::stride(numbers);
     let mut rows = vec![0.0; stride * n];
-    for k in 0..numbers {
-        for (row, value) in rows.chunks_exact_mut(stride).zip(&state.columns[k * n..(k + 1) * n]) {
-            row[k] = *value;
+    let shared = Shared::new(&mut rows);
+    par::for_chunks(if numbers == 0 { 0 } else { n }, |range| {
+        // SAFETY: each record's row is one task's.
+        let rows = unsafe { shared.get(stride * range.start..stride * range.end) };
+        for k in 0..numbers {
+            let column = &state.columns[k * n..][range.clone()];
+            rows.chunks_exact_mut(stride).zip(column).for_each(|(row, value)| row[k] = *value);
         }
-    }
+    });
     rows
 }
 
-/// Calls `task` for every slab, in two colours.
-pub fn in_slabs(list: &ListBody, windows: &[Mutex<Window>], task: impl Fn(usize, &mut Window) + Sync) {
-    let slabs = list.slabs();
-    // A ring of an odd number of slabs cannot be coloured with two colours: its last one goes alone.
-    let odd = list.ring && slabs % 2 == 1;
-    par::two_colours(slabs - usize::from(odd), |slab| task(slab, &mut window(windows)));
-    if odd {
-        task(slabs - 1, &mut window(windows));
-    }
-}
-
-/// The records of a slab, and those of the slab that its bonds reach.
-pub fn reach_of(body: &ListBody, slab: usize) -> (Range<usize>, Range<usize>) {
-    let own = body.slab[slab] as usize..body.slab[slab + 1] as usize;
-    let next = if slab + 1 < body.slabs() {
-        own.end..body.slab[slab + 2] as usize
-    } else if body.ring {
-        0..body.slab[1] as usize
-    } else {
-        0..0
-    };
-    (own, next)
-}
-
-/// The record before which all come after the others in the window of a slab.
-pub fn ring_start(body: &ListBody, slab: usize) -> usize {
-    if body.ring && slab + 1 == body.slabs() { body.slab[slab] as usize } else { 0 }
-}
-
-/// Adds what a window has gathered for `records`, in their order, to the particles' forces.
-fn hand_back(
-    body: &ListBody,
-    particle: &[u32],
-    records: impl Iterator<Item = usize>,
-    window: &Window,
-    f: &Shared<[f64; 3]>,
-) {
-    for (k, i) in records.enumerate() {
-        let p = particle[i] as usize;
-        if p < f.len() {
-            // SAFETY: in bounds; slabs that reach a particle run one after the other.
-            let f = unsafe { &mut *f.as_ptr().add(p) };
-            let w = &window.force[4 * k..4 * k + 3];
-            let share = body.record[i].share;
-            *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
-        }
-    }
-}
-
-/// Which slabs have sites with dilatations, or under a law with memory ever had.
+/// Which slabs have sites with dilatations, or under a law with memory ever had: those that reach into moving ones or that these reach into.
 fn find_active(list: &mut ListBody, remembers: bool) -> Vec<bool> {
-    let slabs = list.slabs();
-    let moving = |s: usize| list.moving.get(s).copied().unwrap_or(false);
+    let (graph, moving) = (&list.tiles.graph, &list.moving);
+    let near = |slab: usize| graph.takers(slab).iter().chain(graph.givers(slab));
     let mut active: Vec<bool> =
-        (0..slabs).map(|s| moving(s) || moving(s + 1) || (s > 0 && moving(s - 1))).collect();
-    if list.ring {
-        active[0] |= moving(slabs - 1);
-        active[slabs - 1] |= moving(0);
-    }
+        (0..list.slabs()).map(|slab| near(slab).any(|other| moving[*other as usize])).collect();
     if remembers {
         let awake = &mut list.state.awake;
-        awake.resize(slabs, (0, 0));
+        awake.resize(active.len(), (0, 0));
         for (awake, active) in awake.iter_mut().zip(&mut active) {
             *active |= awake.0 != 0;
             awake.0 = i32::from(*active);
@@ -233,10 +180,9 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Whether a slab and the one it reaches have nothing to do.
+    /// Whether a slab and those it reaches have nothing to do.
     fn rests(&self, slab: usize, active: &[bool]) -> bool {
-        let next = if slab + 1 < active.len() { slab + 1 } else { 0 };
-        !active[slab] && ((next == 0 && !self.body.ring) || !active[next])
+        self.body.tiles.graph.takers(slab).iter().all(|taker| !active[*taker as usize])
     }
 
     /// What laws need besides bonds, of a record whose bonds remember or not.
@@ -251,26 +197,31 @@ impl Sweep<'_> {
         numbers > 0 && (!lazy || unsafe { self.touched.get(i..i + 1)[0] } != 0)
     }
 
-    /// Adds a term of the bonds of one slab's records to the sums of both ends.
-    fn add_up<K: Isa, T: Term>(&self, slab: usize, active: &[bool], window: &mut Window) {
+    /// Adds a term of all bonds to the sums of both ends.
+    fn add_up<K: Isa, T: Term>(&self, active: &[bool], windows: &mut [TileWindow]) {
+        let add = |sum: &mut [f64; 1], more: &[f64; 1]| sum[0] += more[0];
+        let act = |slab: usize, window: &mut TileWindow| self.add_up_slab::<K, T>(slab, active, window);
+        tiles::sweep(self.body, (windows, false), act, ([0.0], add), |records, sums| {
+            // SAFETY: each record settles once.
+            let own = unsafe { self.sums.get(records) };
+            own.iter_mut().zip(sums).for_each(|(own, sum)| *own += sum[0]);
+        });
+    }
+
+    /// The same of one slab's bonds into its window; false if these rest.
+    fn add_up_slab<K: Isa, T: Term>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
         if self.rests(slab, active) && self.mode.skip {
-            return;
+            return false;
         }
         let body = self.body;
-        let (own, next) = reach_of(body, slab);
-        let length = own.len() + next.len();
-        if window.force.len() < length {
-            window.force.resize(length, 0.0);
-        }
-        window.force[..length].fill(0.0);
-        let sums = window.force.as_mut_ptr().wrapping_sub(own.start);
+        let sums = tiles::open(body, slab, window, [0.0]);
         let b = &mut Block::new();
-        for i in own.clone() {
-            let row = Row { body, i, first: ring_start(body, slab), rules: self.rules };
+        for i in body.records(slab) {
+            let row = Row { body, i, first: body.ring_start(slab), rules: self.rules };
             let acting = self.acting(self.known(i, (T::MEMORY, true)));
             let mut next = row.start();
             while row.fill(&mut next, b) {
-                // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
+                // SAFETY: the kernels are those that the processor has; bonds lead to records that the window covers.
                 unsafe {
                     row.shape::<K, FULL>(b);
                     K::call(AddUp(
@@ -280,16 +231,40 @@ impl Sweep<'_> {
                 }
             }
         }
-        for (k, i) in own.chain(next).enumerate() {
-            // SAFETY: slabs that reach a record run one after the other.
-            unsafe { self.sums.get(i..i + 1)[0] += window.force[k] };
-        }
+        true
+    }
+
+    /// Adds the forces of all bonds to those on particles, and keeps the least measures of families where these are wanted.
+    fn pull_all(
+        &self,
+        windows: &mut [TileWindow],
+        pull: impl Fn(usize, &mut TileWindow) -> bool + Sync,
+        particle: &[u32],
+        f: &Shared<[f64; 3]>,
+    ) {
+        let record = &self.body.record;
+        tiles::sweep(self.body, (windows, true), pull, (FORCE_AND_MEASURE, add_rows), |records, rows| {
+            for (i, &[x, y, z, _]) in records.clone().zip(rows) {
+                let p = particle[i] as usize;
+                if p < f.len() {
+                    // SAFETY: in bounds; each particle has one record, which settles once.
+                    let f = unsafe { &mut *f.as_ptr().add(p) };
+                    let share = record[i].share;
+                    *f = [f[0] + share * x, f[1] + share * y, f[2] + share * z];
+                }
+            }
+            if self.judge.keeps {
+                // SAFETY: each record settles once.
+                let next = unsafe { self.next.get(records) };
+                next.iter_mut().zip(rows).for_each(|(next, row)| *next = row[3]);
+            }
+        });
     }
 
     /// Puts the forces of the bonds of one slab's records into the window; false if there are none.
-    fn pull<K: Isa, W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut Window) -> bool {
+    fn pull<K: Isa, W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
         let body = self.body;
-        let (own, next) = reach_of(body, slab);
+        let own = body.records(slab);
         // SAFETY: records belong to one slab.
         let lowest = unsafe { self.lowest.get(own.clone()) };
         let mut none = (vec![], 0.0);
@@ -304,17 +279,16 @@ impl Sweep<'_> {
             lowest.fill(0.0);
             return false;
         }
-        clear(window, own.len() + next.len());
-        let force = window.force.as_mut_ptr().wrapping_sub(4 * own.start);
-        let judge = self.judge.among(body, own.clone().chain(next.clone()));
+        let force = tiles::open(body, slab, window, FORCE_AND_MEASURE);
+        let judge = self.judge.among(body, body.window(slab));
         let b = &mut Block::new();
-        for (i, lowest) in own.clone().zip(lowest) {
-            let row = Row { body, i, first: ring_start(body, slab), rules: self.rules };
+        for (i, lowest) in own.zip(lowest) {
+            let row = Row { body, i, first: body.ring_start(slab), rules: self.rules };
             let acting = self.acting(self.known(i, (W::MEMORY, W::LAZY)));
             let mut low = 0.0f64;
             let mut next = row.start();
             while row.fill(&mut next, b) {
-                // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
+                // SAFETY: the kernels are those that the processor has; bonds lead to records that the window covers.
                 let woken = unsafe {
                     if W::BACK {
                         row.shape::<K, LAST>(b);
@@ -336,9 +310,6 @@ impl Sweep<'_> {
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;
-        }
-        if self.judge.keeps {
-            breaking::hand_back(own.chain(next), window, &self.next);
         }
         true
     }

@@ -188,7 +188,7 @@ fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShar
     let own = rows_of(body, &tiles[me]);
     let pairs = |from: &Range<usize>, to: &Range<usize>| {
         let takers =
-            |giver: usize| body.tiles.takers(giver).iter().map(move |taker| [giver, *taker as usize]);
+            |giver: usize| body.tiles.graph.takers(giver).iter().map(move |taker| [giver, *taker as usize]);
         from.clone().flat_map(takers).filter(|[_, taker]| to.contains(taker)).collect::<Vec<_>>()
     };
     let others = || (0..tiles.len()).filter(|with| *with != me);

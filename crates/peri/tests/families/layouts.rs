@@ -196,7 +196,7 @@ fn points_on_no_lattice_agree_with_the_textbook() {
 
 #[test]
 fn periodic_bodies_agree_with_the_textbook() {
-    // Rings of 1, 5 and 4 slabs: not coloured, odd, even.
+    // Rings of 5, 9 and 8 slabs along one axis or another.
     check("periodic 7", &periodic([7, 7, 7], 0.0), 40);
     check("periodic 17", &periodic([17, 7, 7], 0.2), 40);
     check("periodic 13", &periodic([7, 7, 13], 0.0), 40);

@@ -115,12 +115,13 @@ fn look_at_tiles(mut families: Families, at_least: usize) {
         assert!(row.start as usize >= tiles.reached(k)[slot / body.width - tiles.all[k].planes.start].first);
     }
     for k in 0..tiles.all.len() {
-        claimed.extend(tiles.givers(k).iter().map(|&giver| (giver as usize, k)));
+        claimed.extend(tiles.graph.givers(k).iter().map(|&giver| (giver as usize, k)));
         assert!(
             tiles
+                .graph
                 .takers(k)
                 .iter()
-                .all(|&t| t as usize == k || tiles.givers(t as usize).contains(&(k as u32)))
+                .all(|&t| t as usize == k || tiles.graph.givers(t as usize).contains(&(k as u32)))
         );
         let window = tiles.reached(k);
         let apart = |w: &[tiles::Reached]| w[0].cells[1] - w[0].first <= w[1].cells[0] - w[1].first;
@@ -154,13 +155,63 @@ fn same_bits_for_any_threads_with_and_without_skipping() {
     for (k, (size, horizon)) in BRICKS.into_iter().enumerate() {
         let x0 = brick(size);
         for kind in if k == 0 { &LAWS[..] } else { &LAWS[..2] } {
-            let once = forces(&x0, families((&x0, horizon), *kind, Layout::Auto, true));
-            for (count, skip) in [(1, false), (3, true), (7, false)] {
-                par::set_threads(count);
-                let again = forces(&x0, families((&x0, horizon), *kind, Layout::Auto, skip));
-                par::set_threads(1);
-                assert_eq!(once, again, "{kind:?}, {count} threads, skipping {skip}");
+            // Lists have fewer layouts of what bonds remember: three laws show all.
+            let layouts =
+                if LAWS[..3].contains(kind) { &[Layout::Auto, Layout::List][..] } else { &[Layout::Auto] };
+            for &layout in layouts {
+                let once = forces(&x0, families((&x0, horizon), *kind, layout, true));
+                for (count, skip) in [(1, false), (3, true), (7, false)] {
+                    par::set_threads(count);
+                    let again = forces(&x0, families((&x0, horizon), *kind, layout, skip));
+                    par::set_threads(1);
+                    assert_eq!(once, again, "{kind:?}, {layout:?}, {count} threads, skipping {skip}");
+                }
             }
         }
+    }
+}
+
+/// Of a brick, of one that closes along its longest axis, and of one with a narrow waist.
+#[test]
+fn slabs_of_a_list_cover_what_their_bonds_reach() {
+    let closed = Bounds { lo: [-0.5; 3], hi: [39.5, 8.5, 6.5], periodic: [true; 3], tilt: [0.0; 3] };
+    let waist = |x: &[f64; 3]| (x[0] - 19.5).abs() < 12.0 && (x[1] - 4.0).abs() > 1.1;
+    for (name, bounds, thin) in
+        [("brick", bounds(), false), ("ring", closed, false), ("waist", bounds(), true)]
+    {
+        let x0: Vec<[f64; 3]> = (0..40 * 9 * 7)
+            .map(|i| [i % 40, i / 40 % 9, i / 360].map(f64::from))
+            .filter(|x| !thin || !waist(x))
+            .collect();
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.2, s00: 1.0, alpha: 0.0 }).unwrap();
+        let (kind, volume) = (vec![1; x0.len()], vec![1.0; x0.len()]);
+        let options = FamilyOptions { layout: Layout::List, ..FamilyOptions::new(1.0) };
+        let view = PeriView { x: &x0, x0: &x0, kind: &kind, volume: &volume, bounds, excluded: None };
+        let mut families = Families::build(&view, &table, options).unwrap();
+        families.time_tiles();
+        let (list, tiles) = (&families.list, &families.list.tiles);
+        assert!(list.slabs() > 8, "{name}: {}", list.slabs());
+        assert_eq!(list.ring, name == "ring");
+        let slab_of = |record: usize| list.slab.partition_point(|first| *first as usize <= record) - 1;
+        let mut wrapped = 0;
+        for i in 0..list.record.len() {
+            let slab = slab_of(i);
+            let [ahead, back] = tiles.reached[slab];
+            for j in list.own(i).map(|b| list.partner[b] as usize) {
+                let first = list.slab[slab] as usize;
+                assert!(
+                    if j < first { j < back } else { j < ahead },
+                    "{name}: a bond leads out of the window"
+                );
+                assert!(tiles.graph.takers(slab).contains(&(slab_of(j) as u32)), "{name}");
+                wrapped += usize::from(j < first);
+            }
+            assert!(back == 0 || ahead == list.record.len(), "{name}");
+        }
+        assert_eq!(wrapped > 0, name == "ring");
+        // All slabs have as many records, in sixteens.
+        let slabs = list.slab.windows(2).map(|ends| ends[1] - ends[0]);
+        assert!(slabs.clone().all(|records| records.abs_diff(list.slab[1]) <= 31), "{name}");
     }
 }

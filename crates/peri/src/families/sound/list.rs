@@ -76,7 +76,6 @@ impl ListBody {
         let n = self.record.len();
         ascends(&self.slab, n, "slabs")?;
         must(n > 0 || self.slabs() == 0, "it has slabs and no records")?;
-        must(!self.ring || self.slabs() >= 3, "its ring has fewer than three slabs")?;
         let mut slab_of = vec![0; n];
         for (s, ends) in self.slab.windows(2).enumerate() {
             slab_of[ends[0] as usize..ends[1] as usize].fill(s as u32);
@@ -84,18 +83,16 @@ impl ListBody {
         Ok(slab_of)
     }
 
-    /// Bonds lead from their owner to a later record of its slab or the next one; living ones from particle to particle.
+    /// Bonds lead from their owner to a later record, or in a ring from a slab to an earlier one; living ones from particle to particle.
     fn bonds_are_sound(&self, slab_of: &[u32]) -> Fault {
         ascends(&self.start, self.owner.len(), "first groups")?;
-        let last = self.slabs().saturating_sub(1) as u32;
         for i in 0..self.record.len() {
             for b in self.own(i) {
                 equal("the owner of a group is", self.owner[b / GROUP] as usize, i)?;
                 let j = self.partner[b] as usize;
                 let Some(&slab) = slab_of.get(j) else { return Err("a bond leads to no record".into()) };
-                let closes = self.ring && slab_of[i] == last && slab == 0;
-                let ahead = j > i && (slab == slab_of[i] || slab == slab_of[i] + 1);
-                must(j == i || ahead || closes, "a bond leads farther than to the next slab")?;
+                let closes = self.ring && slab < slab_of[i];
+                must(j >= i || closes, "a bond leads back to a record before its owner")?;
                 let there = |r: usize| self.particle[r] != u32::MAX;
                 must(
                     !self.lives(b) || (j != i && there(i) && there(j)),
