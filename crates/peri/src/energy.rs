@@ -65,7 +65,7 @@ pub fn tally<K: Isa>(
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
         own(families, view, p as usize, (&list.state, record), scale(p as usize), t);
     }
-    list::energy::tally::<K>(families, t, (advanced, cell));
+    list::energy::tally::<K>(families, t, (advanced, cell, shares));
 }
 
 /// Sums of `row(k, sum)` for `k` below `n`, each row by itself.

@@ -23,7 +23,8 @@ use crate::lattice::gather::gather;
 use crate::lattice::sweep::Mode;
 use crate::lattice::tables;
 use crate::list;
-use crate::shares::{flagged_anywhere, forget_flags, squeezed_everywhere};
+use crate::shares::list::{forget_others, lowest_everywhere};
+use crate::shares::{agree, forget_flags, squeezed_everywhere};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::Shared;
 use perigrain_base::stop;
@@ -334,7 +335,8 @@ impl Families {
             unsafe { gather::<K>(body, view, reference, short_range, follows) };
         }
         let short_range = repels && self.list.contact >= 0.0;
-        let moved = list::gather(&mut self.list, view, short_range);
+        let share = shares.as_ref().and_then(|shares| shares.list.as_ref());
+        let moved = list::gather(&mut self.list, view, short_range, share);
         let changes = repels.then(|| self.ranges(view, &moved, (advance, shares.as_ref())));
         let searches = changes.is_some_and(|changes| self.searches(changes));
         Begun { advance, shares, changes, searches }
@@ -350,26 +352,30 @@ impl Families {
         let Begun { advance, mut shares, changes, .. } = begun;
         if let Some(shares) = &shares {
             forget_flags(&mut self.lattices, shares);
+            shares.list.iter().for_each(|share| forget_others(&mut self.list, share));
         }
         let cell = &self.cell(view);
         self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()), shares.as_mut());
-        self.sweep_list::<K>(view, f, (advance, tallied.is_some()), cell);
+        self.sweep_list::<K>(view, f, (advance, tallied.is_some()), (cell, shares.as_mut()));
         if advance && self.counts_losses {
             self.count_heat::<K>(view, cell);
         }
-        let [breaks, squeezed] = match &shares {
-            Some(_) => flagged_anywhere(&self.lattices),
-            None => [false; 2],
-        };
-        if let Some(shares) = shares.as_ref().filter(|_| squeezed) {
-            squeezed_everywhere(&mut self.lattices, shares, tallied.is_some());
+        let agreed = shares.as_ref().map(|_| agree(&self.lattices, &self.list));
+        if let Some((shares, agreed)) = shares.as_ref().zip(agreed) {
+            if agreed.squeezed {
+                squeezed_everywhere(&mut self.lattices, shares, tallied.is_some());
+            }
+            if let Some(share) = shares.list.as_ref().filter(|_| self.list.may_touch(agreed.lowest)) {
+                lowest_everywhere(&mut self.list, share, tallied.is_some());
+            }
         }
         self.contact::<K>(view, f, (changes, advance, shares.as_ref()), tallied.as_deref_mut());
         if let Some(t) = tallied {
             tally::<K>(self, view, t, (advance, cell, shares.as_ref()));
         }
         if advance {
-            self.advance::<K>(view, cell, shares.is_some().then_some(breaks));
+            let shared = agreed.zip(shares.as_mut().map(|shares| shares.list.as_mut()));
+            self.advance::<K>(view, cell, shared);
         }
         if let Some(shares) = &mut shares {
             shares.sent += shares.dues() as u64;
@@ -383,7 +389,7 @@ impl Families {
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
-        cell: &Cell,
+        (cell, shares): (&Cell, Option<&mut Shares>),
     ) {
         let Self { list, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
@@ -392,8 +398,9 @@ impl Families {
             // Read from a restart file.
             list::measure(list, law, cell);
         }
+        let share = shares.and_then(|shares| shares.list.as_mut());
         let f = Shared::new(f);
-        list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, cell);
+        list::sweep::forces::<K>(list, view, &f, (mode, options), (&settling, share), cell);
     }
 
     fn contact<K: Isa>(

@@ -13,12 +13,12 @@ impl Families {
     /// of what it has gained in the last step, to second order.
     pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
         if !self.counts_losses {
-            return self.break_bonds::<K>(view, cell, false);
+            return self.break_bonds::<K>(view, cell, None);
         }
         let mut alive: Vec<Vec<u8>> = self.lattices.iter().map(|b| b.alive.clone()).collect();
         let mut listed = self.list.alive.clone();
         let mut freed: Vec<Freed> = self.states().map(|s| s.freed.clone()).collect();
-        self.break_bonds::<K>(view, cell, false);
+        self.break_bonds::<K>(view, cell, None);
         if self.scratch.ends.is_empty() {
             return;
         }
@@ -168,7 +168,7 @@ impl Families {
         if !self.law.kind.bond_based() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
             self.sweep_lattices::<K>(view, &mut aside, (false, true), None);
-            self.sweep_list::<K>(view, &mut aside, (false, true), cell);
+            self.sweep_list::<K>(view, &mut aside, (false, true), (cell, None));
         }
         self.bond_energy::<K>(view, cell)
     }

@@ -189,14 +189,16 @@ impl Families {
         list: &RowMotion,
         (advance, shares): (bool, Option<&Shares>),
     ) -> (f64, f64) {
-        let mut all = *list;
-        let mut within = diagonal(list);
-        let mut agreed =
-            shares.map(|shares| agreed_motion(&self.lattices, shares)).unwrap_or_default().into_iter();
-        for body in &self.lattices {
-            let motion = agreed.next();
-            let motion =
-                motion.unwrap_or_else(|| body.motion.iter().fold(RowMotion::NONE, |m, row| m.with(row)));
+        let motions: Vec<RowMotion> = match shares {
+            Some(shares) => agreed_motion(&self.lattices, list, shares),
+            None => {
+                let rows = self.lattices.iter().map(|body| &body.motion);
+                let all = rows.map(|rows| rows.iter().fold(RowMotion::NONE, |m, row| m.with(row)));
+                all.chain([*list]).collect()
+            }
+        };
+        let (mut all, mut within) = (RowMotion::NONE, 0.0f64);
+        for motion in motions {
             within = within.max(diagonal(&motion));
             all = all.with(&motion);
         }

@@ -111,9 +111,7 @@ pub fn squeezed<K: Isa>(
         });
     }
     let list = &families.list;
-    // No bond is as short as that of the pair that touches first; both are rounded.
-    let lowest = list.lowest.iter().fold(0.0f32, |least, low| least.min(*low));
-    if f64::from(lowest) > list.contact + 1e-5 {
+    if !list.may_touch(list.lowest.iter().fold(0.0, |least, low| low.min(least))) {
         return;
     }
     close.find(list, rules.view, &families.options);

@@ -193,6 +193,12 @@ impl ListBody {
         }
     }
 
+    /// Whether the ends of bonds with this smallest z may be in short-range contact.
+    pub fn may_touch(&self, lowest: f32) -> bool {
+        // No bond is as short as that of the pair that touches first; both are rounded.
+        f64::from(lowest) <= self.contact + 1e-5
+    }
+
     /// Memory held.
     pub fn bytes(&self) -> usize {
         self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 4)

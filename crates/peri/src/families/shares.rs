@@ -1,19 +1,21 @@
-//! Which tiles of bodies on lattices each of several ranks sweeps, and what ranks owe to each other for that.
+//! Which tiles of bodies each of several ranks sweeps, and what ranks owe to each other for that.
 
 use std::ops::Range;
 
-/// The owner of particles that all ranks move alike: those of no body on a lattice.
+/// The owner of particles that all ranks move alike: those of no body.
 pub const ALL: u16 = u16::MAX;
 
-/// How the work on bodies on lattices is dealt out to ranks. Nothing a step depends on: the same bits with any deal, and without one.
+/// How the work on bodies is dealt out to ranks. Nothing a step depends on: the same bits with any deal, and without one.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
     /// This rank.
     pub me: usize,
     /// How many there are.
     pub ranks: usize,
-    /// Of each body.
+    /// Of each body on a lattice.
     pub bodies: Vec<BodyShare>,
+    /// Of the list, where it has records: slabs are its tiles, and its row slots.
+    pub list: Option<BodyShare>,
     /// The rank that each particle belongs to, or [`ALL`].
     pub owner: Vec<u16>,
     /// This rank's particles, and those of all.
@@ -72,7 +74,7 @@ pub struct Dues {
 impl Shares {
     /// Bytes that this rank's tiles hand over to others in one sweep.
     pub fn dues(&self) -> usize {
-        let all = self.bodies.iter().map(|body| {
+        let all = self.bodies.iter().chain(&self.list).map(|body| {
             let dues = body.gives.iter().map(|dues| dues.bytes.len());
             dues.chain(body.rows.iter().map(|rows| rows.bytes[0].len())).sum::<usize>()
         });

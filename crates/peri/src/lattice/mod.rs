@@ -150,7 +150,11 @@ fn lattice_body<K: Isa>(
         let sweep = Sweep::new(body, &mut columns, mode, newton, states);
         states::all::<K>(&sweep, sum, (&tiles, &mut windows), share.as_deref_mut(), &shared);
         if let Some(share) = share {
-            share_sums(body, &mut share.rows, &mut sums);
+            let places = |slot: usize| {
+                let cells = body.rows[slot].cells();
+                PAD + cells.start..PAD + cells.end
+            };
+            share_sums(places, &mut share.rows, &mut sums);
         }
         body.state.sums = sums;
     };

@@ -14,7 +14,7 @@ use crate::lattice::states::States;
 use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
 use crate::pass::{HandOver, Over, pass};
-use crate::shares::dues::hand_over;
+use crate::shares::dues::{OfLattice, hand_over};
 use perigrain_base::par::Shared;
 
 /// How one force evaluation treats the bonds of a body.
@@ -360,8 +360,8 @@ pub(crate) fn with_share(
     pass: impl FnOnce(Option<HandOver>),
 ) {
     let Some(BodyShare { mine, waits, gives, takes, .. }) = share else { return pass(None) };
-    let mut exchange =
-        |windows: &mut [TileWindow]| hand_over(body, tiles, windows, (&mut *gives, &mut *takes), components);
+    let owing = OfLattice { body, tiles, components };
+    let mut exchange = |windows: &mut [TileWindow]| hand_over(&owing, windows, gives, takes);
     pass(Some(HandOver { own: mine.clone(), waits, exchange: &mut exchange }));
 }
 

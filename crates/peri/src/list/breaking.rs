@@ -6,6 +6,7 @@
 //! the same numbers.
 
 use crate::families::list::{GROUP, ListBody, PairConstants};
+use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
 use crate::families::{Candidate, FamilyOptions};
 use crate::lanes::isa::{Isa, Kernel};
@@ -13,6 +14,7 @@ use crate::lattice::sweep::Mode;
 use crate::law::series::stretch;
 use crate::list::kernel::{Block, LAST, MOST, Row, Rules, partners};
 use crate::list::tiles::{self, ROW};
+use crate::shares::dues::share_sums;
 use perigrain_base::par::Shared;
 
 /// Bonds keep measures when the most stretched of them has come this close to its limit.
@@ -198,23 +200,24 @@ pub fn add_rows(sum: &mut [f64; ROW], row: &[f64; ROW]) {
     *sum = [sum[0] + row[0], sum[1] + row[1], sum[2] + row[2], sum[3].min(row[3])];
 }
 
-/// Finds the bonds that break in this step.
+/// Finds the bonds that break in this step; of several ranks each finds those of its `share`, where `some` of any may break.
 pub fn candidates<K: Isa>(
     body: &mut ListBody,
     (rules, options): (&Rules, &FamilyOptions),
+    (share, some): (Option<&mut BodyShare>, bool),
     found: &mut Vec<Candidate>,
 ) {
     found.clear();
     let mode = Mode { advance: true, breaking_enabled: true, skip: false };
     let judge = Judge::new(body, mode, options);
-    if body.limits.strained.iter().all(|(bonds, _)| bonds.is_empty()) {
+    if !some {
         return;
     }
     if !judge.known {
         for b in body.broken.clone() {
             body.set(b as usize, true);
         }
-        body.limits.least = least::<K>(body, rules, &judge);
+        body.limits.least = least::<K>(body, rules, &judge, share);
         for b in body.broken.clone() {
             body.set(b as usize, false);
         }
@@ -231,9 +234,18 @@ pub fn candidates<K: Isa>(
 }
 
 impl ListBody {
-    /// Breaks bonds, except those of particles that are `spared`, and remembers them as those of this step.
-    pub(in super::super) fn break_all(&mut self, bonds: &mut Vec<Candidate>, spared: &dyn Fn(u32) -> bool) {
+    /// Whether bonds may break in this step.
+    pub(in super::super) fn is_strained(&self) -> bool {
+        self.limits.strained.iter().any(|(bonds, _)| !bonds.is_empty())
+    }
+
+    /// Leaves out bonds of particles that are `spared`.
+    pub(in super::super) fn spare(&self, bonds: &mut Vec<Candidate>, spared: &dyn Fn(u32) -> bool) {
         bonds.retain(|c| !c.ends.iter().any(|record| spared(self.particle[*record as usize])));
+    }
+
+    /// Breaks bonds and remembers them as those of this step.
+    pub(in super::super) fn break_all(&mut self, bonds: &[Candidate]) {
         self.broken.clear();
         for c in bonds {
             self.broken.push(c.bond);
@@ -242,8 +254,13 @@ impl ListBody {
     }
 }
 
-/// The least measures of all families in the last step that advanced.
-fn least<K: Isa>(body: &mut ListBody, rules: &Rules, judge: &Judge) -> Vec<f64> {
+/// The least measures of all families in the last step that advanced; on a rank with a share, of those that its bonds lead to.
+fn least<K: Isa>(
+    body: &mut ListBody,
+    rules: &Rules,
+    judge: &Judge,
+    mut share: Option<&mut BodyShare>,
+) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; body.record.len()];
     let mut windows = std::mem::take(&mut body.tiles.windows);
     let (list, shared): (&ListBody, _) = (body, Shared::new(&mut least));
@@ -268,17 +285,21 @@ fn least<K: Isa>(body: &mut ListBody, rules: &Rules, judge: &Judge) -> Vec<f64> 
         }
         true
     };
-    tiles::sweep(list, (&mut windows, false), act, (FORCE_AND_MEASURE, add_rows), |records, rows| {
+    let over = (&mut windows[..], false, share.as_deref_mut());
+    tiles::sweep(list, over, act, (FORCE_AND_MEASURE, add_rows), |records, rows| {
         // SAFETY: each record settles once.
         let least = unsafe { shared.get(records) };
         least.iter_mut().zip(rows).for_each(|(least, row)| *least = row[3]);
     });
+    if let Some(share) = share {
+        share_sums(|slab| list.records(slab), &mut share.rows, &mut least);
+    }
     body.tiles.windows = windows;
     least
 }
 
-/// Makes the measures of this step, which has advanced, those of the last one.
-pub fn roll(body: &mut ListBody) {
+/// Makes the measures of this step, which has advanced, those of the last one; of several ranks all have agreed upon the largest z of all bonds.
+pub fn roll(body: &mut ListBody, agreed: Option<f64>) {
     let (s00, alpha) =
         body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
     let s00 = s00 * body.scatter.weakest();
@@ -289,7 +310,7 @@ pub fn roll(body: &mut ListBody) {
     if !kept {
         limits.least.clear();
     }
-    let top = limits.strained.iter().map(|s| s.1).fold(0.0, f64::max);
+    let top = agreed.unwrap_or_else(|| limits.strained.iter().map(|s| s.1).fold(0.0, f64::max));
     limits.near = 0.5 * top * (1.0 + alpha) >= NEAR * s00;
     limits.top = Some(top);
 }

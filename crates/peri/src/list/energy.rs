@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 
 use crate::energy::{Sums, collect, shares};
 use crate::families::list::ListBody;
+use crate::families::shares::{BodyShare, Shares};
 use crate::families::{Cell, Families, ForceUnit, PeriTally};
 use crate::lanes::isa::Isa;
 use crate::lattice::chunk::SUMS;
@@ -12,6 +13,7 @@ use crate::law::{BondLaw, Moment, of_law};
 use crate::list::kernel::{Block, FULL, LAST, Row, Rules};
 use crate::list::laws::{self, Acting, Hand};
 use crate::list::sweep::in_rows;
+use crate::shares::list::parts_everywhere;
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 
@@ -29,7 +31,11 @@ struct Energies<'a> {
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
-pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, cell): (bool, &Cell)) {
+pub fn tally<K: Isa>(
+    families: &mut Families,
+    t: &mut PeriTally,
+    (advanced, cell, dealt): (bool, &Cell, Option<&Shares>),
+) {
     let (law, options, n) = (&families.law, &families.options, families.list.record.len());
     let (kind, compat) = (law.kind, options.compat_lammps);
     let rules = Rules::new(cell, options, law);
@@ -47,7 +53,8 @@ pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, cell
     let look = laws::Looking { angles: &angles, states: own, half, newton };
     let e = Energies { list, rules: &rules, acting: &acting, look: &look, advanced };
     let rows = &mut families.scratch.rows;
-    of_law!(kind, compat, W => e.tally::<K, W>(rows, t));
+    let share = dealt.and_then(|shares| Some((shares.list.as_ref()?, shares.me)));
+    of_law!(kind, compat, W => e.tally::<K, W>(rows, share, t));
 }
 
 /// θ of each record and its unrelaxed part, in rows of four.
@@ -58,7 +65,12 @@ fn angles(list: &ListBody) -> Vec<f64> {
 }
 
 impl Energies<'_> {
-    fn tally<K: Isa, W: BondLaw>(&self, rows: &mut Vec<Sums>, t: &mut PeriTally) {
+    fn tally<K: Isa, W: BondLaw>(
+        &self,
+        rows: &mut Vec<Sums>,
+        share: Option<(&BodyShare, usize)>,
+        t: &mut PeriTally,
+    ) {
         let n = self.list.record.len();
         if t.per_atom() {
             let b = &mut Block::new();
@@ -67,8 +79,10 @@ impl Energies<'_> {
         }
         rows.clear();
         rows.resize(n.div_ceil(PART), [0.0; 7]);
+        let own = share.map_or(0..rows.len(), |(share, _)| self.list.parts_of(&share.mine));
         let shared = Shared::new(rows);
-        par::for_rows(n.div_ceil(PART), |part| {
+        par::for_rows(own.len(), |k| {
+            let part = own.start + k;
             let (b, mut sum) = (&mut Block::new(), PeriTally::default());
             for i in part * PART..n.min((part + 1) * PART) {
                 self.record::<K, W>(i, b, &mut sum);
@@ -77,6 +91,9 @@ impl Energies<'_> {
             // SAFETY: each part has its own sum.
             unsafe { shared.get(part..part + 1)[0] = [sum.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
         });
+        if let Some(share) = share {
+            parts_everywhere(self.list, share, rows);
+        }
         collect(rows, t);
     }
 

@@ -9,6 +9,7 @@ pub(crate) mod tiles;
 
 use crate::families::lattice::RowMotion;
 use crate::families::list::{GROUP, ListBody, PairConstants};
+use crate::families::shares::BodyShare;
 use crate::families::{
     Cell, FamilyOptions, ForceUnit, Influence, Law, PeriView, PmbCoeff, PmbTable, VolumeRule,
 };
@@ -71,16 +72,26 @@ fn constants(k: &PmbCoeff, yields: f64, (options, law): (&FamilyOptions, &Law)) 
 }
 
 /// Gathers displacements from positions; returns their change since the last step that advanced. Where contact is `short_range`
-/// even between undisplaced particles, nothing is at rest.
-pub fn gather(body: &mut ListBody, view: &PeriView, short_range: bool) -> RowMotion {
+/// even between undisplaced particles, nothing is at rest. Of several ranks each looks at its share, and takes what it does not follow for
+/// moving.
+pub fn gather(
+    body: &mut ListBody,
+    view: &PeriView,
+    short_range: bool,
+    share: Option<&BodyShare>,
+) -> RowMotion {
     let (record, moving) = (Shared::new(&mut body.record), Shared::new(&mut body.moving));
     let (slab, particle, last) = (&body.slab, &body.particle, &body.last);
     let (tilted, edges) = (view.bounds.tilted(), view.bounds.periods());
+    let follows = |slab: usize| share.is_none_or(|share| share.follows[slab]);
     par::for_rows(moving.len(), |s| {
         let range = slab[s] as usize..slab[s + 1] as usize;
         // SAFETY: slabs do not share records.
         let (record, moving) = unsafe { (record.get(range.clone()), &mut moving.get(s..s + 1)[0]) };
-        *moving = short_range;
+        *moving = short_range || !follows(s);
+        if !follows(s) {
+            return;
+        }
         for (record, i) in record.iter_mut().zip(range) {
             let Some(x) = view.x.get(particle[i] as usize) else { continue };
             if tilted {
@@ -100,11 +111,12 @@ pub fn gather(body: &mut ListBody, view: &PeriView, short_range: bool) -> RowMot
             *moving |= record.u != [0.0; 3];
         }
     });
+    let own = share.map_or(0..body.record.len(), |share| body.records_of(&share.mine));
     let changes = par::reduce(
-        body.record.len(),
+        own.len(),
         |range| {
             let mut motion = RowMotion::NONE;
-            for i in range.filter(|&i| particle[i] != u32::MAX) {
+            for i in range.map(|k| own.start + k).filter(|&i| particle[i] != u32::MAX) {
                 let change = [0, 1, 2].map(|k| body.record[i].u[k] - last[i][k]);
                 motion = motion.with(&RowMotion { least: change, most: change, ..RowMotion::NONE });
             }

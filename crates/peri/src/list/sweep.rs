@@ -7,6 +7,7 @@ use std::marker::PhantomData;
 
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
+use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
 use crate::families::{Cell, FamilyOptions, LawKind, PeriView};
 use crate::lanes::isa::Isa;
@@ -19,17 +20,21 @@ use crate::list::breaking::{FORCE_AND_MEASURE, Judge, add_rows};
 use crate::list::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
 use crate::list::laws::{Acting, AddUp, Hand, Pull};
 use crate::list::tiles::{self, lay_slabs};
+use crate::shares::dues::share_sums;
 use perigrain_base::par::{self, Shared};
 
 const _: () = assert!(size_of::<Record>() == 64);
 
-/// Adds the forces of all bonds to `f`.
+/// A sweep over a list with windows, and a rank's share of it.
+type Act<'a> = dyn Fn(&Sweep, &mut [TileWindow], Option<&mut BodyShare>) + 'a;
+
+/// Adds the forces of all bonds to `f`; of several ranks each adds those of its share.
 pub fn forces<K: Isa>(
     list: &mut ListBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
-    settling: &Settling,
+    (settling, mut share): (&Settling, Option<&mut BodyShare>),
     cell: &Cell,
 ) {
     let n = list.record.len();
@@ -69,7 +74,7 @@ pub fn forces<K: Isa>(
         only,
         stiffness: &stiffness,
     };
-    let sweep = |list: &mut ListBody, numbers: usize, act: &dyn Fn(&Sweep, &mut [TileWindow])| {
+    let mut sweep = |list: &mut ListBody, numbers: usize, act: &Act| {
         let mut memory = std::mem::take(&mut list.state.memory);
         let mut touched = std::mem::take(&mut list.state.touched);
         let mut lowest = std::mem::take(&mut list.lowest);
@@ -91,7 +96,7 @@ pub fn forces<K: Isa>(
             rules: &rules,
             moment: now,
         };
-        act(&sweep, &mut windows);
+        act(&sweep, &mut windows, share.as_deref_mut());
         (list.state.memory, list.state.touched, list.state.sums) = (memory, touched, sums);
         list.lowest = lowest;
         (list.limits.strained, list.limits.next) = (strained, next);
@@ -103,7 +108,7 @@ pub fn forces<K: Isa>(
     };
     if !kind.bond_based() {
         clear_sums(list);
-        sweep(list, 0, &|s, windows| s.add_up::<K, Dilatation>(&moving, windows));
+        sweep(list, 0, &|s, w, share| s.add_up::<K, Dilatation>(&moving, w, share));
         settling.dilatations(&mut list.state, &sites);
     }
     if kind == LawKind::Shaped {
@@ -111,15 +116,15 @@ pub fn forces<K: Isa>(
     }
     if kind == LawKind::ElasticPlastic {
         clear_sums(list);
-        sweep(list, Norm::COLUMNS, &|s, windows| match settling.compat {
-            true => s.add_up::<K, NormLammps>(active, windows),
-            false => s.add_up::<K, Norm>(active, windows),
+        sweep(list, Norm::COLUMNS, &|s, w, share| match settling.compat {
+            true => s.add_up::<K, NormLammps>(active, w, share),
+            false => s.add_up::<K, Norm>(active, w, share),
         });
         settling.flow(&mut list.state, &sites);
     }
     let columns = columns_of(kind, settling.compat);
     let pull = |s: &Sweep, slab: usize, w: &mut TileWindow| of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w));
-    sweep(list, columns, &|s, windows| s.pull_all(windows, |slab, w| pull(s, slab, w), &particle, f));
+    sweep(list, columns, &|s, w, share| s.pull_all((w, share), |slab, w| pull(s, slab, w), &particle, f));
     (list.particle, list.moving, list.scatter.stiffness) = (particle, moving, stiffness);
     settling.held(&mut list.state);
 }
@@ -198,14 +203,21 @@ impl Sweep<'_> {
     }
 
     /// Adds a term of all bonds to the sums of both ends.
-    fn add_up<K: Isa, T: Term>(&self, active: &[bool], windows: &mut [TileWindow]) {
+    fn add_up<K: Isa, T: Term>(
+        &self,
+        active: &[bool],
+        windows: &mut [TileWindow],
+        mut share: Option<&mut BodyShare>,
+    ) {
         let add = |sum: &mut [f64; 1], more: &[f64; 1]| sum[0] += more[0];
         let act = |slab: usize, window: &mut TileWindow| self.add_up_slab::<K, T>(slab, active, window);
-        tiles::sweep(self.body, (windows, false), act, ([0.0], add), |records, sums| {
+        let over = (windows, false, share.as_deref_mut());
+        tiles::sweep(self.body, over, act, ([0.0], add), |records, sums| {
             // SAFETY: each record settles once.
             let own = unsafe { self.sums.get(records) };
             own.iter_mut().zip(sums).for_each(|(own, sum)| *own += sum[0]);
         });
+        self.share(share, &self.sums);
     }
 
     /// The same of one slab's bonds into its window; false if these rest.
@@ -234,16 +246,26 @@ impl Sweep<'_> {
         true
     }
 
+    /// Takes the numbers of records that this rank's bonds lead to from the ranks that have them.
+    fn share(&self, share: Option<&mut BodyShare>, numbers: &Shared<f64>) {
+        if let Some(share) = share {
+            // SAFETY: all slabs have settled.
+            let numbers = unsafe { numbers.get(0..numbers.len()) };
+            share_sums(|slab| self.body.records(slab), &mut share.rows, numbers);
+        }
+    }
+
     /// Adds the forces of all bonds to those on particles, and keeps the least measures of families where these are wanted.
     fn pull_all(
         &self,
-        windows: &mut [TileWindow],
+        (windows, mut share): (&mut [TileWindow], Option<&mut BodyShare>),
         pull: impl Fn(usize, &mut TileWindow) -> bool + Sync,
         particle: &[u32],
         f: &Shared<[f64; 3]>,
     ) {
         let record = &self.body.record;
-        tiles::sweep(self.body, (windows, true), pull, (FORCE_AND_MEASURE, add_rows), |records, rows| {
+        let over = (windows, true, share.as_deref_mut());
+        tiles::sweep(self.body, over, pull, (FORCE_AND_MEASURE, add_rows), |records, rows| {
             for (i, &[x, y, z, _]) in records.clone().zip(rows) {
                 let p = particle[i] as usize;
                 if p < f.len() {
@@ -259,6 +281,9 @@ impl Sweep<'_> {
                 next.iter_mut().zip(rows).for_each(|(next, row)| *next = row[3]);
             }
         });
+        if self.judge.keeps {
+            self.share(share, &self.next);
+        }
     }
 
     /// Puts the forces of the bonds of one slab's records into the window; false if there are none.

@@ -3,8 +3,11 @@
 use std::ops::Range;
 
 use crate::families::list::{GROUP, ListBody};
-use crate::families::tiles::{ListTiles, TileGraph, TileWindow};
-use crate::pass::{Over, pass};
+use crate::families::shares::BodyShare;
+use crate::families::tiles::{TileGraph, TileWindow};
+use crate::pass::{HandOver, Over, pass};
+use crate::shares::dues::hand_over;
+use crate::shares::list::OfList;
 
 /// Numbers of each record in windows of forces: the force, and the least measure.
 pub const ROW: usize = 4;
@@ -17,23 +20,19 @@ pub(crate) fn lay_slabs(body: &mut ListBody) {
     if body.tiles.graph.tiles() == body.slabs() {
         return;
     }
-    let reached: Vec<[usize; 2]> = (0..body.slabs()).map(|slab| reach(body, slab)).collect();
-    let n = body.record.len();
-    let slabs = || body.slab.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
-    let reaches = |giver: usize, taker: &Range<usize>| {
-        let from = body.slab[giver] as usize;
-        overlap((from, reached[giver], n), taker).is_some()
+    body.tiles.reached = (0..body.slabs()).map(|slab| reach(body, slab)).collect();
+    let list: &ListBody = body;
+    let reaches = |giver: usize, records: &Range<usize>| overlap(list, giver, records).is_some();
+    let giving = |taker: usize| {
+        let (others, records) = ((0..list.slabs()).filter(|giver| *giver != taker), list.records(taker));
+        others.filter(|giver| reaches(*giver, &records)).map(|giver| giver as u32).collect()
     };
-    let giving = |(taker, records): (usize, Range<usize>)| {
-        let others = (0..reached.len()).filter(|giver| *giver != taker && reaches(*giver, &records));
-        others.map(|giver| giver as u32).collect()
-    };
-    let givers: Vec<Vec<u32>> = slabs().enumerate().map(giving).collect();
-    let windows = givers.iter().map(|_| TileWindow::default()).collect();
-    body.tiles = ListTiles { reached, graph: TileGraph::of(&givers), windows };
+    let givers: Vec<Vec<u32>> = (0..list.slabs()).map(giving).collect();
+    body.tiles.graph = TileGraph::of(&givers);
+    body.tiles.windows = givers.iter().map(|_| TileWindow::default()).collect();
 }
 
-/// See [`ListTiles::reached`].
+/// See [`crate::families::tiles::ListTiles::reached`].
 fn reach(body: &ListBody, slab: usize) -> [usize; 2] {
     let own = body.slab[slab] as usize..body.slab[slab + 1] as usize;
     let bonds = GROUP * body.start[own.start] as usize..GROUP * body.start[own.end] as usize;
@@ -46,11 +45,9 @@ fn reach(body: &ListBody, slab: usize) -> [usize; 2] {
     }
 }
 
-/// What of some records a window covers that begins with record `from` and reaches so far, of a list of `n`; and the place of the first of them.
-fn overlap(
-    (from, reached, n): (usize, [usize; 2], usize),
-    records: &Range<usize>,
-) -> Option<(Range<usize>, usize)> {
+/// What of some records the window of a slab covers, and the place of the first of them.
+pub(crate) fn overlap(body: &ListBody, slab: usize, records: &Range<usize>) -> Option<(Range<usize>, usize)> {
+    let (from, reached, n) = (body.slab[slab] as usize, body.tiles.reached[slab], body.record.len());
     let ahead = records.start.max(from)..records.end.min(reached[0]);
     if !ahead.is_empty() {
         let place = ahead.start - from;
@@ -78,37 +75,47 @@ impl ListBody {
     }
 }
 
-/// Gives the window of a slab its room: these `numbers` for each record that it covers. The place of the numbers of record 0, were it in the
-/// window.
+/// Makes room in the window of a slab for `N` numbers of each record that it covers; how many these are in all.
+pub(crate) fn make_room<const N: usize>(body: &ListBody, slab: usize, window: &mut TileWindow) -> usize {
+    let [ahead, back] = body.tiles.reached[slab];
+    let length = N * (ahead - body.slab[slab] as usize + back);
+    if window.sums.len() < length {
+        window.sums.resize(length, 0.0);
+    }
+    length
+}
+
+/// Opens the window of a slab: these `numbers` for each record that it covers. The place of the numbers of record 0, were it in the window.
 pub(crate) fn open<const N: usize>(
     body: &ListBody,
     slab: usize,
     window: &mut TileWindow,
     numbers: [f64; N],
 ) -> *mut f64 {
-    let [ahead, back] = body.tiles.reached[slab];
-    let first = body.slab[slab] as usize;
-    let length = N * (ahead - first + back);
     window.sums = body.tiles.graph.take_room();
-    if window.sums.len() < length {
-        window.sums.resize(length, 0.0);
-    }
+    let length = make_room::<N>(body, slab, window);
     window.sums[..length].as_chunks_mut::<N>().0.fill(numbers);
-    window.sums.as_mut_ptr().wrapping_sub(N * first)
+    window.sums.as_mut_ptr().wrapping_sub(N * body.slab[slab] as usize)
 }
 
 /// Sweeps each slab into its window, as [`pass`] does, and settles it: `settle(records, rows)` with what some of its records are owed in all, each
-/// number made of those of windows by `add`, in their order, from `none` on.
+/// number made of those of windows by `add`, in their order, from `none` on. Of several ranks each sweeps its share.
 pub(crate) fn sweep<const N: usize>(
     body: &ListBody,
-    (windows, timed): (&mut [TileWindow], bool),
+    (windows, timed, share): (&mut [TileWindow], bool, Option<&mut BodyShare>),
     sweep: impl Fn(usize, &mut TileWindow) -> bool + Sync,
     (none, add): ([f64; N], impl Fn(&mut [f64; N], &[f64; N]) + Sync),
     settle: impl Fn(Range<usize>, &[[f64; N]]) + Sync,
 ) {
     let graph = &body.tiles.graph;
     let times = if timed { &graph.times[..] } else { &[] };
-    pass(Over { graph, windows, times, share: None }, sweep, |slab, windows| {
+    let owing = OfList::<N>(body);
+    let mut dues = share.map(|BodyShare { mine, waits, gives, takes, .. }| {
+        let exchange = |windows: &mut [TileWindow]| hand_over(&owing, windows, gives, takes);
+        (mine.clone(), &waits[..], exchange)
+    });
+    let share = dues.as_mut().map(|(own, waits, exchange)| HandOver { own: own.clone(), waits, exchange });
+    pass(Over { graph, windows, times, share }, sweep, |slab, windows| {
         // Its own window and those of its givers, in their order; what is at rest owes nothing.
         let givers = || std::iter::once(slab as u32).chain(graph.givers(slab).iter().copied());
         // SAFETY: a slab settles when it and those that reach into it have been swept.
@@ -122,8 +129,7 @@ pub(crate) fn sweep<const N: usize>(
             let piece = first..records.end.min(first + PIECE);
             sums.fill(none);
             for (giver, window) in owing() {
-                let covered = (body.slab[giver] as usize, body.tiles.reached[giver], body.record.len());
-                let Some((some, place)) = overlap(covered, &piece) else { continue };
+                let Some((some, place)) = overlap(body, giver, &piece) else { continue };
                 let rows = window.sums[N * place..].as_chunks::<N>().0;
                 let to = &mut sums[some.start - piece.start..][..some.len()];
                 to.iter_mut().zip(rows).for_each(|(sum, row)| add(sum, row));

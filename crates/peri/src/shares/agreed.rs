@@ -1,6 +1,7 @@
 //! What all ranks agree upon in a step: how far bodies have moved, what is squeezed, what breaks.
 
 use crate::families::lattice::{LANES, LatticeBody, RowMotion};
+use crate::families::list::ListBody;
 use crate::families::shares::{BodyShare, Shares};
 use crate::families::{Candidate, PeriView};
 use crate::lattice::sweep::{MAY_BREAK, SQUEEZED};
@@ -8,12 +9,14 @@ use crate::shares::whole::slots_of;
 use perigrain_base::comm;
 use perigrain_base::comm::numbers::{next, put, take};
 
-/// What has moved in each body, on all ranks together.
-pub(crate) fn agreed_motion(bodies: &[LatticeBody], shares: &Shares) -> Vec<RowMotion> {
+/// What has moved in each body on a lattice and in the list, on all ranks together.
+pub(crate) fn agreed_motion(bodies: &[LatticeBody], list: &RowMotion, shares: &Shares) -> Vec<RowMotion> {
     let mut ends = vec![];
-    for (body, share) in bodies.iter().zip(&shares.bodies) {
+    let lattices = bodies.iter().zip(&shares.bodies).map(|(body, share)| {
         let rows = body.motion.iter().zip(&share.own).filter(|(_, own)| **own);
-        let motion = rows.fold(RowMotion::NONE, |m, (row, _)| m.with(row));
+        rows.fold(RowMotion::NONE, |m, (row, _)| m.with(row))
+    });
+    for motion in lattices.chain([*list]) {
         ends.extend(motion.least.map(|least| -least));
         ends.extend(motion.most);
     }
@@ -33,13 +36,38 @@ pub(crate) fn forget_flags(bodies: &mut [LatticeBody], shares: &Shares) {
     }
 }
 
-/// Whether some chunk of any rank has bonds that may break, and whether some has squeezed ones.
-pub(crate) fn flagged_anywhere(bodies: &[LatticeBody]) -> [bool; 2] {
-    let mut any = [MAY_BREAK, SQUEEZED].map(|flag| {
-        f64::from(u8::from(bodies.iter().any(|body| body.flagged.iter().any(|own| own & flag != 0))))
-    });
-    comm::present().most(&mut any);
-    any.map(|any| any > 0.0)
+/// What all ranks know together after a sweep.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Agreed {
+    /// Bonds of lattices may break.
+    pub(crate) breaks: bool,
+    /// Some are squeezed.
+    pub(crate) squeezed: bool,
+    /// Bonds of the list may break.
+    pub(crate) strained: bool,
+    /// The largest z of these.
+    pub(crate) top: f64,
+    /// The smallest one.
+    pub(crate) lowest: f32,
+}
+
+/// Agrees upon what ranks have found of their chunks and slabs.
+pub(crate) fn agree(bodies: &[LatticeBody], list: &ListBody) -> Agreed {
+    let any = |flag: u8| bodies.iter().any(|body| body.flagged.iter().any(|own| own & flag != 0));
+    let strained = list.is_strained();
+    let flags = [any(MAY_BREAK), any(SQUEEZED), strained].map(|flag| f64::from(u8::from(flag)));
+    let top = list.limits.strained.iter().map(|(_, top)| *top).fold(0.0, f64::max);
+    let lowest = list.lowest.iter().fold(0.0f32, |least, low| least.min(*low));
+    let mut all = [flags[0], flags[1], flags[2], top, -f64::from(lowest)];
+    comm::present().most(&mut all);
+    let [breaks, squeezed, strained, top, lowest] = all;
+    Agreed {
+        breaks: breaks > 0.0,
+        squeezed: squeezed > 0.0,
+        strained: strained > 0.0,
+        top,
+        lowest: -lowest as f32,
+    }
 }
 
 /// Whether something holds on all ranks.
@@ -89,7 +117,10 @@ pub(crate) fn rows_everywhere<const N: usize>(
     slots.into_iter().flatten().for_each(|slot| take(&mut bytes, &mut rows[slot]));
 }
 
-/// A bond that breaks, with the body that has it and the square of its length.
+/// The list, in the place of the number of a body on a lattice.
+pub(crate) const LIST: usize = u32::MAX as usize;
+
+/// A bond that breaks, with the body on a lattice that has it, or [`LIST`], and the square of its length.
 pub(crate) struct Broken {
     pub(crate) body: usize,
     pub(crate) bond: Candidate,
@@ -111,8 +142,11 @@ pub(crate) fn broken_everywhere(mut own: Vec<Broken>) -> Vec<Broken> {
             own.push(Broken { body: body as usize, bond, square });
         }
     }
-    // A chunk is one rank's, so that its own order stays.
-    own.sort_by_key(|broken| (broken.body, broken.bond.ends[0] as usize / LANES));
+    // A chunk is one rank's, so that its own order stays; those of the list come in the order of their places.
+    own.sort_by_key(|broken| match broken.body {
+        LIST => (LIST, broken.bond.bond as usize),
+        body => (body, broken.bond.ends[0] as usize / LANES),
+    });
     own
 }
 

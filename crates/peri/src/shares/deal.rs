@@ -4,52 +4,63 @@ use std::ops::Range;
 
 use crate::families::lattice::LatticeBody;
 use crate::families::shares::{ALL, BodyShare, Dues, RowLink, Shares, ranges};
+use crate::families::tiles::TileGraph;
 use crate::families::{Families, LawKind};
 use crate::lattice::tiles::lay_tiles;
+use crate::list::tiles::lay_slabs;
+use crate::shares::list::{followed_slabs, share_of_list};
 
 impl Families {
     /// Deals tiles out to ranks, the same way on each: neighbours in the order of tiles to one rank, as many particles to each as to any
-    /// other. `false` where all of them do all work: no body on a lattice, bonds that remember.
+    /// other. `false` where all of them do all work: no body, bonds that remember.
     pub fn deal(&mut self, me: usize, ranks: usize) -> bool {
         self.shares = None;
         self.scratch.contact.forget_own();
         let kind = self.law.kind;
         let forgets = kind.memory() == 0 && (kind.bond_based() || kind == LawKind::Lps);
         let plain = forgets && !self.options.compress && !self.options.reunite;
-        let tiles: usize = self
-            .lattices
-            .iter_mut()
-            .map(|body| {
-                lay_tiles(body);
-                body.tiles.all.len()
-            })
-            .sum();
-        if !plain || tiles < ranks {
+        self.lattices.iter_mut().for_each(lay_tiles);
+        lay_slabs(&mut self.list);
+        let tiles = self.lattices.iter().map(|body| body.tiles.all.len()).sum::<usize>() + self.list.slabs();
+        if !plain || tiles < ranks || !self.list.parts_are_of_slabs() {
             return false;
         }
-        let weights: Vec<Vec<usize>> = self.lattices.iter().map(weights).collect();
+        let mut weights: Vec<Vec<usize>> = self.lattices.iter().map(weights).collect();
+        weights.push(self.list.slab.windows(2).map(|ends| (ends[1] - ends[0]) as usize).collect());
         let all: usize = weights.iter().flatten().sum();
-        let (mut before, mut owner) = (0, vec![ALL; self.place.len()]);
-        let mut bodies = vec![];
-        for (body, weights) in self.lattices.iter_mut().zip(&weights) {
+        let mut before = 0;
+        let mut deal = |weights: &Vec<usize>| -> Vec<Range<usize>> {
             let mut rank_of = vec![];
             for weight in weights {
                 rank_of.push(((2 * before + weight) * ranks / (2 * all).max(1)).min(ranks - 1));
                 before += weight;
             }
-            let of =
-                |rank: usize| rank_of.partition_point(|r| *r < rank)..rank_of.partition_point(|r| *r <= rank);
-            let share = share_of(body, me, (0..ranks).map(of).collect());
-            for (tile, rank) in rank_of.iter().enumerate() {
-                cells_of(body, tile).flatten().for_each(|cell| {
-                    if let Some(owner) = owner.get_mut(body.particle[cell] as usize) {
-                        *owner = *rank as u16;
-                    }
-                });
+            let end = |rank: usize| rank_of.partition_point(|r| *r < rank);
+            (0..ranks).map(|rank| end(rank)..end(rank + 1)).collect()
+        };
+        let mut owner = vec![ALL; self.place.len()];
+        let mut own = |particles: &[u32], rank: usize| {
+            particles.iter().for_each(|p| {
+                if let Some(owner) = owner.get_mut(*p as usize) {
+                    *owner = rank as u16;
+                }
+            });
+        };
+        let mut bodies = vec![];
+        for (body, weights) in self.lattices.iter().zip(&weights) {
+            let tiles = deal(weights);
+            for (rank, tiles) in tiles.iter().enumerate() {
+                let cells = tiles.clone().flat_map(|tile| cells_of(body, tile));
+                cells.for_each(|cells| own(&body.particle[cells], rank));
             }
-            bodies.push(share);
+            bodies.push(share_of(body, me, tiles));
         }
-        let mut shares = Shares { me, ranks, bodies, owner, own: vec![], sent: 0 };
+        let slabs = deal(&weights[self.lattices.len()]);
+        for (rank, slabs) in slabs.iter().enumerate() {
+            slabs.clone().for_each(|slab| own(&self.list.particle[self.list.records(slab)], rank));
+        }
+        let list = (self.list.slabs() > 0).then(|| share_of_list(&self.list, me, slabs));
+        let mut shares = Shares { me, ranks, bodies, list, owner, own: vec![], sent: 0 };
         shares.own = ranges((0..shares.owner.len()).filter(|p| shares.moves(*p)));
         self.shares = Some(shares);
         true
@@ -86,6 +97,16 @@ impl Families {
                         if let Some(&owner) = shares.owner.get(p as usize) {
                             needs[usize::from(owner)].push(p);
                         }
+                    }
+                }
+            }
+        }
+        for (rank, needs) in needs.iter_mut().enumerate() {
+            let Some(share) = &shares.list else { continue };
+            for slab in followed_slabs(&self.list, &share.tiles[rank]) {
+                for &p in &self.list.particle[self.list.records(slab)] {
+                    if let Some(&owner) = shares.owner.get(p as usize) {
+                        needs[usize::from(owner)].push(p);
                     }
                 }
             }
@@ -186,9 +207,20 @@ fn row_links(body: &LatticeBody, me: usize, tiles: &[Range<usize>]) -> Vec<RowLi
 
 fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShare {
     let own = rows_of(body, &tiles[me]);
+    let (gives, takes, waits) = dues_of(&body.tiles.graph, me, &tiles);
+    let (mine, follows) = (tiles[me].clone(), followed(body, &tiles[me]));
+    let rows = row_links(body, me, &tiles);
+    BodyShare { mine, follows, own, gives, takes, waits, rows, tiles }
+}
+
+/// What tiles of a rank give to those of others and take from them, and those that take.
+pub(super) fn dues_of(
+    graph: &TileGraph,
+    me: usize,
+    tiles: &[Range<usize>],
+) -> (Vec<Dues>, Vec<Dues>, Vec<usize>) {
     let pairs = |from: &Range<usize>, to: &Range<usize>| {
-        let takers =
-            |giver: usize| body.tiles.graph.takers(giver).iter().map(move |taker| [giver, *taker as usize]);
+        let takers = |giver: usize| graph.takers(giver).iter().map(move |taker| [giver, *taker as usize]);
         from.clone().flat_map(takers).filter(|[_, taker]| to.contains(taker)).collect::<Vec<_>>()
     };
     let others = || (0..tiles.len()).filter(|with| *with != me);
@@ -199,7 +231,5 @@ fn share_of(body: &LatticeBody, me: usize, tiles: Vec<Range<usize>>) -> BodyShar
     let mut waits: Vec<usize> = takes.iter().flat_map(|d| &d.pairs).map(|pair| pair[1]).collect();
     waits.sort_unstable();
     waits.dedup();
-    let (mine, follows) = (tiles[me].clone(), followed(body, &tiles[me]));
-    let rows = row_links(body, me, &tiles);
-    BodyShare { mine, follows, own, gives, takes, waits, rows, tiles }
+    (gives, takes, waits)
 }

@@ -28,22 +28,47 @@ pub(crate) fn overlap<'a>(
     (cells[0] < cells[1]).then_some((cells, at))
 }
 
-/// All that one tile's window has for another tile: cells, and where they begin in the window, counted from its base.
-fn parts<'a>(
-    body: &'a LatticeBody,
-    tiles: &'a Tiles,
-    [giver, taker]: [usize; 2],
-) -> impl Iterator<Item = (Range<usize>, usize)> + use<'a> {
-    let planes = tiles.all[taker].planes.clone();
-    let found = planes.filter_map(move |plane| overlap(body, (tiles, giver, taker), plane));
-    found.map(|([low, high], at)| (low..high, low - at.first))
+/// Windows of a body as messages have them.
+pub(crate) trait Owing {
+    /// Gives the window of another rank's tile its room.
+    fn open(&self, tile: usize, window: &mut TileWindow);
+
+    /// Calls `run` for all numbers that a tile's window, which is open, has for another tile, those beside each other at once.
+    fn runs(&self, pair: [usize; 2], window: &TileWindow, run: impl FnMut(Range<usize>));
 }
 
-/// How long a message is: the numbers of pairs of tiles of which the first one owes something.
-fn length(body: &LatticeBody, tiles: &Tiles, dues: &Dues, components: usize) -> usize {
-    let cells = |pair: &[usize; 2]| parts(body, tiles, *pair).map(|(cells, _)| cells.len()).sum::<usize>();
-    let owing = dues.pairs.iter().zip(&dues.owes).filter(|(_, owes)| **owes != 0);
-    owing.map(|(pair, _)| NUMBER * components * cells(pair)).sum()
+/// Those of a body on a lattice, with so many components.
+pub(crate) struct OfLattice<'a> {
+    /// The body, without its tiles.
+    pub(crate) body: &'a LatticeBody,
+    /// Its tiles.
+    pub(crate) tiles: &'a Tiles,
+    /// Numbers for each cell.
+    pub(crate) components: usize,
+}
+
+impl Owing for OfLattice<'_> {
+    /// The room stays: only what this rank's tiles take is written and read.
+    fn open(&self, tile: usize, window: &mut TileWindow) {
+        let Some(top) = self.tiles.reached(tile).last() else { return };
+        let (base, stride) = (PAD, staggered(top.cells[1] - top.first));
+        (window.base, window.stride) = (base, stride);
+        if window.sums.len() < base + self.components * stride {
+            window.sums.resize(base + self.components * stride, 0.0);
+        }
+    }
+
+    fn runs(&self, [giver, taker]: [usize; 2], window: &TileWindow, mut run: impl FnMut(Range<usize>)) {
+        for plane in self.tiles.all[taker].planes.clone() {
+            let Some(([low, high], at)) = overlap(self.body, (self.tiles, giver, taker), plane) else {
+                continue;
+            };
+            for k in 0..self.components {
+                let from = window.base + k * window.stride + low - at.first;
+                run(from..from + high - low);
+            }
+        }
+    }
 }
 
 /// Sends something of each of some dues to its rank, and receives the same of others from theirs.
@@ -58,11 +83,10 @@ fn swap(gives: &mut [Dues], takes: &mut [Dues], what: impl for<'a> Fn(&'a mut Du
 /// Hands the windows of this rank's tiles over to the ranks whose tiles they reach, and puts those of others in their places. What is at rest
 /// owes nothing: a first message says which tiles owe something.
 pub(crate) fn hand_over(
-    body: &LatticeBody,
-    tiles: &Tiles,
+    owing: &impl Owing,
     windows: &mut [TileWindow],
-    (gives, takes): (&mut [Dues], &mut [Dues]),
-    components: usize,
+    gives: &mut [Dues],
+    takes: &mut [Dues],
 ) {
     for dues in &mut *gives {
         dues.owes.clear();
@@ -70,64 +94,44 @@ pub(crate) fn hand_over(
     }
     takes.iter_mut().for_each(|dues| dues.owes.resize(dues.pairs.len(), 0));
     swap(gives, takes, |dues| &mut dues.owes);
-    for dues in &mut *takes {
-        let length = length(body, tiles, dues, components);
-        dues.bytes.resize(length, 0);
-    }
     for Dues { pairs, owes, bytes, .. } in &mut *gives {
         bytes.clear();
         for (&pair, _) in pairs.iter().zip(owes).filter(|(_, owes)| **owes != 0) {
             let window = &windows[pair[0]];
-            for (cells, from) in parts(body, tiles, pair) {
-                for k in 0..components {
-                    let from = window.base + k * window.stride + from;
-                    put(bytes, &window.sums[from..from + cells.len()]);
-                }
-            }
+            owing.runs(pair, window, |run| put(bytes, &window.sums[run]));
         }
     }
-    swap(gives, takes, |dues| &mut dues.bytes);
-    for Dues { pairs, owes, bytes, .. } in takes {
-        let mut bytes = &bytes[..];
+    for Dues { pairs, owes, bytes, .. } in &mut *takes {
+        let mut length = 0;
         for (&pair, owes) in pairs.iter().zip(owes) {
             let window = &mut windows[pair[0]];
             window.touched = *owes != 0;
-            if !window.touched {
-                continue;
+            if window.touched {
+                owing.open(pair[0], window);
+                owing.runs(pair, window, |run| length += NUMBER * run.len());
             }
-            open(window, tiles.reached(pair[0]), components);
-            for (cells, from) in parts(body, tiles, pair) {
-                for k in 0..components {
-                    let from = window.base + k * window.stride + from;
-                    take(&mut bytes, &mut window.sums[from..from + cells.len()]);
-                }
-            }
+        }
+        bytes.resize(length, 0);
+    }
+    swap(gives, takes, |dues| &mut dues.bytes);
+    for Dues { pairs, owes, bytes, .. } in takes {
+        let (mut bytes, mut runs) = (&bytes[..], vec![]);
+        for (&pair, _) in pairs.iter().zip(owes).filter(|(_, owes)| **owes != 0) {
+            let window = &mut windows[pair[0]];
+            owing.runs(pair, window, |run| runs.push(run));
+            runs.drain(..).for_each(|run| take(&mut bytes, &mut window.sums[run]));
         }
     }
 }
 
-/// Gives the window of another rank's tile its room, which stays: only what this rank's tiles take is written and read.
-fn open(window: &mut TileWindow, reached: &[Reached], components: usize) {
-    let Some(top) = reached.last() else { return };
-    let (base, stride) = (PAD, staggered(top.cells[1] - top.first));
-    (window.base, window.stride) = (base, stride);
-    if window.sums.len() < base + components * stride {
-        window.sums.resize(base + components * stride, 0.0);
-    }
-}
-
-/// Hands the sums of this rank's sites to the ranks whose bonds lead to them, and takes those of others; columns of sites have [`PAD`]
-/// entries before the first.
-pub(crate) fn share_sums(body: &LatticeBody, links: &mut [RowLink], sums: &mut [f64]) {
-    let cells = |slots: &[usize]| slots.iter().map(|slot| body.rows[*slot].len as usize).sum::<usize>();
+/// Hands the numbers of this rank's sites to the ranks whose bonds lead to them, and takes those of others: row slots by the `places` of their
+/// numbers.
+pub(crate) fn share_sums(places: impl Fn(usize) -> Range<usize>, links: &mut [RowLink], sums: &mut [f64]) {
     for RowLink { out, into, bytes, .. } in &mut *links {
         let [own, others] = bytes;
         own.clear();
-        for slot in &*out {
-            let cells = body.rows[*slot].cells();
-            put(own, &sums[PAD + cells.start..PAD + cells.end]);
-        }
-        others.resize(NUMBER * cells(into), 0);
+        out.iter().for_each(|slot| put(own, &sums[places(*slot)]));
+        others.resize(NUMBER * into.iter().map(|slot| places(*slot).len()).sum::<usize>(), 0);
     }
     let mut out: Vec<(usize, &[u8])> = vec![];
     let mut into: Vec<(usize, &mut [u8])> = vec![];
@@ -142,8 +146,6 @@ pub(crate) fn share_sums(body: &LatticeBody, links: &mut [RowLink], sums: &mut [
     comm::present().swap(&out, &mut into);
     for RowLink { into, bytes, .. } in links {
         let mut bytes = &bytes[1][..];
-        for cells in into.iter().map(|slot| body.rows[*slot].cells()) {
-            take(&mut bytes, &mut sums[PAD + cells.start..PAD + cells.end]);
-        }
+        into.iter().for_each(|slot| take(&mut bytes, &mut sums[places(*slot)]));
     }
 }

@@ -3,11 +3,12 @@
 mod agreed;
 pub(crate) mod deal;
 pub(crate) mod dues;
+pub(crate) mod list;
 mod near;
 mod whole;
 
 pub(crate) use agreed::{
-    Broken, agreed, agreed_motion, broken_everywhere, flagged_anywhere, forget_flags, rows_everywhere,
+    Agreed, Broken, LIST, agree, agreed, agreed_motion, broken_everywhere, forget_flags, rows_everywhere,
     square, squeezed_everywhere,
 };
 pub(crate) use near::{pairs_everywhere, sums_everywhere};

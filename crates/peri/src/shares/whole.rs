@@ -7,14 +7,15 @@ use crate::families::lattice::{LatticeBody, PAD, RowMotion};
 use perigrain_base::comm::numbers::{Number, put, take};
 
 /// Numbers on their way into a message or out of one.
-enum Way<'a> {
+pub(super) enum Way<'a> {
     Count(usize),
     Out(&'a mut Vec<u8>),
     In(&'a [u8]),
 }
 
 impl Way<'_> {
-    fn numbers<T: Number>(&mut self, numbers: &mut [T]) {
+    /// Counts numbers, sends them on their way or takes them from it.
+    pub(super) fn numbers<T: Number>(&mut self, numbers: &mut [T]) {
         match self {
             Way::Count(n) => *n += T::BYTES * numbers.len(),
             Way::Out(bytes) => put(bytes, numbers),
@@ -42,12 +43,15 @@ impl Families {
     }
 
     fn piece(&mut self, rank: usize, way: &mut Way) {
-        let Self { lattices, shares, .. } = self;
+        let Self { lattices, list, shares, .. } = self;
         let Some(shares) = shares else { return };
         for (body, share) in lattices.iter_mut().zip(&shares.bodies) {
             for slot in slots_of(body, &share.tiles[rank]) {
                 piece_of_row(body, slot, way);
             }
+        }
+        if let Some(share) = &shares.list {
+            list.piece(&share.tiles[rank], way);
         }
     }
 }
