@@ -191,25 +191,26 @@ fn hand_to_all(families: &mut Families) {
 #[test]
 fn what_ranks_share_out_has_the_bits_of_one_process() {
     let shaken = Shaken::new();
-    for (layout, lattices) in [(Layout::Auto, 2), (Layout::List, 0)] {
-        for kind in [LawKind::Pmb, LawKind::Lps] {
-            for compat_lammps in [false, true] {
-                let options = FamilyOptions { layout, compat_lammps, ..FamilyOptions::new(1.0) };
-                let moduli = Moduli { bulk: 2.0, shear: 1.0, ..Moduli::default() };
-                let law = Law { kind, moduli: vec![moduli; 2], ..Law::default() };
-                let view = shaken.view(&shaken.x0);
-                let families = Families::build_of(&view, &shaken.table, options, law).unwrap();
-                assert!(families.lattices.len() == lattices && families.list.slabs() > 0);
-                shaken.compare(&families);
-            }
-        }
+    for (layout, kind, compat_lammps) in [
+        (Layout::Auto, LawKind::Pmb, false),
+        (Layout::Auto, LawKind::Lps, false),
+        (Layout::List, LawKind::Pmb, true),
+        (Layout::List, LawKind::Lps, false),
+    ] {
+        let options = FamilyOptions { layout, compat_lammps, ..FamilyOptions::new(1.0) };
+        let moduli = Moduli { bulk: 2.0, shear: 1.0, ..Moduli::default() };
+        let law = Law { kind, moduli: vec![moduli; 2], ..Law::default() };
+        let families = Families::build_of(&shaken.view(&shaken.x0), &shaken.table, options, law).unwrap();
+        assert!(families.lattices.len() == if layout == Layout::Auto { 2 } else { 0 });
+        assert!(families.list.slabs() > 0);
+        shaken.compare(&families);
     }
 }
 
 impl Shaken {
     fn compare(&self, families: &Families) {
         let expected = self.alone(families);
-        for ranks in [2, 3, 5] {
+        for ranks in [2, 5] {
             let seats = Local::threads(ranks).unwrap();
             std::thread::scope(|s| {
                 for seat in seats {
