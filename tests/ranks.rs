@@ -134,6 +134,43 @@ fn particles_come_and_go_while_bodies_are_shared_out() {
     }
 }
 
+/// Smooth walls and one that throws back, and their numbers in log and dumps; one that a particle runs through ends all ranks with the same
+/// words.
+#[test]
+fn walls_act_on_a_ranks_own_particles() {
+    let scene = &SCENES[0];
+    let walls = "fix low all wall/harmonic xlo -0.001 1e14 1 0.0015 units box\nfix back all wall/reflect xhi 0.00702 units box\n\
+                 region around block -0.01 0.02 -0.001 0.0065 -0.5 0.5 units box\n\
+                 fix sides all wall/region around harmonic 1e14 1 0.0015\n\
+                 thermo_style custom step ke f_low f_low[1] f_sides f_sides[2]\n";
+    let deck = format!("{}{}{walls}thermo 10\n", made(scene), scene.again);
+    let whole = format!(
+        "{deck}dump all all custom 20 dump.*.txt id x y z vx fx\ndump_modify all format float %.17g\nrun 40\n"
+    );
+    let alone = left_by(&whole, &["-threads", "1"]);
+    same(&alone, &left_by(&whole, &["-ranks", "3", "-threads", "1"]), "walls");
+    let folder = tempfile::tempdir().unwrap();
+    let quiet = format!("{deck}run 40\n");
+    let path = folder.path().join("in.deck");
+    fs::write(&path, quiet).unwrap();
+    let ops = measured(folder.path(), &["in.deck"]);
+    let walls =
+        ops.iter().filter(|(op, rows, gathers)| op.contains("wall/") && rows == "own" && *gathers == 0);
+    assert_eq!(walls.count(), 3, "{ops:?}");
+    let through =
+        format!("{deck}fix end all wall/harmonic xhi 0.0082 1 1 0.001 units box\nunfix back\nrun 4000\n");
+    fs::write(&path, through).unwrap();
+    let ends = |words: &[&str]| {
+        let o =
+            perigrain(folder.path(), &[&["-in", "in.deck", "-log", "none", "-threads", "1"], words].concat());
+        assert!(!o.status.success());
+        String::from_utf8(o.stderr).unwrap()
+    };
+    let alone = ends(&[]);
+    assert!(alone.contains("has reached the wall `xhi`"), "{alone}");
+    assert_eq!(alone, ends(&["-ranks", "3"]));
+}
+
 #[test]
 fn forces_are_all_known_where_energies_of_particles_are() {
     let scene = &SCENES[0];
@@ -168,7 +205,7 @@ fn measured(folder: &Path, words: &[&str]) -> Vec<(String, String, u64)> {
 }
 
 #[test]
-fn bodies_on_lattices_are_shared_out_and_quiet_steps_gather_nothing() {
+fn bodies_are_shared_out_and_quiet_steps_gather_nothing() {
     let mut shared = vec![];
     for scene in &SCENES {
         let folder = tempfile::tempdir().unwrap();
@@ -181,8 +218,21 @@ fn bodies_on_lattices_are_shared_out_and_quiet_steps_gather_nothing() {
         }
         shared.extend((!ops.is_empty()).then_some(scene.name));
     }
-    // Bonds that remember, lists, grains and beams are worked on by all ranks alike.
-    assert_eq!(shared, ["lattice", "scattered", "lps", "shaped", "averages", "impact"]);
+    // Bonds that remember, grains and beams are worked on by all ranks alike.
+    assert_eq!(
+        shared,
+        [
+            "lattice",
+            "list",
+            "scattered",
+            "scattered, list",
+            "lps",
+            "shaped",
+            "own horizons",
+            "averages",
+            "impact"
+        ]
+    );
 }
 
 #[test]

@@ -13,6 +13,7 @@ use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, Fields, MASK, RADIUS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
 use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A style, `wall/` and the name of the law of this number.
 pub struct FlatWall(usize);
@@ -299,17 +300,23 @@ impl Fix for Declared {
                 if t.unchanged {
                     return Ok(());
                 }
+                let behind = AtomicBool::new(false);
                 let got: Got = change_forces(w, &chosen, |w, i, f| {
-                    push_all(&now, w.particles.x[i], radius(w, i, sized), f)
+                    let got = push_all(&now, w.particles.x[i], radius(w, i, sized), f);
+                    if got[7] != 0.0 {
+                        behind.store(true, Ordering::Relaxed);
+                    }
+                    got
                 });
-                if got[7] != 0.0 {
+                if w.anywhere(behind.into_inner()) {
+                    w.whole(X);
                     reached(w, &chosen, (&now, sized), t, span)?;
                 }
                 publish(w, slot, t, got[0], &got[1..=now.len()]);
                 Ok(())
             },
         );
-        Ok(vec![op.boxed()])
+        Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {

@@ -74,15 +74,19 @@ struct Declared {
 
 /// Throws those of the group back that are beyond the face, which is at `at`.
 fn reflect(w: &mut World, bit: u32, face: &Face, at: f64) {
-    let (d, p) = (face.axis, &mut w.particles);
-    par::each((&mut p.x[..], &mut p.v[..], &p.mask[..]), |_, (x, v, mask)| {
-        for ((x, v), _) in x.iter_mut().zip(v).zip(mask).filter(|(_, m)| **m & bit != 0) {
-            if face.depth(*x, at) < 0.0 {
-                x[d] = at + (at - x[d]);
-                v[d] = -v[d];
+    let d = face.axis;
+    let (mut x, mut v) = (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.v));
+    let world: &World = w;
+    par::each((&mut x[..], &mut v[..], &world.particles.mask[..]), |first, (x, v, mask)| {
+        let own = world.moved_in(first..first + mask.len()).flatten().map(|row| row - first);
+        for k in own.filter(|k| mask[*k] & bit != 0) {
+            if face.depth(x[k], at) < 0.0 {
+                x[k][d] = at + (at - x[k][d]);
+                v[k][d] = -v[k][d];
             }
         }
     });
+    (w.particles.x, w.particles.v) = (x, v);
 }
 
 impl Fix for Declared {
@@ -101,7 +105,7 @@ impl Fix for Declared {
             }
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.one_by_one().boxed()])
     }
 
     fn facts(&self, _: &World) -> Facts {

@@ -14,6 +14,7 @@ use perigrain_world::field::{F, MASK, RADIUS, REGIONS, SLOTS, TAG, TALLY, X};
 use perigrain_world::region::{Look, Near};
 use perigrain_world::{GroupId, Key, Region, World};
 use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The style.
 pub struct WallRegion;
@@ -197,17 +198,23 @@ impl Fix for Declared {
                 return Ok(());
             }
             let lammps = w.settings.lammps();
-            let got: Got = change_forces(w, &chosen, |w, i, f| match w.regions.get(key) {
-                Some(region) => me.act(&Wall { region, law: &me.law, lammps }, w, i, f),
-                None => [0.0; 5],
+            let beyond = AtomicBool::new(false);
+            let got: Got = change_forces(w, &chosen, |w, i, f| {
+                let Some(region) = w.regions.get(key) else { return [0.0; 5] };
+                let got = me.act(&Wall { region, law: &me.law, lammps }, w, i, f);
+                if got[4] != 0.0 {
+                    beyond.store(true, Ordering::Relaxed);
+                }
+                got
             });
-            if got[4] != 0.0 {
+            if w.anywhere(beyond.into_inner()) {
+                w.whole(X);
                 me.left(w, key, t)?;
             }
             publish(w, slot, t, got[0], &got[1..4]);
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {

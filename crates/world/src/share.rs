@@ -262,6 +262,13 @@ impl World {
         }
     }
 
+    /// Whether something has come up `here`, or on any rank where the op at work acts on the rows of one.
+    pub fn anywhere(&self, here: bool) -> bool {
+        let mut nowhere = if here { 0.0 } else { 1.0 };
+        self.agree_on_least(&mut nowhere);
+        nowhere == 0.0
+    }
+
     /// Whether all particles with one of these group bits are moved by all ranks alike.
     pub fn is_common(&self, bits: u32) -> bool {
         let Some(share) = &self.share else { return true };
