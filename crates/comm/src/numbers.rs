@@ -13,10 +13,12 @@ pub trait Number: Copy + Default {
 macro_rules! numbers {
     ($($name:ty)*) => {$(
         impl Number for $name {
+            #[inline]
             fn write(numbers: &[Self], to: &mut [u8]) {
                 let to = to.as_chunks_mut::<{ size_of::<$name>() }>().0;
                 to.iter_mut().zip(numbers).for_each(|(to, number)| *to = number.to_ne_bytes());
             }
+            #[inline]
             fn read(numbers: &mut [Self], from: &[u8]) {
                 let from = from.as_chunks::<{ size_of::<$name>() }>().0;
                 numbers.iter_mut().zip(from).for_each(|(number, from)| *number = Self::from_ne_bytes(*from));
@@ -28,6 +30,7 @@ macro_rules! numbers {
 numbers! { f64 f32 u32 i32 u8 }
 
 /// Appends numbers to a message.
+#[inline]
 pub fn put<T: Number>(bytes: &mut Vec<u8>, numbers: &[T]) {
     let at = bytes.len();
     bytes.resize(at + size_of_val(numbers), 0);
@@ -35,6 +38,7 @@ pub fn put<T: Number>(bytes: &mut Vec<u8>, numbers: &[T]) {
 }
 
 /// Takes as many numbers from the front of a message, which has them.
+#[inline]
 pub fn take<T: Number>(bytes: &mut &[u8], numbers: &mut [T]) {
     let (own, rest) = bytes.split_at(size_of_val(numbers));
     T::read(numbers, own);
@@ -42,6 +46,7 @@ pub fn take<T: Number>(bytes: &mut &[u8], numbers: &mut [T]) {
 }
 
 /// Takes `N` numbers from the front of a message; none where it ends.
+#[inline]
 pub fn next<T: Number, const N: usize>(bytes: &mut &[u8]) -> Option<[T; N]> {
     let mut numbers = [T::default(); N];
     (bytes.len() >= size_of_val(&numbers)).then(|| {

@@ -300,8 +300,7 @@ impl Near {
         rows.resize(if tally.is_some() { self.particle.len() } else { 0 }, [0.0; 7]);
         let (f, sums) = (Shared::new(f), Shared::new(rows));
         // Those of other ranks find their forces there.
-        let own = shares.map_or(vec![0..self.particle.len()], |shares| self.members_of(shares));
-        own.into_iter().for_each(|some| {
+        self.members_of(shares).into_iter().for_each(|some| {
             in_parts(some, |members| {
                 let mut hits = hits[par::slot() % hits.len()].lock().unwrap_or_else(PoisonError::into_inner);
                 for first in members.clone().step_by(BLOCK) {
@@ -332,8 +331,9 @@ impl Near {
         }
     }
 
-    /// The members that are this rank's.
-    fn members_of(&self, shares: &Shares) -> Vec<Range<usize>> {
+    /// The members that are this rank's, or all.
+    fn members_of(&self, shares: Option<&Shares>) -> Vec<Range<usize>> {
+        let Some(shares) = shares else { return std::iter::once(0..self.particle.len()).collect() };
         let (ordered, late) = self.particle.split_at(self.ascending);
         let place = |particle: usize| ordered.partition_point(|p| (*p as usize) < particle);
         let late = late.iter().enumerate().filter(|(_, p)| shares.moves(**p as usize));
