@@ -199,7 +199,12 @@ fn exchanged(said: &str) -> Vec<(String, String, u64)> {
 
 /// The measured plans of a deck's runs on three ranks.
 fn measured(folder: &Path, words: &[&str]) -> Vec<(String, String, u64)> {
-    let o = perigrain(folder, &[&["plan", "--measure", "-ranks", "3", "-threads", "1"], words].concat());
+    measured_on("3", folder, words)
+}
+
+/// The same on so many.
+fn measured_on(ranks: &str, folder: &Path, words: &[&str]) -> Vec<(String, String, u64)> {
+    let o = perigrain(folder, &[&["plan", "--measure", "-ranks", ranks, "-threads", "1"], words].concat());
     assert!(o.status.success(), "{words:?}: {}", said(&o));
     exchanged(&said(&o))
 }
@@ -254,6 +259,41 @@ fn every_example_has_the_same_bytes_on_any_number_of_ranks() {
         let alone = folder(&[]);
         for ranks in ["2", "3", "5"] {
             same(&alone, &folder(&["-ranks", ranks]), &format!("{} {args} on {ranks} ranks", deck.display()));
+        }
+    }
+}
+
+/// Examples of solids whose steps gather nothing on ranks, but where contacts are listed or near pairs searched anew; the last one has two
+/// tiles.
+const QUIET: [(&str, &str); 12] = [
+    ("brittle_glass", "3"),
+    ("crack_branching", "3"),
+    ("ct_fracture", "3"),
+    ("fragmenting_cylinder", "3"),
+    ("hertz_half_space", "3"),
+    ("kalthoff_winkler", "3"),
+    ("laminate_erosion", "3"),
+    ("meshed_gear", "3"),
+    ("mode_one", "3"),
+    ("multi_impact", "3"),
+    ("plate_impact", "3"),
+    ("rubber_cube", "2"),
+];
+
+#[test]
+#[ignore = "takes minutes: `./check --ranks`"]
+fn quiet_steps_of_examples_gather_nothing() {
+    for (name, ranks) in QUIET {
+        let mut forms = examples::short_forms().into_iter();
+        let of = |deck: &Path| deck.parent().is_some_and(|folder| folder.ends_with(name));
+        let (deck, args) = forms.find(|(deck, _)| of(deck)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let words = [deck.to_str().unwrap()].into_iter().chain(args.split_whitespace()).collect::<Vec<_>>();
+        let ops = measured_on(ranks, folder.path(), &words);
+        assert!(!ops.is_empty(), "{name}: nothing is shared out");
+        for (op, rows, gathers) in ops {
+            let looks = ["reneighbor", "pair peri/", "pair granular"].iter().any(|look| op.starts_with(look));
+            assert!(looks || gathers == 0, "{name}: `{op}` needs {rows} rows, {gathers} gathers");
         }
     }
 }
