@@ -140,7 +140,7 @@ pub struct StepPlan {
     pub atom_virial: Vec<When>,
     /// Fixes whose values something reads in every step.
     pub watched: Vec<String>,
-    /// Quiet steps in a row in which rows were gathered from all ranks.
+    /// By how many quiet steps of a run more have gathered rows from all ranks than have not.
     pub(super) gathering: u32,
     /// Who watches the energy.
     pub guard: Option<Guard>,

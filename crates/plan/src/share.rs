@@ -71,8 +71,9 @@ pub(super) fn after(w: &mut World, needs: impl Iterator<Item = Needs>) {
 /// Runs of fewer steps are not worth dealing.
 const FEW: i64 = 8;
 
-/// After so many quiet steps in a row in which rows were gathered, shares are taken back.
-const ENOUGH: u32 = 4;
+/// Shares are taken back once so many more quiet steps of a run have gathered rows than have not: every search for near pairs does, and what
+/// looks whether one is due may do so several times in a row.
+const ENOUGH: u32 = 8;
 
 impl StepPlan {
     /// Shares particles out to ranks, where there are several and a run of so many steps begins.
@@ -90,7 +91,7 @@ impl StepPlan {
             return;
         }
         let gathers = w.traffic().since(before).gathers > 0;
-        self.gathering = if gathers { self.gathering + 1 } else { 0 };
+        self.gathering = if gathers { self.gathering + 1 } else { self.gathering.saturating_sub(1) };
         if self.gathering >= ENOUGH {
             w.undeal();
         }
