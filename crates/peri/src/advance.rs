@@ -6,6 +6,7 @@ use crate::families::shares::BodyShare;
 use crate::families::{Candidate, Cell, Families, Moved, PeriView};
 use crate::lanes::isa::Isa;
 use crate::list;
+use crate::list::breaking::candidates;
 use crate::list::kernel::Rules;
 use crate::shares::{Agreed, Broken, LIST, broken_everywhere, square};
 
@@ -34,64 +35,67 @@ impl Families {
     /// Breaks bonds; where work is shared out, all ranks break the same, in the order in which one process finds them.
     pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: Option<Together>) {
         let (agreed, share) = shared.unzip();
-        let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
+        let mut broken = std::mem::take(&mut self.scratch.broken);
+        broken.clear();
+        let some = agreed.map_or_else(|| self.list.is_strained(), |agreed| agreed.strained);
+        self.find_all::<K>(view, cell, (share.flatten(), some), &mut broken);
+        if agreed.is_some_and(|agreed| agreed.breaks || agreed.strained) {
+            broken = broken_everywhere(broken);
+        }
+        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
+        let mut bonds = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
-        let lasting = &self.lasting;
-        let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
-        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
-        let together = agreed.is_some_and(|agreed| agreed.breaks || agreed.strained);
-        let mut all = vec![];
+        let mut rest = &broken[..];
         for (k, body) in self.lattices.iter_mut().enumerate() {
-            find_broken::<K, _>(body, &self.options, &mut found, &spared);
-            if together {
-                let of = |bond: &Candidate| square(view, bond.ends.map(|cell| body.particle[cell as usize]));
-                all.extend(found.iter().map(|bond| Broken { body: k, bond: *bond, square: of(bond) }));
-                continue;
-            }
-            body.break_all(&found);
-            for c in found.iter().filter(|_| frees) {
+            let own;
+            (own, rest) = rest.split_at(rest.partition_point(|broken| broken.body <= k));
+            bonds.clear();
+            bonds.extend(own.iter().map(|broken| broken.bond));
+            body.break_all(&bonds);
+            for c in bonds.iter().filter(|_| frees) {
                 body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
             }
-            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
+            ends.extend(bonds.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
-        let rules = Rules::new(cell, &self.options, &self.law);
-        let some = agreed.map_or_else(|| self.list.is_strained(), |agreed| agreed.strained);
-        let scene = (&rules, &self.options);
-        list::breaking::candidates::<K>(&mut self.list, scene, (share.flatten(), some), &mut found);
-        self.list.spare(&mut found, &spared);
-        if together {
-            let particle = &self.list.particle;
-            let of = |bond: &Candidate| square(view, bond.ends.map(|record| particle[record as usize]));
-            all.extend(found.iter().map(|bond| Broken { body: LIST, bond: *bond, square: of(bond) }));
-            all = broken_everywhere(all);
-        }
-        for (k, body) in self.lattices.iter_mut().enumerate().filter(|_| together) {
-            found.clear();
-            found.extend(all.iter().filter(|broken| broken.body == k).map(|broken| broken.bond));
-            body.break_all(&found);
-            for c in found.iter().filter(|_| frees) {
-                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
-            }
-            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
-        }
-        if together {
-            found.clear();
-            found.extend(all.iter().filter(|broken| broken.body == LIST).map(|broken| broken.bond));
-        }
-        self.list.break_all(&found);
-        for c in found.iter().filter(|_| frees) {
+        bonds.clear();
+        bonds.extend(rest.iter().map(|broken| broken.bond));
+        self.list.break_all(&bonds);
+        for c in bonds.iter().filter(|_| frees) {
             self.list.free(c.bond as usize, &self.law, cell, Moved::Now);
         }
-        ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
-        for (k, &[i, j]) in ends.iter().enumerate() {
+        ends.extend(bonds.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
+        for (&[i, j], broken) in ends.iter().zip(&broken) {
             self.damaged[i as usize] = true;
             self.damaged[j as usize] = true;
-            // The ends of other ranks' bonds are up to date on those ranks alone, which have sent the square.
-            let told = all.get(k).map(|broken| broken.square);
-            self.add_broken(view, (i, j), told.unwrap_or_else(|| square(view, [i, j])));
+            self.add_broken(view, (i, j), broken.square);
         }
+        (self.scratch.broken, self.scratch.candidates, self.scratch.ends) = (broken, bonds, ends);
+    }
+
+    /// Finds the bonds that break, body by body, those of the list last; see [`candidates`] for `list`.
+    fn find_all<K: Isa>(
+        &mut self,
+        view: &PeriView,
+        cell: &Cell,
+        list: (Option<&mut BodyShare>, bool),
+        broken: &mut Vec<Broken>,
+    ) {
+        let mut found = std::mem::take(&mut self.scratch.candidates);
+        let lasting = &self.lasting;
+        let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
+        let mut note = |body: usize, found: &[Candidate], particle: &[u32]| {
+            let square = |bond: &Candidate| square(view, bond.ends.map(|site| particle[site as usize]));
+            broken.extend(found.iter().map(|bond| Broken { body, bond: *bond, square: square(bond) }));
+        };
+        for (k, body) in self.lattices.iter_mut().enumerate() {
+            find_broken::<K, _>(body, &self.options, &mut found, &spared);
+            note(k, &found, &body.particle);
+        }
+        let rules = Rules::new(cell, &self.options, &self.law);
+        candidates::<K>(&mut self.list, (&rules, &self.options), list, &mut found);
+        self.list.spare(&mut found, &spared);
+        note(LIST, &found, &self.list.particle);
         self.scratch.candidates = found;
-        self.scratch.ends = ends;
     }
 }

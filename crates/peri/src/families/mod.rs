@@ -21,6 +21,7 @@ pub mod tiles;
 
 use crate::contact::Memory;
 pub use crate::damage::Neighbour;
+use crate::shares::Broken;
 pub use bond_weights::{BondWeights, Factors, Weighed};
 pub use cell::Edges;
 pub(crate) use cell::{BoxStrain, Cell};
@@ -418,6 +419,8 @@ pub struct Scratch {
     pub rows: Vec<[f64; 7]>,
     /// Bonds that may break.
     pub candidates: Vec<Candidate>,
+    /// Bonds that break.
+    pub(crate) broken: Vec<Broken>,
     /// Particles whose bonds have broken in this step.
     pub ends: Vec<[u32; 2]>,
 }

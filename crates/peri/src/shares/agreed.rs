@@ -121,6 +121,7 @@ pub(crate) fn rows_everywhere<const N: usize>(
 pub(crate) const LIST: usize = u32::MAX as usize;
 
 /// A bond that breaks, with the body on a lattice that has it, or [`LIST`], and the square of its length.
+#[derive(Debug)]
 pub(crate) struct Broken {
     pub(crate) body: usize,
     pub(crate) bond: Candidate,
