@@ -189,18 +189,14 @@ impl Families {
         list: &RowMotion,
         (advance, shares): (bool, Option<&Shares>),
     ) -> (f64, f64) {
-        let motions: Vec<RowMotion> = match shares {
-            Some(shares) => agreed_motion(&self.lattices, list, shares),
-            None => {
-                let rows = self.lattices.iter().map(|body| &body.motion);
-                let all = rows.map(|rows| rows.iter().fold(RowMotion::NONE, |m, row| m.with(row)));
-                all.chain([*list]).collect()
-            }
-        };
+        let agreed = shares.map(|shares| agreed_motion(&self.lattices, list, shares)).unwrap_or_default();
+        let own =
+            self.lattices.iter().map(|body| body.motion.iter().fold(RowMotion::NONE, |m, row| m.with(row)));
         let (mut all, mut within) = (RowMotion::NONE, 0.0f64);
-        for motion in motions {
-            within = within.max(diagonal(&motion));
-            all = all.with(&motion);
+        for (k, own) in own.chain([*list]).enumerate() {
+            let motion = agreed.get(k).unwrap_or(&own);
+            within = within.max(diagonal(motion));
+            all = all.with(motion);
         }
         for (p, last) in &mut self.near.loose {
             let x = view.x[*p as usize];

@@ -70,7 +70,7 @@ impl ListBody {
     /// Whether each part of records whose energies are added up together is one slab's.
     pub(super) fn parts_are_of_slabs(&self) -> bool {
         let within = self.slab.get(1..self.slab.len().saturating_sub(1)).unwrap_or(&[]);
-        within.iter().all(|first| *first as usize % PART == 0)
+        within.iter().all(|first| (*first as usize).is_multiple_of(PART))
     }
 
     /// The records of some slabs.
