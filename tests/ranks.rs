@@ -40,9 +40,13 @@ fn said(o: &Output) -> String {
 
 /// Lines that tell of time, of processes and of memory; nothing in a run follows from them.
 fn is_of_this_run(line: &str) -> bool {
-    const BEGINNINGS: [&str; 5] = ["perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank"];
-    const PARTS: [&str; 4] = ["% CPU", "CPU = ", " | ", "[s]"];
-    BEGINNINGS.iter().any(|b| line.starts_with(b)) || PARTS.iter().any(|p| line.contains(p))
+    const BEGINNINGS: [&str; 6] =
+        ["perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank", "seconds "];
+    // Examples of statics print how long iterations and runs took.
+    const PARTS: [&str; 5] = ["% CPU", "CPU = ", " | ", "[s]", " s, "];
+    BEGINNINGS.iter().any(|b| line.starts_with(b))
+        || PARTS.iter().any(|p| line.contains(p))
+        || line.ends_with(" s")
 }
 
 /// All files of a folder; of logs what does not tell of time.
