@@ -42,11 +42,19 @@ fn said(o: &Output) -> String {
 fn is_of_this_run(line: &str) -> bool {
     const BEGINNINGS: [&str; 6] =
         ["perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank", "seconds "];
-    // Examples of statics print how long iterations and runs took.
-    const PARTS: [&str; 5] = ["% CPU", "CPU = ", " | ", "[s]", " s, "];
-    BEGINNINGS.iter().any(|b| line.starts_with(b))
-        || PARTS.iter().any(|p| line.contains(p))
-        || line.ends_with(" s")
+    const PARTS: [&str; 4] = ["% CPU", "CPU = ", " | ", "[s]"];
+    BEGINNINGS.iter().any(|b| line.starts_with(b)) || PARTS.iter().any(|p| line.contains(p))
+}
+
+/// A line without its numbers of seconds, and of calculations that would fit `in a run`: examples of statics print these beside what they
+/// compare.
+fn without_times(line: &str) -> String {
+    let words: Vec<&str> = line.split(' ').collect();
+    let is_time = |k: usize| match &words[k + 1..] {
+        ["s" | "s,", ..] | ["in", "a", "run", ..] => words[k].parse::<f64>().is_ok(),
+        _ => false,
+    };
+    (0..words.len()).map(|k| if is_time(k) { "#" } else { words[k] }).collect::<Vec<_>>().join(" ")
 }
 
 /// All files of a folder; of logs what does not tell of time.
@@ -58,7 +66,8 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
             false => bytes,
             true => {
                 let text = String::from_utf8(bytes).unwrap();
-                text.lines().filter(|l| !is_of_this_run(l)).collect::<Vec<_>>().join("\n").into_bytes()
+                let lines = text.lines().filter(|l| !is_of_this_run(l)).map(without_times);
+                lines.collect::<Vec<_>>().join("\n").into_bytes()
             }
         };
         (name, bytes)

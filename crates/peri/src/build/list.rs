@@ -3,6 +3,7 @@
 use crate::build::detect::{bonds, distance, reach};
 use crate::families::list::{CLOSE, GROUP, ListBody, Record};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
+use crate::list::energy::PART;
 
 /// The list layout of the bonds among `members`, whose spacings may be their own, and the sums of initial partners' volumes and numbers.
 pub fn lay_out(
@@ -156,8 +157,6 @@ const ENOUGH: usize = 64;
 const THIN: f64 = 4.0;
 /// Records of a slab at least.
 const FEW: usize = 64;
-/// Slabs but the last are of a multiple of so many records: energies are added up by these, and each is one slab's.
-const MULTIPLE: usize = crate::list::energy::PART;
 
 /// How many slabs are made of so many records in a body so many reaches of families long.
 fn slabs(records: usize, reaches: f64) -> usize {
@@ -195,9 +194,10 @@ fn order(view: &PeriView, members: &[u32], wraps: bool, far: f64) -> (ListBody, 
     let fine = far / 3.0;
     let mut particle = members.to_vec();
     particle.sort_by(|p, q| place(*p)[axis].total_cmp(&place(*q)[axis]).then(p.cmp(q)));
+    // Each part of records whose energies are added up together is one slab's.
     let end = |s: usize| match s == slabs {
         true => particle.len(),
-        false => s * particle.len() / slabs / MULTIPLE * MULTIPLE,
+        false => s * particle.len() / slabs / PART * PART,
     };
     let slab: Vec<u32> = (0..=slabs).map(|s| end(s) as u32).collect();
     for ends in slab.windows(2) {

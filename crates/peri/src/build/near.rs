@@ -181,8 +181,8 @@ impl Families {
         NearPair { ends: [i.min(j), i.max(j)], after: after as f32, within: within as f32 }
     }
 
-    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here. Each of several ranks has
-    /// those of its `own` rows, and all agree.
+    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here. Where work is shared
+    /// out, each rank has those of its own tiles, and all agree.
     pub(crate) fn ranges(
         &mut self,
         view: &PeriView,

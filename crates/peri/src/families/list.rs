@@ -119,6 +119,8 @@ pub const CLOSE: f32 = -0.5;
 pub struct Limits {
     /// The least measure of each record's family, see `crate::list::breaking`; empty where not known.
     pub least: Vec<f64>,
+    /// The largest of these in each slab, infinite ones left out.
+    pub highest: Vec<f64>,
     /// The same of the present step, and by slabs.
     pub next: Vec<f64>,
     /// Largest z of all bonds, if known.
@@ -127,6 +129,23 @@ pub struct Limits {
     pub near: bool,
     /// By slabs: bonds that may break in the present step, with their z, and the largest z.
     pub strained: Vec<(Vec<(u32, f64)>, f64)>,
+}
+
+impl Limits {
+    /// Finds [`Limits::highest`] of slabs, which begin and end at these records.
+    pub fn find_highest(&mut self, slab: &[u32]) {
+        let Self { least, highest, .. } = self;
+        let most = |least: &[f64]| {
+            least
+                .iter()
+                .filter(|least| least.is_finite())
+                .fold(f64::NEG_INFINITY, |most, least| least.max(most))
+        };
+        highest.clear();
+        if !least.is_empty() {
+            highest.extend(slab.windows(2).map(|ends| most(&least[ends[0] as usize..ends[1] as usize])));
+        }
+    }
 }
 
 impl ListBody {
@@ -205,7 +224,7 @@ impl ListBody {
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
             + 8 * (self.close.len() + self.inverse.len() + self.influence.len() + self.own_weight.len())
-            + 8 * (self.limits.least.len() + self.limits.next.len())
+            + 8 * (self.limits.least.len() + self.limits.next.len() + self.limits.highest.len())
             + self.state.bytes()
             + self.tiles.bytes()
     }

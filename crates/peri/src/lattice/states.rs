@@ -13,11 +13,12 @@ use crate::lattice::energies::Looking;
 use crate::lattice::forms::{self, run, run_term};
 use crate::lattice::kernels::Cells;
 use crate::lattice::owed;
-use crate::lattice::sweep::{Room, Sweep, with_share};
+use crate::lattice::sweep::{Room, Sweep};
 use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{Moment, of_law};
 use crate::pass::{Over, pass};
 use crate::shares::agreed;
+use crate::shares::dues::{OfLattice, with_share};
 use perigrain_base::par::Shared;
 
 /// What the sites and bonds of a body have under their law, during one evaluation.
@@ -129,7 +130,8 @@ pub(crate) fn all<K: Isa>(
     share: Option<&mut BodyShare>,
     sums: &Shared<f64>,
 ) {
-    with_share((sweep.body(), tiles, 1), share, |share| {
+    let owing = OfLattice { body: sweep.body(), tiles, components: 1 };
+    with_share(&owing, share, |share| {
         pass(
             Over { graph: &tiles.graph, windows, times: &[], share },
             |at, window| tile::<K>(sweep, sum, (tiles, at), window),

@@ -13,8 +13,8 @@ use crate::lattice::owed;
 use crate::lattice::states::States;
 use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
-use crate::pass::{HandOver, Over, pass};
-use crate::shares::dues::{OfLattice, hand_over};
+use crate::pass::{Over, pass};
+use crate::shares::dues::{OfLattice, with_share};
 use perigrain_base::par::Shared;
 
 /// How one force evaluation treats the bonds of a body.
@@ -127,7 +127,8 @@ impl<'a> Sweep<'a> {
         share: Option<&mut BodyShare>,
         f: &Shared<[f64; 3]>,
     ) {
-        with_share((self.body, tiles, 3), share, |share| {
+        let owing = OfLattice { body: self.body, tiles, components: 3 };
+        with_share(&owing, share, |share| {
             pass(
                 Over { graph: &tiles.graph, windows, times: &tiles.graph.times, share },
                 |tile, window| self.tile::<K>((tiles, tile), window),
@@ -351,18 +352,6 @@ impl<'a> Room<'a> {
         }
         (self.window.base, self.window.stride) = (base, stride);
     }
-}
-
-/// Calls `pass` with a rank's share of a body's tiles, if there is one, whose windows have so many components.
-pub(crate) fn with_share(
-    (body, tiles, components): (&LatticeBody, &Tiles, usize),
-    share: Option<&mut BodyShare>,
-    pass: impl FnOnce(Option<HandOver>),
-) {
-    let Some(BodyShare { mine, waits, gives, takes, .. }) = share else { return pass(None) };
-    let owing = OfLattice { body, tiles, components };
-    let mut exchange = |windows: &mut [TileWindow]| hand_over(&owing, windows, gives, takes);
-    pass(Some(HandOver { own: mine.clone(), waits, exchange: &mut exchange }));
 }
 
 /// A z no bond can break below, for (s00, alpha) and a bound of the bonds' z at the step before: the critical

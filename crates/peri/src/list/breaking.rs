@@ -48,14 +48,13 @@ impl Judge {
         Self { breaking_enabled, keeps, known: known || !measured, floor, critical }
     }
 
-    /// The same for bonds between some records alone.
-    pub fn among(self, body: &ListBody, records: impl Iterator<Item = usize>) -> Self {
-        let least = &body.limits.least;
-        if !self.breaking_enabled || least.is_empty() {
+    /// The same for bonds between records of some slabs alone.
+    pub fn among(self, body: &ListBody, slabs: &[u32]) -> Self {
+        let highest = &body.limits.highest;
+        if !self.breaking_enabled || highest.is_empty() {
             return self;
         }
-        let finite = |a: f64, i: usize| if least[i].is_finite() { a.max(least[i]) } else { a };
-        let most = records.fold(f64::NEG_INFINITY, finite);
+        let most = slabs.iter().fold(f64::NEG_INFINITY, |most: f64, slab| most.max(highest[*slab as usize]));
         Self { floor: if self.critical { lowered(-most) } else { floor(body, most) }, ..self }
     }
 

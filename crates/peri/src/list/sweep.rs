@@ -42,6 +42,7 @@ pub fn forces<K: Isa>(
         return;
     }
     lay_slabs(list);
+    list.limits.find_highest(&list.slab);
     let kind = settling.law.kind;
     let judge = Judge::new(list, mode, options);
     let mut rules = Rules::new(cell, options, settling.law);
@@ -305,7 +306,7 @@ impl Sweep<'_> {
             return false;
         }
         let force = tiles::open(body, slab, window, FORCE_AND_MEASURE);
-        let judge = self.judge.among(body, body.window(slab));
+        let judge = self.judge.among(body, body.tiles.graph.takers(slab));
         let b = &mut Block::new();
         for (i, lowest) in own.zip(lowest) {
             let row = Row { body, i, first: body.ring_start(slab), rules: self.rules };

@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::families::list::{GROUP, ListBody};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileGraph, TileWindow};
-use crate::pass::{HandOver, Over, pass};
-use crate::shares::dues::hand_over;
+use crate::pass::{Over, Windows, pass};
+use crate::shares::dues::with_share;
 use crate::shares::list::OfList;
 
 /// Numbers of each record in windows of forces: the force, and the least measure.
@@ -63,12 +63,6 @@ impl ListBody {
         self.slab[slab] as usize..self.slab[slab + 1] as usize
     }
 
-    /// The records that the window of a slab covers.
-    pub(crate) fn window(&self, slab: usize) -> impl Iterator<Item = usize> + use<> {
-        let [ahead, back] = self.tiles.reached[slab];
-        (self.slab[slab] as usize..ahead).chain(0..back)
-    }
-
     /// The record before which all come after the others in the window of a slab.
     pub(crate) fn ring_start(&self, slab: usize) -> usize {
         if self.tiles.reached[slab][1] > 0 { self.slab[slab] as usize } else { 0 }
@@ -109,13 +103,7 @@ pub(crate) fn sweep<const N: usize>(
 ) {
     let graph = &body.tiles.graph;
     let times = if timed { &graph.times[..] } else { &[] };
-    let owing = OfList::<N>(body);
-    let mut dues = share.map(|BodyShare { mine, waits, gives, takes, .. }| {
-        let exchange = |windows: &mut [TileWindow]| hand_over(&owing, windows, gives, takes);
-        (mine.clone(), &waits[..], exchange)
-    });
-    let share = dues.as_mut().map(|(own, waits, exchange)| HandOver { own: own.clone(), waits, exchange });
-    pass(Over { graph, windows, times, share }, sweep, |slab, windows| {
+    let settle = |slab: usize, windows: Windows| {
         // Its own window and those of its givers, in their order; what is at rest owes nothing.
         let givers = || std::iter::once(slab as u32).chain(graph.givers(slab).iter().copied());
         // SAFETY: a slab settles when it and those that reach into it have been swept.
@@ -136,5 +124,6 @@ pub(crate) fn sweep<const N: usize>(
             }
             settle(piece.clone(), &sums[..piece.len()]);
         }
-    });
+    };
+    with_share(&OfList::<N>(body), share, |share| pass(Over { graph, windows, times, share }, sweep, settle));
 }

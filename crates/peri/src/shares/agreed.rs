@@ -101,6 +101,15 @@ pub(crate) fn squeezed_everywhere(bodies: &mut [LatticeBody], shares: &Shares, a
     }
 }
 
+/// The pieces of all ranks, of so many bytes each, one after the other; `own` appends that of this one.
+pub(super) fn pieces_of_all(counts: &[usize], me: usize, own: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut bytes = vec![0; counts[..me].iter().sum()];
+    own(&mut bytes);
+    bytes.resize(counts.iter().sum(), 0);
+    comm::present().gather_all(&mut bytes, counts);
+    bytes
+}
+
 /// Has what ranks have found of their rows, a few numbers each, on all of them.
 pub(crate) fn rows_everywhere<const N: usize>(
     body: &LatticeBody,
@@ -109,10 +118,8 @@ pub(crate) fn rows_everywhere<const N: usize>(
 ) {
     let slots: Vec<Vec<usize>> = share.tiles.iter().map(|tiles| slots_of(body, tiles)).collect();
     let counts: Vec<usize> = slots.iter().map(|slots| slots.len() * N * size_of::<f64>()).collect();
-    let mut bytes = vec![0; counts[..me].iter().sum()];
-    slots[me].iter().for_each(|slot| put(&mut bytes, &rows[*slot]));
-    bytes.resize(counts.iter().sum(), 0);
-    comm::present().gather_all(&mut bytes, &counts);
+    let bytes =
+        pieces_of_all(&counts, me, |bytes| slots[me].iter().for_each(|slot| put(bytes, &rows[*slot])));
     let mut bytes = &bytes[..];
     slots.into_iter().flatten().for_each(|slot| take(&mut bytes, &mut rows[slot]));
 }

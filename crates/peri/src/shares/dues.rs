@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use crate::families::lattice::{LatticeBody, PAD, staggered};
-use crate::families::shares::{Dues, RowLink};
+use crate::families::shares::{BodyShare, Dues, RowLink};
 use crate::families::tiles::{Reached, TileWindow, Tiles};
+use crate::pass::HandOver;
 use perigrain_base::comm;
 use perigrain_base::comm::numbers::{put, take};
 
@@ -80,14 +81,20 @@ fn swap(gives: &mut [Dues], takes: &mut [Dues], what: impl for<'a> Fn(&'a mut Du
     comm::present().swap(&out, &mut into);
 }
 
+/// Calls `pass` with a rank's share of a body's tiles, if there is one, and the way in which their windows are handed over.
+pub(crate) fn with_share(
+    owing: &impl Owing,
+    share: Option<&mut BodyShare>,
+    pass: impl FnOnce(Option<HandOver>),
+) {
+    let Some(BodyShare { mine, waits, gives, takes, .. }) = share else { return pass(None) };
+    let mut exchange = |windows: &mut [TileWindow]| hand_over(owing, windows, gives, takes);
+    pass(Some(HandOver { own: mine.clone(), waits, exchange: &mut exchange }));
+}
+
 /// Hands the windows of this rank's tiles over to the ranks whose tiles they reach, and puts those of others in their places. What is at rest
 /// owes nothing: a first message says which tiles owe something.
-pub(crate) fn hand_over(
-    owing: &impl Owing,
-    windows: &mut [TileWindow],
-    gives: &mut [Dues],
-    takes: &mut [Dues],
-) {
+fn hand_over(owing: &impl Owing, windows: &mut [TileWindow], gives: &mut [Dues], takes: &mut [Dues]) {
     for dues in &mut *gives {
         dues.owes.clear();
         dues.owes.extend(dues.pairs.iter().map(|pair| u8::from(windows[pair[0]].touched)));

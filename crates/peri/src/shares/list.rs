@@ -8,11 +8,10 @@ use crate::families::shares::{BodyShare, RowLink};
 use crate::families::tiles::TileWindow;
 use crate::list::energy::PART;
 use crate::list::tiles::{make_room, overlap};
-use crate::shares::agreed::to_all;
+use crate::shares::agreed::{pieces_of_all, to_all};
 use crate::shares::deal::dues_of;
 use crate::shares::dues::Owing;
-use crate::shares::whole::Way;
-use perigrain_base::comm;
+use crate::shares::whole::{Way, piece_of_sites};
 use perigrain_base::comm::numbers::{next, put, take};
 
 /// A list's windows, with `N` numbers for each record.
@@ -96,11 +95,7 @@ impl ListBody {
         if self.limits.least.len() == n {
             way.numbers(&mut self.limits.least[records.clone()]);
         }
-        let state = &mut self.state;
-        let freed = &mut state.freed;
-        let sites = [&mut state.theta, &mut freed.gone, &mut freed.slip, &mut freed.spread, &mut freed.sum];
-        let known = sites.into_iter().filter(|column| !column.is_empty());
-        known.for_each(|column| way.numbers(&mut column[records.clone()]));
+        piece_of_sites(&mut self.state, records, way);
     }
 }
 
@@ -138,9 +133,7 @@ pub(crate) fn lowest_everywhere(list: &mut ListBody, share: &BodyShare, all: boo
 pub(crate) fn parts_everywhere(list: &ListBody, (share, me): (&BodyShare, usize), parts: &mut [Sums]) {
     let length = |slabs: &Range<usize>| list.parts_of(slabs).len() * size_of::<Sums>();
     let counts: Vec<usize> = share.tiles.iter().map(length).collect();
-    let mut bytes = vec![0; counts[..me].iter().sum()];
-    put(&mut bytes, parts[list.parts_of(&share.mine)].as_flattened());
-    bytes.resize(counts.iter().sum(), 0);
-    comm::present().gather_all(&mut bytes, &counts);
+    let own = parts[list.parts_of(&share.mine)].as_flattened();
+    let bytes = pieces_of_all(&counts, me, |bytes| put(bytes, own));
     take(&mut &bytes[..], parts.as_flattened_mut());
 }

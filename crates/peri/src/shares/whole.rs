@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::families::Families;
 use crate::families::lattice::{LatticeBody, PAD, RowMotion};
+use crate::families::law::SiteState;
 use perigrain_base::comm::numbers::{Number, put, take};
 
 /// Numbers on their way into a message or out of one.
@@ -80,15 +81,18 @@ fn piece_of_row(body: &mut LatticeBody, slot: usize, way: &mut Way) {
             way.numbers(&mut u[first + cells.start..first + cells.end]);
         }
     }
-    let state = &mut body.state;
-    let freed = &mut state.freed;
-    let sites = [&mut state.theta, &mut freed.gone, &mut freed.slip, &mut freed.spread, &mut freed.sum];
-    for column in sites.into_iter().filter(|column| !column.is_empty()) {
-        way.numbers(&mut column[PAD + cells.start..PAD + cells.end]);
-    }
+    piece_of_sites(&mut body.state, PAD + cells.start..PAD + cells.end, way);
     let RowMotion { lo, hi, least, most } = &mut body.motion[slot];
     way.numbers(std::slice::from_mut(lo));
     way.numbers(std::slice::from_mut(hi));
     way.numbers(least);
     way.numbers(most);
+}
+
+/// What sweeps leave of some sites.
+pub(super) fn piece_of_sites(state: &mut SiteState, sites: Range<usize>, way: &mut Way) {
+    let freed = &mut state.freed;
+    let columns = [&mut state.theta, &mut freed.gone, &mut freed.slip, &mut freed.spread, &mut freed.sum];
+    let known = columns.into_iter().filter(|column| !column.is_empty());
+    known.for_each(|column| way.numbers(&mut column[sites.clone()]));
 }
