@@ -36,7 +36,7 @@ pub(crate) fn forget_flags(bodies: &mut [LatticeBody], shares: &Shares) {
     }
 }
 
-/// What all ranks know together after a sweep.
+/// What all ranks have agreed upon after a sweep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Agreed {
     /// Bonds of lattices may break.

@@ -89,26 +89,22 @@ impl Families {
         let Some(shares) = &self.shares else { return vec![] };
         let ranks = shares.ranks;
         let mut needs = vec![vec![vec![]; ranks]; ranks];
-        for (body, share) in self.lattices.iter().zip(&shares.bodies) {
-            for (rank, needs) in needs.iter_mut().enumerate() {
-                let slots = followed(body, &share.tiles[rank]).into_iter().enumerate();
-                for slot in slots.filter(|(_, follows)| *follows).map(|(slot, _)| slot) {
-                    for &p in &body.particle[body.rows[slot].cells()] {
-                        if let Some(&owner) = shares.owner.get(p as usize) {
-                            needs[usize::from(owner)].push(p);
-                        }
-                    }
-                }
-            }
-        }
         for (rank, needs) in needs.iter_mut().enumerate() {
-            let Some(share) = &shares.list else { continue };
-            for slab in followed_slabs(&self.list, &share.tiles[rank]) {
-                for &p in &self.list.particle[self.list.records(slab)] {
+            let mut follow = |particles: &[u32]| {
+                for &p in particles {
                     if let Some(&owner) = shares.owner.get(p as usize) {
                         needs[usize::from(owner)].push(p);
                     }
                 }
+            };
+            for (body, share) in self.lattices.iter().zip(&shares.bodies) {
+                let slots = followed(body, &share.tiles[rank]).into_iter().enumerate();
+                let slots = slots.filter(|(_, follows)| *follows);
+                slots.for_each(|(slot, _)| follow(&body.particle[body.rows[slot].cells()]));
+            }
+            if let Some(share) = &shares.list {
+                let slabs = followed_slabs(&self.list, &share.tiles[rank]).into_iter();
+                slabs.for_each(|slab| follow(&self.list.particle[self.list.records(slab)]));
             }
         }
         for pair in self.near.pairs.iter().flatten() {
