@@ -62,3 +62,4 @@ mod terminal;
 #[path = "common/threads.rs"]
 mod threads;
 mod verify;
+mod workers;

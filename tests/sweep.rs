@@ -410,6 +410,7 @@ fn jobs_give_outcomes_from_rust() {
         retry: 0,
         program: env!("CARGO_BIN_EXE_perigrain").into(),
         telling: true,
+        ranks: None,
     };
     assert!(sweep::look_ahead(&sweep).problems.is_empty());
     let stop = AtomicBool::new(false);

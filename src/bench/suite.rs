@@ -7,6 +7,7 @@ use super::reference::Against;
 use super::{Bench, Measure, PROGRAM};
 use crate::heads::{self, Headed};
 use crate::session::axes::Axis;
+use crate::sweep::ranks::Ranks;
 use crate::sweep::starter::Starter;
 use crate::sweep::{Deck, Settings, Sweep, lammps};
 use perigrain_base::diag::Result;
@@ -101,6 +102,8 @@ pub struct Manner {
     pub program: Starter,
     /// Whether runs tell how far they are.
     pub telling: bool,
+    /// The ranks that make the runs, if there are several.
+    pub ranks: Option<Ranks>,
 }
 
 impl Headed for Case {
@@ -167,6 +170,7 @@ impl Case {
             retry: 0,
             program: manner.program.clone(),
             telling: manner.telling,
+            ranks: manner.ranks.clone(),
         };
         Bench::new(sweep, axes, manner.repeat, self.measure.iter().map(measure).collect())
     }

@@ -1,9 +1,13 @@
 //! `-partition`: the same deck worked off several times beside each other, each a process with its own log and screen.
 
+#[cfg(unix)]
+mod ranks;
+
 use super::args::{Deck, Options, Target, Usage};
 use super::{FAILED, INTERRUPTED, OK, signals};
 use crate::sweep::starter::{self, Starter};
 use crate::sweep::worker::live_with;
+use perigrain_base::comm;
 use perigrain_lang::{Partition, Turn};
 use std::fs::File;
 use std::io::{Read, Seek, Write};
@@ -76,8 +80,20 @@ pub fn of(o: &Options) -> Option<Partition> {
         let turn: Turn = Arc::new(move |_| Ok(next.fetch_add(1, Ordering::Relaxed)));
         return (of > 0).then(|| Partition::new(0, of, turn));
     };
-    let file = world.turns.clone();
-    Some(Partition::new(world.number, of, Arc::new(move |round| take(&file, round as usize, of))))
+    let world = world.clone();
+    let number = world.number;
+    Some(Partition::new(number, of, Arc::new(move |round| world.take(round, of))))
+}
+
+impl World {
+    /// Takes the next turn of a round: from the file that all processes share, or on ranks by asking at the rank's socket.
+    fn take(&self, round: u64, of: usize) -> std::io::Result<usize> {
+        #[cfg(unix)]
+        if std::os::unix::fs::FileTypeExt::is_socket(&std::fs::metadata(&self.turns)?.file_type()) {
+            return ranks::ask(&self.turns, self, round);
+        }
+        take(&self.turns, round as usize, of)
+    }
 }
 
 /// Takes the next turn of a round from the file that all processes share; those below `of` are where they began.
@@ -98,23 +114,62 @@ fn take(path: &Path, round: usize, of: usize) -> std::io::Result<usize> {
     Ok(turn)
 }
 
-/// Has every partition worked off by a process and waits for all; the exit code is that of the worst.
+/// Has every partition worked off by a process and waits for all; the exit code is that of the worst. Of several ranks each one has its own
+/// partitions.
 ///
 /// # Errors
-/// A deck from standard input, which several cannot read.
+/// A deck from standard input, which several cannot read, ranks that cannot be joined.
 pub fn work_off(o: &Options) -> Result<u8, Usage> {
     if o.deck == Deck::Stdin {
         return Err(Usage::new("several partitions cannot all read the deck from standard input")
             .help("write `-in FILE`"));
     }
-    let turns = std::env::temp_dir().join(format!("perigrain.{}.turns", std::process::id()));
-    let outcome = all(o, &turns);
-    // It is of no use to anybody any more.
-    let _ = std::fs::remove_file(&turns);
-    Ok(outcome.unwrap_or_else(|e| {
-        eprintln!("error: the partitions cannot be started: {e}");
-        FAILED
-    }))
+    let said = |outcome: std::io::Result<u8>| {
+        outcome.unwrap_or_else(|e| {
+            eprintln!("error: the partitions cannot be started: {e}");
+            FAILED
+        })
+    };
+    let here = || {
+        let turns = std::env::temp_dir().join(format!("perigrain.{}.turns", std::process::id()));
+        let outcome = all(o, &turns);
+        // It is of no use to anybody any more.
+        let _ = std::fs::remove_file(&turns);
+        Ok(said(outcome))
+    };
+    #[cfg(unix)]
+    return super::ranks::shared_out(
+        o,
+        |ranks| ranks.map_or_else(here, |ranks| Ok(said(ranks::first(o, &ranks)))),
+        ranks::serve,
+    );
+    #[cfg(not(unix))]
+    super::ranks::shared_out(o, |_| here(), |_| FAILED)
+}
+
+impl Options {
+    /// Whether the partitions' common lines are for the screen.
+    fn shows_screen(&self) -> bool {
+        matches!(self.screen, Target::Usual | Target::Full)
+    }
+}
+
+/// The file for what concerns all partitions.
+fn own_log(o: &Options) -> std::io::Result<Option<File>> {
+    match &o.log {
+        Target::None => Ok(None),
+        Target::Usual | Target::Full => File::create("log.lammps").map(Some),
+        Target::File(path) => File::create(path).map(Some),
+    }
+}
+
+/// How a partition ended that did not end well.
+fn ended_in_words(code: u8) -> Option<String> {
+    match code {
+        OK => None,
+        INTERRUPTED => Some(format!("was interrupted (exit code {code})")),
+        _ => Some(format!("failed (exit code {code})")),
+    }
 }
 
 fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
@@ -124,27 +179,22 @@ fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
     let known = started.clone();
     signals::listen(move || signals::pass_on(&known.lock().unwrap_or_else(PoisonError::into_inner)));
     File::create(turns)?;
-    let mut log = match &o.log {
-        Target::None => None,
-        Target::Usual | Target::Full => Some(File::create("log.lammps")?),
-        Target::File(path) => Some(File::create(path)?),
-    };
+    let mut log = own_log(o)?;
     let mut say = |text: String| {
-        if matches!(o.screen, Target::Usual | Target::Full) {
+        if o.shows_screen() {
             super::show(&text);
         }
         log.as_mut().map_or(Ok(()), |log| log.write_all(text.as_bytes()))
     };
     say(format!("Running on {} partitions of processors\n", o.partition.len()))?;
-    let children =
-        (0..o.partition.len()).map(|number| start(number, turns)).collect::<std::io::Result<Vec<_>>>()?;
+    let children = (0..o.partition.len()).map(|number| Start { number, turns }.spawn());
+    let children = children.collect::<std::io::Result<Vec<_>>>()?;
     *started.lock().unwrap_or_else(PoisonError::into_inner) = children.iter().map(Child::id).collect();
     let mut worst = OK;
     for (number, mut child) in children.into_iter().enumerate() {
         let code = child.wait()?.code().map_or(FAILED, |code| code.clamp(0, 255) as u8);
-        if code != OK {
-            let how = if code == INTERRUPTED { "was interrupted" } else { "failed" };
-            say(format!("partition {} {how} (exit code {code})\n", number + 1))?;
+        if let Some(how) = ended_in_words(code) {
+            say(format!("partition {} {how}\n", number + 1))?;
         }
         worst = worst.max(code);
     }
@@ -152,11 +202,19 @@ fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
 }
 
 /// This program again, with the same words and its place among the partitions.
-fn start(number: usize, turns: &Path) -> std::io::Result<Child> {
-    let mut command = Starter::itself()?.command();
-    command.args(starter::words()).arg("-world").arg(number.to_string());
-    command.arg(std::process::id().to_string()).arg(turns);
-    command.stdin(Stdio::null()).spawn()
+struct Start<'a> {
+    number: usize,
+    turns: &'a Path,
+}
+
+impl Start<'_> {
+    fn spawn(self) -> std::io::Result<Child> {
+        let mut command = Starter::itself()?.command();
+        command.args(starter::words()).arg("-world").arg(self.number.to_string());
+        command.arg(std::process::id().to_string()).arg(self.turns);
+        comm::set_apart(&mut command);
+        command.stdin(Stdio::null()).spawn()
+    }
 }
 
 /// One of several processes ends when the one that waits for it is gone.

@@ -1,8 +1,9 @@
 //! Several ranks: how they are joined, agree that they run the same, and end together.
 
 use super::args::{Options, Target, Usage};
-use super::{FAILED, OK, deck};
+use super::{FAILED, OK, USAGE, deck};
 use crate::session::Mode;
+use crate::sweep::ranks::Ranks;
 use crate::sweep::starter::{self, Starter};
 use perigrain_base::comm::{self, Comm, Launched, launched};
 use perigrain_base::math::form::Form;
@@ -32,6 +33,47 @@ pub(super) fn work_off(o: &Options, mode: Mode) -> Result<u8, Usage> {
     }
 }
 
+/// Does the first rank's work, which gives parts of it to the others, and theirs, which is to wait for that; the exit code. Where there is
+/// one process, it does all of it.
+///
+/// # Errors
+/// Ranks that cannot be joined, and what the first rank's work ends with.
+pub(super) fn shared_out(
+    o: &Options,
+    first: impl FnOnce(Option<Ranks>) -> Result<u8, Usage>,
+    others: impl FnOnce(&Ranks) -> u8,
+) -> Result<u8, Usage> {
+    let Some(comm) = join(o)? else { return first(None) };
+    let nodes = comm::nodes(&*comm);
+    if let Some(usage) = comm::run_as(comm.clone(), || differs(&*comm, &nodes)) {
+        comm.meet(FAILING);
+        comm.close();
+        return Err(usage);
+    }
+    let me = comm.rank();
+    let mut cores = vec![0i64; nodes.len()];
+    cores[me] = share_of_cores(&nodes, me) as i64;
+    comm.sum(&mut cores);
+    let cores = cores.into_iter().map(|n| n as usize).collect();
+    let ranks = Ranks::new(comm.clone(), nodes.clone(), cores);
+    if me > 0 {
+        let code = others(&ranks);
+        // All ranks have the first one's code, and end with it.
+        if comm.meet(DONE) {
+            comm.close();
+        }
+        return Ok(code);
+    }
+    let outcome = first(Some(ranks.clone()));
+    let code = *outcome.as_ref().unwrap_or(&USAGE);
+    if !ranks.dismiss(code) || !comm.meet(DONE) {
+        // One that is not there has been named.
+        comm.abort(i32::from(if code == OK { FAILED } else { code }));
+    }
+    comm.close();
+    outcome
+}
+
 /// What a launcher has started and only one process can do.
 ///
 /// # Errors
@@ -40,8 +82,8 @@ pub(super) fn refuse(what: &str) -> Result<(), Usage> {
     let Some(by) = launched() else { return Ok(()) };
     let usage = Usage::new(format!("{} has started {} processes, and {what}", by.by, by.size));
     Err(usage.help(
-        "decks run on several ranks: `mpirun -n 4 perigrain -in DECK`; all else runs without mpirun, or each by itself \
-         with `PERIGRAIN_MPI=none`",
+        "decks, sweeps and benches run on several ranks: `mpirun -n 4 perigrain -in DECK`; all else runs without mpirun, or \
+         each by itself with `PERIGRAIN_MPI=none`",
     ))
 }
 

@@ -251,10 +251,9 @@ impl Task {
     /// What only one process can do of this; nothing where several ranks can.
     pub(super) fn alone(&self) -> Option<&'static str> {
         match self {
-            Task::Run(o) if o.world.is_some() => None,
-            Task::Run(o) if !o.partition.is_empty() => Some("`-partition` starts processes of its own"),
             Task::Plan { measure: true, .. } => None,
             Task::Run(_) | Task::Ranks(_) | Task::Text(_) | Task::Explain(_) | Task::Worker => None,
+            Task::Sweep(_) | Task::Bench(_) | Task::Suite(_) => None,
             Task::Doc(_) | Task::Help(_) => None,
             Task::Repl(_) => Some("lines are typed into one"),
             _ => Some("this is work for one"),

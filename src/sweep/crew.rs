@@ -1,103 +1,198 @@
-//! The processes that make runs, a few at a time.
+//! Who makes the runs: processes of this machine, and those that other ranks have on theirs.
 
-use super::worker::{OUTPUT, Task, WORD};
-use super::{Outcome, Running, Sweep};
-use std::fs::File;
-use std::io::Write;
-use std::path::Path;
-use std::process::{Child, ExitStatus, Stdio};
-use std::time::Instant;
+use super::hands::{Hands, Order};
+use super::ranks::{Letter, Ranks};
+use super::{Outcome, PAUSE, Running, Sweep};
+use perigrain_base::comm::Gone;
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
+use std::time::{Duration, Instant};
 
-/// Those at work.
+/// How long a rank may be silent while it makes runs before that is said.
+const SILENCE: Duration = Duration::from_secs(60);
+/// How long other ranks may take to end their runs.
+const ENDING: Duration = Duration::from_secs(10);
+
+/// Those at work. Without ranks there is one post, this process.
 pub(super) struct Crew {
-    pub at_once: usize,
-    pub threads: usize,
-    hands: Vec<Hand>,
-    /// Runs that could not even be begun.
-    stillborn: Vec<(usize, Outcome)>,
-    /// How the process that was looked at last ended, and after how many seconds.
-    pub last: (String, f64),
+    ranks: Option<Ranks>,
+    own: Hands,
+    /// By rank.
+    posts: Vec<Post>,
+    /// Something outside has asked another rank to end.
+    pub asked: bool,
 }
 
-struct Hand {
+/// What a rank has under way.
+struct Post {
+    /// How many runs at once, and threads of each.
+    places: usize,
+    threads: usize,
+    /// Runs that another rank makes.
+    jobs: Vec<Away>,
+    /// When it was heard last, and whether its silence has been told.
+    heard: Instant,
+    missed: bool,
+}
+
+struct Away {
     job: usize,
-    child: Child,
     since: Instant,
+    steps: Option<(i64, i64)>,
 }
 
 impl Crew {
-    pub fn new(at_once: usize, threads: usize) -> Self {
-        Self { at_once, threads, hands: vec![], stillborn: vec![], last: Default::default() }
+    /// For so many runs.
+    pub fn new(sweep: &Sweep, runs: usize) -> Self {
+        let post = |cores: usize, runs: usize| {
+            let at_once = if sweep.at_once == 0 { cores } else { sweep.at_once }.min(runs).max(1);
+            let threads = if sweep.threads == 0 { (cores / at_once).max(1) } else { sweep.threads };
+            Post { places: at_once, threads, jobs: vec![], heard: Instant::now(), missed: false }
+        };
+        let ranks = sweep.ranks.clone();
+        let posts = match &ranks {
+            None => {
+                vec![post(std::thread::available_parallelism().map_or(1, usize::from), runs)]
+            }
+            Some(ranks) => {
+                let each = runs.div_ceil(ranks.size());
+                (0..ranks.size()).map(|rank| post(ranks.cores(rank), each)).collect()
+            }
+        };
+        Self { ranks, own: Hands::default(), posts, asked: false }
     }
 
-    pub fn has_room(&self) -> bool {
-        self.hands.len() < self.at_once
+    /// How many runs are made at once.
+    pub fn places(&self) -> usize {
+        self.posts.iter().map(|post| post.places).sum()
+    }
+
+    fn free(&self, rank: usize) -> usize {
+        let post = &self.posts[rank];
+        post.places.saturating_sub(if rank == 0 { self.own.count() } else { post.jobs.len() })
+    }
+
+    /// The rank with most room for a run, if any has some.
+    pub fn room(&self) -> Option<usize> {
+        let rank = (0..self.posts.len()).rev().max_by_key(|rank| self.free(*rank))?;
+        (self.free(rank) > 0).then_some(rank)
     }
 
     pub fn is_idle(&self) -> bool {
-        self.hands.is_empty() && self.stillborn.is_empty()
+        self.own.count() == 0 && self.posts.iter().all(|post| post.jobs.is_empty())
     }
 
-    /// A run could not be begun.
-    pub fn failed(&mut self, job: usize, outcome: Outcome) {
-        self.stillborn.push((job, outcome));
+    /// Threads of a run at a rank.
+    pub fn threads(&self, rank: usize) -> usize {
+        self.posts[rank].threads
     }
 
-    /// Starts a process for a run, in the run's folder: a worker of this program, or the LAMMPS that the task names.
-    pub fn start(&mut self, job: usize, sweep: &Sweep, home: &Path, task: &Task) -> std::io::Result<()> {
-        let output = File::create(home.join(OUTPUT))?;
-        let mut command = match &task.settings.lammps {
-            Some(lammps) => super::lammps::command(lammps, &task.deck, &task.settings.vars, task.threads),
-            None => {
-                let mut command = sweep.program.command();
-                command.arg(WORD).stdin(Stdio::piped());
-                command
+    /// What the journal says of where a run is made, where that is not plain.
+    pub fn name(&self, rank: usize) -> Option<String> {
+        self.ranks.as_ref().map(|ranks| ranks.name(rank))
+    }
+
+    /// A run cannot be begun.
+    pub fn failed(&mut self, job: usize, why: String) {
+        self.own.failed(job, why);
+    }
+
+    /// Has a run made at a rank that has room for it.
+    pub fn begin(&mut self, rank: usize, sweep: &Sweep, order: Order) {
+        match &self.ranks {
+            Some(ranks) if rank > 0 => {
+                self.posts[rank].jobs.push(Away { job: order.job, since: Instant::now(), steps: None });
+                self.posts[rank].heard = Instant::now();
+                ranks.say(rank, &Letter::Begin(Box::new(order)).words());
             }
-        };
-        command.current_dir(home).stdout(output.try_clone()?).stderr(output);
-        // Ctrl-C is for the sweep, which ends its runs.
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let mut child = command.spawn()?;
-        let told = child.stdin.take().map_or(Ok(()), |mut pipe| pipe.write_all(task.text().as_bytes()));
-        // A process that does not listen has ended, which is seen later.
-        drop(told);
-        self.hands.push(Hand { job, child, since: Instant::now() });
-        Ok(())
+            _ => self.own.begin(&sweep.program, order),
+        }
     }
 
-    /// Runs that have ended since the last look; an outcome only where no process was started.
-    pub fn ended(&mut self) -> Vec<(usize, Option<Outcome>)> {
-        if let Some((job, outcome)) = self.stillborn.pop() {
-            return vec![(job, Some(outcome))];
+    /// Runs that have ended since the last look, and notes of what is amiss.
+    ///
+    /// # Errors
+    /// A rank that has ended, one that does not see the sweep's folder.
+    pub fn ended(&mut self, sweep: &Sweep, notes: &mut Diagnostics) -> Result<Vec<(usize, Outcome)>> {
+        let mut ended = self.own.ended();
+        let Some(ranks) = self.ranks.clone() else { return Ok(ended) };
+        for rank in 1..self.posts.len() {
+            while let Some(words) = ranks.hear(rank).map_err(|Gone| self.lost(&ranks, rank, sweep))? {
+                let post = &mut self.posts[rank];
+                (post.heard, post.missed) = (Instant::now(), false);
+                match Letter::read(&words) {
+                    Some(Letter::End(job, outcome)) => {
+                        let known = post.jobs.len();
+                        post.jobs.retain(|away| away.job != job);
+                        // Of an earlier sweep that was stopped there may be a last word.
+                        ended.extend((post.jobs.len() < known).then_some((job, *outcome)));
+                    }
+                    Some(Letter::At(all)) => {
+                        for (job, done, of) in all.into_iter().filter(|(_, _, of)| *of > 0) {
+                            let away = post.jobs.iter_mut().filter(|away| away.job == job);
+                            away.for_each(|away| away.steps = Some((done, of)));
+                        }
+                    }
+                    Some(Letter::Asked) => self.asked = true,
+                    Some(Letter::Blind) => return Err(blind(&ranks, rank, sweep)),
+                    _ => {}
+                }
+            }
+            let post = &mut self.posts[rank];
+            if !post.jobs.is_empty() && !post.missed && post.heard.elapsed() > SILENCE {
+                post.missed = true;
+                notes.push(self.silent(&ranks, rank, sweep));
+            }
         }
-        // One at a time, so that `last` is about it.
-        for k in 0..self.hands.len() {
-            let hand = &mut self.hands[k];
-            let how = match hand.child.try_wait() {
-                Ok(None) => continue,
-                Ok(Some(status)) => said(status),
-                Err(e) => e.to_string(),
-            };
-            let hand = self.hands.remove(k);
-            self.last = (how, hand.since.elapsed().as_secs_f64());
-            return vec![(hand.job, None)];
-        }
-        vec![]
+        Ok(ended)
+    }
+
+    /// The runs that a rank makes, in words.
+    fn making(&self, rank: usize, sweep: &Sweep) -> String {
+        let one = |away: &Away| match sweep.jobs[away.job].title() {
+            title if title.is_empty() => format!("run {}", away.job + 1),
+            title => format!("run {} ({title})", away.job + 1),
+        };
+        let all: Vec<String> = self.posts[rank].jobs.iter().map(one).collect();
+        if all.is_empty() { "no run".into() } else { all.join(", ") }
+    }
+
+    fn lost(&self, ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostics {
+        let making = self.making(rank, sweep);
+        let text = format!("{} has ended without a word; it was making {making}", ranks.name(rank));
+        let d = Diagnostic::error(Code::OTHER_SWEEP, None, text);
+        d.help("what is done is kept: the same command goes on, on any number of ranks").into()
+    }
+
+    fn silent(&self, ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostic {
+        let (seconds, making) = (SILENCE.as_secs(), self.making(rank, sweep));
+        let text = format!("{} has said nothing for {seconds} s; it is making {making}", ranks.name(rank));
+        let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
+        d.help("where its machine is gone, end the sweep: the same command goes on with what is left")
     }
 
     /// The runs under way.
-    pub fn running(&self, steps: impl Fn(usize) -> Option<(i64, i64)>) -> Vec<Running> {
-        let look = |h: &Hand| Running { job: h.job, since: h.since.elapsed(), steps: steps(h.job) };
-        self.hands.iter().map(look).collect()
+    pub fn running(&self) -> Vec<Running> {
+        let look = |away: &Away| Running { job: away.job, since: away.since.elapsed(), steps: away.steps };
+        let away = self.posts.iter().flat_map(|post| post.jobs.iter().map(look));
+        self.own.running().into_iter().chain(away).collect()
     }
 
-    /// Ends all of them at once.
+    /// Ends all of them at once, and waits until they have ended.
     pub fn stop(&mut self) {
-        for mut hand in self.hands.drain(..) {
-            // One that has ended by itself is no failure.
-            let _ = hand.child.kill().and_then(|()| hand.child.wait());
+        self.own.stop();
+        let Some(ranks) = &self.ranks else { return };
+        let mut busy: Vec<usize> =
+            (1..self.posts.len()).filter(|rank| !self.posts[*rank].jobs.is_empty()).collect();
+        busy.iter().for_each(|rank| ranks.say(*rank, &Letter::Stop.words()));
+        let begin = Instant::now();
+        while !busy.is_empty() && begin.elapsed() < ENDING {
+            busy.retain(|rank| match ranks.hear(*rank) {
+                Ok(words) => words.is_none_or(|words| Letter::read(&words) != Some(Letter::Stopped)),
+                Err(Gone) => false,
+            });
+            std::thread::sleep(PAUSE);
         }
+        self.posts.iter_mut().for_each(|post| post.jobs.clear());
     }
 }
 
@@ -107,11 +202,8 @@ impl Drop for Crew {
     }
 }
 
-/// How a process ended, in a few words.
-fn said(status: ExitStatus) -> String {
-    #[cfg(unix)]
-    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
-        return format!("signal {signal}");
-    }
-    status.code().map_or_else(|| status.to_string(), |code| format!("exit code {code}"))
+fn blind(ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostics {
+    let text = format!("{} does not see the sweep's folder `{}`", ranks.name(rank), sweep.folder.display());
+    let d = Diagnostic::error(Code::NO_FILE, None, text);
+    d.help("all hosts need it: begin in a folder that they share, or put it on one with `-out DIR`").into()
 }

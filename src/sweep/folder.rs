@@ -1,7 +1,7 @@
 //! The folder of a sweep: locks, a copy of the deck, a folder for each run.
 
 use super::outcome::opened;
-use super::worker::{OUTPUT, PROGRESS, RESULT, Task};
+use super::worker::{PROGRESS, RESULT, Task};
 use super::{Deck, Outcome, Sweep, lammps};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_out::file::{replace, trouble};
@@ -64,30 +64,6 @@ impl Folder {
         self.path.join(name(sweep.jobs.len(), job, &sweep.jobs[job].title()))
     }
 
-    /// A run's folder without anything in it.
-    ///
-    /// # Errors
-    /// Folders that cannot be emptied or made.
-    pub fn clear(&self, sweep: &Sweep, job: usize) -> Result<PathBuf> {
-        let home = self.of(sweep, job);
-        self.forget(&home)?;
-        std::fs::create_dir(&home).map_err(|e| trouble("make the folder", &home, &e))?;
-        Ok(home)
-    }
-
-    /// Removes a run's folder.
-    ///
-    /// # Errors
-    /// What the system refuses.
-    pub fn forget(&self, home: &Path) -> Result<()> {
-        match std::fs::remove_dir_all(home) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                Err(trouble("empty the folder", home, &e).into())
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// What a worker has to know of a run.
     pub fn task(&self, sweep: &Sweep, job: usize, threads: usize, print: String) -> Task {
         let mut settings = sweep.settings.clone();
@@ -119,26 +95,35 @@ impl Folder {
         let text = std::fs::read_to_string(self.of(sweep, job).join(RESULT)).ok()?;
         opened(print, &text)
     }
+}
 
-    /// A run whose process ended without a result.
-    pub fn crashed(&self, sweep: &Sweep, job: usize, (how, seconds): &(String, f64)) -> Outcome {
-        let said = std::fs::read(self.of(sweep, job).join(OUTPUT)).unwrap_or_default();
-        let said = String::from_utf8_lossy(&said);
-        let word = said.lines().map(str::trim).find(|l| l.contains("panicked") || l.contains("error"));
-        let last = word.or_else(|| said.lines().rev().map(str::trim).find(|l| !l.is_empty()));
-        let text = match last {
-            Some(last) => format!("the process crashed ({how}): {last}"),
-            None => format!("the process crashed ({how})"),
-        };
-        Outcome::failed(text, *seconds)
-    }
+/// Empties a run's folder, or makes it.
+///
+/// # Errors
+/// Folders that cannot be emptied or made.
+pub(super) fn clear(home: &Path) -> Result<()> {
+    forget(home)?;
+    std::fs::create_dir(home).map_err(|e| trouble("make the folder", home, &e).into())
+}
 
-    /// Steps made and steps of the present `run`, if the run has told.
-    pub fn steps(&self, sweep: &Sweep, job: usize) -> Option<(i64, i64)> {
-        let text = std::fs::read_to_string(self.of(sweep, job).join(PROGRESS)).ok()?;
-        let (done, total) = text.trim().split_once(' ')?;
-        Some((done.parse().ok()?, total.parse().ok()?))
+/// Removes a run's folder.
+///
+/// # Errors
+/// What the system refuses.
+pub(super) fn forget(home: &Path) -> Result<()> {
+    match std::fs::remove_dir_all(home) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(trouble("empty the folder", home, &e).into())
+        }
+        _ => Ok(()),
     }
+}
+
+/// Steps made and steps of the present `run` in a run's folder, if the run has told.
+pub(super) fn steps(home: &Path) -> Option<(i64, i64)> {
+    let text = std::fs::read_to_string(home.join(PROGRESS)).ok()?;
+    let (done, total) = text.trim().split_once(' ')?;
+    Some((done.parse().ok()?, total.parse().ok()?))
 }
 
 /// Takes the lock; false if somebody else keeps it. A process that a killed sweep was just starting holds it for a moment more.

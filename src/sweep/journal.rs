@@ -130,6 +130,8 @@ pub(super) struct Journal {
     pub begun: Vec<bool>,
     /// What became of runs in the end.
     pub outcomes: Vec<Option<Outcome>>,
+    /// The rank at which each run was begun earlier, where there were several.
+    pub at: Vec<Option<String>>,
     /// Lines that could not be read.
     pub notes: Diagnostics,
 }
@@ -148,7 +150,7 @@ impl Journal {
             Err(e) => return Err(trouble("read", &path, &e).into()),
         };
         let Some(before) = before.filter(|b| !anew && !b.as_ref().is_ok_and(|b| b.is_empty())) else {
-            forget_runs(sweep, home, &path);
+            forget_runs(sweep, &path);
             return Self::begin_with(sweep, home, path, &head);
         };
         let before = before?;
@@ -166,8 +168,8 @@ impl Journal {
             home.keep(&sweep.deck)?;
         }
         let print = digest(seal(&head.fields()).as_bytes());
-        let Read { begun, outcomes, notes, .. } = before;
-        Ok(Self { path, file, print, is_new: false, begun, outcomes, notes })
+        let Read { begun, outcomes, notes, at, .. } = before;
+        Ok(Self { path, file, print, is_new: false, begun, outcomes, at, notes })
     }
 
     fn begin_with(sweep: &Sweep, home: &Folder, path: PathBuf, head: &Head) -> Result<Self> {
@@ -178,7 +180,8 @@ impl Journal {
         let (begun, outcomes) = (vec![false; n], vec![None; n]);
         let print = digest(line.as_bytes());
         let notes = Diagnostics::default();
-        let mut journal = Self { path, file, print, is_new: true, begun, outcomes, notes };
+        let at = vec![None; n];
+        let mut journal = Self { path, file, print, is_new: true, begun, outcomes, at, notes };
         journal.write(&head.fields())?;
         Ok(journal)
     }
@@ -188,13 +191,14 @@ impl Journal {
         format!("{}-{job}", self.print)
     }
 
-    /// A run begins.
+    /// A run begins; on one of several ranks the line says at which.
     ///
     /// # Errors
     /// The line cannot be written.
-    pub fn begin(&mut self, job: usize) -> Result<()> {
+    pub fn begin(&mut self, job: usize, at: Option<String>) -> Result<()> {
         self.begun[job] = true;
-        self.write(&["begin".into(), job.to_string()])
+        let line = ["begin".into(), job.to_string()];
+        self.write(&line.into_iter().chain(at).collect::<Vec<_>>())
     }
 
     /// A run has ended.
@@ -216,12 +220,12 @@ impl Journal {
 }
 
 /// Removes the folders of the runs of a sweep that is begun anew, as far as its journal tells them.
-fn forget_runs(sweep: &Sweep, home: &Folder, path: &Path) {
+fn forget_runs(sweep: &Sweep, path: &Path) {
     let Ok(Ok(before)) = std::fs::read(path).map(|bytes| read(path, &bytes)) else { return };
     let Some(head) = before.head else { return };
     for (job, vars) in head.jobs.iter().enumerate().filter(|(job, _)| before.begun[*job]) {
         // One that cannot be removed is in nobody's way: a run that needs its place says so.
-        let _ = home.forget(&sweep.folder.join(folder::name(head.jobs.len(), job, &vars.title())));
+        let _ = folder::forget(&sweep.folder.join(folder::name(head.jobs.len(), job, &vars.title())));
     }
 }
 
@@ -230,6 +234,8 @@ struct Read {
     head: Option<Head>,
     begun: Vec<bool>,
     outcomes: Vec<Option<Outcome>>,
+    /// The rank at which each run was begun last, where there were several.
+    at: Vec<Option<String>>,
     /// Bytes up to the end of the last whole line.
     whole: u64,
     notes: Diagnostics,
@@ -244,8 +250,14 @@ impl Read {
 
 /// Reads a journal. A last line that is torn is left out, for it never counted; damage before it is told.
 fn read(path: &Path, bytes: &[u8]) -> Result<Read> {
-    let mut out =
-        Read { head: None, begun: vec![], outcomes: vec![], whole: 0, notes: Diagnostics::default() };
+    let mut out = Read {
+        head: None,
+        begun: vec![],
+        outcomes: vec![],
+        at: vec![],
+        whole: 0,
+        notes: Diagnostics::default(),
+    };
     let (mut at, mut damaged) = (0, vec![]);
     for (k, line) in bytes.split_inclusive(|b| *b == b'\n').enumerate() {
         at += line.len() as u64;
@@ -279,13 +291,16 @@ impl Read {
         if self.head.is_none() {
             let Some(head) = Head::read(fields) else { return false };
             let n = head.jobs.len();
-            (self.begun, self.outcomes) = (vec![false; n], vec![None; n]);
+            (self.begun, self.outcomes, self.at) = (vec![false; n], vec![None; n], vec![None; n]);
             self.head = Some(head);
             return true;
         }
         let job = fields.get(1).and_then(|w| w.parse::<usize>().ok()).filter(|k| *k < self.begun.len());
         match (fields, job) {
-            ([what, _], Some(job)) if what == "begin" => (self.begun[job], self.outcomes[job]) = (true, None),
+            ([what, _, at @ ..], Some(job)) if what == "begin" && at.len() < 2 => {
+                (self.begun[job], self.outcomes[job]) = (true, None);
+                self.at[job] = at.first().cloned();
+            }
             ([what, _, outcome], Some(job)) if what == "end" => {
                 let Some(outcome) = Outcome::read(&split(outcome)) else { return false };
                 self.outcomes[job] = Some(outcome);

@@ -5,9 +5,11 @@
 mod ahead;
 mod crew;
 mod folder;
+mod hands;
 mod journal;
 pub mod lammps;
 mod outcome;
+pub mod ranks;
 mod record;
 pub mod series;
 pub mod starter;
@@ -26,8 +28,10 @@ use crate::session::axes::{Axis, combined};
 pub use ahead::{Ahead, look_ahead};
 use crew::Crew;
 use folder::Folder;
+use hands::Order;
 use journal::Journal;
 pub use outcome::Outcome;
+use ranks::Ranks;
 
 /// How often running processes are looked at.
 const PAUSE: Duration = Duration::from_millis(4);
@@ -111,7 +115,7 @@ pub struct Sweep {
     pub settings: Settings,
     /// Where journal, table and the runs' own folders are.
     pub folder: PathBuf,
-    /// How many run at once; 0 for as many as there are cores.
+    /// How many run at once, on ranks on each of them; 0 for as many as there are cores.
     pub at_once: usize,
     /// Threads of each run; 0 shares the cores out. Numbers do not depend on it.
     pub threads: usize,
@@ -121,6 +125,8 @@ pub struct Sweep {
     pub program: Starter,
     /// Whether runs tell how far they are.
     pub telling: bool,
+    /// The ranks that make the runs; without them this process has them made.
+    pub ranks: Option<Ranks>,
 }
 
 /// Where a sweep stands.
@@ -239,6 +245,9 @@ pub fn work_off(sweep: &Sweep, anew: bool, watch: &mut dyn Watch, stop: &AtomicB
     }
     let mut work = Work::new(sweep, &folder, &mut journal)?;
     work.adopt()?;
+    if let Some(note) = work.left_at_ranks() {
+        watch.note(&note.into());
+    }
     let done = work.done();
     if done > 0 || !work.journal.is_new {
         watch.resumed(done, &work.state());
@@ -268,12 +277,9 @@ struct Work<'a> {
 impl<'a> Work<'a> {
     fn new(sweep: &'a Sweep, folder: &'a Folder, journal: &'a mut Journal) -> Result<Self> {
         let outcomes = std::mem::take(&mut journal.outcomes);
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let left = outcomes.iter().filter(|o| !o.as_ref().is_some_and(Outcome::is_ok)).count();
-        let at_once = if sweep.at_once == 0 { cores } else { sweep.at_once }.min(left).max(1);
-        let threads = if sweep.threads == 0 { (cores / at_once).max(1) } else { sweep.threads };
+        let crew = Crew::new(sweep, left);
         let tries = vec![0; outcomes.len()];
-        let crew = Crew::new(at_once, threads);
         let mut work =
             Self { sweep, folder, journal, crew, outcomes, tries, read: BTreeMap::new(), tableless: false };
         work.check_read_files()?;
@@ -322,6 +328,16 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
+    /// Says which runs ranks had under way when an earlier sweep ended.
+    fn left_at_ranks(&self) -> Option<Diagnostic> {
+        let jobs = 0..self.outcomes.len();
+        let left = jobs.filter(|job| self.outcomes[*job].is_none() && self.journal.begun[*job]);
+        let one = |job: usize| Some(format!("run {} at {}", job + 1, self.journal.at[job].as_ref()?));
+        let all: Vec<String> = left.filter_map(one).collect();
+        let text = format!("under way when the sweep ended, and begun anew: {}", all.join(", "));
+        (!all.is_empty()).then(|| Diagnostic::note(Code::OTHER_SWEEP, None, text))
+    }
+
     fn done(&self) -> usize {
         self.outcomes.iter().flatten().filter(|o| o.is_ok()).count()
     }
@@ -337,20 +353,29 @@ impl<'a> Work<'a> {
         let mut told = Instant::now();
         self.write_table(watch);
         while !stop.load(Ordering::Relaxed) {
-            while self.crew.has_room()
+            while let Some(rank) = self.crew.room()
                 && let Some(job) = waiting.pop()
             {
-                self.begin(job)?;
+                self.begin(job, rank)?;
             }
             if self.crew.is_idle() {
                 break;
             }
-            let ended = self.crew.ended();
+            let mut notes = Diagnostics::default();
+            let ended = self.crew.ended(self.sweep, &mut notes)?;
+            if !notes.is_empty() {
+                watch.note(&notes);
+            }
+            if std::mem::take(&mut self.crew.asked) {
+                stop.store(true, Ordering::Relaxed);
+            }
             if ended.is_empty() {
                 std::thread::sleep(PAUSE);
             }
-            for (job, outcome) in ended {
-                let outcome = outcome.unwrap_or_else(|| self.outcome(job));
+            for (job, mut outcome) in ended {
+                if outcome.is_ok() {
+                    outcome.problem = self.changed(job, &outcome);
+                }
                 self.take(job, outcome, &mut waiting, watch)?;
             }
             if written.elapsed() > TABLE {
@@ -365,42 +390,18 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    fn begin(&mut self, job: usize) -> Result<()> {
+    fn begin(&mut self, job: usize, rank: usize) -> Result<()> {
         self.tries[job] += 1;
         let home = self.folder.of(self.sweep, job);
         if !self.journal.begun[job] && home.exists() {
             let text = format!("`{}` is in the way, and no run of this sweep has made it", home.display());
-            self.crew.failed(job, Outcome::failed(text, 0.0));
+            self.crew.failed(job, text);
             return Ok(());
         }
-        self.journal.begin(job)?;
-        let task = self.folder.task(self.sweep, job, self.crew.threads, self.journal.print(job));
-        let started = self.folder.clear(self.sweep, job).and_then(|home| {
-            self.crew.start(job, self.sweep, &home, &task).map_err(|e| {
-                let text = format!("`{}` cannot be started: {e}", self.sweep.program.display());
-                Diagnostic::error(Code::NO_FILE, None, text).into()
-            })
-        });
-        if let Err(e) = started {
-            let text = e.0.first().map_or(String::new(), |d| format!("error[{}]: {}", d.code, d.message));
-            self.crew.failed(job, Outcome::failed(text, 0.0));
-        }
+        self.journal.begin(job, self.crew.name(rank))?;
+        let task = self.folder.task(self.sweep, job, self.crew.threads(rank), self.journal.print(job));
+        self.crew.begin(rank, self.sweep, Order { job, home, task });
         Ok(())
-    }
-
-    /// What a run has left that ended by itself; its process may have crashed.
-    fn outcome(&mut self, job: usize) -> Outcome {
-        if self.sweep.jobs[job].switch("-program") == Some(lammps::PROGRAM) {
-            let home = self.folder.of(self.sweep, job);
-            let threads = self.folder.task(self.sweep, job, self.crew.threads, String::new()).threads;
-            return lammps::outcome(&home, &self.sweep.report, self.crew.last.1, threads);
-        }
-        let left = self.folder.left_by(self.sweep, job, &self.journal.print(job));
-        let mut outcome = left.unwrap_or_else(|| self.folder.crashed(self.sweep, job, &self.crew.last));
-        if outcome.is_ok() {
-            outcome.problem = self.changed(job, &outcome);
-        }
-        outcome
     }
 
     fn take(
@@ -439,11 +440,11 @@ impl<'a> Work<'a> {
 
     fn state(&self) -> State {
         let (ended, ok) = (self.outcomes.iter().flatten().count(), self.done());
-        let running = self.crew.running(|job| self.folder.steps(self.sweep, job));
+        let running = self.crew.running();
         // A run that takes longer than all others is as good as done.
         let longest = self.outcomes.iter().flatten().map(|o| o.seconds).fold(0.0, f64::max);
         let spent: f64 = running.iter().map(|r| r.since.as_secs_f64().min(longest)).sum();
-        let left = time_left(&self.outcomes, spent, self.crew.at_once);
+        let left = time_left(&self.outcomes, spent, self.crew.places());
         State { jobs: self.outcomes.len(), ok, failed: ended - ok, running, left }
     }
 }

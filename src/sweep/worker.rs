@@ -73,7 +73,7 @@ impl Task {
         ])
     }
 
-    fn read(text: &str) -> Option<Self> {
+    pub fn read(text: &str) -> Option<Self> {
         let [print, name, deck, folder, vars, compat, on, report, threads, parent, lock] = &open(text)?[..]
         else {
             return None;

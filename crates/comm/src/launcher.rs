@@ -43,11 +43,13 @@ fn found(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
     LAUNCHERS.iter().find_map(several)
 }
 
-/// A program that a rank starts is none of the launcher's processes.
+/// A program that a rank starts is none of the ranks.
 pub fn set_apart(command: &mut std::process::Command) {
     for (size, rank, _) in LAUNCHERS {
         command.env_remove(size).env_remove(rank);
     }
+    #[cfg(unix)]
+    command.env_remove(super::local::SEAT);
 }
 
 /// Joins the ranks that the launcher has started.

@@ -5,7 +5,8 @@
 //! A program says which one holds for the present thread by [`run_as`]; everything else asks [`present`], [`several`], [`is_first`],
 //! or takes values that must not differ between ranks (times, files, the environment) from [`told`].
 //!
-//! All ranks call the same functions in the same order. A rank that ends without a word ends the others.
+//! All ranks call the same functions in the same order, but for letters ([`Comm::post`]), which a rank takes when it looks for them. A rank that ends
+//! without a word ends the others; where it is a letter that does not come the program says what follows.
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 mod mpi;
@@ -15,6 +16,8 @@ mod host;
 mod launcher;
 #[cfg(unix)]
 mod local;
+#[cfg(unix)]
+mod mail;
 pub mod numbers;
 mod present;
 pub mod told;
@@ -59,6 +62,19 @@ pub trait Comm: Send + Sync {
     /// Hands the first rank's bytes to all.
     fn tell(&self, bytes: &mut Vec<u8>);
 
+    /// Sends a letter to another rank, which takes it by [`Comm::letter`]. Letters between two ranks keep their order. They are for ranks
+    /// that wait for each other in no fixed order, and that do nothing else together until all letters are taken.
+    fn post(&self, to: usize, letter: &[u8]);
+
+    /// The next letter of another rank, if it has come; never waits. Sends on what this rank has posted.
+    ///
+    /// # Errors
+    /// The other rank has ended. A launcher of MPI ends all ranks before one could see it.
+    fn letter(&self, from: usize) -> Result<Option<Vec<u8>>, Gone>;
+
+    /// Sends on what this rank has posted; whether all of it has left.
+    fn posted(&self) -> bool;
+
     /// Waits until all ranks have come here, for so long at most; whether they have. The last thing that ranks do together.
     fn meet(&self, patience: Duration) -> bool;
 
@@ -92,6 +108,10 @@ pub trait Comm: Send + Sync {
         came
     }
 }
+
+/// Another rank has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gone;
 
 /// A rank cannot be reached any more: says so and ends this one.
 fn lost(me: usize, other: usize) -> ! {

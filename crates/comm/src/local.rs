@@ -2,7 +2,8 @@
 //!
 //! What goes over a socket are frames: a kind, a length, the bytes. Ranks that call different functions are found out by the kind.
 
-use super::{Comm, lost};
+use super::mail::Mail;
+use super::{Comm, Gone, lost};
 use std::io::{ErrorKind, Read, Write};
 use std::os::fd::{AsRawFd, FromRawFd, RawFd};
 use std::os::unix::net::UnixStream;
@@ -13,24 +14,25 @@ use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
 /// The variable by which a started process knows its place: its rank, the number of ranks, and a socket for each.
-const SEAT: &str = "PERIGRAIN_SEAT";
+pub(super) const SEAT: &str = "PERIGRAIN_SEAT";
 
 /// Bytes that a socket surely takes while the other side does not read yet; more is sent by a thread of its own.
 const SMALL: usize = 16 << 10;
 
-/// Bytes of a frame before what it carries.
-const HEAD: usize = 9;
+/// Bytes of a frame before what it carries: its kind and its length.
+pub(super) const HEAD: usize = 9;
 
 /// What a frame belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-enum Kind {
+pub(super) enum Kind {
     Swap = 1,
     Gather,
     Sum,
     Most,
     Tell,
     Meet,
+    Letter,
 }
 
 /// A rank's sockets to the others, by rank; none to itself.
@@ -40,6 +42,8 @@ type Sockets = Vec<Option<UnixStream>>;
 pub struct Local {
     rank: usize,
     sockets: Sockets,
+    /// Letters to and from each rank.
+    mail: Mutex<Vec<Mail>>,
     /// Whether the ranks are processes; else they are threads of this one.
     apart: bool,
     /// The processes that the first rank has started.
@@ -77,7 +81,7 @@ impl Seat {
             // Programs that a deck starts do not keep it open.
             inherited(socket.as_raw_fd(), false).map_err(|e| format!("a socket to another rank: {e}"))?;
         }
-        Ok(Local { rank, sockets, apart: true, children: Mutex::default() })
+        Ok(Local::new(rank, sockets, true, vec![]))
     }
 }
 
@@ -89,13 +93,18 @@ fn inherited(fd: RawFd, yes: bool) -> std::io::Result<()> {
 }
 
 impl Local {
+    fn new(rank: usize, sockets: Sockets, apart: bool, children: Vec<Child>) -> Self {
+        let mail = sockets.iter().map(|_| Mail::default()).collect();
+        Self { rank, sockets, mail: Mutex::new(mail), apart, children: Mutex::new(children) }
+    }
+
     /// As many ranks for threads of this process.
     ///
     /// # Errors
     /// The system grants no more sockets.
     pub fn threads(size: usize) -> std::io::Result<Vec<Self>> {
         let rows = mesh(size)?;
-        let seat = |(rank, sockets)| Self { rank, sockets, apart: false, children: Mutex::default() };
+        let seat = |(rank, sockets)| Self::new(rank, sockets, false, vec![]);
         Ok(rows.into_iter().enumerate().map(seat).collect())
     }
 
@@ -119,7 +128,7 @@ impl Local {
             unsafe { command.pre_exec(keep) };
             children.push(command.spawn()?);
         }
-        Ok(Self { rank: 0, sockets: own, apart: true, children: Mutex::new(children) })
+        Ok(Self::new(0, own, true, children))
     }
 
     fn socket(&self, with: usize) -> &UnixStream {
@@ -327,6 +336,22 @@ impl Comm for Local {
             met &= !met || greet(to);
         }
         met
+    }
+
+    fn post(&self, to: usize, letter: &[u8]) {
+        let mut mail = self.mail.lock().unwrap_or_else(PoisonError::into_inner);
+        mail[to].post(self.socket(to), letter);
+    }
+
+    fn letter(&self, from: usize) -> Result<Option<Vec<u8>>, Gone> {
+        let mut mail = self.mail.lock().unwrap_or_else(PoisonError::into_inner);
+        mail[from].next(self.socket(from))
+    }
+
+    fn posted(&self) -> bool {
+        let mut mail = self.mail.lock().unwrap_or_else(PoisonError::into_inner);
+        let others = mail.iter_mut().zip(&self.sockets);
+        others.filter_map(|(mail, socket)| Some(mail.send(socket.as_ref()?))).fold(true, |all, one| all & one)
     }
 
     fn close(&self) {

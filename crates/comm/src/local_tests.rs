@@ -125,3 +125,49 @@ fn machines_are_named() {
     assert_eq!(names[0], vec![crate::host(); 2]);
     assert_eq!(crate::said(&names[0]), "2 ranks on 1 host");
 }
+
+#[test]
+fn letters_are_taken_when_a_rank_looks_for_them() {
+    // The longest ones are more than a socket holds, and both sides send them before either looks.
+    let lengths = [0, 5, 900_000, 1, 300_000];
+    ranks(3, || {
+        let comm = present();
+        let me = comm.rank();
+        let others = || (0..3).filter(|r| *r != me);
+        for length in lengths {
+            others().for_each(|to| comm.post(to, &vec![me as u8 + 1; length]));
+        }
+        let mut came = vec![vec![]; 3];
+        while others().any(|r| came[r].len() < lengths.len()) {
+            dawdle(came[0].len());
+            for from in others().filter(|r| came[*r].len() < lengths.len()).collect::<Vec<_>>() {
+                let letter = comm.letter(from).unwrap();
+                assert!(letter.iter().flatten().all(|b| *b == from as u8 + 1));
+                came[from].extend(letter.map(|l| l.len()));
+            }
+        }
+        assert!(others().all(|r| came[r] == lengths));
+        while !comm.posted() {
+            std::thread::yield_now();
+        }
+        // Then they do together again what they did before.
+        assert!(comm.meet(Duration::from_secs(5)));
+    });
+}
+
+#[test]
+fn a_rank_that_ends_is_missed_by_those_that_look_for_its_letters() {
+    ranks(2, || {
+        let comm = present();
+        if comm.rank() == 1 {
+            return comm.post(0, b"the last one");
+        }
+        let mut last = comm.letter(1);
+        while last != Err(Gone) {
+            assert!(matches!(&last, Ok(None)) || last.as_ref().unwrap().as_deref() == Some(b"the last one"));
+            last = comm.letter(1);
+        }
+        comm.post(1, b"nobody reads this");
+        while !comm.posted() {}
+    });
+}

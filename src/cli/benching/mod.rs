@@ -7,12 +7,13 @@ use super::args::{Target, Usage};
 use super::pager::width;
 use super::progress::{Tally, colors_wanted};
 use super::sweeping::show::Show;
-use super::sweeping::{axes, counts, listen, of_deck, prepared, said, status, usage};
-use super::{FAILED, INTERRUPTED, OK, deck};
+use super::sweeping::{axes, counts, idle, listen, of_deck, prepared, said, serve, status, usage};
+use super::{FAILED, INTERRUPTED, OK, deck, ranks};
 use crate::bench::norm::Norm;
 use crate::bench::{Bench, Found, Measure, picture, table};
 use crate::session::Swept;
 use crate::sweep;
+use crate::sweep::ranks::Ranks;
 use args::Request;
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, Span};
 use std::io::IsTerminal;
@@ -26,11 +27,15 @@ const SHOWN: usize = 60;
 /// Characters of its lines.
 const WIDTH: usize = 160;
 
-/// Makes the runs and shows what they say; the exit code.
+/// Makes the runs and shows what they say; the exit code. Of several ranks the first one does so, and the others make runs for it.
 ///
 /// # Errors
-/// Lists of values that make no sense.
+/// Lists of values that make no sense, ranks that cannot be joined.
 pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
+    ranks::shared_out(&request.sweep.options, |ranks| first(request, ranks), serve)
+}
+
+fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usage> {
     if request.sweep.status {
         return Ok(said(status(&request.sweep.folder(ENDING)), &Sources::default()));
     }
@@ -49,6 +54,7 @@ pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
         Ok(bench) => bench,
         Err(problems) => return Ok(said(Err(problems), &sources)),
     };
+    bench.sweep.ranks = ranks;
     if bench.axes.is_empty() {
         let usage = Usage::new("a bench needs a knob to turn");
         return Err(usage.help("as `-each dt 4e-6 2e-6 1e-6` for a variable of the deck, or `-threads 1 2`"));
@@ -126,6 +132,11 @@ fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     let quiet = request.sweep.options.screen == Target::None;
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
+    if let Some(said) = bench.sweep.ranks.as_ref().and_then(|ranks| idle(ranks, bench.sweep.jobs.len()))
+        && !quiet
+    {
+        super::show(&format!("{said}\n"));
+    }
     let (results, found) = measured(bench, request.sweep.anew, quiet, &stop)?;
     let Some(found) = found else {
         if !quiet {
@@ -183,6 +194,19 @@ fn complain(found: &Found) {
     found.failures.iter().for_each(|text| eprintln!("failed: {text}"));
 }
 
+/// What was going on beside a run while its time was taken.
+fn beside(runs: &sweep::Sweep) -> String {
+    let at_once = runs.at_once;
+    match &runs.ranks {
+        Some(ranks) => {
+            let each = if at_once == 1 { "one run".into() } else { format!("{at_once} runs") };
+            format!(", {}, {each} at once on each, which disturb each other on one host", ranks.said())
+        }
+        None if at_once > 1 => format!(", {at_once} runs at once, which disturb each other"),
+        None => String::new(),
+    }
+}
+
 /// Table, pictures and where they are.
 fn told(bench: &Bench, found: &Found, pictures: &[String]) -> String {
     let mut text = table::text(bench, found, width(WIDTH), SHOWN);
@@ -200,9 +224,7 @@ fn told(bench: &Bench, found: &Found, pictures: &[String]) -> String {
         (_, Some(many)) if many > 1 => text += &format!(", the least of {many}"),
         _ => {}
     }
-    if bench.sweep.at_once > 1 {
-        text += &format!(", {} runs at once, which disturb each other", bench.sweep.at_once);
-    }
+    text += &beside(&bench.sweep);
     text.push('\n');
     for picture in pictures {
         text += &format!("{folder}/{picture}.svg, .png\n");

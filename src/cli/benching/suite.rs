@@ -3,9 +3,10 @@
 use crate::bench::page::{self, Outcome};
 use crate::bench::suite::{Case, DECKS, Manner};
 use crate::bench::{Bench, table};
-use crate::cli::args::Usage;
-use crate::cli::sweeping::listen;
-use crate::cli::{FAILED, INTERRUPTED, OK, cases, deck, show};
+use crate::cli::args::{Options, Usage};
+use crate::cli::sweeping::{listen, serve};
+use crate::cli::{FAILED, INTERRUPTED, OK, cases, deck, ranks, show};
+use crate::sweep::ranks::Ranks;
 use crate::sweep::starter::Starter;
 use perigrain_base::diag::Sources;
 use perigrain_out::file::replace;
@@ -45,6 +46,9 @@ pub struct Wanted {
     /// Forget earlier runs there
     #[arg(long)]
     pub anew: bool,
+    /// Share the runs out to N processes of this machine, as `mpirun -n N` does
+    #[arg(long, value_name = "N")]
+    pub ranks: Option<usize>,
     /// Write the findings as a page, with its pictures in a folder of its name
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
@@ -53,8 +57,13 @@ pub struct Wanted {
 /// Runs what is wanted; the exit code says whether every run went well.
 ///
 /// # Errors
-/// A pattern that no case has, a LAMMPS that is not there, a file that cannot be written.
+/// A pattern that no case has, a LAMMPS that is not there, a file that cannot be written, ranks that cannot be joined.
 pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
+    let options = Options { ranks: wanted.ranks, ..Options::default() };
+    ranks::shared_out(&options, |ranks| first(wanted, ranks), serve)
+}
+
+fn first(wanted: &Wanted, ranks: Option<Ranks>) -> Result<u8, Usage> {
     let pattern = wanted.only.as_deref().unwrap_or_default();
     let cases: Vec<Case> = cases::named(DECKS, pattern, "perigrain bench -suite -list")?;
     if wanted.list {
@@ -66,7 +75,10 @@ pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
         cases.iter().for_each(|case| show(&case.deck));
         return Ok(OK);
     }
-    let manner = manner(wanted)?;
+    let manner = Manner { ranks, ..manner(wanted)? };
+    if let Some(ranks) = &manner.ranks {
+        show(&format!("the runs are shared out to {}\n", ranks.said()));
+    }
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
     let (mut outcomes, mut well) = (vec![], true);
@@ -112,6 +124,7 @@ fn manner(wanted: &Wanted) -> Result<Manner, Usage> {
         lammps,
         program,
         telling: std::io::stderr().is_terminal(),
+        ranks: None,
     })
 }
 

@@ -110,6 +110,14 @@ impl Request {
             let usage = Usage::new("`-log`, `-echo` and `-screen FILE` have no meaning for a sweep");
             return Err(usage.help("each run has a log.lammps in its own folder; `-screen none` keeps quiet"));
         }
+        if !o.partition.is_empty() {
+            let usage = Usage::new(
+                "`-partition` wants several processes for one deck, and each run of a sweep is one",
+            );
+            return Err(usage.help(
+                "give the values of `world` variables by `-each NAME VALUE…`; `-jobs N` makes N runs at once",
+            ));
+        }
         if o.timeout.is_some() {
             let usage = Usage::new("`-timeout` has no meaning for a sweep");
             return Err(
@@ -204,6 +212,7 @@ mod tests {
             "in.x -log a",
             "in.x -screen a",
             "in.x -echo both",
+            "in.x -each v 1 2 -partition 2x1",
             "-status",
         ] {
             assert!(read(line).is_err(), "{line}");

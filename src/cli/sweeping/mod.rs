@@ -6,10 +6,11 @@ pub(super) mod show;
 use super::args::{Deck, Target, Usage};
 use super::pager::width;
 use super::progress::Tally;
-use super::{FAILED, INTERRUPTED, OK, deck, signals};
+use super::{FAILED, INTERRUPTED, OK, deck, ranks, signals};
 use crate::human::duration;
 use crate::session::axes::{Axis, combined, zip};
 use crate::session::{Mode, Swept, folder_of};
+use crate::sweep::ranks::Ranks;
 use crate::sweep::starter::Starter;
 use crate::sweep::{self, Job, Results, Settings, Standing, Sweep, table};
 use args::{List, Request};
@@ -29,11 +30,22 @@ const SHOWN: usize = 40;
 /// Characters of its lines where no terminal has fewer.
 const WIDTH: usize = 160;
 
-/// Makes the runs, or tells where they stand; the exit code.
+/// Makes the runs, or tells where they stand; the exit code. Of several ranks the first one does so, and the others make runs for it.
 ///
 /// # Errors
-/// Lists of values that make no sense.
+/// Lists of values that make no sense, ranks that cannot be joined.
 pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
+    ranks::shared_out(&request.options, |ranks| first(request, ranks), serve)
+}
+
+/// Makes runs for the first rank until it sends this one home; the exit code.
+pub(super) fn serve(ranks: &Ranks) -> u8 {
+    let stop = Arc::new(AtomicBool::new(false));
+    listen(&stop);
+    sweep::ranks::serve(ranks, &stop)
+}
+
+fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usage> {
     if request.status {
         return Ok(said(status(&request.folder(ENDING)), &Sources::default()));
     }
@@ -60,7 +72,7 @@ pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
         ));
     }
     let sweep = match prepared(request, swept, text) {
-        Ok(sweep) => sweep,
+        Ok(sweep) => Sweep { ranks, ..sweep },
         Err(problems) => return Ok(said(Err(problems), &Sources::default())),
     };
     let ahead = sweep::look_ahead(&sweep);
@@ -168,6 +180,7 @@ pub(super) fn prepared(request: &Request, swept: Swept, text: String) -> Result<
         retry: request.retry,
         program,
         telling: std::io::stderr().is_terminal() && o.screen != Target::None,
+        ranks: None,
     })
 }
 
@@ -176,6 +189,9 @@ fn run(request: &Request, sweep: &Sweep) -> Result<u8> {
     let mut show = Show { jobs: &sweep.jobs, quiet, tally: Tally::default() };
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
+    if let Some(said) = sweep.ranks.as_ref().and_then(|ranks| idle(ranks, sweep.jobs.len())) {
+        show.say(&said);
+    }
     let results = sweep::work_off(sweep, request.anew, &mut show, &stop);
     show.tally.clear();
     let results = results?;
@@ -187,6 +203,13 @@ fn run(request: &Request, sweep: &Sweep) -> Result<u8> {
         r if r.all_ok() => OK,
         _ => FAILED,
     })
+}
+
+/// A line where ranks outnumber the runs.
+pub(super) fn idle(ranks: &Ranks, runs: usize) -> Option<String> {
+    let more = ranks.size().checked_sub(runs).filter(|more| *more > 0)?;
+    let have = if more == 1 { "1 rank has".into() } else { format!("{more} ranks have") };
+    Some(format!("{}, {runs} run{}: {have} nothing to do", ranks.said(), if runs == 1 { "" } else { "s" }))
 }
 
 /// The first Ctrl-C or request to end stops all runs, the second one the program at once.

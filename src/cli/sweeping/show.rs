@@ -18,7 +18,7 @@ pub struct Show<'a> {
 }
 
 impl Show<'_> {
-    fn say(&self, text: &str) {
+    pub(super) fn say(&self, text: &str) {
         if !self.quiet {
             // A reader that closes early is no failure.
             let _ = writeln!(self.tally.around(std::io::stdout()), "{text}");

@@ -18,7 +18,7 @@ pub(super) const BENCH: Entry = (
 );
 
 const TEXT: &str = "Which time step, spacing, horizon, law or scheme gives the wanted error in the least time? `bench` runs the deck once for each \
-    setting of its knobs, one run at a time (`-jobs N` changes that, and then times disturb each other), and says of each how long its steps took, how far each measure is off, and by \
+    setting of its knobs, one run at a time (`-jobs N` changes that, and so does `mpirun -n N` or `-ranks N`, where each rank makes one at a time; runs on one machine disturb each other's times), and says of each how long its steps took, how far each measure is off, and by \
     which power of the knob errors fall. How to choose is told in [Weigh time against error](../howto/bench.md); what came out of the suite on one machine stands in [Benchmarks](../benchmarks.md).\n\n\
     **Knobs** are variables of the deck, given as for [sweep](sweep.md): `-each NAME VALUE…` (ranges too), several for all combinations, `-zip` for lists that go in step, `-table FILE`, or the deck's own `sweep` line. \
     Values go from coarse to fine: the last one of a list is its finest. `-threads 1 2 4` and `-layout list auto` are knobs of the program.\n\n\

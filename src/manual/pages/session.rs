@@ -200,13 +200,13 @@ const SWEEP_TEXT: &str = "`each` gives a list of values for an index variable; s
     In a deck that is run by itself the line defines the variables that are not there yet with their first values, and says so. `perigrain sweep` makes \
     all runs; lists on its command line take the place of those in the deck, and `-report` adds to what the deck reports. `perigrain check` \
     checks all combinations, of more than 64 the first and the last.\n\n\
-    - `-jobs N`: so many runs at once (one per core); `-threads N`: threads of each (the cores shared out);\n\
+    - `-jobs N`: so many runs at once, on ranks on each of them (one per core); `-threads N`: threads of each (the cores shared out);\n\
     - `-out DIR`: the folder (`DECK.sweep`), with a folder for each run, `table.csv`, `times.csv` and the journal;\n\
     - `-retry N`: a run that fails is tried N times more;\n\
     - `-anew`: forgets an earlier sweep there; without it the same command goes on where the earlier one ended;\n\
     - `-status`: only shows where a sweep stands;\n\
     - `-var`, `-compat`, `-screen none` and others hold for all runs.\n\n\
-    [Make many runs of one deck](../howto/sweep.md) shows it. Exit codes: 0 all runs are done and well, 1 a run failed or the sweep is refused, 2 the \
+    `mpirun -n N perigrain sweep …` and `-ranks N` share the runs out to ranks, on one machine or several; all else is the same. [Make many runs of one deck](../howto/sweep.md) shows it. Exit codes: 0 all runs are done and well, 1 a run failed or the sweep is refused, 2 the \
     command line is wrong, 130 interrupted: the same command goes on.";
 
 pub(super) const SUFFIX: Entry = (

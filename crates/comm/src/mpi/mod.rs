@@ -4,11 +4,14 @@
 
 mod abi;
 mod library;
+mod mail;
 
-use super::Comm;
+use super::{Comm, Gone};
 use abi::Constants;
 use library::{Functions, Library};
+use mail::Mail;
 use std::ffi::{CStr, c_char, c_int, c_void};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A handle of MPI's: a pointer, or an `int` that lies in the low half where the calling convention looks for it (x86-64 and
@@ -33,6 +36,7 @@ pub struct Mpi {
     size: usize,
     /// Ranks meet at their end by a communicator of its own: one that waits elsewhere is not taken for one that has come.
     last: Handle,
+    mail: Mutex<Mail>,
 }
 
 impl Mpi {
@@ -61,7 +65,9 @@ impl Mpi {
             (f.MPI_Comm_size)(c.world, &mut size);
             (f.MPI_Comm_dup)(c.world, &mut last);
         }
-        let mpi = Self { f, c, version, rank: rank as usize, size: size as usize, last };
+        let mail = Mutex::new(Mail::of(size as usize));
+        keep_to_itself("PMI_FD");
+        let mpi = Self { f, c, version, rank: rank as usize, size: size as usize, last, mail };
         mpi.proves_itself()?;
         Ok(mpi)
     }
@@ -85,6 +91,14 @@ impl Mpi {
             Err(format!("{} does not add up: its interface is unknown", self.version))
         }
     }
+}
+
+/// Programs that this rank starts do not have the launcher's socket, whose number a variable holds: one that outlives a rank would keep the
+/// launcher from seeing that the rank has ended.
+fn keep_to_itself(variable: &str) {
+    let Some(fd) = std::env::var(variable).ok().and_then(|fd| fd.parse::<c_int>().ok()) else { return };
+    // SAFETY: changes a flag of a file; where there is none of this number it fails.
+    unsafe { libc::fcntl(fd, libc::F_SETFD, libc::FD_CLOEXEC) };
 }
 
 /// The library's own name for itself.
@@ -199,6 +213,18 @@ impl Comm for Mpi {
             *bytes = vec![0; u64::from_le_bytes(length) as usize];
         }
         self.broadcast(bytes, 0);
+    }
+
+    fn post(&self, to: usize, letter: &[u8]) {
+        self.mail.lock().unwrap_or_else(PoisonError::into_inner).post(self, to, letter);
+    }
+
+    fn letter(&self, from: usize) -> Result<Option<Vec<u8>>, Gone> {
+        Ok(self.mail.lock().unwrap_or_else(PoisonError::into_inner).next(self, from))
+    }
+
+    fn posted(&self) -> bool {
+        self.mail.lock().unwrap_or_else(PoisonError::into_inner).send(self)
     }
 
     fn meet(&self, patience: Duration) -> bool {
