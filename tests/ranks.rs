@@ -58,7 +58,7 @@ fn without_times(line: &str) -> String {
 }
 
 /// All files of a folder; of logs what does not tell of time.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let file = |e: fs::DirEntry| {
         let name = e.file_name().into_string().unwrap();
         let bytes = fs::read(e.path()).unwrap();
@@ -76,7 +76,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// What a deck leaves behind under these words, in a folder of its own.
-fn left_by(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
+pub fn left_by(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     let o = perigrain(folder.path(), &[&["-in", "in.deck", "-screen", "none"], words].concat());
@@ -84,7 +84,7 @@ fn left_by(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
     files(folder.path())
 }
 
-fn same(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>, what: &str) {
+pub fn same(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>, what: &str) {
     let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
     assert_eq!(names(one), names(other), "{what}");
     for (name, bytes) in one {
@@ -105,7 +105,7 @@ fn made(scene: &Scene) -> String {
 }
 
 /// A scene with everything that is written, and read back.
-fn deck_of(scene: &Scene) -> String {
+pub fn deck_of(scene: &Scene) -> String {
     format!(
         "{}{}dump all all custom 7 dump.*.txt id type x y z vx vy vz\ndump_modify all format float %.17g\n\
          restart 11 often.*.restart\nrun {}\nwrite_restart end.restart\nwrite_data end.data\n",

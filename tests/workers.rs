@@ -1,6 +1,10 @@
-//! Runs of a sweep and partitions of a deck, shared out to ranks: what comes out is that of one process, and a rank that dies is named.
+//! Runs of a sweep and partitions of a deck, shared out to ranks, and ranks on two hosts: what comes out is that of one process, and a rank that
+//! dies is named.
 
-use crate::ranks::{LAUNCHERS, children, said, signal, start, wait_for, works};
+use crate::ranks::{
+    LAUNCHERS, children, deck_of, files, left_by, said, same, signal, start, wait_for, works,
+};
+use crate::restart::scenes::SCENES;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -190,4 +194,41 @@ fn a_bench_on_ranks_says_how_many() {
     assert!(o.status.success(), "{}", said(&o));
     let line = "2 ranks on 1 host, one run at once on each, which disturb each other on one host";
     assert!(said(&o).contains(line), "{}", said(&o));
+}
+
+/// Runs the program on 2 + 2 ranks of two hosts; nothing where the machine allows no such thing.
+#[cfg(target_os = "linux")]
+fn on_two_hosts(folder: &Path, args: &[&str]) -> Option<Output> {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/common/two_hosts.sh");
+    let o = start(folder, "bash", &[&[script, PERIGRAIN], args].concat()).wait_with_output().unwrap();
+    let skipped = o.status.code() == Some(77);
+    if skipped {
+        eprintln!("skipped: this machine allows no hosts of its own, or has no MPICH");
+    }
+    (!skipped).then_some(o)
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "takes half a minute: `./check --ranks`"]
+fn two_hosts_have_the_bytes_of_one_process() {
+    let named = |name: &str| SCENES.iter().find(|scene| scene.name == name).unwrap();
+    for scene in [named("lattice"), named("pile")] {
+        let deck = deck_of(scene);
+        let alone = left_by(&deck, &["-threads", "1"]);
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("in.deck"), &deck).unwrap();
+        let words = ["-in", "in.deck", "-screen", "none", "-threads", "1"];
+        let Some(o) = on_two_hosts(folder.path(), &words) else { return };
+        assert!(o.status.success(), "{}: {}", scene.name, said(&o));
+        assert!(read(folder.path(), "log.lammps").contains("(4 ranks on 2 hosts of 1 thread(s))"));
+        same(&alone, &files(folder.path()), &format!("{} on two hosts", scene.name));
+    }
+    let folder = with_deck(DECK);
+    let at = folder.path();
+    let alone = table(at, &[], &[], "alone");
+    let o = on_two_hosts(at, &[&SWEEP[..], &["-out", "two"]].concat()).unwrap();
+    assert_eq!((o.status.code(), read(at, "two/table.csv")), (Some(1), alone), "{}", said(&o));
+    let journal = read(at, "two/journal");
+    assert!(journal.contains("\trank 1 on one\n") && journal.contains("\trank 3 on two\n"), "{journal}");
 }
