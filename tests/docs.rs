@@ -63,6 +63,8 @@ const BOOK: [&str; 2] = [
      - [Make a movie of a crack](howto/movie.md)\n\
      - [Read results in ParaView, OVITO and pandas](howto/results.md)\n\
      - [Make a long run](howto/long-runs.md)\n\
+     - [Many cores](howto/cores.md)\n\
+     - [On a cluster](howto/cluster.md)\n\
      - [Make many runs of one deck](howto/sweep.md)\n\
      - [Weigh time against error](howto/bench.md)\n\
      - [Drive a run from Python](howto/from-python.md)\n\
@@ -91,6 +93,7 @@ const BOOK: [&str; 2] = [
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [Decks of others](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\
+     - [Forecast on many machines](scaling.md)\n\
      - [What a step does without](skipping.md)\n\n\
      # The program inside\n\n\
      - [The house](architecture.md)\n\

@@ -232,3 +232,28 @@ fn two_hosts_have_the_bytes_of_one_process() {
     let journal = read(at, "two/journal");
     assert!(journal.contains("\trank 1 on one\n") && journal.contains("\trank 3 on two\n"), "{journal}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_of_all_ranks_of_a_machine_is_forecast_together() {
+    let text = fs::read_to_string("/proc/meminfo").unwrap();
+    let kilobytes = |name: &str| {
+        let line = text.lines().find_map(|l| l.strip_prefix(name)).unwrap();
+        line.split_whitespace().next().unwrap().parse::<f64>().unwrap()
+    };
+    // Particles that five ranks have no room for, and one has.
+    let free = 1024.0 * (kilobytes("MemAvailable:") + kilobytes("SwapFree:"));
+    let side = (free / 3.0 / 250.0).cbrt();
+    let deck = format!(
+        "units si\natom_style sphere\nboundary s s s\nlattice sc 1\nregion box block 0 {side} 0 {side} 0 {side}\n\
+         create_box 1 box\ncreate_atoms 1 region box\n"
+    );
+    let folder = with_deck(&deck);
+    let o = perigrain(folder.path(), &["-in", "in.x", "-log", "none", "-ranks", "5"]);
+    let words = said(&o);
+    assert_eq!(o.status.code(), Some(1), "{words}");
+    assert!(words.contains("PG0203") && words.contains("start one on each machine"), "{words}");
+    // A container may have less than one rank wants.
+    assert!(words.contains("for 5 ranks with ") || words.contains("for a rank"), "{words}");
+    assert_eq!(words.matches("would need").count(), 1, "one rank says it: {words}");
+}

@@ -8,6 +8,7 @@ pub mod order;
 pub mod page;
 pub mod picture;
 pub mod reference;
+pub mod scaling;
 pub mod suite;
 pub mod table;
 

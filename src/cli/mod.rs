@@ -86,6 +86,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Repl(o) => return Ok(repl::run(&o)),
         Task::Sweep(request) => return sweeping::perform(&request),
         Task::Bench(request) => return benching::perform(&request),
+        Task::Scaling(wanted) => return benching::scaling::perform(&wanted),
         Task::Suite(wanted) => return benching::suite::perform(&wanted),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
         Task::Report(wanted) => return reporting::reading::report(&wanted),

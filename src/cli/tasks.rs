@@ -9,7 +9,7 @@ use perigrain_base::diag::nearest;
 use std::path::{Path, PathBuf};
 
 /// One call of the program.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Task {
     /// Run a deck.
     Run(Options),
@@ -43,6 +43,8 @@ pub enum Task {
     Bench(Box<benching::args::Request>),
     /// Run the benches that the program carries.
     Suite(benching::suite::Wanted),
+    /// Measure what a step takes here, and forecast it on many machines.
+    Scaling(benching::scaling::Wanted),
     /// Make one of the runs of a sweep or bench, as standard input says.
     Worker,
     /// Run the published cases that the program carries.
@@ -311,12 +313,16 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     if ["plan", "check"].contains(&words[0].as_str()) {
         words[1..].sort_by_key(|w| !matches!(w.as_str(), "--measure" | "--dot" | "--json"));
     }
-    let suite = words[0] == "bench" && words.iter().any(|w| w.trim_start_matches('-') == "suite");
-    if suite || !WITH_DECKS.contains(&words[0].as_str()) {
+    let is_bench = |of: &str| words[0] == "bench" && words.iter().any(|w| w.trim_start_matches('-') == of);
+    let (suite, scaling) = (is_bench("suite"), is_bench("scaling"));
+    if suite || scaling || !WITH_DECKS.contains(&words[0].as_str()) {
         with_two_dashes(&mut words);
     }
     if suite {
         return benching::suite::Wanted::try_parse_from(words).map(Task::Suite).or_else(|e| unread(&e));
+    }
+    if scaling {
+        return benching::scaling::Wanted::try_parse_from(words).map(Task::Scaling).or_else(|e| unread(&e));
     }
     let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {
         Ok(sub) => sub,

@@ -15,7 +15,7 @@ macro_rules! embed {
 
 /// All of them, by name.
 pub const HOWTOS: &[HowTo] = embed! {
-    "agglomerate" "bench" "bodies" "drum" "erosion" "first-crack" "from-python" "hopper" "impact" "laminate"
+    "agglomerate" "bench" "bodies" "cluster" "cores" "drum" "erosion" "first-crack" "from-python" "hopper" "impact" "laminate"
     "long-runs" "material" "movie" "notch" "prompt" "report" "repose" "results" "sweep" "wrong-deck"
 };
 

@@ -6,6 +6,7 @@
 mod fence;
 mod free;
 
+use crate::comm;
 use crate::diag::{Code, Diagnostic};
 use crate::gate;
 use crate::stop::Heeding;
@@ -26,6 +27,48 @@ pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
     let text = format!("{what} would need {} of memory; {} are free", size(bytes), size(free));
     let error = Diagnostic::error(Code::TOO_LARGE, None, text);
     Some(if gate::limits().is_some() { error.help("`-limit memory MB` allows more") } else { error })
+}
+
+/// As [`lacking`], for what each of several ranks is going to have: those of one machine share what is free there. All ranks ask together and have
+/// the same answer.
+pub fn lacking_on_ranks(bytes: f64, what: &str) -> Option<Diagnostic> {
+    if !comm::several() || bytes <= SMALL {
+        return lacking(bytes, what);
+    }
+    let ranks = comm::present();
+    let (hosts, size_of) = (comm::nodes(&*ranks), ranks.size());
+    let mut rooms = vec![f64::NEG_INFINITY; 2 * size_of];
+    rooms[ranks.rank()] = free::shared().unwrap_or(f64::INFINITY);
+    rooms[size_of + ranks.rank()] = room().unwrap_or(f64::INFINITY);
+    ranks.most(&mut rooms);
+    let (shared, own) = rooms.split_at(size_of);
+    let (host, beside, free) = short(bytes, &hosts, shared, own)?;
+    let all = size(bytes * beside as f64);
+    let of = if beside == 1 { "a rank".into() } else { format!("{beside} ranks with {} each", size(bytes)) };
+    let text =
+        format!("{what} would need {all} of memory on {host}, for {of}; {} are free there", size(free));
+    let error = Diagnostic::error(Code::TOO_LARGE, None, text);
+    Some(
+        error.help(
+            "each rank has all particles: start one on each machine, with as many threads as it has cores",
+        ),
+    )
+}
+
+/// A machine whose ranks, each with so many bytes, do not fit into what is free there for all or for each, how many they are, and how much
+/// that is.
+fn short<'a>(bytes: f64, hosts: &'a [String], shared: &[f64], own: &[f64]) -> Option<(&'a str, usize, f64)> {
+    if let Some(rank) = own.iter().position(|room| bytes > *room) {
+        return Some((&hosts[rank], 1, own[rank]));
+    }
+    let of = |host: &String| {
+        let free = hosts.iter().zip(shared).filter(|(h, _)| *h == host).map(|(_, room)| *room);
+        (free.clone().count(), free.fold(f64::INFINITY, f64::min))
+    };
+    hosts.iter().find_map(|host| {
+        let (beside, free) = of(host);
+        (bytes * beside as f64 > free).then_some((host.as_str(), beside, free))
+    })
 }
 
 /// Bytes that may still be asked for, where the system tells: what the machine, the process' own limits and `-limit memory` leave.
@@ -87,6 +130,12 @@ mod tests {
         assert!(said.message.starts_with("a table would need 1.0e9 GB of memory; "), "{}", said.message);
         assert_eq!(said.code, Code::TOO_LARGE);
         assert!(lacking(1000.0, "a row").is_none() && lacking(f64::INFINITY, "all").is_some());
+        let hosts = ["a", "a", "b"].map(String::from);
+        let short = |shared, own| short(4.0, &hosts, shared, own);
+        assert_eq!(short(&[9.0, 8.0, 4.0], &[4.0; 3]), None);
+        assert_eq!(short(&[9.0, 7.0, 9.0], &[7.0; 3]), Some(("a", 2, 7.0)));
+        assert_eq!(short(&[9.0, 9.0, 3.0], &[9.0; 3]), Some(("b", 1, 3.0)));
+        assert_eq!(short(&[9.0; 3], &[9.0, 3.0, 9.0]), Some(("a", 1, 3.0)));
         let mut bytes = vec![];
         read_all(&b"text"[..], &mut bytes).unwrap();
         assert_eq!(bytes, b"text");

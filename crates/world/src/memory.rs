@@ -3,6 +3,7 @@
 use super::World;
 use perigrain_base::diag::{Diagnostic, Result};
 pub use perigrain_base::memory::lacking;
+use perigrain_base::memory::lacking_on_ranks;
 
 /// Bytes of all columns and of the state that belongs to forces.
 pub fn bytes(w: &World) -> u64 {
@@ -54,7 +55,7 @@ pub fn expected(w: &World) -> f64 {
 }
 
 /// What `more` particles on top of the present ones would take: a line for the log when that is much, a refusal
-/// when it cannot fit.
+/// when it cannot fit, for all ranks of a machine together.
 ///
 /// # Errors
 /// The forecast exceeds the memory that is free now.
@@ -66,7 +67,7 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
     let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri + oriented;
     let n = w.n() as f64 + more;
     let bytes = n * (f64::from(columns) + FORCES_PER_PARTICLE);
-    if let Some(d) = lacking(bytes, &format!("about {n:.3e} particles")) {
+    if let Some(d) = lacking_on_ranks(bytes, &format!("about {n:.3e} particles")) {
         return Err(d.help("use a coarser lattice or a smaller region").into());
     }
     let text = || {

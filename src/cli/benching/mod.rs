@@ -1,6 +1,7 @@
 //! `perigrain bench`: a deck over its knobs, wall time against error.
 
 pub mod args;
+pub mod scaling;
 pub mod suite;
 
 use super::args::{Target, Usage};

@@ -16,6 +16,11 @@ pub fn bytes() -> Option<f64> {
     .reduce(f64::min)
 }
 
+/// Bytes that can still be asked for by all programs of the machine, or of this one's container, together.
+pub fn shared() -> Option<f64> {
+    machine().into_iter().chain(container()).reduce(f64::min)
+}
+
 /// Bytes that the program has, where the system tells.
 pub fn resident() -> Option<f64> {
     kilobytes("/proc/self/status", "VmRSS:")
