@@ -4,7 +4,7 @@
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{add, length, sub};
 use perigrain_base::par;
-use perigrain_neigh::slabs::{Slabs, edges};
+use perigrain_neigh::tiles::{Tiles, edges};
 use perigrain_world::{Kept, World};
 use std::ops::Range;
 
@@ -42,9 +42,9 @@ fn cells(w: &World) -> Option<[f64; 2]> {
 /// The order of particles at `x` in a box of this corner and these edges.
 fn order(w: &World, x: &[[f64; 3]], (lo, period): ([f64; 3], Periods)) -> Option<Vec<usize>> {
     let edges = cells(w).filter(|_| period.repeats_where_it_leans())?;
-    let mut slabs = Slabs::default();
-    slabs.sort(x, &w.particles.tag, edges, &lo, &period);
-    Some(slabs.order.iter().map(|&i| i as usize).collect())
+    let mut tiles = Tiles::default();
+    tiles.sort(x, &w.particles.tag, edges, &lo, &period);
+    Some(tiles.order.iter().map(|&i| i as usize).collect())
 }
 
 /// How far grains have gone relative to each other since lists were made for them.
@@ -107,17 +107,17 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
     if !known || !same || edge != far || !s.check || w.rebuild.grown.is_some() {
         return None;
     }
-    let slabs = Slabs::laid_out(made, [edge, far], &lo, &then);
-    let [fast, middle, slow] = slabs.axes();
+    let tiles = Tiles::laid_out(made, [edge, far], &lo, &then);
+    let [fast, middle, slow] = tiles.axes();
     if !stands_across(&then, slow) || !stands_across(&period, slow) {
         return None;
     }
     let moved = [fast, middle, slow].map(|d| sub(period.vectors()[d], then.vectors()[d]));
-    let slabs_of = slabs.far();
-    let of_layers = slabs_of.of_layers();
+    let slabs = tiles.slabs();
+    let of_layers = slabs.of_layers();
     let before = &w.rebuild.kept.turns;
     let gone = |range: Range<usize>| {
-        let mut gone = Gone { ways: vec![STILL; slabs_of.count()], turned: vec![], beyond: false };
+        let mut gone = Gone { ways: vec![STILL; slabs.count()], turned: vec![], beyond: false };
         for i in range {
             let mut turns = before.get(i).copied().unwrap_or_default();
             // Who is half around the box from where it was at the last rebuild has been moved by a period.
@@ -126,7 +126,7 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
                 (0..3).for_each(|d| turns[d] = turns[d].saturating_add(around[d] as i8));
                 gone.turned.push((i, turns));
             }
-            let ways = &mut gone.ways[of_layers[slabs.layer_of(&made[i])]];
+            let ways = &mut gone.ways[of_layers[tiles.layer_of(&made[i])]];
             let so_far = *ways;
             let [least, most] = ways;
             let away = if turns == [0; 3] { [0.0; 3] } else { period.shift(turns.map(f64::from)) };
@@ -155,7 +155,7 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
         }
     }
     // Across a face that repeats, the next slab is seen in an image that may have moved.
-    let with_next = |k: usize| match slabs_of.next(k) {
+    let with_next = |k: usize| match slabs.next(k) {
         Some(next) if next > k => both(ways[k], ways[next]),
         Some(next) => both(ways[k], ways[next].map(|bound| add(bound, moved[2]))),
         None => ways[k],

@@ -369,8 +369,8 @@ impl Session {
         }
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
-            let tiles =
-                self.world.families.as_ref().map(|families| families.describe_tiles()).unwrap_or_default();
+            let of_bodies = self.world.families.as_ref().map(|families| families.describe_tiles());
+            let tiles = of_bodies.unwrap_or_default() + &plan.describe_tiles();
             // A rank knows the times of its own tiles.
             if !tiles.is_empty() && !comm::several() {
                 self.options.log.line(tiles.trim_end())?;
@@ -393,10 +393,11 @@ impl Session {
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         self.say_notes()?;
         self.options.log.flush()?;
-        if self.options.mode == Mode::Measure
-            && let Some(families) = &mut *self.world.families
-        {
-            families.time_tiles();
+        if self.options.mode == Mode::Measure {
+            plan.time_tiles();
+            if let Some(families) = &mut *self.world.families {
+                families.time_tiles();
+            }
         }
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         plan.reset_meters(timed);

@@ -274,53 +274,6 @@ pub fn in_turn(n: usize) -> impl Iterator<Item = usize> {
     (0..n).step_by(2).flat_map(beside).chain(last)
 }
 
-/// As [`two_colours`] for parts with much data, of these `weights`: each thread takes neighbouring parts, in the order of one
-/// thread, and what stands beside them is in its fast memory still. The odd parts between threads come last.
-pub fn neighbours(weights: &[usize], f: impl Fn(usize) + Sync) {
-    let (n, f) = (weights.len(), &f);
-    let ranges = threads();
-    if ranges < 2 || n < FEW * ranges {
-        return two_colours(n, f);
-    }
-    let total: usize = weights.iter().sum();
-    // The even part before which lies a share of all weights, as nearly as can be.
-    let bound = |range: usize| {
-        if range == ranges {
-            return n;
-        }
-        let (mut before, mut at) = (0, (0, usize::MAX));
-        for (pair, of_pair) in weights.chunks(2).enumerate() {
-            let off = (before * ranges).abs_diff(total * range);
-            at = if off < at.1 { (2 * pair, off) } else { at };
-            before += of_pair.iter().sum::<usize>();
-        }
-        at.0
-    };
-    enter(n, |threaded| {
-        if !threaded {
-            return in_turn(n).for_each(f);
-        }
-        halve(0, ranges, &|range| {
-            let first = bound(range);
-            for even in (first..bound(range + 1)).step_by(2) {
-                f(even);
-                if even > first {
-                    f(even - 1);
-                }
-            }
-        });
-        halve(1, ranges + 1, &|range| {
-            let (first, end) = (bound(range - 1), bound(range));
-            if end > first && end.is_multiple_of(2) {
-                f(end - 1);
-            }
-        });
-    });
-}
-
-/// Fewer parts for each thread than this many are shared as they come.
-const FEW: usize = 4;
-
 /// Halves a range of parts until one is left; idle threads steal the upper halves.
 fn halve(lo: usize, hi: usize, f: &(dyn Fn(usize) + Sync)) {
     if hi - lo < 2 {
@@ -349,31 +302,6 @@ mod tests {
             });
             assert!(hits.iter().all(|h| h.load(Ordering::Relaxed) == 3));
         }
-    }
-
-    #[test]
-    fn neighbours_stay_together_and_odd_parts_still_follow() {
-        for (threads, weigh) in [(2, [1, 1]), (3, [1, 5]), (2, [0, 0]), (2, [0, 9]), (3, [100, 1])] {
-            set_threads(threads);
-            for n in [1, 7, 8, 9, 12, 13, 40, 41] {
-                // One part in five has the second weight.
-                let weights: Vec<usize> = (0..n).map(|k| weigh[usize::from(k % 5 == 0)]).collect();
-                let order = std::sync::Mutex::new(vec![]);
-                // By when a part has begun and ended: a part that runs beside another one has not followed it.
-                neighbours(&weights, |k| {
-                    order.lock().unwrap().push((k, false));
-                    order.lock().unwrap().push((k, true));
-                });
-                let order = order.into_inner().unwrap();
-                assert_eq!(order.len(), 2 * n, "{order:?}");
-                let at = |k: usize, end: bool| order.iter().position(|o| *o == (k, end)).unwrap();
-                for k in (1..n).step_by(2) {
-                    assert!(at(k, false) > at(k - 1, true), "{order:?}");
-                    assert!(at(k, false) > at((k + 1) % n, true) || (k + 1 == n && n % 2 == 1), "{order:?}");
-                }
-            }
-        }
-        set_threads(1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::Alike;
 use super::found::Found;
-use super::lists::{FILL, Short, Slab};
+use super::lists::{FILL, List, Short};
 use super::sweep::Cx;
 use crate::{Geometry, Granular, Motion};
 use perigrain_base::math::lanes::{Lanes, load_rows, place, store_rows};
@@ -149,20 +149,20 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     /// # Safety
     /// Entries of their lists must be grains.
     #[inline(always)]
-    pub unsafe fn run<const W: usize>(&mut self, cx: &Cx, law: &Granular, slab: &mut Slab) {
+    pub unsafe fn run<const W: usize>(&mut self, cx: &Cx, law: &Granular, list: &mut List) {
         let count = std::mem::take(&mut self.waiting);
         // SAFETY: passed on.
         unsafe {
             self.fill_up(count);
             for group in 0..count.div_ceil(N) {
-                slab.deep |= self.meet(cx, group);
+                list.deep |= self.meet(cx, group);
             }
             let memory = law.memory();
             for group in 0..count.div_ceil(N) {
                 self.act::<W>(cx, law, memory, group);
             }
             if cx.virial {
-                self.add_virial(count, &mut slab.virial);
+                self.add_virial(count, &mut list.virial);
             }
             if cx.heat.is_some() {
                 self.add_heat(cx, law, count);
@@ -178,7 +178,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             if let Some(deeds) = &cx.deeds {
                 self.tell(deeds, count);
                 if law.flows() {
-                    self.tell_flow::<W>(cx, &deeds[2], law, count, slab);
+                    self.tell_flow::<W>(cx, &deeds[2], law, count, list);
                 }
             }
         }
@@ -355,7 +355,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         pressing: &par::Shared<Vec3>,
         law: &Granular,
         count: usize,
-        slab: &mut Slab,
+        list: &mut List,
     ) {
         let none = [0.0; W];
         for at in 0..count {
@@ -368,7 +368,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 let lasts = row[W - 1] > cx.now - 0.5;
                 let history = if lasts { &row[..law.memory()] } else { &none[..law.memory()] };
                 let [push, held] = law.pressing(&g, history);
-                slab.held += held;
+                list.held += held;
                 let (i, j) = (self.i[at] as usize, self.j[at] as usize);
                 for d in 0..3 {
                     (*pressing.as_ptr().add(i))[d] += push * g.normal[d];

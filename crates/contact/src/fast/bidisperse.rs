@@ -1,13 +1,13 @@
 //! Grains of very different sizes: pairs with large ones are found size by size and have lists of their own, slab by slab, in
-//! slabs as thick as they reach. They come after the pairs of small grains, whose slabs are thin and many.
+//! slabs as thick as they reach. They come after the pairs of small grains, whose tiles are small and many.
 
-use super::lists::Slab;
+use super::lists::List;
 use super::{Fast, NONE};
 use crate::driver::Grains;
 use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::math::periods::Periods;
 use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs_of_large};
-use perigrain_neigh::slabs::{HERE, Slabs};
+use perigrain_neigh::tiles::{HERE, Tiles};
 
 impl Fast {
     /// Pairs with large grains, from these positions and radii in a box of these periods, with surfaces nearer than `skin`.
@@ -28,17 +28,14 @@ impl Fast {
         pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep)
     }
 
-    /// Adds long lists of these pairs. A pair belongs to the slab of one of its grains from where the other is in the same or the
-    /// next one.
-    pub(super) fn add_large(&mut self, found: &[Pair], slabs: &Slabs) {
-        let far = slabs.far();
-        let (count, n) = (far.count(), slabs.order.len());
+    /// Adds long lists of these pairs, one for each slab that they reach across at most once. A pair belongs to the slab of one of its
+    /// grains from where the other is in the same or the next one.
+    pub(super) fn add_large(&mut self, found: &[Pair], tiles: &Tiles) {
+        let (slabs, slab_of_places) = (tiles.slabs(), tiles.slab_of_places());
+        let (count, n) = (slabs.count(), tiles.order.len());
         let (mut place, mut slab) = (vec![0; n], vec![0; n]);
-        for k in 0..count {
-            for at in far.members(k) {
-                let i = slabs.order[at] as usize;
-                (place[i], slab[i]) = (at as u32, k);
-            }
+        for (at, i) in tiles.order.iter().enumerate() {
+            (place[*i as usize], slab[*i as usize]) = (at as u32, slab_of_places[at]);
         }
         let mut entries: Vec<Vec<[u32; 3]>> = vec![vec![]; count];
         for p in found {
@@ -56,19 +53,22 @@ impl Fast {
                 entries[slab[b]].push([place[b], place[a], image(-1)]);
             }
         }
-        let mut members = vec![];
-        for mut entries in entries {
-            entries.sort_unstable();
-            let grain = |place: u32| slabs.order[place as usize];
-            let mut list = Slab::default();
-            list.long.i.extend(entries.iter().map(|[i, ..]| grain(*i)));
-            list.long.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << PLACE_BITS));
-            self.lists.push(list);
-            let mut places: Vec<u32> = entries.iter().flat_map(|[i, j, _]| [*i, *j]).collect();
-            places.sort_unstable();
-            places.dedup();
-            members.push(places.into_iter().map(grain).collect());
-        }
-        self.validity_of_large.take(&members);
+        self.lists.extend(entries.into_iter().map(|entries| list_of(entries, tiles)));
     }
+}
+
+/// The list of these pairs: places of both grains, and the image of the second one.
+fn list_of(mut entries: Vec<[u32; 3]>, tiles: &Tiles) -> List {
+    entries.sort_unstable();
+    let grain = |place: u32| tiles.order[place as usize];
+    let mut list = List::default();
+    list.long.i.extend(entries.iter().map(|[i, ..]| grain(*i)));
+    list.long.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << PLACE_BITS));
+    let mut seen: Vec<[u32; 2]> =
+        entries.iter().flat_map(|[i, j, image]| [[HERE, *i], [*image, *j]]).collect();
+    seen.sort_unstable();
+    seen.dedup();
+    // They reach across many layers, which are watched as one.
+    seen.into_iter().for_each(|[image, place]| list.watched.push(0, image, &[grain(place)]));
+    list
 }

@@ -1,14 +1,14 @@
 //! Grains that overlap so far that contact laws mean little.
 
 use super::Fast;
-use super::lists::Slab;
+use super::lists::List;
 use super::near::Places;
 use crate::driver::{DEEP, Grains};
 use perigrain_base::math::lanes::place;
 
 impl Fast {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, in these lists, and by which part.
-    pub(super) fn find_deep(&self, grains: &Grains, lists: &[Slab]) -> Option<([u32; 2], f64)> {
+    pub(super) fn find_deep(&self, grains: &Grains, lists: &[List]) -> Option<([u32; 2], f64)> {
         let at = Places::new(grains, &self.shifts);
         let of = |i: u32, w: u32| {
             let (i, j) = (i as usize, place(w));

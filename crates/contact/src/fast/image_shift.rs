@@ -1,11 +1,11 @@
 //! Lists that go on after grains have been moved around the box.
 
-use super::lists::Slab;
+use super::lists::List;
 use super::{FAR, Fast, NOWHERE};
 use perigrain_base::math::lanes::{PLACE_BITS, place};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
-use perigrain_neigh::slabs::shift_of;
+use perigrain_neigh::tiles::shift_of;
 
 impl Fast {
     /// Images of a box that repeats after these periods, in which lists were made.
@@ -22,7 +22,6 @@ impl Fast {
     pub(super) fn follow(&mut self, period: &Periods) {
         if *period != self.period {
             self.validity.follow(&self.period, period);
-            self.validity_of_large.follow(&self.period, period);
             self.see_images(*period);
         }
     }
@@ -49,16 +48,15 @@ impl Fast {
                 *w = place(*w) as u32 | (turned as u32) << PLACE_BITS;
             }
         };
-        let slabs = par::Shared::new(&mut self.lists);
-        par::for_rows(slabs.len(), |k| {
-            // SAFETY: each part writes its own slab.
-            let Slab { long, short, .. } = unsafe { &mut slabs.get(k..k + 1)[0] };
+        let lists = par::Shared::new(&mut self.lists);
+        par::for_rows(lists.len(), |k| {
+            // SAFETY: each part writes its own list.
+            let List { long, short, .. } = unsafe { &mut lists.get(k..k + 1)[0] };
             for (i, w) in [(&long.i, &mut long.w), (&short.i, &mut short.w)] {
                 i.iter().zip(w).for_each(|(i, w)| follow(i, w));
             }
         });
-        self.validity.turn(turns, &more, period);
-        self.validity_of_large.turn(turns, &more, period);
+        self.validity.turn(&self.lists, turns, &more, period);
         self.turns = turns.to_vec();
     }
 }

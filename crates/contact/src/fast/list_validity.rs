@@ -1,56 +1,46 @@
-//! How long short lists stay valid: how far grains have gone since, slab by slab, and only relative to each other.
+//! How long short lists stay valid: how far grains have gone since, list by list, and only relative to each other.
 //!
-//! Two grains come closer by what their ways differ. In a flow all grains of a slab and the next go nearly the same way, and
-//! lists outlast many steps in which everybody goes far.
+//! Two grains come closer by what their ways differ. In a flow all grains of a tile and of those beside it go nearly the same way, and
+//! lists outlast many steps in which all go far.
 
 use super::has_avx2;
+use super::lists::List;
+use super::search::Watched;
 use crate::driver::Grains;
 use perigrain_base::math::four::{Four, Plain};
 use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, add, length, sub};
 use perigrain_base::par;
-use perigrain_neigh::slabs::{Slabs, shift_of};
+use perigrain_neigh::tiles::{HERE, shift_of};
 use perigrain_world::Seen;
-use std::ops::Range;
 
-/// The part of the thin skin that grains of a slab may use up before it gets a new list at the next look.
+/// The part of the thin skin that grains of a list may use up before it is made anew, at the next look.
 const WORN: f64 = 0.5;
 
 /// So few grains are looked at before another thread has seen that there is work.
 const FEW: usize = 1024;
 
-/// Positions and radii where a slab's list was made.
+/// Positions and radii where a list was made.
 type Place = [f64; 4];
 
 /// Where grains were when the short lists that they are in were made.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ListValidity {
-    /// Places of the order, list by list.
-    members: Vec<Range<usize>>,
-    /// The slab that each one reaches into, if it is a slab's list.
-    next: Vec<Option<usize>>,
-    /// Fast, middle and slow axis of slabs; none where pairs of a list may be seen in any image.
-    axes: Option<[usize; 3]>,
+    /// Those of each list, row by row.
+    then: Vec<Vec<Place>>,
     /// The box in which each list was made.
     listed: Vec<Periods>,
     /// The box at the last look, and whether it has changed since lists were made.
     looked: Periods,
     changed: bool,
-    /// Places of grains that have been moved around the box, and by how many periods since lists were made.
-    turned: Vec<(usize, [f64; 3])>,
-    /// The grain at each place; none where it is the place itself.
-    order: Vec<u32>,
-    /// Who is at each place, when the list of its own slab was made.
-    own: Vec<Place>,
-    /// And when that of the slab before was made, into which it reaches.
-    before: Vec<Place>,
-    /// How far, at the last look, grains of a slab and the next had strayed from each other at most.
+    /// Rows of lists whose grains have been moved around the box, and by how many periods since lists were made.
+    turned: Vec<([usize; 2], [f64; 3])>,
+    /// How far, at the last look, grains of a list had strayed from each other at most.
     since: Seen,
     /// How often all grains were looked at.
     pub looks: usize,
-    /// Room for a look: ways of slabs, and how much closer grains of each can have come.
-    ways: Vec<[Ways; 2]>,
+    /// How much closer grains of each list can have come.
     nearer: Vec<f64>,
 }
 
@@ -87,9 +77,10 @@ impl Ways {
     }
 }
 
-/// How far an edge of the box has moved between two times.
-fn edge_moved(edge: usize, now: &Periods, then: &Periods) -> Vec3 {
-    sub(now.vectors()[edge], then.vectors()[edge])
+/// How far an image has moved between two times.
+fn moved(image: u32, now: &Periods, then: &Periods) -> Vec3 {
+    let by = shift_of(image);
+    sub(now.shift(by), then.shift(by))
 }
 
 /// How far images have moved between two times, at most [length].
@@ -97,8 +88,7 @@ fn farthest(now: &Periods, then: &Periods) -> f64 {
     if now == then {
         return 0.0;
     }
-    let way = |image: u32| length(sub(now.shift(shift_of(image)), then.shift(shift_of(image))));
-    (0..27).map(way).fold(0.0, f64::max)
+    (0..27).map(|image| length(moved(image, now, then))).fold(0.0, f64::max)
 }
 
 /// [`Ways`] as they are gathered, vector by vector.
@@ -146,97 +136,46 @@ impl ListValidity {
         *self = Self::default();
     }
 
-    /// How many lists.
-    pub fn lists(&self) -> usize {
-        self.members.len()
-    }
-
-    /// Whether every grain stands at its place.
-    pub fn stand_in_order(&self) -> bool {
-        self.order.is_empty()
-    }
-
-    /// The slab that the list of this one reaches into, if there is one.
-    pub fn next(&self, slab: usize) -> Option<usize> {
-        self.next[slab]
-    }
-
-    /// The places of a slab.
-    pub fn members(&self, slab: usize) -> Range<usize> {
-        self.members[slab].clone()
+    /// Takes up so many new lists, all of which have to be made.
+    pub fn begin(&mut self, lists: usize) {
+        let mut then = std::mem::take(&mut self.then);
+        then.resize(lists, vec![]);
+        *self = Self { then, listed: vec![Periods::default(); lists], ..Self::default() };
     }
 
     /// Grains have been moved by so many periods since lists were made, by `more` of them now: that is not a way.
-    pub fn turn(&mut self, turns: &[[i8; 3]], more: &[[i16; 3]], period: &Periods) {
+    pub fn turn(&mut self, lists: &[List], turns: &[[i8; 3]], more: &[[i16; 3]], period: &Periods) {
         self.turned.clear();
-        for at in 0..self.own.len() {
-            let grain = self.grain(at);
-            if more[grain] != [0; 3] {
-                self.shift(at, period.shift(more[grain].map(f64::from)));
-            }
-            if let Some(turns) = turns.get(grain).filter(|turns| **turns != [0; 3]) {
-                self.turned.push((at, turns.map(f64::from)));
+        for (k, (list, then)) in lists.iter().zip(&mut self.then).enumerate() {
+            for (at, (grain, place)) in list.watched.grains.iter().zip(then).enumerate() {
+                let grain = *grain as usize;
+                if more[grain] != [0; 3] {
+                    shift(place, period.shift(more[grain].map(f64::from)));
+                }
+                if let Some(turns) = turns.get(grain).filter(|turns| **turns != [0; 3]) {
+                    self.turned.push(([k, at], turns.map(f64::from)));
+                }
             }
         }
     }
 
-    /// The box has changed: who has been moved around it would be elsewhere.
+    /// The box has changed: grains that have been moved around it would be elsewhere.
     pub fn follow(&mut self, before: &Periods, now: &Periods) {
         self.changed = true;
-        let turned = std::mem::take(&mut self.turned);
-        for (at, turns) in &turned {
-            self.shift(*at, sub(now.shift(*turns), before.shift(*turns)));
-        }
-        self.turned = turned;
-    }
-
-    fn shift(&mut self, at: usize, by: Vec3) {
-        for place in [&mut self.own[at], &mut self.before[at]] {
-            (0..3).for_each(|d| place[d] += by[d]);
+        for ([list, at], turns) in &self.turned {
+            shift(&mut self.then[*list][*at], sub(now.shift(*turns), before.shift(*turns)));
         }
     }
 
-    /// Takes up new slabs; all their lists have to be made.
-    pub fn divide(&mut self, slabs: &Slabs) {
-        let near = slabs.near();
-        self.members = (0..near.count()).map(|k| near.members(k)).collect();
-        self.next = (0..near.count()).map(|k| near.next(k)).collect();
-        self.axes = Some(slabs.axes());
-        let same = slabs.order.iter().zip(0..).all(|(grain, place)| *grain == place);
-        self.order = if same { vec![] } else { slabs.order.clone() };
-        self.make_room(slabs.order.len());
-    }
-
-    /// Takes up lists in which these grains are, each of them once; all have to be made.
-    pub fn take(&mut self, lists: &[Vec<u32>]) {
-        let end_of = |k: usize| lists[..k].iter().map(Vec::len).sum();
-        self.members = (0..lists.len()).map(|k| end_of(k)..end_of(k + 1)).collect();
-        self.next = vec![None; lists.len()];
-        self.axes = None;
-        self.order = lists.concat();
-        self.make_room(self.order.len());
-    }
-
-    fn make_room(&mut self, places: usize) {
-        self.own.resize(places, [0.0; 4]);
-        self.before.resize(places, [0.0; 4]);
-        self.listed.resize(self.members.len(), Periods::default());
-    }
-
-    /// The grain at a place.
-    fn grain(&self, place: usize) -> usize {
-        if self.order.is_empty() { place } else { self.order[place] as usize }
-    }
-
-    /// The slabs whose grains may have come closer by `thin`, or `all`, and some that are near that; their lists are taken to be made
-    /// from the present positions.
-    pub fn strayed(&mut self, grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
-        if self.members.is_empty() {
+    /// The lists whose grains may have come closer by `thin`, or `all`, and some that are near that; they are taken to be made from the
+    /// present positions.
+    pub fn strayed(&mut self, lists: &[List], grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
+        if lists.is_empty() {
             return vec![];
         }
         if thin == f64::INFINITY {
-            // Nobody gets out of lists that are the long ones.
-            return if all { (0..self.members.len()).collect() } else { vec![] };
+            // Nothing gets out of lists that are the long ones.
+            return if all { (0..lists.len()).collect() } else { vec![] };
         }
         // Whatever way two grains have gone since, they came closer by twice that at most, and by what images have moved.
         let moved = if self.changed { farthest(&grains.period, &self.looked) } else { 0.0 };
@@ -244,107 +183,115 @@ impl ListValidity {
             // The box around all ways may be longer than the two longest of them.
             let limit = 3.0_f64.sqrt() * thin;
             debug_assert!(
-                self.closer(grains).iter().all(|c| *c < limit),
-                "somebody moves grains without a word"
+                self.closer(lists, grains).iter().all(|c| *c < limit),
+                "something moves grains without a word"
             );
             return vec![];
         }
         let worn: Vec<usize> = if all {
             self.nearer.clear();
-            (0..self.members.len()).collect()
+            (0..lists.len()).collect()
         } else {
             self.looks += 1;
-            let nearer = self.closer(grains);
+            let nearer = self.closer(lists, grains);
             (0..nearer.len()).filter(|&k| nearer[k] >= WORN * thin).collect()
         };
-        for &k in &worn {
-            self.see(grains, k);
-        }
+        self.renew(lists, grains, &worn);
         self.looked = grains.period;
         let left = self.nearer.iter().copied().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
         self.since = Seen::now(grains.travel, 0.5 * left);
         worn
     }
 
-    /// Takes the short lists of these slabs to be made from the present positions.
-    pub fn renew(&mut self, grains: &Grains, which: &[usize]) {
-        which.iter().for_each(|&k| self.see(grains, k));
+    /// Takes the short lists of these numbers to be made from the present positions.
+    pub fn renew(&mut self, lists: &[List], grains: &Grains, which: &[usize]) {
+        let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
+        which.iter().for_each(|&k| self.listed[k] = grains.period);
+        let then = par::Shared::new(&mut self.then);
+        par::for_rows_if(grains.x.len() > FEW, which.len(), |at| {
+            let k = which[at];
+            // SAFETY: each part writes the places of its own list.
+            let then = unsafe { &mut then.get(k..k + 1)[0] };
+            then.clear();
+            then.extend(lists[k].watched.grains.iter().map(|i| place(*i as usize)));
+        });
     }
 
-    /// How much closer two grains of a list can have come, for each slab [length].
-    fn closer(&mut self, grains: &Grains) -> &[f64] {
-        let mut ways = std::mem::take(&mut self.ways);
-        ways.clear();
-        ways.resize(self.members.len(), [Ways::NONE; 2]);
-        let (this, shared) = (&*self, par::Shared::new(&mut ways));
-        par::for_rows_if(this.own.len() > FEW, this.members.len(), |k| {
-            let ways = this.ways(grains, k);
-            // SAFETY: each part writes its own slab.
-            unsafe { shared.get(k..k + 1)[0] = ways };
+    /// How much closer two grains of each list can have come [length].
+    fn closer(&mut self, lists: &[List], grains: &Grains) -> &[f64] {
+        let mut nearer = std::mem::take(&mut self.nearer);
+        nearer.clear();
+        nearer.resize(lists.len(), 0.0);
+        let (this, shared) = (&*self, par::Shared::new(&mut nearer));
+        par::for_rows_if(grains.x.len() > FEW, lists.len(), |k| {
+            // SAFETY: each part writes its own number.
+            unsafe { shared.get(k..k + 1)[0] = this.closer_in(&lists[k].watched, k, grains) };
         });
-        let closer = |k: usize| {
-            let (own, now, then) = (ways[k][0], &grains.period, &self.listed[k]);
-            let Some(axes) = self.axes else { return own.closer() + farthest(now, then) };
-            let [fast, middle, slow] = axes.map(|d| edge_moved(d, now, then));
-            let all = match self.next[k] {
-                Some(next) if next > k => own.join(ways[next][1]),
-                // Around the box, where the next slab is an image.
-                Some(next) => own.join(ways[next][1].seen_from(slow)),
-                None => own,
-            };
-            all.closer() + length(fast) + length(middle)
-        };
-        self.nearer.clear();
-        self.nearer.extend((0..ways.len()).map(closer));
-        self.ways = ways;
+        self.nearer = nearer;
         &self.nearer
     }
 
-    /// The ways of a slab's grains since its own list was made, and since that of the slab before.
-    fn ways(&self, grains: &Grains, k: usize) -> [Ways; 2] {
-        // SAFETY: the processor was asked; members are grains, and all of them have been seen.
-        unsafe {
-            #[cfg(target_arch = "x86_64")]
-            if has_avx2() {
-                return self.ways_avx2(grains, k);
+    /// How much closer two grains of list `k` can have come: those of pairs lie in one layer or in two that follow each other.
+    fn closer_in(&self, watched: &Watched, k: usize, grains: &Grains) -> f64 {
+        let (now, then) = (&grains.period, &self.listed[k]);
+        let (mut most, mut from) = (0.0_f64, 0);
+        let (mut below, mut here) = ((usize::MAX - 1, Ways::NONE), (usize::MAX - 1, Ways::NONE));
+        let closer = |below: (usize, Ways), here: (usize, Ways)| match below.0 + 1 == here.0 {
+            true => below.1.join(here.1).closer(),
+            false => here.1.closer(),
+        };
+        for part in &watched.parts {
+            let of = from..part.end as usize;
+            let ways = ways(grains, &watched.grains[of.clone()], &self.then[k][of]);
+            // Images move where the box does.
+            let still = part.image == HERE || now == then;
+            let ways = if still { ways } else { ways.seen_from(moved(part.image, now, then)) };
+            if part.layer != here.0 {
+                most = most.max(closer(below, here));
+                (below, here) = (here, (part.layer, Ways::NONE));
             }
-            self.ways_in::<Plain>(grains, k)
+            here.1 = here.1.join(ways);
+            from = part.end as usize;
         }
+        most.max(closer(below, here))
     }
+}
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    unsafe fn ways_avx2(&self, grains: &Grains, k: usize) -> [Ways; 2] {
-        // SAFETY: passed on.
-        unsafe { self.ways_in::<perigrain_base::math::four::Avx2>(grains, k) }
+fn shift(place: &mut Place, by: Vec3) {
+    (0..3).for_each(|d| place[d] += by[d]);
+}
+
+/// The ways of these grains since they were at these places.
+fn ways(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
+    assert_eq!(rows.len(), then.len());
+    // SAFETY: the processor was asked; rows are grains.
+    unsafe {
+        #[cfg(target_arch = "x86_64")]
+        if has_avx2() {
+            return ways_avx2(grains, rows, then);
+        }
+        ways_in::<Plain>(grains, rows, then)
     }
+}
 
-    #[inline(always)]
-    unsafe fn ways_in<F: Four>(&self, grains: &Grains, k: usize) -> [Ways; 2] {
-        // SAFETY: passed on.
-        unsafe {
-            let (mut own, mut before) = (Span::<F>::new(), Span::<F>::new());
-            for place in self.members[k].clone() {
-                let i = self.grain(place);
-                let now = F::load3(grains.x.get_unchecked(i).as_ptr());
-                let radius = grains.radius.get_unchecked(i);
-                own.take(now, *radius, self.own.get_unchecked(place));
-                before.take(now, *radius, self.before.get_unchecked(place));
-            }
-            [own.ways(), before.ways()]
-        }
-    }
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn ways_avx2(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
+    // SAFETY: passed on.
+    unsafe { ways_in::<perigrain_base::math::four::Avx2>(grains, rows, then) }
+}
 
-    /// Keeps the present places for the list of slab `k`.
-    fn see(&mut self, grains: &Grains, k: usize) {
-        self.listed[k] = grains.period;
-        let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
-        for at in self.members[k].clone() {
-            self.own[at] = place(self.grain(at));
+#[inline(always)]
+unsafe fn ways_in<F: Four>(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
+    // SAFETY: passed on.
+    unsafe {
+        let mut span = Span::<F>::new();
+        for (i, then) in rows.iter().zip(then) {
+            let i = *i as usize;
+            let now = F::load3(grains.x.get_unchecked(i).as_ptr());
+            span.take(now, *grains.radius.get_unchecked(i), then);
         }
-        for at in self.next[k].map_or(0..0, |next| self.members[next].clone()) {
-            self.before[at] = place(self.grain(at));
-        }
+        span.ways()
     }
 }
 

@@ -1,12 +1,11 @@
-//! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
+//! The two lists of each tile: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::near::{self, InOrder, Places};
-use super::{Fast, NONE, NOWHERE};
+use super::near::{self, Places};
+use super::search::{FEW, Watched};
+use super::{Fast, NOWHERE};
 use crate::driver::Grains;
-use perigrain_base::math::form::InLanes;
-use perigrain_base::math::lanes::{Lanes, PLACE_BITS};
+use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::par;
-use perigrain_neigh::slabs::{HERE, Run, Slabs};
 use std::sync::{Mutex, PoisonError};
 
 /// Lists are filled up to multiples of the most pairs that are looked at at a time.
@@ -15,7 +14,7 @@ pub const FILL: usize = 8;
 /// Pairs of grains and images. Filled up to a multiple of [`FILL`] with pairs that are nowhere near.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs {
-    /// The grain that lies in the slab.
+    /// The grain that lies in the tile.
     pub i: Vec<u32>,
     /// The other and the image it is seen in.
     pub w: Vec<u32>,
@@ -29,8 +28,7 @@ impl Pairs {
             self.w.push(NOWHERE << PLACE_BITS);
         }
         let long = self.i.len();
-        fit(&mut self.i, long);
-        fit(&mut self.w, long);
+        [&mut self.i, &mut self.w].into_iter().for_each(|list| fit(list, long));
     }
 }
 
@@ -60,9 +58,11 @@ impl Short {
     }
 }
 
-/// What belongs to one slab.
+/// A list of pairs of one tile.
 #[derive(Clone, Debug, Default)]
-pub struct Slab {
+pub struct List {
+    /// The grains of its pairs, and some beside them.
+    pub watched: Watched,
     /// Pairs within the skin.
     pub long: Pairs,
     /// Pairs within the thin skin.
@@ -77,7 +77,7 @@ pub struct Slab {
     pub held: f64,
 }
 
-impl Slab {
+impl List {
     /// What an evaluation has found so far.
     pub(super) fn found(&mut self, virial: [f64; 6], deep: bool, touching: usize) {
         (self.virial, self.deep, self.touching) = (virial, deep, touching);
@@ -88,89 +88,16 @@ impl Slab {
 /// How long it takes to evaluate a contact, in units of what it takes to find out that a listed pair does not touch.
 const CONTACT: usize = 8;
 
-/// The lists of so few grains are made before another thread has seen that there is work.
-const FEW: usize = 64;
-
-/// And contacts of so little work are evaluated before: some microseconds, in these units.
+/// Contacts of so little work are evaluated before another thread has seen that there is some: some microseconds, in these units.
 const LITTLE: usize = 1024;
 
-/// How much work each short list is; nothing where all of them are little.
-pub fn weights(lists: &[Slab]) -> Option<Vec<usize>> {
-    let weight = |list: &Slab| list.short.i.len() + CONTACT * list.touching;
-    let all: usize = lists.iter().map(weight).sum();
-    (all > LITTLE).then(|| lists.iter().map(weight).collect())
+/// Whether the contacts of these lists are little work.
+pub fn are_little(lists: &[List]) -> bool {
+    lists.iter().map(|list| list.short.i.len() + CONTACT * list.touching).sum::<usize>() <= LITTLE
 }
 
 impl Fast {
-    /// Long lists from these positions and radii.
-    pub(super) fn make_long(
-        &mut self,
-        grains: &Grains,
-        slabs: &Slabs,
-        skin: f64,
-        keep: &(impl Fn(usize, usize) -> bool + Sync),
-    ) {
-        let at = InOrder::new(grains, &slabs.order);
-        let mut lists = std::mem::take(&mut self.lists);
-        lists.resize(slabs.near().count(), Slab::default());
-        let shared = par::Shared::new(&mut lists);
-        let this = &*self;
-        par::for_rows_if(grains.x.len() > FEW, slabs.near().count(), |k| {
-            // SAFETY: each part writes its own slab.
-            let slab = unsafe { &mut shared.get(k..k + 1)[0] };
-            this.search(grains, (slabs, &at), k, skin, keep, &mut slab.long);
-        });
-        self.lists = lists;
-    }
-
-    /// The long list of slab `k`.
-    fn search(
-        &self,
-        grains: &Grains,
-        (slabs, at): (&Slabs, &InOrder),
-        k: usize,
-        skin: f64,
-        keep: &(impl Fn(usize, usize) -> bool + Sync),
-        out: &mut Pairs,
-    ) {
-        let everywhere = !self.laws.which.contains(&NONE);
-        let keep = |i: u32, j: u32| {
-            let (i, j) = (i as usize, j as usize);
-            (everywhere || self.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
-        };
-        let search = Search { slabs, k, at, shifts: &self.shifts, skin, keep, out };
-        // SAFETY: the processor has what its form needs.
-        unsafe { self.form.run(search) }
-    }
-
-    /// Long lists of the slabs in which these grains lie, made anew from the positions of all of them; what their contacts
-    /// remember stays. Which slabs.
-    pub(super) fn extend_long(
-        &mut self,
-        grains: &Grains,
-        slabs: &Slabs,
-        skin: f64,
-        ends: &[usize],
-        keep: &(impl Fn(usize, usize) -> bool + Sync),
-    ) -> Vec<usize> {
-        let mut mine = vec![false; grains.x.len()];
-        ends.iter().for_each(|&i| mine[i] = true);
-        let concerned = |k: &usize| slabs.order[slabs.near().members(*k)].iter().any(|i| mine[*i as usize]);
-        let which: Vec<usize> = (0..slabs.near().count()).filter(concerned).collect();
-        let at = InOrder::new(grains, &slabs.order);
-        for &k in &which {
-            let mut new = Pairs::default();
-            self.search(grains, (slabs, &at), k, skin, keep, &mut new);
-            new.fill_up();
-            let slab = &mut self.lists[k];
-            let places = moved(&slab.long, &new);
-            slab.short.t.iter_mut().for_each(|t| *t = places[*t as usize]);
-            slab.long = new;
-        }
-        which
-    }
-
-    /// Short lists of these slabs from the present positions; contacts keep what they remember.
+    /// Short lists of these numbers from the present positions; contacts keep what they remember.
     pub(super) fn make_short(&mut self, grains: &Grains, which: &[usize]) {
         if which.is_empty() {
             return;
@@ -180,19 +107,19 @@ impl Fast {
         let mut lists = std::mem::take(&mut self.lists);
         let spare = Mutex::new(std::mem::take(&mut self.spare));
         let open = || spare.lock().unwrap_or_else(PoisonError::into_inner);
-        let slabs = par::Shared::new(&mut lists);
+        let shared = par::Shared::new(&mut lists);
         let this = &*self;
         par::for_rows_if(grains.x.len() > FEW, which.len(), |k| {
-            // SAFETY: each part writes its own slab.
-            let slab = unsafe { &mut slabs.get(which[k]..which[k] + 1)[0] };
+            // SAFETY: each part writes its own list.
+            let list = unsafe { &mut shared.get(which[k]..which[k] + 1)[0] };
             let mut room = open().pop().unwrap_or_default();
             room.clear();
             // SAFETY: the processor has what its form needs; list entries are grains.
-            let long = [&slab.long.i[..], &slab.long.w];
+            let long = [&list.long.i[..], &list.long.w];
             unsafe { near::near(this.form, grains, &this.shifts, long, this.thin + this.span, &mut room.t) };
-            this.fill_short(slab, book.as_ref(), &mut room);
+            this.fill_short(list, book.as_ref(), &mut room);
             this.measure(grains, &mut room);
-            std::mem::swap(&mut slab.short, &mut room);
+            std::mem::swap(&mut list.short, &mut room);
             open().push(room);
         });
         self.spare = spare.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -211,18 +138,15 @@ impl Fast {
     }
 
     /// Fills in pairs and memory of a new short list that knows its pairs of the long list.
-    fn fill_short(&self, slab: &Slab, book: Option<&super::Book>, new: &mut Short) {
-        let (old, width) = (&slab.short, self.width);
+    fn fill_short(&self, list: &List, book: Option<&super::Book>, new: &mut Short) {
+        let (old, long, width) = (&list.short, &list.long, self.width);
         let near = new.t.len().next_multiple_of(FILL);
-        fit(&mut new.t, near);
-        fit(&mut new.i, near);
-        fit(&mut new.w, near);
-        new.i.extend(new.t.iter().map(|t| slab.long.i[*t as usize]));
-        new.w.extend(new.t.iter().map(|t| slab.long.w[*t as usize]));
-        while !new.i.len().is_multiple_of(FILL) {
-            new.i.push(0);
-            new.w.push(NOWHERE << PLACE_BITS);
+        [&mut new.t, &mut new.i, &mut new.w].into_iter().for_each(|list| fit(list, near));
+        for (out, from) in [(&mut new.i, &long.i), (&mut new.w, &long.w)] {
+            out.extend(new.t.iter().map(|t| from[*t as usize]));
         }
+        new.i.resize(near, 0);
+        new.w.resize(near, NOWHERE << PLACE_BITS);
         let all = new.i.len() * width;
         fit(&mut new.history, all);
         new.history.resize(all, -1.0);
@@ -238,20 +162,6 @@ impl Fast {
         }
         new.history[new.t.len() * width..].fill(-1.0);
     }
-}
-
-/// Where the pairs of a list stand in a longer one that has them all in the same order.
-fn moved(old: &Pairs, new: &Pairs) -> Vec<u32> {
-    let mut at = 0;
-    let mut places = vec![];
-    for pair in old.i.iter().zip(&old.w) {
-        while at + 1 < new.i.len() && (&new.i[at], &new.w[at]) != pair {
-            at += 1;
-        }
-        places.push(at as u32);
-        at = (at + 1).min(new.i.len().saturating_sub(1));
-    }
-    places
 }
 
 /// Carries what contacts remember from one short list to the next one; both are in the order of the long list. (No branch asks
@@ -284,50 +194,5 @@ fn fit<T>(list: &mut Vec<T>, len: usize) {
     } else if list.capacity() > 2 * ample {
         list.truncate(len);
         list.shrink_to(ample);
-    }
-}
-
-/// The search of the pairs of slab `k`.
-struct Search<'a, K> {
-    slabs: &'a Slabs,
-    k: usize,
-    at: &'a InOrder,
-    shifts: &'a [[f64; 4]; 32],
-    skin: f64,
-    keep: K,
-    out: &'a mut Pairs,
-}
-
-impl<K: Fn(u32, u32) -> bool> InLanes for Search<'_, K> {
-    type Out = ();
-
-    #[inline(always)]
-    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        let Self { slabs, k, at, shifts, skin, keep, out } = self;
-        out.i.clear();
-        out.w.clear();
-        let order = &slabs.order;
-        let mut runs = vec![];
-        for cell in slabs.near().slab(k) {
-            let own = slabs.places(cell);
-            if own.is_empty() {
-                continue;
-            }
-            slabs.runs(cell, &mut runs);
-            for i in own.clone() {
-                let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
-                for run in std::iter::once(&rest).chain(&runs) {
-                    let hit = |j: usize| {
-                        let (i, j) = (order[i], order[j]);
-                        if keep(i, j) {
-                            out.i.push(i);
-                            out.w.push(j | run.image << PLACE_BITS);
-                        }
-                    };
-                    // SAFETY: passed on.
-                    unsafe { at.near::<N, V>(i, run, &shifts[run.image as usize], skin, hit) };
-                }
-            }
-        }
     }
 }

@@ -165,8 +165,8 @@ impl Fast {
         entries.sort_unstable();
         let mut history = Vec::with_capacity(count * memory);
         for (_, number) in &entries {
-            let slab = first.partition_point(|f| f <= number) - 1;
-            let (short, k) = (&self.lists[slab].short, (number - first[slab]) as usize);
+            let list = first.partition_point(|f| f <= number) - 1;
+            let (short, k) = (&self.lists[list].short, (number - first[list]) as usize);
             let from = history.len();
             history.extend_from_slice(&short.history[k * width..][..memory]);
             let (p, q) = self.tags(short, k);
@@ -186,9 +186,8 @@ impl Fast {
 
     /// Gives everything back but what contacts remember, which [`Fast::contacts`] can still tell.
     pub fn keep_contacts(&mut self) {
-        self.lists.iter_mut().for_each(|l| l.long = Default::default());
+        self.lists.iter_mut().for_each(|l| (l.long, l.watched) = Default::default());
         self.spare = vec![];
         self.validity.forget();
-        self.validity_of_large.forget();
     }
 }

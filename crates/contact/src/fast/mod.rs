@@ -1,10 +1,11 @@
 //! Contacts of many grains: spatial order, short lists, several contacts at a time; the same numbers as the plain driver.
 //!
-//! Grains are sorted into slabs of cells ([`Slabs`]); the world does well to stand in that order. Each slab has a list of the
+//! Grains are sorted into tiles, blocks of cells ([`Tiles`]); the world does well to stand in that order. Each tile has a list of the
 //! pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
-//! Where sizes differ much, slabs are as thick as small grains reach, and pairs with large ones have lists of their own.
+//! Where sizes differ much, pairs with large grains have lists of their own.
 //! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
-//! stage (`batch`); slabs in two colours keep the order of additions for any number of threads.
+//! stage (`batch`). Tiles have colours, no two beside each other the same one, and of two whose pairs share grains the one of the lower
+//! colour comes first: the order of additions is the same for any number of threads.
 
 mod batch;
 mod bidisperse;
@@ -15,14 +16,15 @@ mod list_validity;
 mod lists;
 mod memory;
 mod near;
-mod per_list;
+mod per_tile;
+mod search;
 mod sweep;
 mod upkeep;
 
 use super::driver::Grains;
 use super::{Advance, Granular, MOST_MEMORY};
 use list_validity::ListValidity;
-use lists::{Short, Slab};
+use lists::{List, Short};
 use memory::Book;
 pub use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::has_avx2;
@@ -30,9 +32,11 @@ use perigrain_base::math::lanes::{PLACE_BITS, place};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
+use perigrain_base::par::ordered::Precedence;
 use perigrain_neigh::list::small;
-use perigrain_neigh::slabs::{Slabs, edges};
+use perigrain_neigh::tiles::{Tiles, edges};
 use perigrain_world::contacts::Contacts;
+use std::ops::Range;
 use upkeep::Upkeep;
 
 /// Lists of so many grains keep their room when they are made anew.
@@ -125,7 +129,7 @@ pub struct Sums<'a> {
     pub deeds: Option<[&'a mut [Vec3]; 3]>,
 }
 
-/// What all grains have in common: nobody looks it up for each of them.
+/// What all grains have in common: it is not looked up for each of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Alike {
     radius: Option<f64>,
@@ -153,10 +157,8 @@ pub struct Fast {
     form: Form,
     /// Identities of the grains when the lists were made.
     tag: Vec<u32>,
-    /// Who has strayed from where short lists were made.
+    /// Which grains have strayed from where short lists were made.
     validity: ListValidity,
-    /// The same for lists of pairs with large grains.
-    validity_of_large: ListValidity,
     /// Masses with a minus sign where frozen, if some are.
     signed: Vec<f64>,
     /// What all grains have in common.
@@ -165,10 +167,18 @@ pub struct Fast {
     measured: Vec<f64>,
     /// How many periods grains have been moved since lists were made.
     turns: Vec<[i8; 3]>,
-    /// Those of slabs, then those of pairs with large grains.
-    lists: Vec<Slab>,
+    /// Those of tiles, then those of pairs with large grains, slab by slab.
+    lists: Vec<List>,
     /// Lists in the order of one thread.
     order: Vec<usize>,
+    /// The tiles beside each one, and which of them come first.
+    beside: Vec<Vec<u32>>,
+    precedence: Precedence,
+    /// The places of each tile, and whether each grain stands at its place.
+    members: Vec<Range<usize>>,
+    in_order: bool,
+    /// Whether the time is kept that tiles take.
+    timed: bool,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
     /// The periods of these.
@@ -187,7 +197,7 @@ pub struct Fast {
     now: f64,
     /// Numbers per pair in the short list: what is remembered and the step it was.
     width: usize,
-    /// Slabs whose long lists have gained pairs.
+    /// Lists whose long ones have gained pairs.
     due: Vec<usize>,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
@@ -195,8 +205,8 @@ pub struct Fast {
     pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
     spare: Vec<Short>,
-    /// Room for the next evaluation list by list.
-    spare_per_list: (Vec<usize>, Vec<u8>),
+    /// Room for the next evaluation tile by tile.
+    waiting: per_tile::Waiting,
 }
 
 impl Fast {
@@ -209,13 +219,17 @@ impl Fast {
             form: Form::here(),
             tag: vec![],
             validity: ListValidity::default(),
-            validity_of_large: ListValidity::default(),
             signed: vec![],
             alike: Alike::default(),
             measured: vec![],
             turns: vec![],
             lists: vec![],
             order: vec![],
+            beside: vec![],
+            precedence: Precedence::default(),
+            members: vec![],
+            in_order: false,
+            timed: false,
             shifts: [[0.0; 4]; 32],
             period: Periods::default(),
             thin: 0.0,
@@ -229,7 +243,7 @@ impl Fast {
             book: None,
             deep: None,
             spare: vec![],
-            spare_per_list: Default::default(),
+            waiting: Default::default(),
         }
     }
 
@@ -245,7 +259,7 @@ impl Fast {
 
     /// Forgets grains and contacts.
     pub fn clear(&mut self) {
-        *self = Self::new(self.laws.clone());
+        *self = Self { timed: self.timed, ..Self::new(self.laws.clone()) };
     }
 
     /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
@@ -275,7 +289,7 @@ impl Fast {
         self.tag.is_empty()
     }
 
-    /// Makes all lists anew from these positions (wrapped into the box; who is elsewhere by now, see [`Fast::turn`]), pairs for
+    /// Makes all lists anew from these positions (wrapped into the box; [`Fast::turn`] follows those that are elsewhere by now), pairs for
     /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; `known` are taken in addition. An evaluation
     /// must follow.
     pub fn rebuild(
@@ -290,17 +304,17 @@ impl Fast {
         let reach = frame.reach + self.span;
         let [edge, far] = edges(grains.radius, reach);
         let sort = || {
-            let mut slabs = Slabs::default();
-            slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
-            slabs
+            let mut tiles = Tiles::default();
+            tiles.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
+            tiles
         };
         let remember = || self.remember(grains.tag, known);
         // Work of one thread each.
         let n = grains.x.len();
         let large =
             || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
-        let ((slabs, book), large) = par::both(n, || par::both(n, sort, remember), large);
-        // Where several laws stick, who is listed decides which contacts are evaluated together.
+        let ((tiles, book), large) = par::both(n, || par::both(n, sort, remember), large);
+        // Where several laws stick, what is listed decides which contacts are evaluated together.
         let whole = self.laws.distinct.len() == 1 && self.upkeep.takes_whole(self.pairs());
         // The book has what they knew: room for what is made now.
         if grains.x.len() > SMALL {
@@ -309,24 +323,24 @@ impl Fast {
         } else {
             self.lists.iter_mut().for_each(|l| l.short.clear());
         }
-        self.validity.forget();
-        self.validity_of_large.forget();
         self.turns = vec![];
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
         self.see_images(frame.period);
         self.thin = if whole { f64::INFINITY } else { THIN * frame.skin };
         if edge == far {
-            self.make_long(grains, &slabs, reach, keep);
+            self.make_long(grains, &tiles, reach, keep);
         } else {
             let small = small(grains.radius);
             let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
-            self.make_long(grains, &slabs, reach, &|i, j| both_small(i, j) && keep(i, j));
-            self.add_large(&large, &slabs);
+            self.make_long(grains, &tiles, reach, &|i, j| both_small(i, j) && keep(i, j));
+            self.add_large(&large, &tiles);
         }
         self.lists.iter_mut().for_each(|list| list.long.fill_up());
-        self.validity.divide(&slabs);
-        self.put_in_order();
+        self.validity.begin(self.lists.len());
+        self.members = (0..tiles.count()).map(|k| tiles.members(k)).collect();
+        self.in_order = tiles.order.iter().zip(0..).all(|(grain, place)| *grain == place);
+        self.put_in_order(&tiles);
         self.book = Some(book);
         self.stale = true;
     }
@@ -347,12 +361,12 @@ impl Fast {
         if self.stale || self.book.is_some() || edge != far || elsewhere || grains.tag != self.tag {
             return false;
         }
-        let mut slabs = Slabs::default();
-        slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
-        if slabs.near().count() != self.lists.len() {
+        let mut tiles = Tiles::default();
+        tiles.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
+        if tiles.count() != self.lists.len() {
             return false;
         }
-        self.due = self.extend_long(grains, &slabs, reach, ends, keep);
+        self.due = self.extend_long(grains, &tiles, reach, ends, keep);
         true
     }
 
@@ -373,8 +387,8 @@ impl Fast {
         }
         self.now += if store { 1.0 } else { 0.0 };
         let mut total = [0.0; 6];
-        for slab in self.lists.iter().filter(|_| virial) {
-            (0..6).for_each(|k| total[k] += slab.virial[k]);
+        for list in self.lists.iter().filter(|_| virial) {
+            (0..6).for_each(|k| total[k] += list.virial[k]);
         }
         total
     }
@@ -383,36 +397,61 @@ impl Fast {
     pub(super) fn begin(&mut self, grains: &Grains) {
         self.follow(&grains.period);
         let stale = std::mem::take(&mut self.stale);
-        let looks = self.validity.looks + self.validity_of_large.looks;
-        let mut strayed = self.validity.strayed(grains, self.thin, stale);
         let mut due = std::mem::take(&mut self.due);
+        self.validity.renew(&self.lists, grains, &due);
+        let looks = self.validity.looks;
+        let mut strayed = self.validity.strayed(&self.lists, grains, self.thin, stale);
+        let looks = self.validity.looks - looks;
         due.retain(|k| !strayed.contains(k));
-        self.validity.renew(grains, &due);
         strayed.extend(due);
-        let of_large = self.validity_of_large.strayed(grains, self.thin, stale);
-        strayed.extend(of_large.into_iter().map(|k| self.validity.lists() + k));
-        let looks = self.validity.looks + self.validity_of_large.looks - looks;
         let made = if stale { 0 } else { strayed.iter().map(|k| self.lists[*k].long.i.len()).sum() };
         self.upkeep.step(made, looks * grains.x.len());
         self.make_short(grains, &strayed);
     }
 
-    /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to
-    /// its slab and the next one.
-    fn each_list(&self, weights: &[usize], f: impl Fn(usize) + Sync) {
-        let first = self.validity.lists();
-        par::neighbours(&weights[..first], &f);
-        par::two_colours(self.validity_of_large.lists(), |k| f(first + k));
+    /// Number of tiles.
+    fn tiles(&self) -> usize {
+        self.members.len()
     }
 
-    /// Puts lists in the order in which [`Fast::each_list`] calls them on one thread.
-    fn put_in_order(&mut self) {
-        let (first, large) = (self.validity.lists(), self.validity_of_large.lists());
+    /// Number of lists of pairs with large grains.
+    fn large(&self) -> usize {
+        self.order.len() - self.tiles()
+    }
+
+    /// Calls `f` for the lists of tiles, and then for those of large grains: a list may write to its tile and to those beside it, or to its
+    /// slab and the next one.
+    fn each_list(&self, f: impl Fn(usize) + Sync) {
+        self.precedence.run(&f);
+        par::two_colours(self.large(), |k| f(self.tiles() + k));
+    }
+
+    /// Finds out which lists come before which, and puts them in the order in which one thread follows that.
+    fn put_in_order(&mut self, tiles: &Tiles) {
+        let colours: Vec<u8> = (0..tiles.count()).map(|tile| tiles.colour(tile)).collect();
+        self.beside = (0..tiles.count()).map(|tile| tiles.beside(tile)).collect();
+        self.precedence = Precedence::of(&colours, &self.beside);
+        self.precedence.keep_times(self.timed);
+        let large = self.lists.len() - tiles.count();
         self.order.clear();
-        self.order.extend(par::in_turn(first).chain(par::in_turn(large).map(|k| first + k)));
+        self.order.extend_from_slice(self.precedence.line());
+        self.order.extend(par::in_turn(large).map(|k| tiles.count() + k));
     }
 
-    /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have
+    /// From now on the time is kept that each tile takes, from each [`Fast::rebuild`] on.
+    pub fn time_tiles(&mut self) {
+        self.timed = true;
+        self.precedence.keep_times(true);
+    }
+
+    /// Tiles, grains of the largest one, and by how much some threads can be faster at most, from the times of tiles alone; nothing where
+    /// no time has been kept.
+    pub fn describe_tiles(&self) -> Option<String> {
+        let most = self.members.iter().map(Range::len).max().unwrap_or(0);
+        self.precedence.described(&format!("{most} grains"))
+    }
+
+    /// Takes up which grains are frozen and which are alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have
     /// changed.
     pub fn weigh(&mut self, grains: &Grains) {
         self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
@@ -445,7 +484,7 @@ impl Fast {
 
     /// Pairs in long lists and in short ones.
     pub fn pairs(&self) -> [usize; 2] {
-        let sum = |f: fn(&Slab) -> usize| self.lists.iter().map(f).sum();
+        let sum = |f: fn(&List) -> usize| self.lists.iter().map(f).sum();
         [sum(|s| s.long.i.len()), sum(|s| s.short.i.len())]
     }
 }

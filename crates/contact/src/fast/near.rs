@@ -5,7 +5,7 @@ use crate::driver::Grains;
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
-use perigrain_neigh::slabs::Run;
+use perigrain_neigh::tiles::Run;
 
 /// Adds the numbers of those pairs of a list, filled up, to `out` whose surfaces are nearer than `reach`, in order.
 ///

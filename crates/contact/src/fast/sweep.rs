@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::found::{BLOCK, Found, ROOM};
-use super::lists::{FILL, Short, Slab, weights};
+use super::lists::{FILL, List, Short, are_little};
 use super::near::Places;
 use super::{Alike, Fast, Laws, NONE, Sums};
 use crate::driver::Grains;
@@ -13,7 +13,7 @@ use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
-use perigrain_neigh::slabs::shift_of;
+use perigrain_neigh::tiles::shift_of;
 
 /// What the loops read and where they write.
 pub(super) struct Cx<'a> {
@@ -131,8 +131,8 @@ impl Fast {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
         // One thread takes lists as they come.
-        let weights = if only.is_none() && par::threads() > 1 { weights(&lists) } else { None };
-        let slabs = par::Shared::new(&mut lists);
+        let shares = only.is_none() && (self.timed || (par::threads() > 1 && !are_little(&lists)));
+        let shared = par::Shared::new(&mut lists);
         let drift = Drift::of(grains);
         let cx = Cx {
             laws: &self.laws,
@@ -157,20 +157,20 @@ impl Fast {
             drift: drift.as_ref(),
         };
         let contacts = |which: &[usize]| {
-            // SAFETY: each part writes its own lists, and forces of grains in them and the next ones, which each_list keeps
+            // SAFETY: each part writes its own lists, and forces of grains in their tiles and those beside them, which `each_list` keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 match width {
-                    4 => form.run(Contacts::<4> { cx: &cx, lists: &slabs, which }),
-                    8 => form.run(Contacts::<8> { cx: &cx, lists: &slabs, which }),
-                    _ => form.run(Contacts::<12> { cx: &cx, lists: &slabs, which }),
+                    4 => form.run(Contacts::<4> { cx: &cx, lists: &shared, which }),
+                    8 => form.run(Contacts::<8> { cx: &cx, lists: &shared, which }),
+                    _ => form.run(Contacts::<12> { cx: &cx, lists: &shared, which }),
                 }
             }
         };
-        match (only, weights) {
-            (Some(k), _) => contacts(&[k]),
-            (None, Some(weights)) => self.each_list(&weights, |k| contacts(&[k])),
-            (None, None) => contacts(&self.order),
+        match only {
+            Some(k) => contacts(&[k]),
+            None if shares => self.each_list(|k| contacts(&[k])),
+            None => contacts(&self.order),
         }
         self.lists = lists;
     }
@@ -179,7 +179,7 @@ impl Fast {
 /// All contacts of some lists, one list after the other, which remember `W` − 1 numbers at most.
 struct Contacts<'a, 'b, const W: usize> {
     cx: &'a Cx<'b>,
-    lists: &'a par::Shared<'a, Slab>,
+    lists: &'a par::Shared<'a, List>,
     which: &'a [usize],
 }
 
@@ -191,11 +191,11 @@ impl<const W: usize> InLanes for Contacts<'_, '_, W> {
         let Self { cx, lists, which } = self;
         let (mut batch, mut found) = (None, Found::new());
         for (at, &k) in which.iter().enumerate() {
-            // SAFETY: the caller's promise: nobody else has these lists.
-            let slab = unsafe { &mut lists.get(k..k + 1)[0] };
+            // SAFETY: the caller's promise: no other thread has these lists.
+            let list = unsafe { &mut lists.get(k..k + 1)[0] };
             let ends = at + 1 == which.len() || !cx.joins();
             // SAFETY: passed on.
-            unsafe { of_list::<N, V, W>(cx, slab, &mut found, &mut batch, ends) };
+            unsafe { of_list::<N, V, W>(cx, list, &mut found, &mut batch, ends) };
         }
     }
 }
@@ -204,15 +204,15 @@ impl<const W: usize> InLanes for Contacts<'_, '_, W> {
 #[inline(always)]
 unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
     cx: &Cx,
-    slab: &mut Slab,
+    list: &mut List,
     found: &mut Found,
     batch: &mut Option<Batch<V, N>>,
     ends: bool,
 ) {
-    slab.found([0.0; 6], false, 0);
+    list.found([0.0; 6], false, 0);
     found.clear();
     let at = cx.places();
-    let (mut k, end) = (0, slab.short.i.len());
+    let (mut k, end) = (0, list.short.i.len());
     loop {
         // By the same steps in all forms: where it stops, blocks of what holds end.
         while k < end && found.len() + FILL <= ROOM {
@@ -220,8 +220,8 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
             // SAFETY: lists are filled up; entries are grains. There is room for so many.
             unsafe {
                 match at.alike {
-                    Some(_) => found.test::<N, V, true>(&slab.short, &at, cx.span, k..k + sure),
-                    None => found.test::<N, V, false>(&slab.short, &at, cx.span, k..k + sure),
+                    Some(_) => found.test::<N, V, true>(&list.short, &at, cx.span, k..k + sure),
+                    None => found.test::<N, V, false>(&list.short, &at, cx.span, k..k + sure),
                 }
             }
             k += sure;
@@ -229,10 +229,10 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
         let ready = if k == end { found.len() } else { found.len() - found.len() % BLOCK };
         // What holds is moved to the front of what is ready; the rest stays where it is.
         let holding = match cx.span > 0.0 {
-            true => found.sift(ready, |k| cx.holds::<W>(&slab.short, k as usize)),
+            true => found.sift(ready, |k| cx.holds::<W>(&list.short, k as usize)),
             false => ready,
         };
-        slab.touching += holding;
+        list.touching += holding;
         let ends = ends && k == end;
         if holding > 0 || (ends && batch.as_ref().is_some_and(Batch::waits)) {
             // SAFETY: passed on. Not before something touches: in loose scenes most lists have no contact.
@@ -241,7 +241,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
                 none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
             };
             // SAFETY: passed on.
-            unsafe { evaluate::<N, V, W>(cx, slab, batch, (found, holding), ends) };
+            unsafe { evaluate::<N, V, W>(cx, list, batch, (found, holding), ends) };
         }
         if k == end {
             break;
@@ -254,7 +254,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
 #[inline(always)]
 unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
     cx: &Cx,
-    slab: &mut Slab,
+    list: &mut List,
     batch: &mut Batch<V, N>,
     (found, ready): (&Found, usize),
     ends: bool,
@@ -262,7 +262,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, W>(cx, law, slab, batch, (found, ready), ends);
+            return of_law::<N, V, W>(cx, law, list, batch, (found, ready), ends);
         }
         let mut own = Found::new();
         for block in (0..ready).step_by(BLOCK) {
@@ -270,13 +270,13 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
                 own.clear();
                 for at in block..ready.min(block + BLOCK) {
                     let k = found.numbers()[at] as usize;
-                    let (i, w) = (slab.short.i[k], slab.short.w[k]);
+                    let (i, w) = (list.short.i[k], list.short.w[k]);
                     let which = cx.laws.which(cx.kind[i as usize], cx.kind[place(w)]);
                     if which != NONE && usize::from(which) == number {
                         own.push(found, at);
                     }
                 }
-                of_law::<N, V, W>(cx, law, slab, batch, (&own, own.len()), true);
+                of_law::<N, V, W>(cx, law, list, batch, (&own, own.len()), true);
             }
         }
     }
@@ -290,19 +290,19 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
 unsafe fn of_law<const N: usize, V: Lanes<N>, const W: usize>(
     cx: &Cx,
     law: &Granular,
-    slab: &mut Slab,
+    list: &mut List,
     batch: &mut Batch<V, N>,
     (found, ready): (&Found, usize),
     ends: bool,
 ) {
-    let many = Many::<N, V, W> { cx, slab, batch, found, ready, ends };
+    let many = Many::<N, V, W> { cx, list, batch, found, ready, ends };
     if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
 /// The loop over contacts of one law, several at a time.
 struct Many<'a, 'b, const N: usize, V, const W: usize> {
     cx: &'a Cx<'b>,
-    slab: &'a mut Slab,
+    list: &'a mut List,
     batch: &'a mut Batch<V, N>,
     found: &'a Found,
     /// How many of these.
@@ -313,16 +313,16 @@ struct Many<'a, 'b, const N: usize, V, const W: usize> {
 impl<const N: usize, V: Lanes<N>, const W: usize> Loop for Many<'_, '_, N, V, W> {
     #[inline(always)]
     fn run(self, law: &Granular) {
-        let Self { cx, slab, batch, found, ready, ends } = self;
+        let Self { cx, list, batch, found, ready, ends } = self;
         let mut taken = 0;
         loop {
             // SAFETY: they are pairs of the list, and its entries grains; lists stay while contacts are evaluated.
             unsafe {
-                taken += batch.take::<W>(&mut slab.short, found, taken..ready);
+                taken += batch.take::<W>(&mut list.short, found, taken..ready);
                 if !(batch.is_full() || (ends && batch.waits())) {
                     return;
                 }
-                batch.run::<W>(cx, law, slab);
+                batch.run::<W>(cx, law, list);
             }
         }
     }

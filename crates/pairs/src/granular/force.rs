@@ -201,9 +201,9 @@ impl Force {
         Ok(())
     }
 
-    /// As [`Force::run_fast`], list by list: `ready` is told which grains have all their forces. `false`, with nothing done, where
-    /// somebody reads more than forces, or lists do not come one by one.
-    fn run_per_list(
+    /// As [`Force::run_fast`], tile by tile: `ready` hears which grains have all their forces. `false`, with nothing done, where more
+    /// than forces is read, or tiles do not come one by one.
+    fn run_per_tile(
         &mut self,
         w: &mut World,
         t: &Tick,
@@ -212,23 +212,25 @@ impl Force {
     ) -> Result<bool> {
         let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_deeds.is_none();
         let alone = self.lent.is_none();
-        let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_list());
+        let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_tile());
         let Some(fast) = fast else { return Ok(false) };
         let seen = grains(w, period, &[], &self.frozen)?;
         if anew {
             fast.weigh(&seen);
         }
         let step = Advance { dt: t.dt, history: !t.setup };
-        let mut per_list = fast.begin_per_list(&seen, step, store);
+        let mut per_tile = fast.begin_per_tile(&seen, step, store);
         w.contacts.remove(self.key);
         loop {
             let p = &mut w.particles;
             let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
             let seen = grains(w, period, &[], &self.frozen)?;
-            let complete = fast.go_on(&mut per_list, &seen, [&mut f, &mut torque]);
+            let more = fast.go_on(&mut per_tile, &seen, [&mut f, &mut torque]);
             (w.particles.f, w.particles.torque) = (f, torque);
-            let Some(complete) = complete else { break };
-            complete.into_iter().for_each(|particles| ready(w, particles));
+            if !more {
+                break;
+            }
+            (0..).map_while(|part| fast.ready(part)).for_each(|particles| ready(w, particles));
         }
         let deep = fast.deep;
         report(w, t, deep);
@@ -383,7 +385,7 @@ impl Op for Force {
             return self.run(w, t).map(|()| false);
         }
         let how = self.prepare(w, t)?;
-        let told = self.run_per_list(w, t, how, ready)?;
+        let told = self.run_per_tile(w, t, how, ready)?;
         if !told {
             self.act(w, t, how)?;
         }
@@ -420,6 +422,14 @@ impl Op for Force {
         // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
         let contact = if self.press.is_some() { 900 } else { 400 };
         (self.plain.list.len() * 76 + self.plain.sweep.len() * contact) as u64
+    }
+
+    fn time_tiles(&mut self) {
+        self.fast.iter_mut().for_each(Fast::time_tiles);
+    }
+
+    fn describe_tiles(&self) -> Option<String> {
+        self.fast.as_ref().filter(|_| self.is_fast)?.describe_tiles()
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_contact::fast::{Fast, MOST_GRAINS};
-use perigrain_neigh::slabs::{edges, shift_of};
+use perigrain_neigh::tiles::{edges, shift_of};
 use perigrain_world::World;
 
 /// Whether the fast loop can take these particles.

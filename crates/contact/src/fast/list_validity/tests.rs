@@ -8,14 +8,22 @@ const ALL: usize = 288;
 /// How many stand in one place.
 const HEAP: usize = 32;
 
-/// Three heaps of grains in each of three slabs, 1 apart along x.
-fn scene() -> (Slabs, Vec<[f64; 3]>, Vec<u32>) {
+/// Three heaps of grains in each of three lists, 1 apart along x; lists reach into the next one.
+fn scene() -> (Vec<List>, Vec<[f64; 3]>, Vec<u32>) {
     let x: Vec<[f64; 3]> = (0..ALL).map(|i| [(i / HEAP) as f64, 0.0, 0.0]).collect();
     let tag: Vec<u32> = (0..ALL as u32).collect();
-    let mut slabs = Slabs::default();
-    slabs.sort(&x, &tag, [2.8; 2], &[0.0; 3], &Periods::default());
-    assert_eq!(slabs.near().count(), 3);
-    (slabs, x, tag)
+    let list = |k: usize| {
+        let (mut list, own, from) = (List::default(), 3 * HEAP, 3 * HEAP * k);
+        let grains = |range: std::ops::Range<usize>| range.map(|i| i as u32).collect::<Vec<_>>();
+        list.watched.push(0, HERE, &grains(from..from + own));
+        list.watched.push(1, HERE, &grains(from + own..(from + 2 * own).min(ALL)));
+        // One three layers on, of which none is near.
+        if k == 0 {
+            list.watched.push(4, HERE, &[ALL as u32 - 1]);
+        }
+        list
+    };
+    ((0..3).map(list).collect(), x, tag)
 }
 
 fn grains<'a>(
@@ -43,50 +51,64 @@ fn grains<'a>(
 }
 
 #[test]
-fn lists_wear_by_what_ways_differ_and_slab_by_slab() {
-    let (slabs, mut x, tag) = scene();
+fn lists_wear_by_what_ways_differ_and_one_by_one() {
+    let (lists, mut x, tag) = scene();
     let (still, radius) = ([[0.0; 3]; ALL], [0.5; ALL]);
     let mut validity = ListValidity::default();
-    validity.divide(&slabs);
+    validity.begin(lists.len());
     let mut look = |x: &[[f64; 3]], all| {
-        validity.strayed(&grains(x, &tag, (&still, &radius), Travel::default()), 0.1, all)
+        validity.strayed(&lists, &grains(x, &tag, (&still, &radius), Travel::default()), 0.1, all)
     };
     assert_eq!(look(&x, true), [0, 1, 2]);
     // All go far together.
     x.iter_mut().for_each(|x| x[1] += 3.0);
     assert_eq!(look(&x, false), [0usize; 0]);
-    // The last grain leaves the others of its slab and of the slab before, which reaches into it.
+    // The last grain leaves the others of its list and of the list before, which reaches into it.
     x[ALL - 1][0] += 0.06;
     assert_eq!(look(&x, false), [1, 2]);
     assert_eq!(look(&x, false), [0usize; 0], "the new lists know");
     x[ALL - 1][0] += 0.04;
     assert_eq!(look(&x, false), [0usize; 0], "less than half of the skin");
     x[0][2] = f64::NAN;
-    assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
-    let mut around = Slabs::default();
-    around.sort(&x[..8 * HEAP], &tag[..8 * HEAP], [2.8; 2], &[0.0; 3], &Periods::upright([8.0, 0.0, 0.0]));
-    assert_eq!([0, 1, 2].map(|k| slabs.near().next(k)), [Some(1), Some(2), None]);
-    assert_eq!([0, 1].map(|k| around.near().next(k)), [Some(1), Some(0)]);
+    assert_eq!(look(&x, false), [0], "the last list does not reach into the first");
+}
+
+#[test]
+fn images_move_with_the_box() {
+    let (mut lists, x, tag) = scene();
+    let (still, radius) = ([[0.0; 3]; ALL], [0.5; ALL]);
+    // The last list sees the first grain one period on along x.
+    lists[2].watched.push(1, HERE + 1, &[0]);
+    let mut validity = ListValidity::default();
+    let now = |length: f64| Periods::upright([length, 0.0, 0.0]);
+    let grains = |length: f64| Grains {
+        period: now(length),
+        ..grains(&x, &tag, (&still, &radius), Travel::default())
+    };
+    validity.begin(lists.len());
+    validity.strayed(&lists, &grains(9.0), 0.1, true);
+    validity.follow(&now(9.0), &now(9.06));
+    assert_eq!(validity.strayed(&lists, &grains(9.06), 0.1, false), [2]);
 }
 
 #[test]
 fn the_account_saves_looks_and_growth_counts_twice() {
-    let (slabs, mut x, tag) = scene();
+    let (lists, mut x, tag) = scene();
     let (still, mut radius) = ([[0.0; 3]; ALL], [0.5; ALL]);
     let mut travel = Travel::default();
     travel.begin(true);
     let mut validity = ListValidity::default();
-    validity.divide(&slabs);
-    validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, true);
+    validity.begin(lists.len());
+    validity.strayed(&lists, &grains(&x, &tag, (&still, &radius), travel), 0.1, true);
     travel.went(0.04);
     x[4 * HEAP][0] += 0.04;
-    assert!(validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty());
+    assert!(validity.strayed(&lists, &grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty());
     travel.went(0.04);
     assert!(
-        validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty(),
+        validity.strayed(&lists, &grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty(),
         "0.04 of 0.05"
     );
     travel.went(0.04);
     radius[4 * HEAP] += 0.006;
-    assert_eq!(validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false), [0, 1]);
+    assert_eq!(validity.strayed(&lists, &grains(&x, &tag, (&still, &radius), travel), 0.1, false), [0, 1]);
 }

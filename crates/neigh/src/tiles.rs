@@ -1,18 +1,22 @@
-//! Particles in the order of cells, and cells in slabs: the spatial order that granular loops and the world work in.
+//! Particles in the order of cells, and cells in tiles: the spatial order that granular loops and the world work in.
+
+mod blocks;
+mod walk;
 
 use super::grid::extent;
 use super::list::small;
+use blocks::Blocks;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use std::borrow::Cow;
 use std::ops::Range;
+pub use walk::Walk;
 
-/// Slabs are so thick that they hold this many points on average: what a list costs by itself is then little beside what its points
-/// cost (discs of LAMMPS' `in.pour.2d`, 12 in a layer of cells: 48 are worth 15 % of the run, 200 are worth 19 %).
+/// Slabs are so thick that they hold this many points on average.
 const CROWD: usize = 128;
-/// But so many slabs there are at least, where cells are enough for them, that threads have something to share.
+/// But so many slabs there are at least, where cells are enough for them.
 const SHARES: usize = 8;
-/// Fewer points are one slab: no second thread pays for them.
+/// Fewer points are one tile: no second thread pays for them.
 const FEW: usize = 256;
 /// Layers that pairs may reach over: more than there can be.
 const FARTHEST: f64 = 1e9;
@@ -21,11 +25,11 @@ const ALIKE: f64 = 4.0;
 /// Cells per particle at most; beyond that cells grow.
 const SPARSE: usize = 4;
 
-/// Points sorted by cell: along a fast axis, then a middle one, then a slow one; within a cell by tag. The order is a
-/// function of positions and tags alone. In a box that leans cells lean with it: they are counted in the box made upright, and as
-/// thick between their faces as they are long elsewhere.
+/// Points sorted by tile, a block of cells, and by cell within it: along a fast axis, then a middle one, then a slow one; within a cell
+/// by tag. The order is a function of positions and tags alone. In a box that leans cells lean with it: they are counted in the box
+/// made upright, and as thick between their faces as they are long elsewhere.
 #[derive(Clone, Debug, Default)]
-pub struct Slabs {
+pub struct Tiles {
     /// Fast, middle and slow axis.
     axes: [usize; 3],
     /// Cells along these.
@@ -37,9 +41,9 @@ pub struct Slabs {
     period: Periods,
     lo: [f64; 3],
     per_length: [f64; 3],
-    /// Layers of cells in a slab, so that pairs of cells reach into the next slab at most, and so that all pairs do: the same for any
-    /// number of threads, because it decides the order in which forces are added up.
-    layers: [usize; 2],
+    /// Layers of cells in a slab that all pairs reach across at most once.
+    layers: usize,
+    blocks: Blocks,
     /// First place of each cell, and the number of all places.
     start: Vec<u32>,
     /// The point at each place.
@@ -110,7 +114,7 @@ fn straightened<'a>(x: &'a [[f64; 3]], lo: &[f64; 3], period: &Periods) -> Cow<'
     Cow::Owned(straight)
 }
 
-impl Slabs {
+impl Tiles {
     /// Sorts all points into cells of at least `edge`, for pairs that reach so far at most; `lo` and `period` describe the
     /// box, which leans only where it repeats; where it does, its height is at least the reach.
     pub fn sort(
@@ -123,14 +127,12 @@ impl Slabs {
     ) {
         let straight = straightened(x, lo, period);
         self.lay_out(&straight, [edge, reach], lo, period);
+        self.blocks = Blocks::new(self.cells, self.repeats, x.len());
         let mut cell = vec![0; x.len()];
-        let (lines, [nx, ny, _]) = ([0, 1, 2].map(|k| self.line(k)), self.cells.map(|n| n as u32));
+        let (lines, blocks) = ([0, 1, 2].map(|k| self.line(k)), &self.blocks);
         par::each((&mut cell[..], &straight[..]), |_, (cell, x)| {
-            let of = |x| lines.map(|line| line.cell(x));
-            cell.iter_mut().zip(x).for_each(|(cell, x)| {
-                let [x, y, z] = of(x);
-                *cell = (z * ny + y) * nx + x;
-            });
+            let of = |x| lines.map(|line| line.cell(x) as usize);
+            cell.iter_mut().zip(x).for_each(|(cell, x)| *cell = blocks.cell(of(x)) as u32);
         });
         self.start.clear();
         self.start.resize(self.cells.iter().product::<usize>() + 1, 0);
@@ -160,31 +162,59 @@ impl Slabs {
         }
     }
 
-    /// Cells and slabs for all points, as [`Slabs::sort`] makes them, into which nobody is sorted.
+    /// Cells for all points, as [`Tiles::sort`] makes them, into which none is sorted.
     pub fn laid_out(x: &[[f64; 3]], edges: [f64; 2], lo: &[f64; 3], period: &Periods) -> Self {
-        let mut slabs = Self::default();
-        slabs.lay_out(&straightened(x, lo, period), edges, lo, period);
-        slabs
+        let mut tiles = Self::default();
+        tiles.lay_out(&straightened(x, lo, period), edges, lo, period);
+        tiles
     }
 
-    /// Fast, middle and slow axis; along the last one slabs follow each other.
+    /// Fast, middle and slow axis.
     pub fn axes(&self) -> [usize; 3] {
         self.axes
     }
 
-    /// Slabs for pairs that reach into neighbouring cells.
-    pub fn near(&self) -> Cut<'_> {
-        Cut { of: self, layers: self.layers[0] }
-    }
-
-    /// Slabs for all pairs: where spheres are of about one size, the same ones.
-    pub fn far(&self) -> Cut<'_> {
-        Cut { of: self, layers: self.layers[1] }
+    /// Slabs across the slow axis.
+    pub fn slabs(&self) -> Slabs<'_> {
+        Slabs { of: self, layers: self.layers }
     }
 
     /// The layer of cells that a point lies in.
     pub fn layer_of(&self, x: &[f64; 3]) -> usize {
         self.line(2).cell(&self.period.straightened(*x, self.corner)) as usize
+    }
+
+    /// The slab of the point at each place.
+    pub fn slab_of_places(&self) -> Vec<usize> {
+        let of_layers = self.slabs().of_layers();
+        let mut slabs = vec![0; self.order.len()];
+        for tile in 0..self.count() {
+            for ([.., layer], cell) in self.blocks.places(tile).zip(self.blocks.cells(tile)) {
+                slabs[self.places(cell)].fill(of_layers[layer]);
+            }
+        }
+        slabs
+    }
+
+    /// The colour of a tile: no two that pairs of a third one reach are of the same one.
+    pub fn colour(&self, tile: usize) -> u8 {
+        self.blocks.colour(tile)
+    }
+
+    /// The tiles beside one, also around the box: those that its pairs reach, or that pairs of them share with its own.
+    pub fn beside(&self, tile: usize) -> Vec<u32> {
+        self.blocks.beside(tile)
+    }
+
+    /// Number of tiles.
+    pub fn count(&self) -> usize {
+        self.blocks.count()
+    }
+
+    /// The places of a tile.
+    pub fn members(&self, tile: usize) -> Range<usize> {
+        let cells = self.blocks.cells(tile);
+        self.start[cells.start] as usize..self.start[cells.end] as usize
     }
 
     /// Cells along one of the axes, of which 2 is the slow one.
@@ -232,8 +262,7 @@ impl Slabs {
         self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
         self.cells = self.axes.map(|d| count[d]);
         let most = if x.len() < FEW { 1 } else { SHARES.max(x.len() / CROWD) };
-        let near = self.cells[2].div_ceil(most);
-        self.layers = [near, far.max(near)];
+        self.layers = far.max(self.cells[2].div_ceil(most));
         self.repeats = self.axes.map(|d| !open(d));
         self.lo = self.axes.map(|d| origin[d]);
         let per_length =
@@ -242,97 +271,21 @@ impl Slabs {
     }
 
     /// The places of a cell.
-    pub fn places(&self, cell: usize) -> Range<usize> {
+    fn places(&self, cell: usize) -> Range<usize> {
         self.start[cell] as usize..self.start[cell + 1] as usize
-    }
-
-    /// The half neighbourhood of a cell beyond itself: every pair of neighbouring cells, each in each of its images,
-    /// occurs from one side only.
-    pub fn runs(&self, cell: usize, out: &mut Vec<Run>) {
-        out.clear();
-        let [nx, ny, _] = self.cells;
-        let (row, layer) = (cell / nx, cell / nx / ny);
-        let at = [cell - row * nx, row - layer * ny, layer];
-        let within = |k: usize| at[k] > 0 && at[k] + 1 < self.cells[k];
-        if (0..3).all(|k| !self.repeats[k] || within(k)) {
-            return self.rows_within(at, out);
-        }
-        for (dx, dy, dz) in [(1..2, 0, 0), (-1..2, 1, 0), (-1..2, -1, 1), (-1..2, 0, 1), (-1..2, 1, 1)] {
-            self.row(at, (dx, dy, dz), out);
-        }
-    }
-
-    /// [`Slabs::runs`] of a cell of which no neighbour is an image: a run in each row of cells that is there.
-    fn rows_within(&self, [x, y, z]: [usize; 3], out: &mut Vec<Run>) {
-        let [nx, ny, nz] = self.cells;
-        let mut put = |row: usize, first: usize, last: usize| {
-            let run =
-                Run { from: self.start[row * nx + first], to: self.start[row * nx + last + 1], image: HERE };
-            if run.from < run.to {
-                out.push(run);
-            }
-        };
-        let (row, first, last) = (z * ny + y, x.saturating_sub(1), (x + 1).min(nx - 1));
-        if x < last {
-            put(row, last, last);
-        }
-        if y + 1 < ny {
-            put(row + 1, first, last);
-        }
-        if z + 1 < nz {
-            let above = row + ny;
-            if y > 0 {
-                put(above - 1, first, last);
-            }
-            put(above, first, last);
-            if y + 1 < ny {
-                put(above + 1, first, last);
-            }
-        }
-    }
-
-    /// Cells at offsets along the fast axis in one row.
-    fn row(&self, at: [usize; 3], (dx, dy, dz): (Range<i32>, i32, i32), out: &mut Vec<Run>) {
-        let wrapped = |k: usize, offset: i32| {
-            let (c, n) = (at[k] as i32 + offset, self.cells[k] as i32);
-            match self.repeats[k] {
-                _ if (0..n).contains(&c) => Some((c as usize, 0)),
-                true => Some((c.rem_euclid(n) as usize, c.div_euclid(n))),
-                false => None,
-            }
-        };
-        let (Some((y, sy)), Some((z, sz))) = (wrapped(1, dy), wrapped(2, dz)) else { return };
-        let row = (z * self.cells[1] + y) * self.cells[0];
-        // Within the row all cells are one run.
-        let (first, last) = (at[0] as i32 + dx.start, at[0] as i32 + dx.end - 1);
-        if (sy, sz) == (0, 0) && first >= 0 && (last as usize) < self.cells[0] {
-            let (from, to) = (self.start[row + first as usize], self.start[row + last as usize + 1]);
-            return out.push(Run { from, to, image: HERE });
-        }
-        for (x, sx) in dx.filter_map(|dx| wrapped(0, dx)) {
-            let mut shift = [0; 3];
-            (shift[self.axes[0]], shift[self.axes[1]], shift[self.axes[2]]) = (sx, sy, sz);
-            let image = (HERE as i32 + shift[0] + 3 * shift[1] + 9 * shift[2]) as u32;
-            let cell = row + x;
-            let run = Run { from: self.start[cell], to: self.start[cell + 1], image };
-            match out.last_mut() {
-                Some(last) if last.to == run.from && last.image == image => last.to = run.to,
-                _ => out.push(run),
-            }
-        }
     }
 }
 
-/// Cells cut into slabs across the slow axis, some layers each.
+/// Cells cut into slabs across the slow axis, some layers each: pairs of a slab lie in it or reach into the next one, of the last into
+/// the first where the slow axis repeats; there are then an even number of slabs, or one.
 #[derive(Clone, Copy, Debug)]
-pub struct Cut<'a> {
-    of: &'a Slabs,
+pub struct Slabs<'a> {
+    of: &'a Tiles,
     layers: usize,
 }
 
-impl Cut<'_> {
-    /// Number of slabs. Pairs of a slab lie in it or reach into the next one, of the last into the first where the slow axis
-    /// repeats; there are then an even number of slabs, or one.
+impl Slabs<'_> {
+    /// Number of slabs.
     pub fn count(&self) -> usize {
         let slabs = (self.of.cells[2] / self.layers.max(1)).max(1);
         if self.of.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
@@ -344,24 +297,11 @@ impl Cut<'_> {
         (next > k || self.of.repeats[2]).then_some(next)
     }
 
-    /// The cells of slab `k`.
-    pub fn slab(&self, k: usize) -> Range<usize> {
-        let [nx, ny, layers] = self.of.cells;
-        let slabs = self.count();
-        k * layers / slabs * (nx * ny)..(k + 1) * layers / slabs * (nx * ny)
-    }
-
-    /// The places of slab `k`.
-    pub fn members(&self, k: usize) -> Range<usize> {
-        let cells = self.slab(k);
-        self.of.start[cells.start] as usize..self.of.start[cells.end] as usize
-    }
-
     /// The slab of each layer of cells.
     pub fn of_layers(&self) -> Vec<usize> {
-        let layer = self.of.cells[0] * self.of.cells[1];
-        let mut of = Vec::with_capacity(self.of.cells[2]);
-        (0..self.count()).for_each(|k| of.resize(self.slab(k).end / layer, k));
+        let (layers, slabs) = (self.of.cells[2], self.count());
+        let mut of = Vec::with_capacity(layers);
+        (0..slabs).for_each(|k| of.resize((k + 1) * layers / slabs, k));
         of
     }
 }

@@ -1,4 +1,4 @@
-//! Slabs against a look at everything, upright and leaning.
+//! Tiles against a look at everything, upright and leaning.
 
 use super::*;
 use perigrain_base::math::rng::ParkMiller;
@@ -29,7 +29,7 @@ fn all(x: &[[f64; 3]], cut: f64, period: Periods) -> BTreeSet<(usize, usize, u32
 }
 
 #[test]
-fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
+fn every_pair_is_met_once() {
     let edges = [8.0, 3.2, 5.0];
     let upright = points(300, edges);
     let tag: Vec<u32> = (0..300).map(|i| (i * 7919) % 300).collect();
@@ -44,7 +44,7 @@ fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
         ([8.0, 0.0, 5.0], [0.0, 3.9, 0.0]),
         ([0.0, 3.2, 5.0], [1.6, 2.0, -1.0]),
     ];
-    // Slabs of one layer, of several, and one slab of all.
+    // Several tiles, and one tile of all.
     let cases = [(300, 1.0, 500), (300, 0.5, 100), (200, 1.0, 200)];
     for ((n, cut, least), (length, tilt)) in cases.into_iter().flat_map(|case| boxes.map(|of| (case, of))) {
         let period = Periods { length, tilt };
@@ -55,24 +55,30 @@ fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
             [x[0] + y * xy + z * xz, x[1] + z * yz, x[2]]
         };
         let x: Vec<[f64; 3]> = upright[..n].iter().map(lean).collect();
-        let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag[..n], [cut; 2], &[0.0; 3], &period);
-        assert!(slabs.near().count() > 1 || n < FEW);
-        let (mut found, mut runs) = (BTreeSet::new(), vec![]);
-        for k in 0..slabs.near().count() {
-            let next = slabs.near().slab((k + 1) % slabs.near().count());
-            for cell in slabs.near().slab(k) {
-                let own = slabs.places(cell);
-                let point = |at: usize| &x[slabs.order[at] as usize];
-                assert!(own.clone().all(|at| slabs.near().of_layers()[slabs.layer_of(point(at))] == k));
-                slabs.runs(cell, &mut runs);
+        let mut tiles = Tiles::default();
+        tiles.sort(&x, &tag[..n], [cut; 2], &[0.0; 3], &period);
+        assert!(tiles.count() > 1 || n < FEW);
+        let mut found = BTreeSet::new();
+        for k in 0..tiles.count() {
+            let (beside, mut reached) = (tiles.beside(k), vec![]);
+            tiles.reached(k, |_, image, places| reached.push((image, places)));
+            let mut walk = tiles.walk(k);
+            while let Some((own, runs)) = walk.next_cell() {
+                assert!(own.clone().all(|at| tiles.members(k).contains(&at)));
                 for i in own.clone() {
                     let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
                     for r in runs.iter().chain([&rest]) {
                         for j in r.from as usize..r.to as usize {
-                            let reach = |c: &Range<usize>| c.clone().any(|c| slabs.places(c).contains(&j));
-                            assert!(reach(&slabs.near().slab(k)) || reach(&next));
-                            let (a, b) = (slabs.order[i] as usize, slabs.order[j] as usize);
+                            assert!(
+                                tiles.members(k).contains(&j)
+                                    || beside.iter().any(|o| tiles.members(*o as usize).contains(&j))
+                            );
+                            assert!(
+                                reached
+                                    .iter()
+                                    .any(|(image, places)| *image == r.image && places.contains(&j))
+                            );
+                            let (a, b) = (tiles.order[i] as usize, tiles.order[j] as usize);
                             let entry = if a > b { (a, b, r.image) } else { (b, a, 26 - r.image) };
                             assert!(found.insert(entry), "{entry:?} twice");
                         }
@@ -88,19 +94,15 @@ fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
 #[test]
 fn slabs_of_small_cells_are_as_thick_as_pairs_reach() {
     let x = points(3000, [9.0, 4.0, 3.0]);
-    let tag: Vec<u32> = (0..3000).collect();
     for period in [[0.0; 3], [9.0, 4.0, 3.0]].map(Periods::upright) {
-        let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag, [0.3, 1.1], &[0.0; 3], &period);
-        let count = slabs.far().count();
-        assert!(count >= 4 && slabs.near().count() > count);
-        let of = |i: usize| {
-            let place = slabs.order.iter().position(|o| *o as usize == i).unwrap();
-            (0..count).find(|k| slabs.far().members(*k).contains(&place)).unwrap()
-        };
+        let tiles = Tiles::laid_out(&x, [0.3, 1.1], &[0.0; 3], &period);
+        let (slabs, of_layers) = (tiles.slabs(), tiles.slabs().of_layers());
+        let count = slabs.count();
+        assert!(count >= 4);
+        let of = |i: usize| of_layers[tiles.layer_of(&x[i])];
         for (i, j, _) in all(&x[..300], 1.1, period) {
             let (a, b) = (of(i), of(j));
-            assert!(a == b || (a + 1) % count == b || (b + 1) % count == a, "{a} {b}");
+            assert!(a == b || slabs.next(a) == Some(b) || slabs.next(b) == Some(a), "{a} {b}");
         }
     }
     assert_eq!(edges(&[1.0, 4.0], 0.5), [8.5, 8.5]);
@@ -110,9 +112,9 @@ fn slabs_of_small_cells_are_as_thick_as_pairs_reach() {
 #[test]
 fn pairs_may_reach_beyond_all_numbers() {
     let (x, tag) = (points(20, [4.0; 3]), (0..20).collect::<Vec<u32>>());
-    let mut slabs = Slabs::default();
-    slabs.sort(&x, &tag, [1.0, 1e308], &[0.0; 3], &Periods::default());
-    assert_eq!(slabs.far().count(), 1);
+    let mut tiles = Tiles::default();
+    tiles.sort(&x, &tag, [1.0, 1e308], &[0.0; 3], &Periods::default());
+    assert_eq!(tiles.slabs().count(), 1);
 }
 
 #[test]
@@ -120,7 +122,7 @@ fn the_order_depends_on_places_and_tags_alone() {
     let x = points(200, [3.0; 3]);
     let tag: Vec<u32> = (0..200).collect();
     let sorted = |x: &[[f64; 3]], tag: &[u32]| {
-        let mut s = Slabs::default();
+        let mut s = Tiles::default();
         s.sort(x, tag, [1.0; 2], &[0.0; 3], &Periods::default());
         s.order.iter().map(|&i| tag[i as usize]).collect::<Vec<_>>()
     };
@@ -128,7 +130,7 @@ fn the_order_depends_on_places_and_tags_alone() {
     assert_eq!(sorted(&x, &tag), sorted(&back, &mixed));
     assert_eq!(sorted(&[], &[]), []);
     // Far points do not cost memory.
-    let mut s = Slabs::default();
+    let mut s = Tiles::default();
     s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], [1.0; 2], &[0.0; 3], &Periods::default());
     assert!(s.start.len() < 200);
 }

@@ -1,0 +1,180 @@
+//! The pairs of each tile, found by cells, and the grains that must be watched for it.
+
+use super::lists::{List, Pairs};
+use super::near::InOrder;
+use super::{Fast, NONE};
+use crate::driver::Grains;
+use perigrain_base::math::form::InLanes;
+use perigrain_base::math::lanes::{Lanes, PLACE_BITS};
+use perigrain_base::par;
+use perigrain_neigh::tiles::{HERE, Run, Tiles};
+
+/// The lists of so few grains are made before another thread has seen that there is work.
+pub(super) const FEW: usize = 64;
+
+/// The grains of a list, in an order in which it can be told how much closer some can have come.
+#[derive(Clone, Debug, Default)]
+pub struct Watched {
+    pub grains: Vec<u32>,
+    /// Parts of them of one layer and image, layer by layer.
+    pub parts: Vec<Part>,
+}
+
+/// Grains of one layer that are seen in the same image.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    pub layer: usize,
+    pub image: u32,
+    /// Where they end.
+    pub end: u32,
+}
+
+impl Watched {
+    /// Forgets them.
+    pub(super) fn clear(&mut self) {
+        self.grains.clear();
+        self.parts.clear();
+    }
+
+    /// Takes more, of the last layer so far or a later one.
+    pub(super) fn push(&mut self, layer: usize, image: u32, grains: &[u32]) {
+        self.grains.extend_from_slice(grains);
+        let end = self.grains.len() as u32;
+        match self.parts.last_mut() {
+            Some(part) if (part.layer, part.image) == (layer, image) => part.end = end,
+            _ => self.parts.push(Part { layer, image, end }),
+        }
+    }
+}
+
+impl Fast {
+    /// Long lists from these positions and radii.
+    pub(super) fn make_long(
+        &mut self,
+        grains: &Grains,
+        tiles: &Tiles,
+        skin: f64,
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) {
+        let at = InOrder::new(grains, &tiles.order);
+        let mut lists = std::mem::take(&mut self.lists);
+        lists.resize(tiles.count(), List::default());
+        let shared = par::Shared::new(&mut lists);
+        let this = &*self;
+        par::for_rows_if(grains.x.len() > FEW, tiles.count(), |k| {
+            // SAFETY: each part writes its own list.
+            let list = unsafe { &mut shared.get(k..k + 1)[0] };
+            this.search(grains, (tiles, &at), k, skin, keep, &mut list.long);
+            list.watched.clear();
+            if !list.long.i.is_empty() {
+                let watched = &mut list.watched;
+                tiles.reached(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
+            }
+        });
+        self.lists = lists;
+    }
+
+    /// The long list of tile `k`.
+    fn search(
+        &self,
+        grains: &Grains,
+        (tiles, at): (&Tiles, &InOrder),
+        k: usize,
+        skin: f64,
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+        out: &mut Pairs,
+    ) {
+        let everywhere = !self.laws.which.contains(&NONE);
+        let keep = |i: u32, j: u32| {
+            let (i, j) = (i as usize, j as usize);
+            (everywhere || self.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
+        };
+        let search = Search { tiles, k, at, shifts: &self.shifts, skin, keep, out };
+        // SAFETY: the processor has what its form needs.
+        unsafe { self.form.run(search) }
+    }
+
+    /// Long lists of the tiles in which these grains lie, made anew from the positions of all of them; what their contacts
+    /// remember stays. Which lists.
+    pub(super) fn extend_long(
+        &mut self,
+        grains: &Grains,
+        tiles: &Tiles,
+        skin: f64,
+        ends: &[usize],
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) -> Vec<usize> {
+        let mut mine = vec![false; grains.x.len()];
+        ends.iter().for_each(|&i| mine[i] = true);
+        let concerned = |k: &usize| tiles.order[tiles.members(*k)].iter().any(|i| mine[*i as usize]);
+        let which: Vec<usize> = (0..tiles.count()).filter(concerned).collect();
+        let at = InOrder::new(grains, &tiles.order);
+        for &k in &which {
+            let mut new = Pairs::default();
+            self.search(grains, (tiles, &at), k, skin, keep, &mut new);
+            new.fill_up();
+            let list = &mut self.lists[k];
+            let places = moved(&list.long, &new);
+            list.short.t.iter_mut().for_each(|t| *t = places[*t as usize]);
+            list.long = new;
+            list.watched.clear();
+            let watched = &mut list.watched;
+            tiles.reached(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
+        }
+        which
+    }
+}
+
+/// Where the pairs of a list stand in a longer one that has them all in the same order.
+fn moved(old: &Pairs, new: &Pairs) -> Vec<u32> {
+    let mut at = 0;
+    let mut places = vec![];
+    for pair in old.i.iter().zip(&old.w) {
+        while at + 1 < new.i.len() && (&new.i[at], &new.w[at]) != pair {
+            at += 1;
+        }
+        places.push(at as u32);
+        at = (at + 1).min(new.i.len().saturating_sub(1));
+    }
+    places
+}
+
+/// The search of the pairs of tile `k`.
+struct Search<'a, K> {
+    tiles: &'a Tiles,
+    k: usize,
+    at: &'a InOrder,
+    shifts: &'a [[f64; 4]; 32],
+    skin: f64,
+    keep: K,
+    out: &'a mut Pairs,
+}
+
+impl<K: Fn(u32, u32) -> bool> InLanes for Search<'_, K> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { tiles, k, at, shifts, skin, keep, out } = self;
+        out.i.clear();
+        out.w.clear();
+        let order = &tiles.order;
+        let mut walk = tiles.walk(k);
+        while let Some((own, runs)) = walk.next_cell() {
+            for i in own.clone() {
+                let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
+                for run in std::iter::once(&rest).chain(runs) {
+                    let hit = |j: usize| {
+                        let (i, j) = (order[i], order[j]);
+                        if keep(i, j) {
+                            out.i.push(i);
+                            out.w.push(j | run.image << PLACE_BITS);
+                        }
+                    };
+                    // SAFETY: passed on.
+                    unsafe { at.near::<N, V>(i, run, &shifts[run.image as usize], skin, hit) };
+                }
+            }
+        }
+    }
+}
