@@ -370,7 +370,8 @@ impl Session {
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
             let of_bodies = self.world.families.as_ref().map(|families| families.describe_tiles());
-            let tiles = of_bodies.unwrap_or_default() + &plan.describe_tiles();
+            let of_ops = self.world.parts.tiles.take().unwrap_or_default().join("\n");
+            let tiles = of_bodies.unwrap_or_default() + &of_ops;
             // A rank knows the times of its own tiles.
             if !tiles.is_empty() && !comm::several() {
                 self.options.log.line(tiles.trim_end())?;
@@ -394,7 +395,7 @@ impl Session {
         self.say_notes()?;
         self.options.log.flush()?;
         if self.options.mode == Mode::Measure {
-            plan.time_tiles();
+            self.world.parts.tiles = Some(vec![]);
             if let Some(families) = &mut *self.world.families {
                 families.time_tiles();
             }

@@ -394,12 +394,6 @@ pub trait Op: Send {
     fn bytes(&self, _w: &World) -> u64 {
         0
     }
-    /// From now on the time is kept that each of its tiles takes, where it has some.
-    fn time_tiles(&mut self) {}
-    /// Its tiles, and by how much threads can be faster at most; nothing where no time has been kept.
-    fn describe_tiles(&self) -> Option<String> {
-        None
-    }
 }
 
 #[cfg(test)]

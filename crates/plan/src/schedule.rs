@@ -353,17 +353,6 @@ impl StepPlan {
             p.meter = Meter::default();
         }
     }
-
-    /// From now on ops keep the times of their tiles.
-    pub fn time_tiles(&mut self) {
-        self.ops.iter_mut().for_each(|p| p.op.time_tiles());
-    }
-
-    /// The tiles of each op that has kept their times, one line each.
-    pub fn describe_tiles(&self) -> String {
-        let line = |p: &Placed| Some(format!("{}: {}\n", p.about.name, p.op.describe_tiles()?));
-        self.ops.iter().filter_map(line).collect()
-    }
 }
 
 #[cold]

@@ -183,6 +183,8 @@ pub struct Parts {
     pub cleared: bool,
     /// The first grains seen to overlap by more than a tenth of a radius during a run.
     pub deep: Option<contacts::Deep>,
+    /// Where a plan is measured, a line for each op that keeps the times of its tiles, as the last run left them.
+    pub tiles: Option<Vec<String>>,
     /// Springs of the contacts with each wall, when they were told last.
     pub wall_springs: contacts::WallSprings,
     /// Contacts with each wall at the last step, by the fix's ID; nothing where nobody keeps a ledger of energy.

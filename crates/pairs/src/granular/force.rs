@@ -247,6 +247,9 @@ impl Force {
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
         let renewed = stale || self.generation != Some(w.rebuild.generation);
         if renewed {
+            if w.parts.tiles.is_some() {
+                self.fast.iter_mut().for_each(Fast::time_tiles);
+            }
             self.renew(w)?;
         }
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide, but not of plastic grains.
@@ -409,6 +412,11 @@ impl Op for Force {
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
+        if let Some(lines) = &mut w.parts.tiles
+            && let Some(line) = self.fast.as_ref().and_then(Fast::describe_tiles)
+        {
+            lines.push(format!("{}: {line}", self.name));
+        }
         self.hand_over(w);
         self.generation = None;
         Ok(())
@@ -422,14 +430,6 @@ impl Op for Force {
         // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
         let contact = if self.press.is_some() { 900 } else { 400 };
         (self.plain.list.len() * 76 + self.plain.sweep.len() * contact) as u64
-    }
-
-    fn time_tiles(&mut self) {
-        self.fast.iter_mut().for_each(Fast::time_tiles);
-    }
-
-    fn describe_tiles(&self) -> Option<String> {
-        self.fast.as_ref().filter(|_| self.is_fast)?.describe_tiles()
     }
 }
 
