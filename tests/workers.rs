@@ -132,8 +132,9 @@ fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_goes_on() {
         let named = format!("rank 1 on {} has ended without a word; it was making run 2 (n=2)", host());
         assert!(!o.status.success() && said(&o).contains(&named) == (victim > 0), "{}", said(&o));
         // The next sweep's logs are waited for, not these.
-        ["0001-n=1", "0002-n=2", "0003-n=3"]
-            .map(|run| fs::remove_dir_all(at.join("o").join(run)).unwrap_or_default());
+        for run in ["0001-n=1", "0002-n=2", "0003-n=3"] {
+            fs::remove_dir_all(at.join("o").join(run)).unwrap_or_default();
+        }
     }
     // One process goes on with what ranks have left, and says where it was.
     fs::remove_file(at.join("wait")).unwrap();

@@ -1,4 +1,4 @@
-//! `-partition`: the same deck worked off several times beside each other, each a process with its own log and screen.
+//! `-partition`: the same deck run several times side by side, each a process with its own log and screen.
 
 #[cfg(unix)]
 mod ranks;
@@ -114,7 +114,7 @@ fn take(path: &Path, round: usize, of: usize) -> std::io::Result<usize> {
     Ok(turn)
 }
 
-/// Has every partition worked off by a process and waits for all; the exit code is that of the worst. Of several ranks each one has its own
+/// Runs each partition in a process of its own and waits for all; the exit code is that of the worst. Of several ranks each one has its own
 /// partitions.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Who makes the runs: processes of this machine, and those that other ranks have on theirs.
+//! The processes that make the runs: those of this machine, and those of other ranks on theirs.
 
 use super::hands::{Hands, Order};
 use super::ranks::{Letter, Ranks};
@@ -160,14 +160,17 @@ impl Crew {
         let making = self.making(rank, sweep);
         let text = format!("{} has ended without a word; it was making {making}", ranks.name(rank));
         let d = Diagnostic::error(Code::OTHER_SWEEP, None, text);
-        d.help("what is done is kept: the same command goes on, on any number of ranks").into()
+        d.help("what is done is kept: run the same command again, on any number of ranks, to make the rest")
+            .into()
     }
 
     fn silent(&self, ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostic {
         let (seconds, making) = (SILENCE.as_secs(), self.making(rank, sweep));
         let text = format!("{} has said nothing for {seconds} s; it is making {making}", ranks.name(rank));
         let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
-        d.help("where its machine is gone, end the sweep: the same command goes on with what is left")
+        d.help(
+            "where its machine is gone, end the sweep and run the same command again: it makes what is left",
+        )
     }
 
     /// The runs under way.

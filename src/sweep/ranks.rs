@@ -19,7 +19,7 @@ const SEEN: Duration = Duration::from_secs(10);
 /// How long ranks wait for the others' last letters.
 const FAREWELL: Duration = Duration::from_secs(60);
 
-/// Ranks among which work is shared out that needs no messages while it goes on.
+/// Ranks that share out work which needs no messages while it is under way.
 #[derive(Clone)]
 pub struct Ranks {
     comm: Arc<dyn Comm>,

@@ -5,19 +5,13 @@ mod walk;
 
 use super::grid::extent;
 use super::list::small;
-use blocks::Blocks;
+use blocks::{Blocks, CROWD, FEW, SHARES};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use std::borrow::Cow;
 use std::ops::Range;
 pub use walk::Walk;
 
-/// Slabs are so thick that they hold this many points on average.
-const CROWD: usize = 128;
-/// But so many slabs there are at least, where cells are enough for them.
-const SHARES: usize = 8;
-/// Fewer points are one tile: no second thread pays for them.
-const FEW: usize = 256;
 /// Layers that pairs may reach over: more than there can be.
 const FARTHEST: f64 = 1e9;
 /// Largest radius in units of the smallest up to which one grid of cells serves all.

@@ -14,7 +14,7 @@ use std::time::Duration;
 /// How often letters, processes and what they ask are looked at.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Has every partition worked off; the exit code is that of the worst.
+/// Runs every partition; the exit code is that of the worst.
 ///
 /// # Errors
 /// Processes that cannot be started, files that cannot be written.
@@ -134,7 +134,7 @@ fn places(threads: &[usize], ranks: usize) -> Vec<usize> {
     (0..threads.len()).map(|number| if fits { start(number) } else { number % ranks }).collect()
 }
 
-/// Turns of universe and uloop variables that nobody has had.
+/// Values of universe and uloop variables that no partition has taken yet.
 struct Turns {
     /// The next one of each round.
     next: Vec<usize>,

@@ -2,8 +2,8 @@
 //!
 //! Work is cut into parts by a rule that knows only the size of the problem, never the number of threads:
 //! [`for_rows`], [`for_rows_if`], [`for_chunks`] and [`each`] where parts do not touch each other's data, [`two_colours`] where a part
-//! also writes into the next one, [`ordered`] where parts write into several others, [`sum`], [`reduce`] and [`best`] where parts are added up along a fixed tree. Who does which
-//! part may depend on the threads, the order of additions never does. All run inline on one thread or when there is only one
+//! also writes into the next one, [`ordered`] where parts write into several others, [`sum`], [`reduce`] and [`best`] where parts are added up along a fixed tree. Which thread does
+//! which part may vary, the order of additions never does. All run inline on one thread or when there is only one
 //! part; [`both`] does two things beside each other. [`Trial`] finds out whether threads pay.
 
 pub mod ordered;

@@ -77,6 +77,9 @@ impl Clone for Precedence {
     }
 }
 
+/// So often a thread looks whether a part can be taken before it lets others have the processor.
+const PATIENCE: u32 = 200;
+
 /// Threads for which bounds are given.
 const THREADS: [usize; 3] = [8, 16, 64];
 
@@ -226,9 +229,6 @@ impl Precedence {
         }
     }
 }
-
-/// So often a thread looks whether it can go on before it lets others have the processor.
-const PATIENCE: u32 = 200;
 
 #[cfg(test)]
 mod tests {

@@ -5,7 +5,7 @@
 
 use super::has_avx2;
 use super::lists::List;
-use super::search::Watched;
+use super::search::{Part, Watched};
 use crate::driver::Grains;
 use perigrain_base::math::four::{Four, Plain};
 use perigrain_base::math::lanes::Lanes;
@@ -234,26 +234,27 @@ impl ListValidity {
     /// How much closer two grains of list `k` can have come: those of pairs lie in one layer or in two that follow each other.
     fn closer_in(&self, watched: &Watched, k: usize, grains: &Grains) -> f64 {
         let (now, then) = (&grains.period, &self.listed[k]);
-        let (mut most, mut from) = (0.0_f64, 0);
-        let (mut below, mut here) = ((usize::MAX - 1, Ways::NONE), (usize::MAX - 1, Ways::NONE));
-        let closer = |below: (usize, Ways), here: (usize, Ways)| match below.0 + 1 == here.0 {
-            true => below.1.join(here.1).closer(),
-            false => here.1.closer(),
-        };
-        for part in &watched.parts {
+        let mut from = 0;
+        let mut of_part = |part: &Part| {
             let of = from..part.end as usize;
+            from = of.end;
             let ways = ways(grains, &watched.grains[of.clone()], &self.then[k][of]);
             // Images move where the box does.
             let still = part.image == HERE || now == then;
-            let ways = if still { ways } else { ways.seen_from(moved(part.image, now, then)) };
-            if part.layer != here.0 {
-                most = most.max(closer(below, here));
-                (below, here) = (here, (part.layer, Ways::NONE));
-            }
-            here.1 = here.1.join(ways);
-            from = part.end as usize;
+            if still { ways } else { ways.seen_from(moved(part.image, now, then)) }
+        };
+        let (mut most, mut below) = (0.0_f64, None);
+        for layer in watched.parts.chunk_by(|a, b| a.layer == b.layer) {
+            let number = layer[0].layer;
+            let here = layer.iter().map(&mut of_part).fold(Ways::NONE, Ways::join);
+            let both = match below {
+                Some((last, below)) if last + 1 == number => here.join(below),
+                _ => here,
+            };
+            most = most.max(both.closer());
+            below = Some((number, here));
         }
-        most.max(closer(below, here))
+        most
     }
 }
 

@@ -451,7 +451,7 @@ impl Fast {
         self.precedence.described(&format!("{most} grains"))
     }
 
-    /// Takes up which grains are frozen and which are alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have
+    /// Takes up which grains are frozen and which are alike: after a [`Fast::rebuild`], and when masses, radii or what is frozen may have
     /// changed.
     pub fn weigh(&mut self, grains: &Grains) {
         self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };

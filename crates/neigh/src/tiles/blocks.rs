@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-/// Tiles hold this many points on average at least: what a list costs by itself is then little beside what its points cost (discs of
+/// Tiles, and slabs, hold this many points on average at least: what a list costs by itself is then little beside what its points cost (discs of
 /// LAMMPS' `in.pour.2d` in lists of 48 were 15 % slower than in lists of 200).
-const CROWD: usize = 128;
+pub(super) const CROWD: usize = 128;
 /// And at most, where that many tiles come of it: what a tile's contacts read and write stays in the second cache.
 const FULL: usize = 1024;
 /// So many tiles there are, if they hold enough points then, that sixteen threads have as much to do as each other.
 const WANTED: usize = 112;
-/// And so many in small scenes, that threads have something to share.
-const SHARES: usize = 8;
+/// And so many in small scenes where there are cells enough, that threads have something to share.
+pub(super) const SHARES: usize = 8;
 /// Fewer points are one tile: no second thread pays for them.
-const FEW: usize = 256;
+pub(super) const FEW: usize = 256;
 /// How much wider than thick tiles are, the slow axis being across them: grains mostly pass each other in layers across that axis, and
 /// lists of thin layers last longer.
 const FLAT: usize = 2;
