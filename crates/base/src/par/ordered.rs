@@ -4,7 +4,7 @@
 use super::pool::{for_rows, threads};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -100,30 +100,7 @@ impl Precedence {
             }
             ends.push(after.len());
         }
-        let mut all = Self { after, ends, before, ranks, ..Self::default() };
-        all.line = all.lined_up(colours, others);
-        all
-    }
-
-    fn lined_up(&self, colours: &[u8], others: &[Vec<u32>]) -> Vec<usize> {
-        let (mut line, mut taken, mut open) = (vec![], vec![false; colours.len()], vec![]);
-        for first in 0..colours.len() {
-            open.push(first);
-            while let Some(&part) = open.last() {
-                let due =
-                    |other: &&u32| colours[**other as usize] < colours[part] && !taken[**other as usize];
-                match others[part].iter().find(due) {
-                    Some(other) if !taken[part] => open.push(*other as usize),
-                    _ => {
-                        if !std::mem::replace(&mut taken[part], true) {
-                            line.push(part);
-                        }
-                        open.pop();
-                    }
-                }
-            }
-        }
-        line
+        Self { after, ends, before, line: lined_up(colours, others), ranks, ..Self::default() }
     }
 
     /// How many parts there are.
@@ -145,7 +122,12 @@ impl Precedence {
     /// Calls `work` for each part once, on all threads, each after those that come before it. A thread takes parts of neighbouring numbers,
     /// and those of others where none of its own can be taken.
     pub fn run(&self, work: impl Fn(usize) + Sync) {
-        let work = |part: usize| self.timed(part, || work(part));
+        let failed = AtomicBool::new(false);
+        let work = |part: usize| {
+            let alarm = Alarm(&failed);
+            self.timed(part, || work(part));
+            drop(alarm);
+        };
         let (parts, threads) = (self.parts(), threads());
         if threads == 1 || parts < 2 {
             return self.line.iter().for_each(|part| work(*part));
@@ -162,7 +144,9 @@ impl Precedence {
                     let done = |next: &u32| state.left[*next as usize].fetch_sub(1, Ordering::AcqRel);
                     self.after(part).iter().for_each(|next| _ = done(next));
                     idle = 0;
-                } else if from_first.clone().all(|share| state.is_taken(share)) {
+                } else if failed.load(Ordering::Relaxed)
+                    || from_first.clone().all(|share| state.is_taken(share))
+                {
                     return;
                 } else {
                     // Others are at work on what comes before; they may be waiting for a processor.
@@ -230,6 +214,38 @@ impl Precedence {
     }
 }
 
+/// Parts in an order that follows these colours, each after those of lower ones beside it.
+fn lined_up(colours: &[u8], others: &[Vec<u32>]) -> Vec<usize> {
+    let (mut line, mut taken, mut open) = (vec![], vec![false; colours.len()], vec![]);
+    for first in 0..colours.len() {
+        open.push(first);
+        while let Some(&part) = open.last() {
+            let due = |other: &&u32| colours[**other as usize] < colours[part] && !taken[**other as usize];
+            match others[part].iter().find(due) {
+                Some(other) if !taken[part] => open.push(*other as usize),
+                _ => {
+                    if !std::mem::replace(&mut taken[part], true) {
+                        line.push(part);
+                    }
+                    open.pop();
+                }
+            }
+        }
+    }
+    line
+}
+
+/// Says that a part has failed, if it has: nothing waits for what comes after it then.
+struct Alarm<'a>(&'a AtomicBool);
+
+impl Drop for Alarm<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::set_threads;
@@ -257,6 +273,16 @@ mod tests {
             assert!((0..n).all(|k| after(k).all(|next| at(k) < at(next))), "{done:?}");
         }
         assert_eq!(ring(6).line(), [0, 2, 1, 4, 3, 5], "neighbours come soon");
+    }
+
+    #[test]
+    fn a_part_that_fails_ends_the_run() {
+        set_threads(3);
+        let ring = ring(12);
+        let run = || ring.run(|part| assert_ne!(part, 4, "this one fails"));
+        let failed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err();
+        set_threads(1);
+        assert!(failed);
     }
 
     #[test]
