@@ -5,6 +5,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{add, length, sub};
 use perigrain_base::par;
 use perigrain_neigh::tiles::{Tiles, edges};
+use perigrain_world::share::Tiling;
 use perigrain_world::{Kept, World};
 use std::ops::Range;
 
@@ -15,19 +16,24 @@ const FEW: usize = 256;
 /// and ids alone.
 pub fn line_up(w: &mut World) {
     let Some(domain) = &*w.domain else { return };
-    let order = order(w, &w.particles.x, (domain.lo, domain.periods()));
-    if let Some(order) = order {
-        w.line_up(&order);
-    }
+    let tiles = tiles(w, &w.particles.x, (domain.lo, domain.periods()));
+    stand(w, tiles);
 }
 
 /// The same from the positions that lists are made from: a run that continues one has the order that this one had.
 pub fn line_up_again(w: &mut World) {
     let made = w.made();
-    let order = if made.len() == w.n() { order(w, made, w.made_in()) } else { None };
-    if let Some(order) = order {
-        w.line_up(&order);
-    }
+    let tiles = if made.len() == w.n() { tiles(w, made, w.made_in()) } else { None };
+    stand(w, tiles);
+}
+
+/// Puts particles in the order of these tiles, if they are to stand in any.
+fn stand(w: &mut World, tiles: Option<Tiles>) {
+    let Some(tiles) = tiles else { return };
+    let order: Vec<usize> = tiles.order.iter().map(|&i| i as usize).collect();
+    w.line_up(&order);
+    let ends = (0..tiles.count()).map(|tile| tiles.members(tile).end as u32).collect();
+    w.rebuild.tiling = Tiling::new(ends, &w.rebuild);
 }
 
 /// Whether the grains of a scene stand in the order of space, and with which edges of cells.
@@ -39,12 +45,12 @@ fn cells(w: &World) -> Option<[f64; 2]> {
     Some(edges(&p.radius, w.rebuild.kept.reach(w.settings.neighbor.skin)))
 }
 
-/// The order of particles at `x` in a box of this corner and these edges.
-fn order(w: &World, x: &[[f64; 3]], (lo, period): ([f64; 3], Periods)) -> Option<Vec<usize>> {
+/// The tiles of particles at `x` in a box of this corner and these edges.
+fn tiles(w: &World, x: &[[f64; 3]], (lo, period): ([f64; 3], Periods)) -> Option<Tiles> {
     let edges = cells(w).filter(|_| period.repeats_where_it_leans())?;
     let mut tiles = Tiles::default();
     tiles.sort(x, &w.particles.tag, edges, &lo, &period);
-    Some(tiles.order.iter().map(|&i| i as usize).collect())
+    Some(tiles)
 }
 
 /// How far grains have gone relative to each other since lists were made for them.

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Random decks on one process and on several ranks: what differs in a byte is printed, its deck stays.
 
-    tests/oracle/on_ranks.py KIND PERIGRAIN FIRST LAST [RANKS]
+    tests/oracle/on_ranks.py KIND PERIGRAIN FIRST LAST [RANKS [many]]
 
 Kinds and seeds are those of random_decks.py; LAMMPS is not needed. Everything printed but times, and every file left behind, is compared.
+Grains of random decks are too few to be shared out to ranks: with `many` each deck has its particles eighteen times, and a short skin.
 """
 import importlib
 import os
 import random
+import re
 import sys
 import tempfile
 
@@ -43,8 +45,20 @@ def differs(deck, perigrain, ranks):
     return f"files {' '.join(odd)}" if odd else None
 
 
+def with_many(deck):
+    """The deck with its particles eighteen times, side by side, each copy with velocities of its own, and with lists that are soon worn."""
+    deck = deck.cut if isinstance(deck, Cut) else deck
+    last = max((k for k, line in enumerate(deck) if line.startswith(("create_atoms", "set ", "read_data"))), default=None)
+    if last is None:
+        return deck
+    deck = [re.sub(r"^neighbor .*", "neighbor 0.25 bin", line) for line in deck]
+    flat = "dimension 2" in deck
+    copies = ["replicate 6 3 1" if flat else "replicate 3 3 2", f"velocity all create 0.3 {4711 + len(deck)} dist gaussian sum yes"]
+    return deck[: last + 1] + copies + deck[last + 1 :]
+
+
 def main():
-    if len(sys.argv) not in (5, 6) or sys.argv[1] not in KINDS:
+    if len(sys.argv) not in (5, 6, 7) or sys.argv[1] not in KINDS:
         sys.exit(__doc__)
     what, perigrain, first, last = sys.argv[1:5]
     ranks = int(sys.argv[5]) if len(sys.argv) > 5 else 3
@@ -52,6 +66,7 @@ def main():
     differ = 0
     for seed in range(int(first), int(last) + 1):
         deck = make(random.Random(seed))
+        deck = with_many(deck) if sys.argv[6:] == ["many"] else deck
         found = differs(deck, os.path.abspath(perigrain), ranks)
         if found:
             differ += 1

@@ -44,6 +44,8 @@ pub struct Sweep<'a, const C: usize, K> {
     pub breaks: bool,
     /// Whether somebody asks what dashpots take up.
     pub counts: bool,
+    /// Which groups of bonds are evaluated, if not all.
+    pub groups: Option<&'a [bool]>,
 }
 
 /// Four numbers that lie within a line of a cache: rows across two of them are read at half the pace.
@@ -132,11 +134,18 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
         let (mut at, mut broken) = (0, false);
         // Chunks consist of whole groups.
         let groups = self.first / GROUP..(self.first + self.force.len()) / GROUP;
+        let (kinds, evaluated) = (&self.pass.columns.kinds, self.pass.groups);
+        let is_evaluated = |group: usize| evaluated.is_none_or(|groups| groups[group]);
+        let mut group = groups.start;
         // SAFETY: passed on; all rows are of this chunk.
         unsafe {
-            for alike in self.pass.columns.kinds[groups].chunk_by(|a, b| a == b) {
-                let to = at + alike.len() * GROUP;
-                if let Some(k) = self.pass.coeffs[usize::from(alike[0])] {
+            while group < groups.end {
+                let (kind, acts) = (kinds[group], is_evaluated(group));
+                let alike = |next: &usize| kinds[*next] == kind && is_evaluated(*next) == acts;
+                let many = (group..groups.end).take_while(alike).count();
+                group += many;
+                let to = at + many * GROUP;
+                if let Some(k) = self.pass.coeffs[usize::from(kind)].filter(|_| acts) {
                     broken |= match self.pass.damped {
                         true => self.stretch::<N, V, true>(at..to, k),
                         false => self.stretch::<N, V, false>(at..to, k),
@@ -326,16 +335,25 @@ fn across<R: Real>(d: R, period: f64) -> R {
     R::choose((-d).above(half), d + period, d)
 }
 
-/// Adds to each particle what its bonds do to it; torques where there are some.
+/// Adds to each particle of these rows what its bonds do to it; torques where there are some.
 ///
 /// # Panics
 /// If there are fewer particles than the columns know, or no row for each bond.
-pub fn add_up<const C: usize>(columns: &Columns<C>, out: &Out, f: &mut [Vec3], torque: Option<&mut [Vec3]>) {
-    // SAFETY: a form of this processor.
-    unsafe { add_up_in(Form::here(), columns, out, f, torque) };
+pub fn add_up<const C: usize>(
+    columns: &Columns<C>,
+    out: &Out,
+    rows: &[Range<usize>],
+    f: &mut [Vec3],
+    mut torque: Option<&mut [Vec3]>,
+) {
+    for rows in rows {
+        let torque = torque.as_mut().map(|torque| &mut torque[rows.clone()]);
+        // SAFETY: a form of this processor.
+        unsafe { add_up_in(Form::here(), columns, out, rows.start, &mut f[rows.clone()], torque) };
+    }
 }
 
-/// The same in a form.
+/// The same in a form, to the particles from the one at `from` on.
 ///
 /// # Safety
 /// The processor must have what the form needs.
@@ -343,14 +361,15 @@ pub(crate) unsafe fn add_up_in<const C: usize>(
     form: Form,
     columns: &Columns<C>,
     out: &Out,
+    from: usize,
     f: &mut [Vec3],
     torque: Option<&mut [Vec3]>,
 ) {
-    assert!(f.len() <= columns.particles() && out.force.len() == columns.rows());
+    assert!(from + f.len() <= columns.particles() && out.force.len() == columns.rows());
     assert!(torque.is_none() || out.torque.len() == columns.rows());
     par::each((f, torque), |first, (f, torque)| {
         // SAFETY: a form of this processor (the caller); entries are bonds, and each has a row (asserted above).
-        unsafe { form.run(AddUp { columns, out, first, f, torque }) };
+        unsafe { form.run(AddUp { columns, out, first: from + first, f, torque }) };
     });
 }
 

@@ -53,7 +53,8 @@ fn same_as_one_by_one<const C: usize, L: BondLaw<C>>(
     let mut columns = Columns::new(&members, n);
     [3, 17, 18, 160].into_iter().for_each(|k| columns.lose(k));
     let coeffs = [None, Some(coeffs[0]), Some(coeffs[1])];
-    let pass = Sweep { columns: &columns, coeffs: &coeffs, body, damped, breaks: true, counts: true };
+    let pass =
+        Sweep { columns: &columns, coeffs: &coeffs, body, damped, breaks: true, counts: true, groups: None };
     for form in Form::all() {
         let mut out = Out::default();
         // SAFETY: a form of this processor.
@@ -87,7 +88,7 @@ fn same_as_one_by_one<const C: usize, L: BondLaw<C>>(
         assert!([3, 17, 18, 160].iter().all(|k| out.force[*k].0 == [0.0; 4]));
         let mut sums = vec![[1.0; 3]; n];
         // SAFETY: a form of this processor.
-        unsafe { add_up_in(form, &columns, &out, &mut sums, None) };
+        unsafe { add_up_in(form, &columns, &out, 0, &mut sums, None) };
         for (p, sum) in sums.iter().enumerate() {
             let mut force = [0.0; 3];
             for entry in columns.of(p) {

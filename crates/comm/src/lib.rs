@@ -84,6 +84,24 @@ pub trait Comm: Send + Sync {
     /// Ends all ranks at once.
     fn abort(&self, code: i32) -> !;
 
+    /// A piece of every rank, of any length, in the order of ranks: this one's is what `write` appends.
+    fn pieces(&self, write: &dyn Fn(&mut Vec<u8>)) -> Vec<Vec<u8>> {
+        let (me, size) = (self.rank(), self.size());
+        let mut own = vec![];
+        write(&mut own);
+        let mut lengths = vec![0u8; size * 8];
+        lengths[me * 8..][..8].copy_from_slice(&(own.len() as u64).to_le_bytes());
+        self.gather_all(&mut lengths, &vec![8; size]);
+        let counts: Vec<usize> =
+            lengths.as_chunks().0.iter().map(|n| u64::from_le_bytes(*n) as usize).collect();
+        let mut all = vec![0; counts.iter().sum()];
+        let before: usize = counts[..me].iter().sum();
+        all[before..][..own.len()].copy_from_slice(&own);
+        self.gather_all(&mut all, &counts);
+        let mut rest = &all[..];
+        counts.iter().filter_map(|count| rest.split_off(..*count).map(<[u8]>::to_vec)).collect()
+    }
+
     /// Sends pieces of any length to any partners; what others have sent here, in the order of ranks.
     fn exchange(&self, out: Vec<(usize, Vec<u8>)>) -> Vec<(usize, Vec<u8>)> {
         let (me, size) = (self.rank(), self.size());

@@ -10,6 +10,18 @@ use perigrain_base::par;
 use perigrain_world::contacts::Contacts;
 pub use perigrain_world::region::{FacetNear, Near};
 pub use shapes::{Planes, Tube};
+use std::ops::Range;
+
+/// Which spheres meet a wall.
+#[derive(Clone, Copy)]
+pub struct Meeting<'a> {
+    /// The groups of each.
+    pub mask: &'a [u32],
+    /// Those with a bit of these groups do.
+    pub group: u32,
+    /// Of these rows, ascending.
+    pub rows: &'a [Range<usize>],
+}
 
 /// Something spheres lean on.
 pub trait Wall: Sync {
@@ -130,19 +142,11 @@ pub struct WallSweep {
 }
 
 impl WallSweep {
-    /// Lists the particles with a bit of `group` that may come within `skin` of touching the wall.
-    pub fn list(
-        &mut self,
-        wall: &dyn Wall,
-        grains: &Spheres,
-        mask: &[u32],
-        group: u32,
-        law: &Granular,
-        skin: f64,
-    ) {
+    /// Lists those that meet the wall and may come within `skin` of touching it.
+    pub fn list(&mut self, wall: &dyn Wall, grains: &Spheres, which: &Meeting, law: &Granular, skin: f64) {
         match wall.planes() {
-            Some(planes) => self.list_near(planes, grains, mask, group, law, skin),
-            None => self.list_near(wall, grains, mask, group, law, skin),
+            Some(planes) => self.list_near(planes, grains, which, law, skin),
+            None => self.list_near(wall, grains, which, law, skin),
         }
     }
 
@@ -150,26 +154,26 @@ impl WallSweep {
         &mut self,
         wall: &W,
         grains: &Spheres,
-        mask: &[u32],
-        group: u32,
+        which: &Meeting,
         law: &Granular,
         skin: f64,
     ) {
-        let some = |range: std::ops::Range<usize>| {
+        let some = |range: Range<usize>| {
             let (mut list, mut pieces, mut spare) = (vec![], vec![], vec![]);
-            let rows =
-                grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]).zip(&mask[range.clone()]);
-            for (((x, radius), mask), i) in rows.zip(range.start as u32..) {
-                if mask & group == 0 {
+            let first = which.rows.partition_point(|rows| rows.end <= range.start);
+            let within = which.rows[first..].iter().take_while(|rows| rows.start < range.end);
+            for i in within.flat_map(|rows| rows.start.max(range.start)..rows.end.min(range.end)) {
+                if which.mask[i] & which.group == 0 {
                     continue;
                 }
-                let (from, reach) = (pieces.len() as u32, radius + law.gap(*radius) + skin);
-                let near = match wall.pieces(*x, reach, &mut pieces) {
+                let (x, radius) = (grains.x[i], grains.radius[i]);
+                let (from, reach) = (pieces.len() as u32, radius + law.gap(radius) + skin);
+                let near = match wall.pieces(x, reach, &mut pieces) {
                     true => pieces.len() as u32 > from,
-                    false => wall.close(*x, reach, &mut spare),
+                    false => wall.close(x, reach, &mut spare),
                 };
                 if near {
-                    list.push(Listed { grain: i, pieces: [from, pieces.len() as u32] });
+                    list.push(Listed { grain: i as u32, pieces: [from, pieces.len() as u32] });
                 }
             }
             (list, pieces)
@@ -233,7 +237,7 @@ impl WallSweep {
 
     fn find<W: Wall + ?Sized>(&mut self, wall: &W, grains: &Spheres, law: &Granular, memory: &Contacts) {
         let (list, all) = (&self.list[..], &self.pieces[..]);
-        let find = |range: std::ops::Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
+        let find = |range: Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
             let mut spare = vec![];
             for &Listed { grain, pieces: [from, to] } in &list[range] {
                 let i = grain as usize;

@@ -60,7 +60,7 @@ pub(super) fn before(w: &mut World, span: Span, needs: impl Iterator<Item = Need
 
 /// After they have acted.
 pub(super) fn after(w: &mut World, needs: impl Iterator<Item = Needs>) {
-    let Some(share) = &mut w.share else { return };
+    let Some(share) = &mut w.share else { return w.deal_if_possible() };
     if std::mem::take(&mut share.narrow) {
         needs.for_each(|needs| w.strays(needs.changed()));
     } else if w.is_misdealt() {
@@ -80,7 +80,7 @@ impl StepPlan {
     pub(super) fn deal(&mut self, w: &mut World, steps: i64) {
         self.gathering = 0;
         if self.guard.is_none() && self.levels.is_none() && steps >= FEW {
-            w.deal();
+            w.begin_shares();
         }
     }
 

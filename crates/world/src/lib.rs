@@ -83,7 +83,7 @@ pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
 pub use resume::{Resume, Said};
 pub use settings::{Compat, MOST_SHORT, NeighborSettings, Newton, Respa, RunStyle, Settings};
-pub use share::Share;
+pub use share::{Dealings, Share};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;
@@ -169,6 +169,9 @@ pub struct World {
     /// How rows are shared out to ranks, during a run of several.
     #[serde(skip)]
     pub share: Option<Share>,
+    /// Whether they are to be, and how often they have been.
+    #[serde(skip)]
+    pub dealings: Dealings,
     /// State that rooms above own: families, contact histories, materials.
     #[serde(skip)]
     pub parts: Tracked<Parts>,

@@ -112,6 +112,7 @@ impl World {
             folder: _,
             read_files: _,
             share: _,
+            dealings: _,
             parts: _,
         } = self;
         if turns {

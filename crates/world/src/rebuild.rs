@@ -1,5 +1,6 @@
 //! When neighbour lists were last rebuilt, and where everybody was then.
 
+use super::share::Tiling;
 use super::travel::Seen;
 
 /// The state behind LAMMPS' reneighbouring rule.
@@ -47,6 +48,9 @@ pub struct Rebuild {
     /// What lists of grains are made from.
     #[serde(default)]
     pub kept: Kept,
+    /// The tiles that grains stand in.
+    #[serde(skip)]
+    pub tiling: Tiling,
     /// How far they were from where they were at the last rebuild.
     #[serde(skip)]
     pub seen: Seen,

@@ -1,31 +1,42 @@
 //! Rows of particles shared out to ranks during a run: which rank moves which, and where their values are up to date.
 //!
-//! Every rank has all rows, at the same places. Of a body that is shared out it moves its own ones and keeps those near them up to date; the
-//! others stay as they were until all of them are gathered ([`World::whole`]). Particles of no such body are moved by all ranks alike.
+//! Every rank has all rows, at the same places. Of a body that is shared out, and of grains that stand in tiles, it moves its own ones and keeps
+//! those near them up to date; the others stay as they were until all of them are gathered ([`World::whole`]). Particles of no such body are
+//! moved by all ranks alike where bodies are shared out.
 
-use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, X};
-use super::{Key, Named, World};
+mod deal;
+mod memory;
+
+use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, WALL_CONTACTS, X};
+use super::{Named, World};
+pub use deal::{Dealings, Tiling};
+pub use memory::joined_of_all;
+use perigrain_base::comm::Comm;
 use perigrain_base::comm::numbers::{put, take};
-use perigrain_base::comm::{self, Comm};
-use perigrain_peri::families::shares::ranges;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The fields of which a rank may have some rows only.
-pub const SHARED: Fields = X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(SITES);
+pub const SHARED: Fields = X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(SITES).and(WALL_CONTACTS);
+/// Those that are handed over as a whole, not row by row.
+const ENTIRE: Fields = SITES.and(WALL_CONTACTS);
 
 /// How rows are shared out.
 #[derive(Clone)]
 pub struct Share {
     comm: Arc<dyn Comm>,
+    /// What is shared out.
+    what: What,
+    /// Counts how often rows have been dealt since the program began: another number, other rows.
+    pub deal: u64,
     /// Rows that this rank moves: its own, and those that all move.
     pub own: Vec<Range<usize>>,
     /// Rows that each rank alone moves.
     alone: Vec<Vec<Range<usize>>>,
     /// Rows to hand out to, and to take from, each other rank: those near bodies' own ones, and those that lists name.
     links: [Vec<Link>; 2],
-    /// Rows that lists of ops name, by where these keep contacts, with the generation of lists.
+    /// Rows that lists of ops name, by where these keep contacts or by their names.
     listed: Named<Listed>,
     /// Fields that are up to date in this rank's own rows alone.
     stale: Fields,
@@ -40,10 +51,19 @@ pub struct Share {
     traffic: Traffic,
 }
 
+/// What is shared out to ranks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum What {
+    /// Peridynamic bodies: all ranks list the same pairs of other particles.
+    Bodies,
+    /// Grains, tile by tile: each rank lists the pairs of its own.
+    Grains,
+}
+
 /// Rows that the lists of an op name.
 #[derive(Clone, Debug, Default)]
 pub struct Listed {
-    generation: u64,
+    version: u64,
     rows: Vec<u32>,
 }
 
@@ -104,118 +124,17 @@ impl Share {
 const NUMBER: usize = size_of::<f64>();
 
 impl World {
-    /// Shares rows out to ranks, where there are several and some body can be. All rows are up to date before.
-    pub fn deal(&mut self) {
-        self.abandon();
-        let comm = comm::present();
-        let (me, ranks) = (comm.rank(), comm.size());
-        if ranks < 2 {
-            return;
-        }
-        let (n, roster) = (self.n(), self.roster());
-        let Some(families) = self.families.past_mut().as_mut().filter(|families| families.place.len() == n)
-        else {
-            return;
-        };
-        if !families.deal(me, ranks) {
-            return;
-        }
-        let Some(shares) = &families.shares else { return };
-        let of = |rank: usize| {
-            let rows = shares.owner.iter().enumerate().filter(|(_, owner)| usize::from(**owner) == rank);
-            ranges(rows.map(|(row, _)| row))
-        };
-        let alone = (0..ranks).map(of).collect();
-        let own = shares.own.clone();
-        let (stale, near, bytes) = (Fields::NONE, [Fields::NONE; 2], vec![]);
-        let (links, listed) = ([vec![], vec![]], Named::default());
-        self.share = Some(Share {
-            comm,
-            own,
-            alone,
-            links,
-            listed,
-            stale,
-            near,
-            roster,
-            narrow: false,
-            bytes,
-            traffic: Traffic::default(),
-        });
-        self.link();
-    }
-
-    /// Finds anew which rows ranks need of each other.
-    pub fn link(&mut self) {
-        let (Some(share), Some(families)) = (&mut self.share, self.families.past()) else { return };
-        let me = share.comm.rank();
-        let listed = share.listed.values().flat_map(|listed| listed.rows.iter().copied());
-        share.links = [families.needed(), families.needed_by_lists(listed)].map(|needed| {
-            let rows = |rows: &[u32]| ranges(rows.iter().map(|row| *row as usize));
-            let others = (0..needed.len()).filter(|with| *with != me);
-            let links = others.map(|with| Link {
-                with,
-                out: rows(&needed[with][me]),
-                into: rows(&needed[me][with]),
-                bytes: Default::default(),
-            });
-            links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect()
-        });
-        // Rows that are linked since now have not been handed over.
-        share.near = [Fields::NONE; 2];
-    }
-
-    /// Hands the rows that an op's lists name to all ranks from now on, where shares are dealt and that is not done for the present lists.
-    pub fn list_rows(&mut self, by: Key<Listed>, rows: impl FnOnce() -> Vec<u32>) {
-        let generation = self.rebuild.past().generation;
-        let Some(share) = &mut self.share else { return };
-        let known = share.listed.get(by);
-        if known.is_some_and(|listed| listed.generation == generation) {
-            return;
-        }
-        let rows = rows();
-        let same = known.map_or(rows.is_empty(), |known| known.rows == rows);
-        share.listed.insert(by, Listed { generation, rows });
-        if !same {
-            self.link();
-        }
-    }
-
-    /// Takes the shares back; all rows are up to date then.
-    pub fn undeal(&mut self) {
-        self.whole(Fields::ALL);
-        self.abandon();
-    }
-
-    /// Forgets that rows are shared out, without a word to other ranks: where something has failed.
-    pub fn abandon(&mut self) {
-        self.share = None;
-        if let Some(families) = self.families.past_mut() {
-            families.undeal();
-        }
-    }
-
-    /// Counters that change when particles come, go or change places.
-    fn roster(&self) -> [u64; 2] {
-        let rebuild = self.rebuild.past();
-        [rebuild.roster, rebuild.places]
-    }
-
-    /// Whether particles have come, gone or changed places since they were shared out.
-    pub fn is_misdealt(&self) -> bool {
-        let Some(share) = &self.share else { return false };
-        let known = |families: &super::Families| {
-            families.shares.as_ref().is_some_and(|shares| shares.owner.len() == self.n())
-        };
-        share.roster != self.roster() || !self.families.past().as_ref().is_some_and(known)
-    }
-
     /// Brings all rows of these fields up to date on all ranks, which all call this with the same fields at the same place.
     pub fn whole(&mut self, fields: Fields) {
         let Some(mut share) = self.share.take() else { return };
         let missing = share.stale.and_only(fields);
         if !missing.is_empty() {
-            self.gather_rows(&mut share, missing);
+            if missing.has(WALL_CONTACTS) {
+                self.gather_wall_contacts(&mut share);
+            }
+            if missing != WALL_CONTACTS {
+                self.gather_rows(&mut share, missing);
+            }
             share.stale = share.stale.without(missing);
             share.near = share.near.map(|near| near.without(missing));
         }
@@ -226,7 +145,7 @@ impl World {
     pub fn halo(&mut self, fields: Fields, listed: bool) {
         let Some(mut share) = self.share.take() else { return };
         let which = usize::from(listed);
-        let missing = share.stale.and_only(fields).without(share.near[which]).without(SITES);
+        let missing = share.stale.and_only(fields).without(share.near[which]).without(ENTIRE);
         if !missing.is_empty() {
             self.swap_rows(&mut share, (missing, which));
             share.near[which] |= missing;
@@ -279,6 +198,18 @@ impl World {
     /// Whether the op at work acts on the rows of this rank alone.
     pub fn is_narrow(&self) -> bool {
         self.share.as_ref().is_some_and(|share| share.narrow)
+    }
+
+    /// How rows are shared out, where the op at work acts on those of this rank alone.
+    pub fn narrow_share(&self) -> Option<&Share> {
+        self.share.as_ref().filter(|share| share.narrow)
+    }
+
+    /// The op at work has lists of this rank's rows alone, though it has seen all rows.
+    pub fn act_narrowly(&mut self) {
+        if let Some(share) = &mut self.share {
+            share.narrow = true;
+        }
     }
 
     /// An op has changed these fields in this rank's own rows alone.

@@ -1,10 +1,10 @@
 //! Grains that overlap so far that contact laws mean little.
 
-use super::Fast;
 use super::lists::List;
 use super::near::Places;
+use super::{Fast, NOWHERE};
 use crate::driver::{DEEP, Grains};
-use perigrain_base::math::lanes::place;
+use perigrain_base::math::lanes::{PLACE_BITS, place};
 
 impl Fast {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, in these lists, and by which part.
@@ -24,6 +24,8 @@ impl Fast {
             Some(([p.min(q), p.max(q)], (sum - square.sqrt()) / least))
         };
         let pairs = lists.iter().flat_map(|l| l.short.i.iter().zip(&l.short.w));
+        // What fills lists up is at places that need not be known.
+        let pairs = pairs.filter(|(_, w)| **w >> PLACE_BITS != NOWHERE);
         pairs.filter_map(|(&i, &w)| of(i, w)).min_by_key(|(ids, _)| *ids)
     }
 }

@@ -21,6 +21,12 @@ pub struct Pairs {
 }
 
 impl Pairs {
+    /// Forgets them.
+    pub(super) fn clear(&mut self) {
+        self.i.clear();
+        self.w.clear();
+    }
+
     /// Fills up; far too much room is given back.
     pub(super) fn fill_up(&mut self) {
         while !self.i.len().is_multiple_of(FILL) {

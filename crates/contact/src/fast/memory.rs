@@ -36,7 +36,7 @@ struct Live<'a> {
 }
 
 /// Where each tag stands.
-enum Places {
+pub(super) enum Places {
     /// By tag; `u32::MAX` where there is none.
     Table(Vec<u32>),
     /// Tag and index, sorted.
@@ -44,7 +44,7 @@ enum Places {
 }
 
 impl Places {
-    fn new(tag: &[u32]) -> Self {
+    pub(super) fn new(tag: &[u32]) -> Self {
         let last = tag.iter().copied().max().unwrap_or(0) as usize;
         if last > 8 * tag.len() + 1024 {
             let mut list: Vec<[u32; 2]> = tag.iter().zip(0..).map(|(t, k)| [*t, k]).collect();
@@ -56,7 +56,7 @@ impl Places {
         Self::Table(table)
     }
 
-    fn of(&self, tag: u32) -> Option<u32> {
+    pub(super) fn of(&self, tag: u32) -> Option<u32> {
         match self {
             Self::Table(t) => t.get(tag as usize).copied().filter(|k| *k != u32::MAX),
             Self::List(list) => list.binary_search_by_key(&tag, |[t, _]| *t).ok().map(|k| list[k][1]),
@@ -145,16 +145,18 @@ impl Fast {
         }
     }
 
-    /// The contacts of the last evaluation that remembered, as the world keeps them.
+    /// The contacts of the last evaluation that remembered, as the world keeps them; on several ranks those of whole lists.
     pub fn contacts(&self) -> Contacts {
         let (memory, width) = (self.laws.memory(), self.width);
         let is_live = |s: &Short, k: usize| s.history[(k + 1) * width - 1] == self.now;
         let live = |s: &Short| (0..s.i.len()).filter(|&k| is_live(s, k)).count();
-        let count = self.lists.iter().map(|l| live(&l.short)).sum();
+        let own = || self.whole_lists().map(|(_, list)| &list.short);
+        let count = own().map(live).sum();
         // Keys with the number of the pair, counted through all lists.
         let mut entries = Vec::with_capacity(count);
         let mut first = vec![0];
-        for short in self.lists.iter().map(|l| &l.short) {
+        let lists: Vec<&Short> = own().collect();
+        for short in &lists {
             let before = first[first.len() - 1];
             for k in (0..short.i.len()).filter(|&k| is_live(short, k)) {
                 let (p, q) = self.tags(short, k);
@@ -166,7 +168,7 @@ impl Fast {
         let mut history = Vec::with_capacity(count * memory);
         for (_, number) in &entries {
             let list = first.partition_point(|f| f <= number) - 1;
-            let (short, k) = (&self.lists[list].short, (number - first[list]) as usize);
+            let (short, k) = (lists[list], (number - first[list]) as usize);
             let from = history.len();
             history.extend_from_slice(&short.history[k * width..][..memory]);
             let (p, q) = self.tags(short, k);

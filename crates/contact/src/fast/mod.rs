@@ -17,6 +17,7 @@ mod lists;
 mod memory;
 mod near;
 mod per_tile;
+mod ranks;
 mod search;
 mod sweep;
 mod upkeep;
@@ -36,6 +37,8 @@ use perigrain_base::par::ordered::Precedence;
 use perigrain_neigh::list::small;
 use perigrain_neigh::tiles::{Tiles, edges};
 use perigrain_world::contacts::Contacts;
+pub use ranks::Dealt;
+use ranks::Own;
 use std::ops::Range;
 use upkeep::Upkeep;
 
@@ -169,6 +172,8 @@ pub struct Fast {
     turns: Vec<[i8; 3]>,
     /// Those of tiles, then those of pairs with large grains, slab by slab.
     lists: Vec<List>,
+    /// On several ranks: what this one lists.
+    own: Option<Own>,
     /// Lists in the order of one thread.
     order: Vec<usize>,
     /// The tiles beside each one, and which of them come first.
@@ -224,6 +229,7 @@ impl Fast {
             measured: vec![],
             turns: vec![],
             lists: vec![],
+            own: None,
             order: vec![],
             beside: vec![],
             precedence: Precedence::default(),
@@ -269,14 +275,20 @@ impl Fast {
 
     /// All grains that stand in some list, ascending.
     pub fn listed(&self) -> Vec<u32> {
-        let mut rows = vec![];
+        let is_listed = self.are_listed();
+        (0..self.len() as u32).filter(|row| is_listed[*row as usize]).collect()
+    }
+
+    /// Whether each grain stands in some list.
+    fn are_listed(&self) -> Vec<bool> {
+        let mut is_listed = vec![false; self.len()];
         for long in self.lists.iter().map(|list| &list.long) {
             let pairs = long.i.iter().zip(&long.w).filter(|(_, w)| **w >> PLACE_BITS != NOWHERE);
-            rows.extend(pairs.flat_map(|(i, w)| [*i, place(*w) as u32]));
+            pairs.for_each(|(i, w)| {
+                [*i as usize, place(*w)].into_iter().for_each(|row| is_listed[row] = true)
+            });
         }
-        rows.sort_unstable();
-        rows.dedup();
-        rows
+        is_listed
     }
 
     /// Number of grains the lists were made for.
@@ -291,12 +303,14 @@ impl Fast {
 
     /// Makes all lists anew from these positions (wrapped into the box; [`Fast::turn`] follows those that are elsewhere by now), pairs for
     /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; `known` are taken in addition. An evaluation
-    /// must follow.
+    /// must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own ([`Fast::is_part`]); not where
+    /// pairs with large grains have lists of their own, where several laws hold, or where some tile has grains of several ranks.
     pub fn rebuild(
         &mut self,
         grains: &Grains,
         frame: &Frame,
         known: Option<&Contacts>,
+        dealt: Option<Dealt>,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
         let largest = par::best(grains.radius, 0.0, f64::max);
@@ -328,14 +342,21 @@ impl Fast {
         self.tag.extend_from_slice(grains.tag);
         self.see_images(frame.period);
         self.thin = if whole { f64::INFINITY } else { THIN * frame.skin };
-        if edge == far {
-            self.make_long(grains, &tiles, reach, keep);
-        } else {
-            let small = small(grains.radius);
-            let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
-            self.make_long(grains, &tiles, reach, &|i, j| both_small(i, j) && keep(i, j));
+        // Where several laws hold, what is listed decides in which order contacts are evaluated.
+        let parts = edge == far && self.laws.distinct.len() == 1;
+        let own = dealt.filter(|_| parts).and_then(|dealt| Own::new(dealt, &tiles));
+        let small = if edge == far { f64::INFINITY } else { small(grains.radius) };
+        let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
+        let has = |tile: usize, i: usize, j: usize| own.as_ref().is_none_or(|own| own.has(tile, i, j));
+        let listed = |tile: usize| own.as_ref().is_none_or(|own| own.lists(tile));
+        self.make_long(grains, &tiles, reach, listed, &|tile, i, j| {
+            both_small(i, j) && has(tile, i, j) && keep(i, j)
+        });
+        if edge != far {
             self.add_large(&large, &tiles);
         }
+        self.own = own;
+        self.watch_listed();
         self.lists.iter_mut().for_each(|list| list.long.fill_up());
         self.validity.begin(self.lists.len());
         self.members = (0..tiles.count()).map(|k| tiles.members(k)).collect();
@@ -366,7 +387,13 @@ impl Fast {
         if tiles.count() != self.lists.len() {
             return false;
         }
-        self.due = self.extend_long(grains, &tiles, reach, ends, keep);
+        let own = self.own.take();
+        let has = |tile: usize, i: usize, j: usize| own.as_ref().is_none_or(|own| own.has(tile, i, j));
+        let listed = |tile: usize| own.as_ref().is_none_or(|own| own.lists(tile));
+        self.due = self
+            .extend_long(grains, &tiles, reach, (ends, listed), &|tile, i, j| has(tile, i, j) && keep(i, j));
+        self.own = own;
+        self.watch_listed();
         true
     }
 

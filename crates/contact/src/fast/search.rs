@@ -36,6 +36,20 @@ impl Watched {
         self.parts.clear();
     }
 
+    /// Forgets all but those that `stays`.
+    pub(super) fn retain(&mut self, stays: impl Fn(u32) -> bool) {
+        let (grains, parts) = (std::mem::take(&mut self.grains), std::mem::take(&mut self.parts));
+        let mut from = 0;
+        for Part { layer, image, end } in parts {
+            let own = grains[from..end as usize].iter().copied().filter(|grain| stays(*grain));
+            let own: Vec<u32> = own.collect();
+            if !own.is_empty() {
+                self.push(layer, image, &own);
+            }
+            from = end as usize;
+        }
+    }
+
     /// Takes more, of the last layer so far or a later one.
     pub(super) fn push(&mut self, layer: usize, image: u32, grains: &[u32]) {
         self.grains.extend_from_slice(grains);
@@ -48,30 +62,34 @@ impl Watched {
 }
 
 impl Fast {
-    /// Long lists from these positions and radii.
+    /// Long lists from these positions and radii, of the tiles that `lists` names, and of the pairs for which `keep(tile, i, j)`.
     pub(super) fn make_long(
         &mut self,
         grains: &Grains,
         tiles: &Tiles,
         skin: f64,
-        keep: &(impl Fn(usize, usize) -> bool + Sync),
+        lists: impl Fn(usize) -> bool + Sync,
+        keep: &(impl Fn(usize, usize, usize) -> bool + Sync),
     ) {
         let at = InOrder::new(grains, &tiles.order);
-        let mut lists = std::mem::take(&mut self.lists);
-        lists.resize(tiles.count(), List::default());
-        let shared = par::Shared::new(&mut lists);
+        let mut all = std::mem::take(&mut self.lists);
+        all.resize(tiles.count(), List::default());
+        let shared = par::Shared::new(&mut all);
         let this = &*self;
         par::for_rows_if(grains.x.len() > FEW, tiles.count(), |k| {
             // SAFETY: each part writes its own list.
             let list = unsafe { &mut shared.get(k..k + 1)[0] };
-            this.search(grains, (tiles, &at), k, skin, keep, &mut list.long);
+            match lists(k) {
+                true => this.search(grains, (tiles, &at), k, skin, &|i, j| keep(k, i, j), &mut list.long),
+                false => list.long.clear(),
+            }
             list.watched.clear();
             if !list.long.i.is_empty() {
                 let watched = &mut list.watched;
                 tiles.reached(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
             }
         });
-        self.lists = lists;
+        self.lists = all;
     }
 
     /// The long list of tile `k`.
@@ -94,24 +112,24 @@ impl Fast {
         unsafe { self.form.run(search) }
     }
 
-    /// Long lists of the tiles in which these grains lie, made anew from the positions of all of them; what their contacts
-    /// remember stays. Which lists.
+    /// Long lists of the tiles in which these grains lie and that `lists` names, made anew from the positions of all of them, of the pairs
+    /// for which `keep(tile, i, j)`; what their contacts remember stays. Which lists.
     pub(super) fn extend_long(
         &mut self,
         grains: &Grains,
         tiles: &Tiles,
         skin: f64,
-        ends: &[usize],
-        keep: &(impl Fn(usize, usize) -> bool + Sync),
+        (ends, lists): (&[usize], impl Fn(usize) -> bool),
+        keep: &(impl Fn(usize, usize, usize) -> bool + Sync),
     ) -> Vec<usize> {
         let mut mine = vec![false; grains.x.len()];
         ends.iter().for_each(|&i| mine[i] = true);
         let concerned = |k: &usize| tiles.order[tiles.members(*k)].iter().any(|i| mine[*i as usize]);
-        let which: Vec<usize> = (0..tiles.count()).filter(concerned).collect();
+        let which: Vec<usize> = (0..tiles.count()).filter(|k| lists(*k) && concerned(k)).collect();
         let at = InOrder::new(grains, &tiles.order);
         for &k in &which {
             let mut new = Pairs::default();
-            self.search(grains, (tiles, &at), k, skin, keep, &mut new);
+            self.search(grains, (tiles, &at), k, skin, &|i, j| keep(k, i, j), &mut new);
             new.fill_up();
             let list = &mut self.lists[k];
             let places = moved(&list.long, &new);

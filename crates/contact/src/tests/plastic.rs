@@ -1,7 +1,7 @@
 //! The Edinburgh elasto-plastic adhesion model against its branches in closed form: pairs, walls, energy, action and reaction.
 
 use super::*;
-use crate::walls::{Planes, Spheres, WallSweep};
+use crate::walls::{Meeting, Planes, Spheres, WallSweep};
 use perigrain_base::math::vec3::dot;
 use perigrain_world::contacts::Contacts;
 use std::f64::consts::PI;
@@ -145,7 +145,8 @@ fn spheres_on_a_wall_follow_the_branches_one_by_one_and_together() {
                 let x: Vec<Vec3> = (0..count).map(|k| [k as f64, 0.0, height]).collect();
                 let grains =
                     Spheres { x: &x, v: &still, omega: &still, radius: &radius, mass: &radius, tag: &tag };
-                sweep.list(&floor, &grains, &vec![1; count], 1, &law, 0.001);
+                let which = Meeting { mask: &vec![1; count], group: 1, rows: &[0..count] };
+                sweep.list(&floor, &grains, &which, &law, 0.001);
                 sweep.run(&floor, &grains, &law, &mut memory, STEP);
                 let force = exact.force(RADII[0] - height);
                 largest = largest.max(force.abs());

@@ -49,12 +49,17 @@ fn floor() -> Planes {
     Planes { axis: 2, lo: Some(0.0), hi: None, velocity: [[0.0; 3]; 2], nearer: false }
 }
 
+/// All of them that are of the group.
+fn meeting(mask: &[u32], group: u32) -> Meeting<'_> {
+    Meeting { mask, group, rows: &[0..usize::MAX] }
+}
+
 #[test]
 fn only_what_is_near_is_listed_and_springs_last_while_they_touch() {
     let places = [[0.0, 0.0, 0.99], [5.0, 0.0, 1.1], [9.0, 0.0, 3.0]];
     let mut s = Scene::new(&places, [1.0, 0.0, 0.0]);
     let (mut sweep, mut memory) = (WallSweep::default(), Contacts::default());
-    sweep.list(&floor(), &s.grains(), &[1, 1, 1], 1, &law(0.5), 0.2);
+    sweep.list(&floor(), &s.grains(), &meeting(&[1, 1, 1], 1), &law(0.5), 0.2);
     assert_eq!(sweep.listed(), 2);
     sweep.run(&floor(), &s.grains(), &law(0.5), &mut memory, STEP);
     assert_eq!(memory.keys, [[3, 0]]);
@@ -65,7 +70,7 @@ fn only_what_is_near_is_listed_and_springs_last_while_they_touch() {
     sweep.run(&floor(), &s.grains(), &law(0.5), &mut memory, STEP);
     assert!(memory.is_empty());
     // Of another group nobody.
-    sweep.list(&floor(), &s.grains(), &[1, 1, 1], 2, &law(0.5), 0.2);
+    sweep.list(&floor(), &s.grains(), &meeting(&[1, 1, 1], 2), &law(0.5), 0.2);
     assert_eq!(sweep.listed(), 0);
 }
 
@@ -73,7 +78,7 @@ fn only_what_is_near_is_listed_and_springs_last_while_they_touch() {
 fn the_wall_feels_what_the_grain_does_not() {
     let s = Scene::new(&[[2.0, 0.0, 0.99]], [0.0, 1.0, 0.0]);
     let (mut sweep, mut memory) = (WallSweep::default(), Contacts::default());
-    sweep.list(&floor(), &s.grains(), &[1], 1, &law(0.5), 0.2);
+    sweep.list(&floor(), &s.grains(), &meeting(&[1], 1), &law(0.5), 0.2);
     sweep.run(&floor(), &s.grains(), &law(0.5), &mut memory, STEP);
     let (mut f, mut torque) = ([[0.0; 3]], [[0.0; 3]]);
     let felt = sweep.scatter(&mut f, &mut torque, &s.x, [0.0; 3]);
@@ -145,7 +150,7 @@ fn contacts_several_at_a_time_are_contacts_one_by_one() {
         let law = model.law(Compat::Perigrain);
         let grains = s.grains();
         let (mut sweep, mut memory) = (WallSweep::default(), Contacts::default());
-        sweep.list(&tube, &grains, &[1; 13], 1, &law, 0.5);
+        sweep.list(&tube, &grains, &meeting(&[1; 13], 1), &law, 0.5);
         let mut alone = None;
         for _ in 0..3 {
             sweep.run(&tube, &grains, &law, &mut memory, STEP);

@@ -3,13 +3,15 @@
 use super::peace::Peace;
 use super::plastic::Plastic;
 use super::{Common, Surface};
+use perigrain_base::comm;
+use perigrain_base::comm::numbers::{next, put};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, length, scale, sub};
 use perigrain_base::par;
 use perigrain_contact::driver::DEEP;
-use perigrain_contact::walls::{Spheres, WallSweep};
+use perigrain_contact::walls::{Meeting, Spheres, WallSweep};
 use perigrain_contact::{Advance, Granular};
-use perigrain_plan::{About, Needs, Op, Room, Stage, Tick, Way, When};
+use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, ToldSprings};
@@ -19,6 +21,7 @@ use perigrain_world::field::{
 };
 use perigrain_world::{Key, Numbers, Seen, SlotId, World};
 use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
@@ -38,6 +41,9 @@ pub struct WallOp {
     sweep: WallSweep,
     /// The rebuild the list of particles near the wall was made at.
     generation: Option<u64>,
+    /// The deal of rows to ranks for which it is a list of this rank's own ones, and whether there was such a list in this run.
+    deal: Option<u64>,
+    was_part: bool,
     /// How far the wall may have moved since.
     travelled: f64,
     /// Where particles were then, and their radii; empty where rebuilds follow them.
@@ -107,6 +113,8 @@ impl WallOp {
             surface,
             sweep: WallSweep::default(),
             generation: None,
+            deal: None,
+            was_part: false,
             travelled: 0.0,
             anchors: vec![],
             slot: cx.slot(&format!("f_{}", common.id)),
@@ -130,16 +138,22 @@ impl WallOp {
     /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
     fn list(&mut self, w: &World, grains: &Spheres) {
         let (s, followed) = (&w.settings.neighbor, followed(w));
-        let fresh = self.generation == Some(w.rebuild.generation) && self.travelled <= 0.5 * s.skin;
-        if fresh && (followed || stayed(grains, &self.anchors, s.skin)) {
+        let deal = w.narrow_share().map(|share| share.deal);
+        let all = 0..w.n();
+        let rows = w.narrow_share().map_or(std::slice::from_ref(&all), |share| &share.own);
+        let fresh = (self.generation, self.deal) == (Some(w.rebuild.generation), deal);
+        let near = self.travelled <= 0.5 * s.skin;
+        if fresh && near && (followed || stayed(grains, rows, &self.anchors, s.skin)) {
             return;
         }
         // Half a skin for the wall, and one for particles: those that have moved half a skin already may move half a skin back, and
         // those whose anchors are known a whole one.
         let far = 1.5 * s.skin;
         let Self { surface, sweep, law, bit, .. } = self;
-        surface.show(w, &mut |wall| sweep.list(wall, grains, &w.particles.mask, *bit, law, far));
-        self.generation = Some(w.rebuild.generation);
+        let which = Meeting { mask: &w.particles.mask, group: *bit, rows };
+        surface.show(w, &mut |wall| sweep.list(wall, grains, &which, law, far));
+        (self.generation, self.deal) = (Some(w.rebuild.generation), deal);
+        self.was_part |= deal.is_some();
         self.travelled = 0.0;
         self.anchors.clear();
         if !followed {
@@ -228,7 +242,8 @@ impl WallOp {
     fn look_ahead(&mut self, w: &World, t: &Tick) {
         let touched = self.sweep.contacts().next().is_some();
         let still = self.surface.stands() && self.local == 0 && self.plastic.is_none();
-        if touched || !still || t.setup || !followed(w) {
+        // A rank knows what touches its own particles only.
+        if touched || !still || t.setup || !followed(w) || w.is_narrow() {
             return self.peace.end();
         }
         if self.peace.is_worth_a_look(t.step) {
@@ -240,6 +255,13 @@ impl WallOp {
     fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
         let local = self.surface.local(w, &self.sweep, t);
+        if w.is_narrow() {
+            // Nothing reads sums over the particles of one rank.
+            let out = w.slots.get_mut(self.slot);
+            out.step = Some(t.step);
+            out.vector.clear();
+            return out.vector.extend([f64::NAN; FELT]);
+        }
         let (p, out) = (&w.particles, w.slots.get_mut(self.slot));
         out.step = Some(t.step);
         out.vector.clear();
@@ -272,16 +294,30 @@ fn followed(w: &World) -> bool {
     s.check && s.every == 1 && s.delay == 0 && !s.once
 }
 
-/// Whether no surface of a particle has come farther than `far` from where it was.
-fn stayed(grains: &Spheres, anchors: &[(Vec3, f64)], far: f64) -> bool {
-    let come = |range: std::ops::Range<usize>| {
-        let grown = |k: usize| {
-            let (from, radius) = anchors[k];
-            length(sub(grains.x[k], from)) + grains.radius[k] - radius
-        };
-        range.map(grown).fold(0.0, f64::max)
+/// Whether no surface of a particle of these rows has come farther than `far` from where it was.
+fn stayed(grains: &Spheres, rows: &[Range<usize>], anchors: &[(Vec3, f64)], far: f64) -> bool {
+    let grown = |k: usize| {
+        let (from, radius) = anchors[k];
+        length(sub(grains.x[k], from)) + grains.radius[k] - radius
     };
-    anchors.len() == grains.x.len() && par::reduce(anchors.len(), come, f64::max).unwrap_or(0.0) <= far
+    let come = |rows: &Range<usize>| {
+        let some = |range: Range<usize>| range.map(|k| grown(rows.start + k)).fold(0.0, f64::max);
+        par::reduce(rows.len(), some, f64::max).unwrap_or(0.0)
+    };
+    anchors.len() == grains.x.len() && rows.iter().map(come).fold(0.0, f64::max) <= far
+}
+
+/// Of the particles that ranks have seen too deep in a wall first, the deepest one, for all of them.
+fn deepest_of_all(own: Option<(u32, f64, i64)>) -> Option<(u32, f64, i64)> {
+    let write = |bytes: &mut Vec<u8>| {
+        if let Some((tag, part, step)) = own {
+            put(bytes, &[f64::from(tag), part, step as f64]);
+        }
+    };
+    let all = comm::present().pieces(&write);
+    let all = all.iter().filter_map(|piece| next(&mut &piece[..]));
+    all.map(|[tag, part, step]: [f64; 3]| (tag as u32, part, step as i64))
+        .min_by(|a, b| a.2.cmp(&b.2).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)))
 }
 
 /// Takes out what the contacts of a wall remember.
@@ -362,27 +398,23 @@ impl Op for Half {
 
 impl Op for WallOp {
     fn about(&self) -> About {
-        About::new(
-            &self.name,
-            Stage::PostForce,
-            Needs::new()
-                .read(
-                    BOX | X
-                        | V
-                        | OMEGA
-                        | RADIUS
-                        | MASS
-                        | MASK
-                        | field::COLUMNS
-                        | TAG
-                        | REGIONS
-                        | LISTS
-                        | TRAVEL,
-                )
-                .add(F | TORQUE)
-                .write(WALL_CONTACTS | FACTS | SLOTS)
-                .keep(MEMO | field::COLUMNS),
-        )
+        let needs = Needs::new()
+            .read(
+                BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS | TRAVEL,
+            )
+            .add(F | TORQUE)
+            .write(WALL_CONTACTS | FACTS | SLOTS)
+            .keep(MEMO | field::COLUMNS);
+        About { tells: true, ..About::new(&self.name, Stage::PostForce, needs) }
+    }
+
+    fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
+        let parts = w.parts.past();
+        let asked = parts.wall_touches.is_some() || parts.wall_springs.wanted(t.step, t.setup, t.last);
+        match asked || t.setup || self.plastic.is_some() || self.warmth.is_some() {
+            true => Rows::All,
+            false => Rows::Own,
+        }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -443,6 +475,9 @@ impl Op for WallOp {
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
+        if self.was_part && !w.dealings.apart {
+            self.deep = deepest_of_all(self.deep);
+        }
         if let Some((tag, part, step)) = self.deep.take() {
             let percent = 100.0 * part;
             let text = format!(

@@ -215,6 +215,9 @@ impl Driven<2> for Voluminous {
     fn own(&self, _w: &World, _k: &([f64; 3], f64), bond: &Bond, _ends: [usize; 2]) -> [f64; 2] {
         [1.0 / bond.length, 1.0]
     }
+    fn prepares(&self) -> bool {
+        true
+    }
     fn prepare(&self, columns: &mut Columns<2>, body: &Body, dimension: i32) -> Vec<(usize, f64)> {
         spring::swell(columns, body, dimension);
         vec![]

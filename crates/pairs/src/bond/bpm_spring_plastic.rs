@@ -154,6 +154,9 @@ impl Driven<2> for Declared {
     fn own(&self, w: &World, _k: &([f64; 3], f64), bond: &Bond, _ends: [usize; 2]) -> [f64; 2] {
         [1.0 / bond.length, at_rest(w, bond)]
     }
+    fn prepares(&self) -> bool {
+        true
+    }
     fn prepare(&self, columns: &mut Columns<2>, body: &Body, _dimension: i32) -> Vec<(usize, f64)> {
         let limit = |kind| self.springs.get(&kind).map_or(f64::INFINITY, |(_, limit)| *limit);
         give_way(columns, body, limit)

@@ -1,21 +1,24 @@
 //! The op of bonds as columns: finds their ends, evaluates a law for all of them, lets them break.
 
 use super::store_local::Store;
+use perigrain_base::comm;
+use perigrain_base::comm::numbers::{next, put};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
-use perigrain_bonded::columns::{Columns, Key, Member};
+use perigrain_bonded::columns::{Columns, GROUP, Key, Member};
 use perigrain_bonded::law::{BondLaw, Ends, Motion};
 use perigrain_bonded::sweep::{Body, Out, Sweep, add_up, nearest};
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::pull::{Found, Pull, Stretched, apart, find, periods};
 use perigrain_world::bonds::ascending;
 use perigrain_world::field::{BONDS, BOX, F, Fields, LISTS, MEMO, OMEGA, QUAT, TAG, TALLY, TORQUE, V, X};
 use perigrain_world::index::Index;
+use perigrain_world::share::Listed;
 use perigrain_world::tally::add_share;
-use perigrain_world::{Bond, World};
+use perigrain_world::{Bond, Key as ListKey, World};
 
 /// A law with what the deck's lines say.
 pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
@@ -42,6 +45,11 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
     /// What changes in the columns before forces are evaluated. Bonds whose memory has changed, with what it is now.
     fn prepare(&self, _columns: &mut Columns<C>, _body: &Body, _dimension: i32) -> Vec<(usize, f64)> {
         vec![]
+    }
+
+    /// Whether that looks at all bonds.
+    fn prepares(&self) -> bool {
+        false
     }
 
     /// What is kept of bonds that break.
@@ -162,6 +170,30 @@ fn stand(w: &World) -> [u64; 3] {
     [w.rebuild.places, w.rebuild.roster, w.bonds.changes]
 }
 
+/// Which bonds this rank evaluates, where grains are shared out to ranks: the groups that hold a bond of one of its grains. A bond across
+/// a border is evaluated by both ranks.
+#[derive(Default)]
+struct Part {
+    /// The deal, and how the rows of the columns were arranged.
+    of: Option<[u64; 2]>,
+    groups: Vec<bool>,
+}
+
+/// The bonds that have broken on some rank, ascending.
+fn of_all(own: &[usize]) -> Vec<usize> {
+    let own: Vec<u32> = own.iter().map(|bond| *bond as u32).collect();
+    let mut all = vec![];
+    for piece in comm::present().pieces(&|bytes| put(bytes, &own)) {
+        let mut rest = &piece[..];
+        while let Some([bond]) = next::<u32, 1>(&mut rest) {
+            all.push(bond as usize);
+        }
+    }
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
 /// Forces of all bonds of one law, and their breaking.
 pub struct Bonded<const C: usize, L: Driven<C>> {
     law: L,
@@ -175,13 +207,29 @@ pub struct Bonded<const C: usize, L: Driven<C>> {
     columns: Columns<C>,
     coeffs: Vec<Option<Coeffs<C, L>>>,
     out: Out,
+    /// How often the rows of the columns have been arranged otherwise.
+    arranged: u64,
+    part: Part,
+    /// Under which name it has rows of other ranks.
+    listing: ListKey<Listed>,
 }
 
 impl<const C: usize, L: Driven<C>> Bonded<C, L> {
     /// With a law; types without coefficients are none of its business.
     pub fn new(law: L, span: Span) -> Self {
-        let (columns, out) = (Columns::default(), Out::default());
-        Self { law, span, adapted: 0.0, made: None, tags: vec![], columns, coeffs: vec![], out }
+        Self {
+            law,
+            span,
+            adapted: 0.0,
+            made: None,
+            tags: vec![],
+            columns: Columns::default(),
+            coeffs: vec![],
+            out: Out::default(),
+            arranged: 0,
+            part: Part::default(),
+            listing: ListKey::new(&format!("bond {}", L::NAME)),
+        }
     }
 
     /// Finds bonds and their ends anew.
@@ -210,6 +258,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         });
         self.tags.clone_from(&w.particles.tag);
         self.made = Some(stand(w));
+        self.arranged += 1;
         Ok(())
     }
 
@@ -234,7 +283,41 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         self.columns.follow(&moved);
         self.tags.clone_from(tags);
         self.made = Some(now);
+        self.arranged += 1;
         true
+    }
+
+    /// The present deal of grains to ranks, where this rank evaluates the bonds of its own: not where sums over bonds are asked for.
+    fn deal(&self, w: &World, t: &Tick) -> Option<u64> {
+        let sums = t.energy || t.atom_energy || t.virial || w.bonds.past().counts_losses;
+        w.grains_dealt().filter(|_| !sums && !t.setup && !self.law.prepares())
+    }
+
+    /// Finds the bonds that this rank evaluates, and has what they read of other ranks' particles.
+    fn take_part(&mut self, w: &mut World, deal: u64) {
+        w.act_narrowly();
+        let of = Some([deal, self.arranged]);
+        if self.part.of != of {
+            let mut is_own = vec![false; w.n()];
+            let share = w.narrow_share();
+            share.iter().flat_map(|share| &share.own).for_each(|rows| is_own[rows.clone()].fill(true));
+            let ends =
+                |group: usize| (group * GROUP..(group + 1) * GROUP).flat_map(|bond| self.columns.pair(bond));
+            let groups = 0..self.columns.rows() / GROUP;
+            self.part.groups = groups.map(|group| ends(group).any(|end| is_own[end])).collect();
+            self.part.of = of;
+        }
+        let columns = &self.columns;
+        w.list_rows((self.listing, self.arranged), || {
+            let mut is_listed = vec![false; columns.particles()];
+            let groups = self.part.groups.iter().enumerate().filter(|(_, evaluated)| **evaluated);
+            let bonds = groups.flat_map(|(group, _)| group * GROUP..(group + 1) * GROUP);
+            bonds.flat_map(|bond| columns.pair(bond)).for_each(|end| is_listed[end] = true);
+            (0..is_listed.len() as u32).filter(|row| is_listed[*row as usize]).collect()
+        });
+        let turns = if L::Law::TURNS { QUAT | OMEGA } else { Fields::NONE };
+        let moves = if self.law.damped() { V } else { Fields::NONE };
+        w.halo(X | turns | moves, true);
     }
 
     /// Energies and virials, for those who ask.
@@ -275,7 +358,14 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
 
     /// Takes away the bonds that broke in this step; pair forces act between their ends from the next step on.
     fn break_off(&mut self, w: &mut World, step: i64) {
-        let over: Vec<usize> = self.columns.living().filter(|&k| self.out.load[k] >= 1.0).collect();
+        let over = self.columns.living().filter(|&k| self.out.load[k] >= 1.0);
+        let mut over: Vec<usize> = over.collect();
+        if w.is_narrow() {
+            over = of_all(&over);
+            if let Some(store) = self.law.store() {
+                w.whole(X | store.reads());
+            }
+        }
         let tags = &w.particles.tag;
         let told =
             |k: &usize| (ascending(self.columns.pair(*k).map(|i| tags[i])), i32::from(self.columns.kind(*k)));
@@ -323,7 +413,12 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         About::new(format!("bond {}", L::NAME), Stage::Force, needs.write(writes))
     }
 
+    fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
+        if self.deal(w, t).is_some() { Rows::Asks } else { Rows::All }
+    }
+
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let deal = self.deal(w, t);
         let mut anew = t.setup;
         if self.law.adapts() && self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
@@ -331,13 +426,23 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             anew = true;
         }
         if anew || (self.made != Some(stand(w)) && !self.follow(w)) {
+            if deal.is_some() {
+                w.whole(X | QUAT | self.law.reads());
+            }
             self.lay_out(w)?;
         }
         // Who adds up over bonds does so in the order of space, whatever has been before.
         let sums = t.energy || t.atom_energy || t.virial || w.bonds.counts_losses;
         if sums && !self.columns.in_order() {
             self.columns.put_in_order();
+            self.arranged += 1;
         }
+        if let Some(deal) = deal {
+            self.take_part(w, deal);
+        }
+        let groups = deal.map(|_| &self.part.groups[..]);
+        let all = 0..w.n();
+        let rows = w.narrow_share().map_or_else(|| vec![all], |share| share.own.clone());
         let periods = periods(w)?;
         let p = &mut w.particles;
         let none: (&[Vec3], &[Quat]) = (&[], &[]);
@@ -351,19 +456,21 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             let ends = ascending(self.columns.pair(bond).map(|i| p.tag[i]));
             w.bonds.memory.insert(ends, memory);
         }
+        let pass_breaks = self.law.breaks() && !holds && !t.trial;
         let pass = Sweep {
             columns: &self.columns,
             coeffs: &self.coeffs,
             body,
             damped: self.law.damped(),
             // Nothing breaks where a line search tries.
-            breaks: self.law.breaks() && !holds && !t.trial,
+            breaks: pass_breaks,
             counts: w.bonds.counts_losses && self.law.damped(),
+            groups,
         };
         self.law.law().sweep(&pass, &mut self.out);
         let torque = if L::Law::TURNS { Some(&mut p.torque[..]) } else { None };
-        add_up(&self.columns, &self.out, &mut p.f, torque);
-        if self.out.broken {
+        add_up(&self.columns, &self.out, &rows, &mut p.f, torque);
+        if pass_breaks && w.anywhere(self.out.broken) {
             self.break_off(w, t.step);
         }
         if w.bonds.counts_losses {

@@ -4,13 +4,15 @@ use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
 use super::heating::{Heating, conducts};
 use super::images::suits;
 use super::mdr::Press;
+use super::ranks::{agree_on_deep, contacts_of_all, contacts_of_others, virial_of_all};
 use super::reach::{reaching, refuse_giants};
+use perigrain_base::comm;
 use perigrain_base::diag::Result;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::sub;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
+use perigrain_contact::fast::{Dealt, Fast, Frame, Laws, Sums};
 use perigrain_contact::mdr::Manner;
 use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
@@ -22,7 +24,7 @@ use perigrain_world::field::{
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
 };
 use perigrain_world::index::Index;
-use perigrain_world::{Allowed, Key, World};
+use perigrain_world::{Allowed, Key, Share, World};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -42,6 +44,9 @@ pub struct Force {
     lent: Option<Vec<f64>>,
     /// The rebuild the lists were made at.
     generation: Option<u64>,
+    /// The deal they were made for, where grains are shared out to ranks, and whether some in this run were those of one rank.
+    deal: Option<u64>,
+    was_part: bool,
     plain: Plain,
     /// The fast loop, where it knows all the rules.
     fast: Option<Fast>,
@@ -80,6 +85,8 @@ impl Force {
             steady: false,
             lent: None,
             generation: None,
+            deal: None,
+            was_part: false,
             plain: Plain::default(),
             fast,
             is_fast: false,
@@ -96,10 +103,50 @@ impl Force {
         }
     }
 
+    /// The present deal of grains to ranks, where contacts can be shared out with it.
+    fn wanted_deal(&self, w: &World) -> Option<u64> {
+        let plain = self.fast.is_some() && self.press.is_none() && !conducts(&self.rules);
+        w.grains_dealt().filter(|_| plain && w.parts.past().pair_deeds.is_none())
+    }
+
+    /// Whether the lists are those of one of several ranks.
+    fn is_part(&self) -> bool {
+        self.is_fast && self.fast.as_ref().is_some_and(Fast::is_part)
+    }
+
+    /// Where grains are shared out to ranks: has the rows that contacts read, those of all ranks where lists are due.
+    fn bring_up_to_date(&mut self, w: &mut World) {
+        let Some(deal) = self.wanted_deal(w) else { return };
+        let generation = w.rebuild.generation;
+        if self.is_part() && (self.deal, self.generation) == (Some(deal), Some(generation)) {
+            w.list_rows((self.key.of(), generation), || self.rows());
+            return w.halo(X | V | OMEGA, true);
+        }
+        w.whole(X | V | OMEGA);
+        if self.deal == Some(deal) && !self.is_part() {
+            // All ranks evaluate all contacts.
+            w.whole(F | TORQUE);
+        }
+    }
+
+    /// What contacts remember, beside what the lists there are remember.
+    fn known(&self, w: &mut World) -> Option<Contacts> {
+        let fast = self.fast.as_ref().filter(|_| self.is_fast);
+        match fast {
+            None => w.contacts.remove(self.key),
+            Some(fast) if !fast.is_part() || w.dealings.apart => None,
+            Some(fast) if self.deal.is_some() => Some(contacts_of_others(w, fast)),
+            Some(fast) => Some(contacts_of_all(fast)),
+        }
+    }
+
     /// Lists for the present rebuild: those there are, if they outlast it; else new ones from the positions that the world keeps
     /// for that, from which all lists reach far enough until the next rebuild.
     fn renew(&mut self, w: &mut World) -> Result<()> {
         let before = self.generation.replace(w.rebuild.generation);
+        let deal = self.wanted_deal(w);
+        let before = before.filter(|_| self.deal == deal);
+        self.deal = deal;
         let ((lo, period), now, kept) = (w.made_in(), w.periods(), &w.rebuild.kept);
         if let Some(fast) = self.fast.as_mut().filter(|fast| self.is_fast && fast.len() == w.n())
             && kept.outlasted > 0
@@ -123,14 +170,19 @@ impl Force {
                 return Ok(());
             }
         }
-        if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
-            let known = if self.is_fast { None } else { w.contacts.remove(self.key) };
+        if self.fast.as_ref().is_some_and(|fast| suits(w, period, fast)) {
+            let known = self.known(w);
+            let Some(fast) = &mut self.fast else { return Ok(()) };
+            let kept = &w.rebuild.kept;
             let frame = Frame { lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
-            fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
+            let rows = deal.and(w.share.as_ref()).map(Share::rows_of_ranks);
+            let dealt = rows.as_ref().map(|rows| Dealt { rows, me: comm::present().rank() });
+            fast.rebuild(&grains, &frame, known.as_ref(), dealt, &|i, j| allowed.pair(i, j));
             fast.turn(&kept.turns, &now);
             self.is_fast = true;
+            self.was_part |= fast.is_part();
             return Ok(());
         }
         self.hand_over(w);
@@ -155,7 +207,8 @@ impl Force {
     fn hand_over(&mut self, w: &mut World) {
         if let Some(fast) = self.fast.as_mut().filter(|_| std::mem::take(&mut self.is_fast)) {
             fast.keep_contacts();
-            w.contacts.insert(self.key, fast.contacts());
+            let shared = fast.is_part() && !w.dealings.apart;
+            w.contacts.insert(self.key, if shared { contacts_of_all(fast) } else { fast.contacts() });
             fast.clear();
         }
     }
@@ -180,6 +233,7 @@ impl Force {
             deeds.as_mut().map(|all| [&mut all.damping[..], &mut all.across[..], &mut all.pressing[..]]);
         let sums = Sums { force: &mut f, torque: &mut torque, heat: heating, deeds: told };
         let virial = fast.run(&grains, sums, step, store, t.virial);
+        let shared = fast.is_part();
         let deep = fast.deep;
         (w.particles.f, w.particles.torque) = (f, torque);
         if let Some((mut all, before)) = deeds.zip(before) {
@@ -192,12 +246,15 @@ impl Force {
             heat.give(w);
         }
         if t.virial {
-            add_virial(w, virial);
+            add_virial(w, if shared { virial_of_all(fast) } else { virial });
         }
         if t.contacts {
-            w.contacts.insert(self.key, fast.contacts());
+            w.contacts.insert(self.key, if shared { contacts_of_all(fast) } else { fast.contacts() });
         }
         report(w, t, deep);
+        if shared {
+            w.act_narrowly();
+        }
         Ok(())
     }
 
@@ -240,17 +297,22 @@ impl Force {
     /// What precedes contacts: lists where they are due; the box, whether contacts remember, and whether masses may be others.
     fn prepare(&mut self, w: &mut World, t: &Tick) -> Result<(Periods, bool, bool)> {
         // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
+        self.bring_up_to_date(w);
         if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
             self.plain.roster = Some(w.rebuild.roster);
             self.find_bodies(w);
         }
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
-        let renewed = stale || self.generation != Some(w.rebuild.generation);
+        let renewed =
+            stale || self.generation != Some(w.rebuild.generation) || self.deal != self.wanted_deal(w);
         if renewed {
             if w.parts.tiles.is_some() {
                 self.fast.iter_mut().for_each(Fast::time_tiles);
             }
             self.renew(w)?;
+            if self.wanted_deal(w).is_some() && !self.is_part() {
+                w.whole(F | TORQUE);
+            }
         }
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide, but not of plastic grains.
         let store = !t.setup || (w.settings.lammps() && self.press.is_none());
@@ -396,13 +458,16 @@ impl Op for Force {
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Span {
+        if self.wanted_deal(w).is_some() {
+            return Span::Asks;
+        }
         let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_deeds.is_some();
         let plain = !asked && !t.setup && self.press.is_none() && !conducts(&self.rules);
         let listed = self.generation == Some(w.rebuild.past().generation);
-        if !plain || !listed {
+        if !plain || !listed || w.grains_dealt().is_some() {
             return Span::All;
         }
-        w.list_rows(self.key.of(), || self.rows());
+        w.list_rows((self.key.of(), w.rebuild.past().generation), || self.rows());
         Span::Listed
     }
 
@@ -416,6 +481,9 @@ impl Op for Force {
             && let Some(line) = self.fast.as_ref().and_then(Fast::describe_tiles)
         {
             lines.push(format!("{}: {line}", self.name));
+        }
+        if self.was_part && !w.dealings.apart {
+            agree_on_deep(w);
         }
         self.hand_over(w);
         self.generation = None;

@@ -113,7 +113,7 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     match outcome {
         Ok(_) => w.undeal(),
         // Ranks need not have come to the same place.
-        Err(_) => w.abandon(),
+        Err(_) => w.part(),
     }
     w.travel.begin(false);
     outcome

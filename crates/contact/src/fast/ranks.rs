@@ -1,0 +1,141 @@
+//! Lists on several ranks: each rank has the whole lists of its own tiles, and of those beside them the pairs that touch its grains.
+//!
+//! A pair that crosses the border of two ranks is evaluated by both, from the same numbers. What a rank lists of a tile of another one is
+//! a part of its list in the same order, so that forces on its own grains are added in the order of one process, and have its bits. No
+//! forces are handed over.
+
+use super::Fast;
+use super::lists::List;
+use perigrain_base::math::lanes::place;
+use perigrain_neigh::tiles::Tiles;
+use perigrain_world::contacts::{Contacts, mirror};
+use std::ops::Range;
+
+/// What of its list a rank has of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// All.
+    Whole,
+    /// The pairs that touch its grains.
+    Touching,
+    /// Nothing.
+    Nothing,
+}
+
+/// Which pairs a rank lists.
+#[derive(Clone, Debug)]
+pub(super) struct Own {
+    /// Whether each grain is its own.
+    grains: Vec<bool>,
+    /// What it has of each tile.
+    parts: Vec<Part>,
+}
+
+/// How grains are shared out to ranks.
+#[derive(Clone, Copy, Debug)]
+pub struct Dealt<'a> {
+    /// The rows of each rank, one behind the other.
+    pub rows: &'a [Range<usize>],
+    /// This rank.
+    pub me: usize,
+}
+
+impl Own {
+    /// What this rank lists. None where some tile has grains of several ranks: contacts remember at the ranks of their grains.
+    pub(super) fn new(dealt: Dealt, tiles: &Tiles) -> Option<Self> {
+        let owner = |place: usize| {
+            let row = tiles.order[place] as usize;
+            dealt.rows.partition_point(|rows| rows.end <= row)
+        };
+        let mut owners = vec![];
+        for tile in 0..tiles.count() {
+            let members = tiles.members(tile);
+            let of = members.clone().next().map(owner);
+            if members.clone().any(|place| Some(owner(place)) != of) {
+                return None;
+            }
+            owners.push(of);
+        }
+        let is_own = |tile: usize| owners[tile] == Some(dealt.me);
+        let part = |tile: usize| match is_own(tile) {
+            true => Part::Whole,
+            false if tiles.beside(tile).iter().any(|k| is_own(*k as usize)) => Part::Touching,
+            false => Part::Nothing,
+        };
+        let parts = (0..tiles.count()).map(part).collect();
+        let mut grains = vec![false; tiles.order.len()];
+        grains[dealt.rows[dealt.me].clone()].fill(true);
+        Some(Self { grains, parts })
+    }
+
+    /// Whether it lists anything of a tile.
+    pub(super) fn lists(&self, tile: usize) -> bool {
+        self.parts[tile] != Part::Nothing
+    }
+
+    /// Whether it lists this pair of a tile of which it lists something.
+    pub(super) fn has(&self, tile: usize, i: usize, j: usize) -> bool {
+        self.parts[tile] == Part::Whole || self.grains[i] || self.grains[j]
+    }
+}
+
+impl Fast {
+    /// Whether lists are those of one of several ranks.
+    pub fn is_part(&self) -> bool {
+        self.own.is_some()
+    }
+
+    /// Grains that no list names are not watched on several ranks: where they are is not known.
+    pub(super) fn watch_listed(&mut self) {
+        if self.is_part() {
+            let is_listed = self.are_listed();
+            self.lists.iter_mut().for_each(|list| list.watched.retain(|grain| is_listed[grain as usize]));
+        }
+    }
+
+    /// The lists that this rank has as a whole, with their numbers.
+    pub(super) fn whole_lists(&self) -> impl Iterator<Item = (usize, &List)> {
+        let is_whole = |k: usize| self.own.as_ref().is_none_or(|own| own.parts.get(k) == Some(&Part::Whole));
+        self.lists.iter().enumerate().filter(move |(k, _)| is_whole(*k))
+    }
+
+    /// What each other one of so many ranks is to remember of the contacts of this one, `me`, where grains of these ids stand in this order
+    /// now and `owner(row)` is the rank that moves them: each contact goes to the ranks of both its grains.
+    pub fn handed_over(
+        &self,
+        tag: &[u32],
+        (me, ranks): (usize, usize),
+        owner: impl Fn(usize) -> usize,
+    ) -> Vec<Contacts> {
+        let (places, width) = (super::memory::Places::new(tag), self.width);
+        let owner = |row: usize| dealt.rows.partition_point(|rows| rows.end <= row);
+        let mut out = vec![Contacts { width: self.laws.memory(), ..Contacts::default() }; dealt.rows.len()];
+        for (_, list) in self.whole_lists() {
+            let rows = list.short.history.chunks_exact(width);
+            for ((i, w), row) in list.short.i.iter().zip(&list.short.w).zip(rows) {
+                if row[width - 1] != self.now {
+                    continue;
+                }
+                let [a, b] = [self.tag[*i as usize], self.tag[place(*w)]];
+                let Some((p, q)) = places.of(a).zip(places.of(b)) else { continue };
+                let [first, second] = [p, q].map(|row| owner(row as usize));
+                let both = [Some(first), (second != first).then_some(second)].into_iter().flatten();
+                for rank in both.filter(|rank| *rank != dealt.me) {
+                    let to = &mut out[rank];
+                    to.keys.push([a.min(b), a.max(b)]);
+                    let from = to.history.len();
+                    to.history.extend_from_slice(&row[..to.width]);
+                    if a > b {
+                        mirror(&mut to.history[from..]);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Σ d ⊗ F of the last evaluation: of each list that this rank has as a whole, with its number [energy].
+    pub fn virials(&self) -> impl Iterator<Item = (u32, [f64; 6])> {
+        self.whole_lists().map(|(k, list)| (k as u32, list.virial))
+    }
+}

@@ -1,0 +1,300 @@
+//! Dealing rows out to ranks: bodies and grains tile by tile, and which rows ranks need of each other then.
+
+use super::{Listed, Share, Traffic, What};
+use crate::rebuild::Rebuild;
+use crate::{Fields, Key, Named, World};
+use perigrain_base::comm::numbers::{next, put};
+use perigrain_base::comm::{self, Comm};
+use perigrain_peri::families::Families;
+use perigrain_peri::families::shares::ranges;
+use std::ops::Range;
+
+/// Whether rows are shared out, and how often they have been.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Dealings {
+    /// A run is under way, and its rows are shared out as soon as they can be.
+    wanted: bool,
+    /// How often rows have been dealt since the program began.
+    count: u64,
+    /// A run has failed: ranks need not have come to the same place, and nothing waits for another rank any more.
+    pub apart: bool,
+}
+
+/// The tiles that grains stand in while they stand in the order of space.
+#[derive(Clone, Debug, Default)]
+pub struct Tiling {
+    /// Rows before which each tile ends, ascending.
+    ends: Vec<u32>,
+    /// What particles there were, in which places.
+    roster: [u64; 2],
+}
+
+impl Tiling {
+    /// Tiles that end before these rows, of particles as they stand now.
+    pub fn new(ends: Vec<u32>, rebuild: &Rebuild) -> Self {
+        Self { ends, roster: roster(rebuild) }
+    }
+
+    /// The rows of each rank: whole tiles, as many rows to each as to any other. None where there are fewer tiles than ranks.
+    fn dealt(&self, ranks: usize) -> Option<Vec<Range<usize>>> {
+        let all = *self.ends.last()? as usize;
+        if self.ends.len() < ranks {
+            return None;
+        }
+        let end = |rank: usize| match rank {
+            0 => 0,
+            rank if rank == ranks => all,
+            rank => {
+                let wanted = (all * rank / ranks) as u32;
+                let k = self.ends.partition_point(|end| *end < wanted).max(1);
+                let [before, after] = [k - 1, k].map(|k| self.ends[k.min(self.ends.len() - 1)]);
+                (if wanted - before.min(wanted) < after - wanted { before } else { after }) as usize
+            }
+        };
+        Some((0..ranks).map(|rank| end(rank)..end(rank + 1)).collect())
+    }
+}
+
+/// Counters that change when particles come, go or change places.
+fn roster(rebuild: &Rebuild) -> [u64; 2] {
+    [rebuild.roster, rebuild.places]
+}
+
+/// The rows of bodies that each rank alone moves, and those that this one moves. None where there is no body to deal.
+fn deal_bodies(
+    families: &mut Option<Families>,
+    n: usize,
+    (me, ranks): (usize, usize),
+) -> Option<[Vec<Vec<Range<usize>>>; 2]> {
+    let families = families.as_mut().filter(|families| families.place.len() == n)?;
+    if !families.deal(me, ranks) {
+        return None;
+    }
+    let shares = families.shares.as_ref()?;
+    let of = |rank: usize| {
+        let rows = shares.owner.iter().enumerate().filter(|(_, owner)| usize::from(**owner) == rank);
+        ranges(rows.map(|(row, _)| row))
+    };
+    Some([(0..ranks).map(of).collect(), vec![shares.own.clone()]])
+}
+
+impl World {
+    /// Shares rows out to ranks from now on, where there are several, as soon as there is something to share out. All rows are up to date
+    /// before.
+    pub fn begin_shares(&mut self) {
+        self.dealings.wanted = comm::several();
+        self.deal();
+    }
+
+    /// Shares rows out to ranks anew; all rows are up to date before.
+    pub fn deal(&mut self) {
+        self.abandon();
+        if !self.dealings.wanted {
+            return;
+        }
+        let comm = comm::present();
+        let (me, ranks) = (comm.rank(), comm.size());
+        let n = self.n();
+        let (what, alone, own) = match deal_bodies(self.families.past_mut(), n, (me, ranks)) {
+            Some([alone, mut own]) => (What::Bodies, alone, own.swap_remove(0)),
+            None => {
+                let Some(rows) = self.tiling().and_then(|tiling| tiling.dealt(ranks)) else { return };
+                let alone: Vec<Vec<Range<usize>>> = rows.into_iter().map(|rows| vec![rows]).collect();
+                let own = alone[me].clone();
+                (What::Grains, alone, own)
+            }
+        };
+        self.dealings.count += 1;
+        self.share = Some(Share {
+            comm,
+            what,
+            deal: self.dealings.count,
+            own,
+            alone,
+            links: [vec![], vec![]],
+            listed: Named::default(),
+            stale: Fields::NONE,
+            near: [Fields::NONE; 2],
+            roster: roster(self.rebuild.past()),
+            narrow: false,
+            bytes: vec![],
+            traffic: Traffic::default(),
+        });
+        self.link();
+    }
+
+    /// Shares rows out where that was not possible before, and is now.
+    pub fn deal_if_possible(&mut self) {
+        if self.dealings.wanted && self.share.is_none() && self.tiling().is_some() {
+            self.deal();
+        }
+    }
+
+    /// The tiles of grains, where all particles are grains and stand in them now.
+    fn tiling(&self) -> Option<&Tiling> {
+        let rebuild = self.rebuild.past();
+        let tiling = &rebuild.tiling;
+        let all = tiling.ends.last().map(|end| *end as usize) == Some(self.n());
+        (all && tiling.roster == roster(rebuild) && self.families.past().is_none()).then_some(tiling)
+    }
+
+    /// Finds anew which rows ranks need of each other.
+    pub fn link(&mut self) {
+        let Some(share) = &mut self.share else { return };
+        let listed = share.listed.values().flat_map(|listed| listed.rows.iter().copied());
+        let me = share.comm.rank();
+        let links = |needed: [Vec<Vec<u32>>; 2]| {
+            let [out, into] = needed.map(|rows| {
+                rows.into_iter()
+                    .map(|rows| ranges(rows.into_iter().map(|row| row as usize)))
+                    .collect::<Vec<_>>()
+            });
+            let links = out.into_iter().zip(into).enumerate().filter(|(with, _)| *with != me);
+            let links =
+                links.map(|(with, (out, into))| super::Link { with, out, into, bytes: Default::default() });
+            links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect::<Vec<_>>()
+        };
+        share.links = match (share.what, self.families.past()) {
+            (What::Grains, _) => {
+                let wanted = wanted(&share.alone, me, listed);
+                let asked = asked(&*share.comm, &wanted);
+                [vec![], links([asked, wanted])]
+            }
+            (What::Bodies, Some(families)) => {
+                [families.needed(), families.needed_by_lists(listed)].map(|needed| {
+                    let of = |with: &Vec<Vec<u32>>| with.get(me).cloned().unwrap_or_default();
+                    let out = needed.iter().map(of).collect();
+                    links([out, needed.get(me).cloned().unwrap_or_default()])
+                })
+            }
+            (What::Bodies, None) => [vec![], vec![]],
+        };
+        // Rows that are linked since now have not been handed over.
+        share.near = [Fields::NONE; 2];
+    }
+
+    /// Hands over the rows that an op's lists of this version name from now on, where shares are dealt and that is not done yet. Lists are
+    /// those of all ranks where bodies are shared out, and those of this one where grains are.
+    pub fn list_rows(&mut self, (by, version): (Key<Listed>, u64), rows: impl FnOnce() -> Vec<u32>) {
+        let Some(share) = &mut self.share else { return };
+        let known = share.listed.get(by);
+        if known.is_some_and(|listed| listed.version == version) {
+            return;
+        }
+        let rows = rows();
+        let mut other = known.map_or(!rows.is_empty(), |known| known.rows != rows);
+        share.listed.insert(by, Listed { version, rows });
+        if share.what == What::Grains {
+            let mut others = if other { 1.0 } else { 0.0 };
+            share.agree(std::iter::once(&mut others));
+            other = others > 0.0;
+        }
+        if other {
+            self.link();
+        }
+    }
+
+    /// The number of the present deal, where grains are shared out to ranks.
+    pub fn grains_dealt(&self) -> Option<u64> {
+        self.share.as_ref().filter(|share| share.what == What::Grains).map(|share| share.deal)
+    }
+
+    /// Takes the shares back for the rest of a run; all rows are up to date then.
+    pub fn undeal(&mut self) {
+        self.whole(Fields::ALL);
+        self.abandon();
+        self.dealings.wanted = false;
+    }
+
+    /// Forgets that rows are shared out after a failure, without a word to other ranks.
+    pub fn part(&mut self) {
+        self.abandon();
+        (self.dealings.wanted, self.dealings.apart) = (false, true);
+    }
+
+    fn abandon(&mut self) {
+        self.share = None;
+        if let Some(families) = self.families.past_mut() {
+            families.undeal();
+        }
+    }
+
+    /// Whether particles have come, gone or changed places since they were shared out.
+    pub fn is_misdealt(&self) -> bool {
+        let Some(share) = &self.share else { return false };
+        let known = |families: &Families| {
+            families.shares.as_ref().is_some_and(|shares| shares.owner.len() == self.n())
+        };
+        let stands = match share.what {
+            What::Bodies => self.families.past().as_ref().is_some_and(known),
+            What::Grains => self.families.past().is_none(),
+        };
+        share.roster != roster(self.rebuild.past()) || !stands
+    }
+}
+
+impl Share {
+    /// The rows of each rank, one behind the other, where grains are shared out.
+    pub fn rows_of_ranks(&self) -> Vec<Range<usize>> {
+        self.alone.iter().flatten().cloned().collect()
+    }
+}
+
+/// Of these rows those that each other rank has, ascending.
+fn wanted(alone: &[Vec<Range<usize>>], me: usize, listed: impl Iterator<Item = u32>) -> Vec<Vec<u32>> {
+    let mut rows: Vec<u32> = listed.collect();
+    rows.sort_unstable();
+    rows.dedup();
+    let of = |(rank, owned): (usize, &Vec<Range<usize>>)| match &owned[..] {
+        [owned] if rank != me => {
+            let at = |end: usize| rows.partition_point(|row| (*row as usize) < end);
+            rows[at(owned.start)..at(owned.end)].to_vec()
+        }
+        _ => vec![],
+    };
+    alone.iter().enumerate().map(of).collect()
+}
+
+/// The rows of this rank that each other one wants, when this one wants these of them.
+fn asked(comm: &dyn Comm, wanted: &[Vec<u32>]) -> Vec<Vec<u32>> {
+    let letter = |rows: &Vec<u32>| {
+        let mut bytes = vec![];
+        put(&mut bytes, rows);
+        bytes
+    };
+    let out = wanted.iter().map(letter).enumerate().filter(|(_, bytes)| !bytes.is_empty()).collect();
+    let mut asked = vec![vec![]; wanted.len()];
+    for (from, bytes) in comm.exchange(out) {
+        let mut rest = &bytes[..];
+        while let Some([row]) = next(&mut rest) {
+            asked[from].push(row);
+        }
+    }
+    asked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_get_whole_tiles_and_as_many_rows_as_others() {
+        let tiling = Tiling { ends: vec![10, 30, 30, 41, 60, 75, 100], roster: [0; 2] };
+        assert_eq!(tiling.dealt(2), Some(vec![0..41, 41..100]));
+        assert_eq!(tiling.dealt(3), Some(vec![0..30, 30..60, 60..100]));
+        assert_eq!(tiling.dealt(1), Some(vec![0..100]));
+        assert_eq!(tiling.dealt(8), None);
+        for ranks in 1..=7 {
+            let rows = tiling.dealt(ranks).unwrap();
+            assert!(rows.windows(2).all(|two| two[0].end == two[1].start && two[0].start <= two[0].end));
+            assert_eq!((rows[0].start, rows[ranks - 1].end), (0, 100));
+        }
+    }
+
+    #[test]
+    fn rows_of_lists_are_wanted_of_their_ranks() {
+        let alone = [vec![0..4], vec![4..9], vec![9..12]];
+        let listed = [7, 3, 4, 10, 11, 4, 0].into_iter();
+        assert_eq!(wanted(&alone, 1, listed), [vec![0, 3], vec![], vec![10, 11]]);
+    }
+}
