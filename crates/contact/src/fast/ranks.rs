@@ -99,14 +99,9 @@ impl Fast {
         self.lists.iter().enumerate().filter(move |(k, _)| is_whole(*k))
     }
 
-    /// What each other one of so many ranks is to remember of the contacts of this one, `me`, where grains of these ids stand in this order
-    /// now and `owner(row)` is the rank that moves them: each contact goes to the ranks of both its grains.
-    pub fn handed_over(
-        &self,
-        tag: &[u32],
-        (me, ranks): (usize, usize),
-        owner: impl Fn(usize) -> usize,
-    ) -> Vec<Contacts> {
+    /// What each other rank is to remember of the contacts of this one, where grains of these ids stand in this order now and are dealt
+    /// so: each contact goes to the ranks of both its grains.
+    pub fn handed_over(&self, tag: &[u32], dealt: Dealt) -> Vec<Contacts> {
         let (places, width) = (super::memory::Places::new(tag), self.width);
         let owner = |row: usize| dealt.rows.partition_point(|rows| rows.end <= row);
         let mut out = vec![Contacts { width: self.laws.memory(), ..Contacts::default() }; dealt.rows.len()];
