@@ -93,6 +93,8 @@ pub struct Session {
     pub plan: Option<StepPlan>,
     watch: Box<dyn Watch>,
     ran: bool,
+    /// Whether it has been said that there are few grains for so many ranks.
+    said_few: bool,
     /// The step with which the present scene has passed the check of its bonds.
     checked_step: Option<f64>,
     shown: usize,
@@ -173,6 +175,7 @@ impl Session {
             plan: None,
             watch: Box::new(Unwatched),
             ran: false,
+            said_few: false,
             checked_step: None,
             shown: 0,
             interrupted: false,

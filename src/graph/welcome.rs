@@ -2,10 +2,10 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::{Compute, Fix, SealCx};
-use perigrain_world::World;
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, MASK, MASS, MEMO, QUAT, RADIUS, V, X};
+use perigrain_world::{Fields, World};
 
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {
@@ -28,13 +28,19 @@ struct Welcome {
     roster: u64,
 }
 
+/// What is noted of particles that have joined.
+const NOTED: Fields = BOX.and(X).and(V).and(QUAT).and(IMAGE).and(MASK).and(RADIUS).and(MASS);
+
 impl Op for Welcome {
     fn about(&self) -> About {
-        let noted = BOX | X | V | QUAT | IMAGE | MASK | RADIUS | MASS;
-        About::new("welcome", Stage::Exchange, Needs::new().read(noted | MEMO | LISTS).keep(COLUMNS))
+        About::new("welcome", Stage::Exchange, Needs::new().read(NOTED | MEMO | LISTS).keep(COLUMNS))
+    }
+    fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
+        Rows::Asks
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {
+            w.whole(NOTED);
             self.roster = w.rebuild.roster;
             self.fixes.iter().for_each(|f| f.welcome(w));
             self.computes.iter().for_each(|c| c.welcome(w));

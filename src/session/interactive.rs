@@ -153,6 +153,7 @@ impl Session {
             scenes: _,
             asked: _,
             checked_step: _,
+            said_few: _,
             columns: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());

@@ -18,7 +18,7 @@ from beside import run
 from random_decks import KINDS
 
 # Lines that tell of time, memory and processes.
-OF_THIS_RUN = ("perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank")
+OF_THIS_RUN = ("perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank", "ranks: ")
 PARTS = ("% CPU", "CPU = ", " | ", "[s]", "s/step", "Wall time")
 
 

@@ -6,7 +6,7 @@ use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, ValueRef};
-use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{self, Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
@@ -271,10 +271,14 @@ impl Op for Drop {
     fn about(&self) -> About {
         About::new(&self.name, Stage::Exchange, Needs::new().read(X).write(Fields::ALL))
     }
+    fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
+        Rows::Asks
+    }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (fix, key) = (&self.fix, self.key);
         let due = |a: &Account| a.next == Some(t.step);
         let Some(mut account) = Account::load(w, key).filter(due) else { return Ok(()) };
+        w.whole(Fields::ALL);
         // LAMMPS counts the steps to the next insertion.
         let offset = (t.step + fix.every - account.start) as f64 * t.dt * fix.rate;
         match fix.find(w, offset, &mut account, &mut self.test)? {

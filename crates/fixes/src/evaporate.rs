@@ -119,13 +119,15 @@ impl Fix for Declared {
             let Some(mut account) = Account::load(w, key).filter(|_| t.step % me.every == 0) else {
                 return Ok(());
             };
+            w.whole(Fields::ALL);
             me.act(w, &chosen, &mut account);
             account.store(w, key);
             w.rebuild.due = true;
             publish(w, slot, t, account.done as f64, &[]);
             Ok(())
         };
-        Ok(vec![StepOp::new(format!("fix {} evaporate", self.id), Stage::Exchange, access, act).boxed()])
+        let op = StepOp::new(format!("fix {} evaporate", self.id), Stage::Exchange, access, act);
+        Ok(vec![op.asking().boxed()])
     }
 
     fn shape(&self) -> Shape {

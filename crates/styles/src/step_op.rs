@@ -99,6 +99,13 @@ where
         self
     }
 
+    /// Asks for the rows it needs by [`World::whole`], on all ranks alike.
+    #[must_use]
+    pub fn asking(mut self) -> Self {
+        self.span = Span::Asks;
+        self
+    }
+
     /// Makes sums over particles that others may read.
     #[must_use]
     pub fn with_sums(mut self) -> Self {

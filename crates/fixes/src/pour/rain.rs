@@ -4,7 +4,7 @@ use super::{Pouring, Sizes};
 use crate::crowd::Crowd;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_out::log::Log;
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Newcomer, admit};
@@ -171,10 +171,14 @@ impl Op for Rain {
     fn about(&self) -> About {
         About::new(&self.name, Stage::Exchange, Needs::new().read(X | RADIUS).write(Fields::ALL))
     }
+    fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
+        Rows::Asks
+    }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let Some(mut account) = Account::load(w, self.key).filter(|a| a.next == Some(t.step)) else {
             return Ok(());
         };
+        w.whole(Fields::ALL);
         let wanted = self.batch.min(self.fix.count - account.done);
         let made = self.batch(w, t, &mut account)?;
         let before = self.fix.ids.before(w, &account);
