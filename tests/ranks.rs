@@ -195,7 +195,7 @@ fn left_by_bowl(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
 fn grains_are_shared_out_with_the_bytes_of_one_process() {
     let deck = format!("{BOWL}{BOWL_WRITES}run 150\nwrite_restart end.restart\nrun 60\n");
     let alone = left_by_bowl(&deck, &["-threads", "1"]);
-    let log = String::from_utf8_lossy(&alone["log.perigrain"]).into_owned();
+    let log = String::from_utf8_lossy(&alone["log.lammps"]).into_owned();
     assert!(log.contains("of its radius deep in the wall"), "{log}");
     for (ranks, threads) in [("2", "2"), ("3", "1"), ("5", "1")] {
         let several = left_by_bowl(&deck, &["-ranks", ranks, "-threads", threads]);
@@ -208,7 +208,9 @@ fn quiet_steps_of_grains_gather_nothing() {
     let folder = tempfile::tempdir().unwrap();
     plate(folder.path());
     fs::write(folder.path().join("in.deck"), format!("{BOWL}thermo 100\nrun 100\n")).unwrap();
-    let ops = measured(folder.path(), &["in.deck"]);
+    let o = perigrain(folder.path(), &["plan", "--measure", "-ranks", "3", "-threads", "1", "in.deck"]);
+    assert!(said(&o).contains("ranks: 765 grains are few for 3 ranks"), "{}", said(&o));
+    let ops = exchanged(&said(&o));
     // Places of all are known where grains come, and where lists are made anew.
     let looks = ["reneighbor", "pair gran/hooke/history", "fix rain deposit"];
     for (op, rows, gathers) in &ops {
@@ -237,7 +239,7 @@ fn bonds_are_evaluated_by_the_ranks_of_their_particles() {
         dump local all local 20 broken.*.txt f_record[1] f_record[2] f_record[3] f_record[4]\nrun 80\nwrite_restart end.restart\n";
     let alone = left_by(deck, &["-threads", "1"]);
     let bonds = |step: &str| {
-        let log = String::from_utf8_lossy(&alone["log.perigrain"]).into_owned();
+        let log = String::from_utf8_lossy(&alone["log.lammps"]).into_owned();
         let row = log.lines().find(|line| line.trim_start().starts_with(step)).map(str::to_string);
         row.and_then(|row| row.split_whitespace().nth(2)?.parse::<f64>().ok()).unwrap()
     };

@@ -390,7 +390,8 @@ impl Session {
     fn say_few_for_ranks(&mut self) -> Result<()> {
         let (n, ranks) = (self.world.n(), comm::present().size());
         let grains = self.world.particles.style.sphere && self.world.families.is_none();
-        if !grains || ranks < 2 || n == 0 || n >= ranks * PAYS || std::mem::replace(&mut self.said_few, true) {
+        if !grains || ranks < 2 || n == 0 || n >= ranks * PAYS || std::mem::replace(&mut self.said_few, true)
+        {
             return Ok(());
         }
         let line = format!(
