@@ -1,16 +1,16 @@
 //! Particles in the order of cells, and cells in tiles: the spatial order that granular loops and the world work in.
 
+mod around;
 mod blocks;
-mod walk;
 
 use super::grid::extent;
 use super::list::small;
+pub use around::{Around, Neighbourhood, Neighbourhoods};
 use blocks::{Blocks, CROWD, FEW, SHARES};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 use std::borrow::Cow;
 use std::ops::Range;
-pub use walk::Walk;
 
 /// Layers that pairs may reach over: more than there can be.
 const FARTHEST: f64 = 1e9;
@@ -60,17 +60,6 @@ impl Line {
     fn cell(&self, x: &[f64; 3]) -> u32 {
         (((x[self.axis] - self.lo) * self.per_length) as i32).clamp(0, self.most) as u32
     }
-}
-
-/// A run of neighbouring places and the image they are seen in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Run {
-    /// First place.
-    pub from: u32,
-    /// Past the last place.
-    pub to: u32,
-    /// The code of the image, see [`shift_of`].
-    pub image: u32,
 }
 
 /// How long the edges of cells should be, and how far pairs reach, for spheres whose surfaces are up to `more` apart.

@@ -201,12 +201,21 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// First stage: where and how grains touch. Whether some overlap too far.
+    /// First stage: where and how grains touch. Whether some overlap too far. Where grains are many, what later stages read of the second
+    /// ones comes from afar, from tiles beside: each stage asks for what the next one will want.
     #[inline(always)]
     unsafe fn meet(&mut self, cx: &Cx, group: usize) -> bool {
         // SAFETY: passed on.
         unsafe {
             let (i, j) = (self.i.as_ptr().add(N * group), self.j.as_ptr().add(N * group));
+            if cx.are_many {
+                for lane in 0..N {
+                    let j = *j.add(lane) as usize;
+                    fetch(cx.v.as_ptr().wrapping_add(j));
+                    fetch(cx.omega.as_ptr().wrapping_add(j));
+                    fetch(*self.past.get_unchecked(N * group + lane));
+                }
+            }
             let [p, q, r] = [self.apart(0), self.apart(1), self.apart(2)];
             let (p, q, r) = (p.add(N * group).cast(), q.add(N * group).cast(), r.add(N * group).cast());
             let [x, y, z] = [V::of(*p), V::of(*q), V::of(*r)];
@@ -235,6 +244,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let (i, j) = (self.i.as_ptr().add(at), self.j.as_ptr().add(at));
             let past = &*self.past.as_ptr().add(at).cast::<[*mut f64; N]>();
             // (No closures in here: they are not compiled for AVX.)
+            if cx.are_many {
+                for lane in 0..N {
+                    let j = *j.add(lane) as usize;
+                    fetch(cx.force.as_ptr().wrapping_add(j));
+                    fetch(cx.torque.as_ptr().wrapping_add(j));
+                }
+            }
             let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
             let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
             let mut other = Motion { velocity: V::vectors(v, j), spin: V::vectors(spin, j) };
@@ -394,6 +410,18 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             }
         }
     }
+}
+
+/// Has the memory at this address brought near, where the processor can do that; nothing is read.
+#[inline(always)]
+fn fetch<T>(at: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: no address is wrong: nothing is read from it.
+    unsafe {
+        std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(at.cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = at;
 }
 
 /// One of the numbers in lanes, where lanes are not compiled for the processor.

@@ -1,11 +1,12 @@
 //! Which pairs of a list are near each other, several at a time.
 
 use super::lists::FILL;
+use super::search::Watched;
 use crate::driver::Grains;
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
-use perigrain_neigh::tiles::Run;
+use std::ops::Range;
 
 /// Adds the numbers of those pairs of a list, filled up, to `out` whose surfaces are nearer than `reach`, in order.
 ///
@@ -53,58 +54,62 @@ impl InLanes for Near<'_> {
     }
 }
 
-/// Grains in the order of places, coordinate by coordinate.
+/// Grains one behind the other, coordinate by coordinate.
 pub(super) struct InOrder {
     x: [Vec<f64>; 3],
     radius: Vec<f64>,
 }
 
 impl InOrder {
-    /// Copies the grains in this order.
-    pub fn new(grains: &Grains, order: &[u32]) -> Self {
-        let x = [0, 1, 2].map(|d| picked(order, |i| grains.x[i][d]));
-        Self { x, radius: picked(order, |i| grains.radius[i]) }
+    /// Copies these grains, as they are seen in their images.
+    pub fn new(grains: &Grains, watched: &Watched, shifts: &[[f64; 4]; 32]) -> Self {
+        // Whole lanes can be read from any of them: what is read beyond the end is not used.
+        let room = || Vec::with_capacity(watched.grains.len() + FILL);
+        let mut copy = Self { x: [room(), room(), room()], radius: room() };
+        for (image, which) in watched.by_image() {
+            let shift = shifts[image as usize];
+            for d in 0..3 {
+                copy.x[d].extend(which.iter().map(|i| grains.x[*i as usize][d] + shift[d]));
+            }
+            copy.radius.extend(which.iter().map(|i| grains.radius[*i as usize]));
+        }
+        copy.x.iter_mut().chain([&mut copy.radius]).for_each(|list| list.extend([0.0; FILL]));
+        copy
     }
 
-    /// Calls `hit` with those places of a run, shifted, whose surfaces are nearer than `skin` to that of place `i`, in order.
+    /// Calls `hit` with those of some others, one behind the other, whose surfaces are nearer than `skin` to that of grain `i`, in order.
     ///
     /// # Safety
-    /// They must be places; the processor must have what the form needs.
+    /// There must be these; the processor must have what the form needs.
     #[inline(always)]
     pub unsafe fn near<const N: usize, V: Lanes<N>>(
         &self,
         i: usize,
-        run: &Run,
-        shift: &[f64; 4],
+        others: Range<usize>,
         skin: f64,
         mut hit: impl FnMut(usize),
     ) {
-        let (x, y, z, r) = (self.x[0].as_ptr(), self.x[1].as_ptr(), self.x[2].as_ptr(), self.radius.as_ptr());
+        let [x, y, z] = self.x.each_ref().map(Vec::as_ptr);
+        let r = self.radius.as_ptr();
+        // SAFETY: there is this grain.
+        let own = unsafe { [V::all(*x.add(i)), V::all(*y.add(i)), V::all(*z.add(i)), V::all(*r.add(i))] };
         let mut hits = [0; FILL];
-        for from in (run.from as usize..run.to as usize).step_by(N) {
-            // SAFETY: behind the last place there is room for whole lanes, and in `hits` for all of them.
+        for from in others.clone().step_by(N) {
+            // SAFETY: behind the last one there is room for whole lanes, and in `hits` for all of them.
             let count = unsafe {
-                let dx = V::all(*x.add(i)) - (V::of(x.add(from).cast::<[f64; N]>().read()) + shift[0]);
-                let dy = V::all(*y.add(i)) - (V::of(y.add(from).cast::<[f64; N]>().read()) + shift[1]);
-                let dz = V::all(*z.add(i)) - (V::of(z.add(from).cast::<[f64; N]>().read()) + shift[2]);
-                let reach = V::all(*r.add(i)) + V::of(r.add(from).cast::<[f64; N]>().read()) + skin;
+                let dx = own[0] - V::of(x.add(from).cast::<[f64; N]>().read());
+                let dy = own[1] - V::of(y.add(from).cast::<[f64; N]>().read());
+                let dz = own[2] - V::of(z.add(from).cast::<[f64; N]>().read());
+                let reach = own[3] + V::of(r.add(from).cast::<[f64; N]>().read()) + skin;
                 let near = (reach * reach).above(dx * dx + dy * dy + dz * dz);
                 V::put(near, from as u32, hits.as_mut_ptr())
             };
-            // Behind the run others stand.
-            for k in hits[..count].iter().take_while(|k| **k < run.to) {
+            // Behind the last one others stand.
+            for k in hits[..count].iter().take_while(|k| (**k as usize) < others.end) {
                 hit(*k as usize);
             }
         }
     }
-}
-
-/// Numbers of grains in this order. What is read beyond the end is not used.
-fn picked(order: &[u32], of: impl Fn(usize) -> f64) -> Vec<f64> {
-    let mut list = Vec::with_capacity(order.len() + FILL);
-    list.extend(order.iter().map(|&i| of(i as usize)));
-    list.extend([0.0; FILL]);
-    list
 }
 
 /// Where grains are.

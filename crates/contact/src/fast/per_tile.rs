@@ -10,6 +10,10 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use std::ops::Range;
 
+/// Tiles of so many grains are evaluated together: what is set up for each evaluation, and contacts too few for a whole group at its end,
+/// are then few beside it, and all of it stays in the second cache.
+const TOGETHER: usize = 512;
+
 /// An evaluation of all contacts that is under way.
 pub struct PerTile {
     /// How many tiles have had their turn.
@@ -44,31 +48,46 @@ impl Fast {
         PerTile { done: 0, step, store, deep: None }
     }
 
-    /// Adds forces and torques of one tile's contacts more to `f` and `torque`: whether there was one. [`Fast::ready`] then says which
+    /// Adds forces and torques of some tiles' contacts more to `f` and `torque`: whether there were any. [`Fast::ready`] then says which
     /// grains have all of theirs now.
     pub fn go_on(&mut self, p: &mut PerTile, grains: &Grains, wrench: [&mut [Vec3]; 2]) -> bool {
-        let Some(&tile) = self.precedence.line().get(p.done) else {
+        let some = self.some_from(p.done);
+        if some.is_empty() {
             self.now += if p.store { 1.0 } else { 0.0 };
             self.deep = self.deep.or(p.deep);
             return false;
-        };
-        p.done += 1;
+        }
+        p.done = some.end;
         let [force, torque] = wrench;
         let sums = Sums { force, torque, heat: None, deeds: None };
-        self.sweep(grains, sums, p.step, (p.store, false), Some(tile));
-        if self.deep.is_none() && self.lists[tile].deep {
-            let found = self.find_deep(grains, &self.lists[tile..tile + 1]);
+        self.sweep(grains, sums, p.step, (p.store, false), Some(some.clone()));
+        let tiles = &self.order[some];
+        // Contacts of several lists are evaluated together: a list may say of another's that they are too deep.
+        if self.deep.is_none() && tiles.iter().any(|tile| self.lists[*tile].deep) {
+            let found = tiles.iter().filter_map(|tile| self.find_deep(grains, &self.lists[*tile..tile + 1]));
             p.deep = p.deep.into_iter().chain(found).min_by_key(|(ids, _)| *ids);
         }
         let Waiting { to_come, ready } = &mut self.waiting;
         ready.clear();
-        for taker in self.beside[tile].iter().map(|taker| *taker as usize).chain([tile]) {
-            to_come[taker] -= 1;
-            if to_come[taker] == 0 {
-                ready.push(taker);
+        for tile in tiles {
+            for taker in self.beside[*tile].iter().map(|taker| *taker as usize).chain([*tile]) {
+                to_come[taker] -= 1;
+                if to_come[taker] == 0 {
+                    ready.push(taker);
+                }
             }
         }
         true
+    }
+
+    /// The tiles that come next, by where they stand in the order of one thread.
+    fn some_from(&self, done: usize) -> Range<usize> {
+        let (mut end, mut grains) = (done, 0);
+        while let Some(tile) = self.order.get(end).filter(|_| grains < TOGETHER) {
+            grains += self.members[*tile].len();
+            end += 1;
+        }
+        done..end
     }
 
     /// Which grains have all forces and torques since the last [`Fast::go_on`], in this part of its tiles.

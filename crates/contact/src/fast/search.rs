@@ -5,9 +5,9 @@ use super::near::InOrder;
 use super::{Fast, NONE};
 use crate::driver::Grains;
 use perigrain_base::math::form::InLanes;
-use perigrain_base::math::lanes::{Lanes, PLACE_BITS};
+use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::par;
-use perigrain_neigh::tiles::{HERE, Run, Tiles};
+use perigrain_neigh::tiles::{Around, Neighbourhood, Tiles};
 
 /// The lists of so few grains are made before another thread has seen that there is work.
 pub(super) const FEW: usize = 64;
@@ -59,6 +59,25 @@ impl Watched {
             _ => self.parts.push(Part { layer, image, end }),
         }
     }
+
+    /// The grains, some of one image after the other, and the images.
+    pub(super) fn by_image(&self) -> impl Iterator<Item = (u32, &[u32])> {
+        let mut from = 0;
+        self.parts.iter().map(move |part| {
+            let of = from..part.end as usize;
+            from = of.end;
+            (part.image, &self.grains[of])
+        })
+    }
+
+    /// The grains with the images they are seen in.
+    fn entries(&self) -> Vec<u32> {
+        let mut entries = Vec::with_capacity(self.grains.len());
+        for (image, which) in self.by_image() {
+            entries.extend(which.iter().map(|grain| grain | image << PLACE_BITS));
+        }
+        entries
+    }
 }
 
 impl Fast {
@@ -71,7 +90,6 @@ impl Fast {
         lists: impl Fn(usize) -> bool + Sync,
         keep: &(impl Fn(usize, usize, usize) -> bool + Sync),
     ) {
-        let at = InOrder::new(grains, &tiles.order);
         let mut all = std::mem::take(&mut self.lists);
         all.resize(tiles.count(), List::default());
         let shared = par::Shared::new(&mut all);
@@ -79,37 +97,41 @@ impl Fast {
         par::for_rows_if(grains.x.len() > FEW, tiles.count(), |k| {
             // SAFETY: each part writes its own list.
             let list = unsafe { &mut shared.get(k..k + 1)[0] };
-            match lists(k) {
-                true => this.search(grains, (tiles, &at), k, skin, &|i, j| keep(k, i, j), &mut list.long),
-                false => list.long.clear(),
-            }
-            list.watched.clear();
-            if !list.long.i.is_empty() {
-                let watched = &mut list.watched;
-                tiles.reached(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
+            if lists(k) {
+                let out = (&mut list.long, &mut list.watched);
+                this.search(grains, tiles, k, skin, &|i, j| keep(k, i, j), out);
+            } else {
+                list.long.clear();
+                list.watched.clear();
             }
         });
         self.lists = all;
     }
 
-    /// The long list of tile `k`.
+    /// The long list of tile `k`, and the grains that must be watched for it.
     fn search(
         &self,
         grains: &Grains,
-        (tiles, at): (&Tiles, &InOrder),
+        tiles: &Tiles,
         k: usize,
         skin: f64,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
-        out: &mut Pairs,
+        (out, watched): (&mut Pairs, &mut Watched),
     ) {
         let everywhere = !self.laws.which.contains(&NONE);
         let keep = |i: u32, j: u32| {
             let (i, j) = (i as usize, j as usize);
             (everywhere || self.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
         };
-        let search = Search { tiles, k, at, shifts: &self.shifts, skin, keep, out };
+        watched.clear();
+        let around = tiles.around(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
+        let (copy, entries) = (InOrder::new(grains, watched, &self.shifts), watched.entries());
+        let search = Search { around: &around, grains: &copy, entries: &entries, skin, keep, out };
         // SAFETY: the processor has what its form needs.
         unsafe { self.form.run(search) }
+        if out.i.is_empty() {
+            watched.clear();
+        }
     }
 
     /// Long lists of the tiles in which these grains lie and that `lists` names, made anew from the positions of all of them, of the pairs
@@ -126,18 +148,15 @@ impl Fast {
         ends.iter().for_each(|&i| mine[i] = true);
         let concerned = |k: &usize| tiles.order[tiles.members(*k)].iter().any(|i| mine[*i as usize]);
         let which: Vec<usize> = (0..tiles.count()).filter(|k| lists(*k) && concerned(k)).collect();
-        let at = InOrder::new(grains, &tiles.order);
         for &k in &which {
-            let mut new = Pairs::default();
-            self.search(grains, (tiles, &at), k, skin, &|i, j| keep(k, i, j), &mut new);
+            let (mut new, mut watched) = (Pairs::default(), Watched::default());
+            let out = (&mut new, &mut watched);
+            self.search(grains, tiles, k, skin, &|i, j| keep(k, i, j), out);
             new.fill_up();
             let list = &mut self.lists[k];
             let places = moved(&list.long, &new);
             list.short.t.iter_mut().for_each(|t| *t = places[*t as usize]);
-            list.long = new;
-            list.watched.clear();
-            let watched = &mut list.watched;
-            tiles.reached(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
+            (list.long, list.watched) = (new, watched);
         }
         which
     }
@@ -157,12 +176,13 @@ fn moved(old: &Pairs, new: &Pairs) -> Vec<u32> {
     places
 }
 
-/// The search of the pairs of tile `k`.
+/// The search of the pairs of a tile.
 struct Search<'a, K> {
-    tiles: &'a Tiles,
-    k: usize,
-    at: &'a InOrder,
-    shifts: &'a [[f64; 4]; 32],
+    around: &'a Around,
+    /// The grains around it, in images.
+    grains: &'a InOrder,
+    /// Which these are.
+    entries: &'a [u32],
     skin: f64,
     keep: K,
     out: &'a mut Pairs,
@@ -173,24 +193,22 @@ impl<K: Fn(u32, u32) -> bool> InLanes for Search<'_, K> {
 
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        let Self { tiles, k, at, shifts, skin, keep, out } = self;
+        let Self { around, grains, entries, skin, keep, out } = self;
         out.i.clear();
         out.w.clear();
-        let order = &tiles.order;
-        let mut walk = tiles.walk(k);
-        while let Some((own, runs)) = walk.next_cell() {
-            for i in own.clone() {
-                let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
-                for run in std::iter::once(&rest).chain(runs) {
-                    let hit = |j: usize| {
-                        let (i, j) = (order[i], order[j]);
-                        if keep(i, j) {
-                            out.i.push(i);
-                            out.w.push(j | run.image << PLACE_BITS);
+        for Neighbourhood { own, mut rows } in around.neighbourhoods() {
+            for i in own {
+                let first = place(entries[i]) as u32;
+                rows[0].start = i + 1;
+                for others in &rows {
+                    let hit = |k: usize| {
+                        if keep(first, place(entries[k]) as u32) {
+                            out.i.push(first);
+                            out.w.push(entries[k]);
                         }
                     };
                     // SAFETY: passed on.
-                    unsafe { at.near::<N, V>(i, run, &shifts[run.image as usize], skin, hit) };
+                    unsafe { grains.near::<N, V>(i, others.clone(), skin, hit) };
                 }
             }
         }

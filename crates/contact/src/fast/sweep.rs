@@ -14,6 +14,10 @@ use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_neigh::tiles::shift_of;
+use std::ops::Range;
+
+/// More grains than these, with their pairs, do not fit a second cache of 1 MB.
+const MANY: usize = 8192;
 
 /// What the loops read and where they write.
 pub(super) struct Cx<'a> {
@@ -43,6 +47,8 @@ pub(super) struct Cx<'a> {
     pub span: f64,
     /// How images move, where they do.
     pub drift: Option<&'a Drift<'a>>,
+    /// Whether grains are so many that the second cache does not hold what is known of them.
+    pub are_many: bool,
 }
 
 /// Images that a growing box carries along.
@@ -119,14 +125,14 @@ impl Cx<'_> {
 }
 
 impl Fast {
-    /// Adds up the forces of all contacts, or of those of one list.
+    /// Adds up the forces of all contacts, or of those of some lists that follow each other in the order of one thread.
     pub(super) fn sweep(
         &mut self,
         grains: &Grains,
         sums: Sums,
         step: Advance,
         (store, virial): (bool, bool),
-        only: Option<usize>,
+        only: Option<Range<usize>>,
     ) {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
@@ -155,6 +161,7 @@ impl Fast {
             frozen: !self.signed.is_empty(),
             span: self.span,
             drift: drift.as_ref(),
+            are_many: grains.x.len() > MANY,
         };
         let contacts = |which: &[usize]| {
             // SAFETY: each part writes its own lists, and forces of grains in their tiles and those beside them, which `each_list` keeps
@@ -168,7 +175,7 @@ impl Fast {
             }
         };
         match only {
-            Some(k) => contacts(&[k]),
+            Some(some) => contacts(&self.order[some]),
             None if shares => self.each_list(|k| contacts(&[k])),
             None => contacts(&self.order),
         }

@@ -8,7 +8,7 @@ pub(super) const CROWD: usize = 128;
 /// And at most, where that many tiles come of it: what a tile's contacts read and write stays in the second cache.
 const FULL: usize = 1024;
 /// So many tiles there are, if they hold enough points then, that sixteen threads have as much to do as each other.
-const WANTED: usize = 112;
+const WANTED: usize = 192;
 /// And so many in small scenes where there are cells enough, that threads have something to share.
 pub(super) const SHARES: usize = 8;
 /// Fewer points are one tile: no second thread pays for them.
@@ -23,34 +23,40 @@ pub(super) struct Blocks {
     /// Blocks along each axis.
     along: [usize; 3],
     repeats: [bool; 3],
-    /// Along each axis: the block that a cell lies in, and its place in that.
+    /// Along each axis: what the block that a cell lies in adds to its place, counted row by row, and the cell's place in that.
     part: [Vec<[u32; 2]>; 3],
     /// The number of the block at each place, and the place of each number.
     number: Vec<u32>,
     place: Vec<[usize; 3]>,
     /// The first cell of each block, and the number of all cells.
     first: Vec<usize>,
-    /// How many cells each has along the fast and the middle axis.
-    face: Vec<[usize; 2]>,
+    /// By place: the first cell of each block, and how many cells its rows and its layers have.
+    rows: Vec<[u32; 3]>,
 }
 
 impl Blocks {
     /// Blocks of so many cells along each axis, the last of which is the slow one and some of which repeat, for so many points.
     pub(super) fn new(cells: [usize; 3], repeats: [bool; 3], points: usize) -> Self {
         let along = cut(cells, repeats, points);
+        let step = [1, along[0], along[0] * along[1]];
         let part = [0, 1, 2].map(|k| {
             let of = |block: usize| ends(cells[k], along[k], block);
-            (0..along[k]).flat_map(|b| (0..of(b).len()).map(move |c| [b as u32, c as u32])).collect()
+            (0..along[k])
+                .flat_map(|b| (0..of(b).len()).map(move |c| [(b * step[k]) as u32, c as u32]))
+                .collect()
         });
         let mut place: Vec<[usize; 3]> = (0..along.iter().product()).map(|n| spread(along, n)).collect();
         place.sort_by_cached_key(|at| along_curve(*at, along));
         let mut number = vec![0; place.len()];
         place.iter().zip(0..).for_each(|([x, y, z], n)| number[(z * along[1] + y) * along[0] + x] = n);
-        let mut blocks = Self { along, repeats, part, number, place, first: vec![0], face: vec![] };
+        let rows = vec![[0; 3]; place.len()];
+        let mut blocks = Self { along, repeats, part, number, place, first: vec![0], rows };
         for n in 0..blocks.place.len() {
-            let size = blocks.extent(n).map(|cells| cells.len());
-            blocks.first.push(blocks.first[n] + size.iter().product::<usize>());
-            blocks.face.push([size[0], size[1]]);
+            let [nx, ny, nz] = blocks.extent(n).map(|cells| cells.len());
+            let [x, y, z] = blocks.place[n];
+            let first = blocks.first[n];
+            blocks.rows[(z * along[1] + y) * along[0] + x] = [first, nx, nx * ny].map(|n| n as u32);
+            blocks.first.push(first + nx * ny * nz);
         }
         blocks
     }
@@ -109,10 +115,9 @@ impl Blocks {
     /// The number of the cell that lies there.
     #[inline]
     pub(super) fn cell(&self, at: [usize; 3]) -> usize {
-        let [[bx, x], [by, y], [bz, z]] = [0, 1, 2].map(|k| self.part[k][at[k]].map(|n| n as usize));
-        let block = self.number[(bz * self.along[1] + by) * self.along[0] + bx] as usize;
-        let [nx, ny] = self.face[block];
-        self.first[block] + (z * ny + y) * nx + x
+        let [[bx, x], [by, y], [bz, z]] = [0, 1, 2].map(|k| self.part[k][at[k]]);
+        let [first, row, layer] = self.rows[(bx + by + bz) as usize];
+        (first + z * layer + y * row + x) as usize
     }
 }
 

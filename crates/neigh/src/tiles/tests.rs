@@ -60,31 +60,26 @@ fn every_pair_is_met_once() {
         assert!(tiles.count() > 1 || n < FEW);
         let mut found = BTreeSet::new();
         for k in 0..tiles.count() {
-            let (beside, mut reached) = (tiles.beside(k), vec![]);
-            tiles.reached(k, |_, image, places| reached.push((image, places)));
-            let mut walk = tiles.walk(k);
-            while let Some((own, runs)) = walk.next_cell() {
-                assert!(own.clone().all(|at| tiles.members(k).contains(&at)));
-                for i in own.clone() {
-                    let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
-                    for r in runs.iter().chain([&rest]) {
-                        for j in r.from as usize..r.to as usize {
-                            assert!(
-                                tiles.members(k).contains(&j)
-                                    || beside.iter().any(|o| tiles.members(*o as usize).contains(&j))
-                            );
-                            assert!(
-                                reached
-                                    .iter()
-                                    .any(|(image, places)| *image == r.image && places.contains(&j))
-                            );
-                            let (a, b) = (tiles.order[i] as usize, tiles.order[j] as usize);
-                            let entry = if a > b { (a, b, r.image) } else { (b, a, 26 - r.image) };
-                            assert!(found.insert(entry), "{entry:?} twice");
-                        }
+            let (beside, mut seen) = (tiles.beside(k), vec![]);
+            let around = tiles.around(k, |_, image, places| seen.extend(places.map(|at| (at, image))));
+            let is_beside = |at: &usize| beside.iter().any(|o| tiles.members(*o as usize).contains(at));
+            let mut met = 0;
+            for Neighbourhood { own, mut rows } in around.neighbourhoods() {
+                let in_tile = |(at, image): &(usize, u32)| tiles.members(k).contains(at) && *image == HERE;
+                assert!(seen[own.clone()].iter().all(in_tile));
+                met += own.len();
+                for i in own {
+                    rows[0].start = i + 1;
+                    for j in rows.iter().cloned().flatten() {
+                        let ((i, _), (j, image)) = (seen[i], seen[j]);
+                        assert!(tiles.members(k).contains(&j) || is_beside(&j));
+                        let (a, b) = (tiles.order[i] as usize, tiles.order[j] as usize);
+                        let entry = if a > b { (a, b, image) } else { (b, a, 26 - image) };
+                        assert!(found.insert(entry), "{entry:?} twice");
                     }
                 }
             }
+            assert_eq!(met, tiles.members(k).len());
         }
         let wanted = all(&x, cut, period);
         assert!(wanted.len() > least && wanted.is_subset(&found), "{period:?}");
