@@ -104,8 +104,11 @@ impl InOrder {
                 let near = (reach * reach).above(dx * dx + dy * dy + dz * dz);
                 V::put(near, from as u32, hits.as_mut_ptr())
             };
-            // Behind the last one others stand.
-            for k in hits[..count].iter().take_while(|k| (**k as usize) < others.end) {
+            for k in &hits[..count] {
+                // Behind the last one others stand.
+                if *k as usize >= others.end {
+                    break;
+                }
                 hit(*k as usize);
             }
         }
