@@ -297,7 +297,7 @@ impl Loop for FastLoop {
                 self.fast.clear();
             }
             let frame = Frame { lo: [0.0; 3], period: s.period, reach: SKIN, skin: SKIN };
-            self.fast.rebuild(&s.grains(), &frame, known.as_ref(), None, &|i, j| s.keep(i, j));
+            self.fast.rebuild(&s.grains(), &frame, |_, _| known, None, &|i, j| s.keep(i, j));
             self.fast.weigh(&s.grains());
             if self.one_by_one {
                 self.fast.one_by_one();
@@ -508,8 +508,9 @@ fn lists_of_ranks_give_the_bits_of_one_process() {
                 for (me, part) in ranks.iter_mut().enumerate() {
                     let known: Vec<Contacts> = handed.iter().map(|to| to[me].clone()).collect();
                     let known = Contacts::joined(&known);
-                    part.fast
-                        .rebuild(&s.grains(), &frame, Some(&known), Some(dealt(me)), &|i, j| s.keep(i, j));
+                    part.fast.rebuild(&s.grains(), &frame, |_, _| Some(known), Some(dealt(me)), &|i, j| {
+                        s.keep(i, j)
+                    });
                     part.fast.weigh(&s.grains());
                     assert!(part.fast.is_part());
                 }

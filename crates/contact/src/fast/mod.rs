@@ -302,14 +302,15 @@ impl Fast {
     }
 
     /// Makes all lists anew from these positions (wrapped into the box; [`Fast::turn`] follows those that are elsewhere by now), pairs for
-    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; `known` are taken in addition. An evaluation
-    /// must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own ([`Fast::is_part`]); not where
-    /// pairs with large grains have lists of their own, where several laws hold, or where some tile has grains of several ranks.
+    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; those of `known(self, part)` are taken in addition. An
+    /// evaluation must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own ([`Fast::is_part`]); not where
+    /// pairs with large grains have lists of their own, where several laws hold, or where some tile has grains of several ranks;
+    /// `part` is whether they are.
     pub fn rebuild(
         &mut self,
         grains: &Grains,
         frame: &Frame,
-        known: Option<&Contacts>,
+        known: impl FnOnce(&Self, bool) -> Option<Contacts>,
         dealt: Option<Dealt>,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
@@ -322,12 +323,26 @@ impl Fast {
             tiles.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
             tiles
         };
-        let remember = || self.remember(grains.tag, known);
         // Work of one thread each.
         let n = grains.x.len();
         let large =
             || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
-        let ((tiles, book), large) = par::both(n, || par::both(n, sort, remember), large);
+        // Where several laws hold, what is listed decides in which order contacts are evaluated.
+        let parts = edge == far && self.laws.distinct.len() == 1;
+        let ((tiles, book), large, own) = match dealt.filter(|_| parts) {
+            None => {
+                let known = known(self, false);
+                let remember = || self.remember(grains.tag, known.as_ref());
+                let (found, large) = par::both(n, || par::both(n, sort, remember), large);
+                (found, large, None)
+            }
+            Some(dealt) => {
+                let tiles = sort();
+                let own = Own::new(dealt, &tiles);
+                let known = known(self, own.is_some());
+                ((tiles, self.remember(grains.tag, known.as_ref())), vec![], own)
+            }
+        };
         // Where several laws stick, what is listed decides which contacts are evaluated together.
         let whole = self.laws.distinct.len() == 1 && self.upkeep.takes_whole(self.pairs());
         // The book has what they knew: room for what is made now.
@@ -342,11 +357,10 @@ impl Fast {
         self.tag.extend_from_slice(grains.tag);
         self.see_images(frame.period);
         self.thin = if whole { f64::INFINITY } else { THIN * frame.skin };
-        // Where several laws hold, what is listed decides in which order contacts are evaluated.
-        let parts = edge == far && self.laws.distinct.len() == 1;
-        let own = dealt.filter(|_| parts).and_then(|dealt| Own::new(dealt, &tiles));
-        let small = if edge == far { f64::INFINITY } else { small(grains.radius) };
-        let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
+        let small = if edge == far { None } else { Some(small(grains.radius)) };
+        let both_small = |i: usize, j: usize| {
+            small.is_none_or(|small| grains.radius[i] < small && grains.radius[j] < small)
+        };
         let has = |tile: usize, i: usize, j: usize| own.as_ref().is_none_or(|own| own.has(tile, i, j));
         let listed = |tile: usize| own.as_ref().is_none_or(|own| own.lists(tile));
         self.make_long(grains, &tiles, reach, listed, &|tile, i, j| {

@@ -36,7 +36,7 @@ fn pairs_with_large_grains_have_lists_of_their_own() {
 
     let mut fast = Fast::new(Laws::new(1, |_, _| Some(law)).unwrap());
     let frame = Frame { lo: [0.0; 3], period: Periods::default(), reach: 0.2, skin: 0.2 };
-    fast.rebuild(&grains, &frame, None, None, &|_, _| true);
+    fast.rebuild(&grains, &frame, |_, _| None, None, &|_, _| true);
     fast.weigh(&grains);
     fast.begin(&grains);
 

@@ -129,17 +129,6 @@ impl Force {
         }
     }
 
-    /// What contacts remember, beside what the lists there are remember.
-    fn known(&self, w: &mut World) -> Option<Contacts> {
-        let fast = self.fast.as_ref().filter(|_| self.is_fast);
-        match fast {
-            None => w.contacts.remove(self.key),
-            Some(fast) if !fast.is_part() || w.dealings.apart => None,
-            Some(fast) if self.deal.is_some() => Some(contacts_of_others(w, fast)),
-            Some(fast) => Some(contacts_of_all(fast)),
-        }
-    }
-
     /// Lists for the present rebuild: those there are, if they outlast it; else new ones from the positions that the world keeps
     /// for that, from which all lists reach far enough until the next rebuild.
     fn renew(&mut self, w: &mut World) -> Result<()> {
@@ -171,7 +160,7 @@ impl Force {
             }
         }
         if self.fast.as_ref().is_some_and(|fast| suits(w, period, fast)) {
-            let known = self.known(w);
+            let kept_by_world = if self.is_fast { None } else { w.contacts.remove(self.key) };
             let Some(fast) = &mut self.fast else { return Ok(()) };
             let kept = &w.rebuild.kept;
             let frame = Frame { lo, period, reach: kept.reach(skin), skin };
@@ -179,7 +168,12 @@ impl Force {
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             let rows = deal.and(w.share.as_ref()).map(Share::rows_of_ranks);
             let dealt = rows.as_ref().map(|rows| Dealt { rows, me: comm::present().rank() });
-            fast.rebuild(&grains, &frame, known.as_ref(), dealt, &|i, j| allowed.pair(i, j));
+            let known = |fast: &Fast, part: bool| match fast.is_part() && !w.dealings.apart {
+                true if part => Some(contacts_of_others(w, fast)),
+                true => Some(contacts_of_all(fast)),
+                false => kept_by_world,
+            };
+            fast.rebuild(&grains, &frame, known, dealt, &|i, j| allowed.pair(i, j));
             fast.turn(&kept.turns, &now);
             self.is_fast = true;
             self.was_part |= fast.is_part();
