@@ -1,6 +1,8 @@
 //! Grains in the order of space: neighbours near each other in memory while a run lasts, and for how many rebuilds their
 //! lists and this order last.
 
+use perigrain_base::comm;
+use perigrain_base::comm::numbers::{next, put, take};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{add, length, sub};
 use perigrain_base::par;
@@ -148,7 +150,7 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
         }
         gone
     };
-    let Gone { ways, turned, beyond } = par::reduce(x.len(), gone, Gone::join)?;
+    let Gone { ways, turned, beyond } = by_all(w, slabs.count(), gone)?;
     if beyond {
         return Some(Drift { near: f64::INFINITY, far: 0.0, turns: vec![] });
     }
@@ -171,6 +173,19 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
     let [least, most] = ways.iter().copied().fold(STILL, both);
     let far = most[slow] - least[slow] + moved[2][slow].abs();
     Some(Drift { near, far, turns })
+}
+
+/// What the grains of all rows have done, told by `gone` of some; where grains are shared out to ranks, each looks at its own.
+fn by_all(w: &World, slabs: usize, gone: impl Fn(Range<usize>) -> Gone + Sync) -> Option<Gone> {
+    let Some(share) = w.share.as_ref().filter(|_| w.grains_dealt().is_some()) else {
+        return par::reduce(w.n(), gone, Gone::join);
+    };
+    let of = |rows: &Range<usize>| {
+        par::reduce(rows.len(), |some| gone(some.start + rows.start..some.end + rows.start), Gone::join)
+    };
+    let own = share.own.iter().filter_map(of).reduce(Gone::join);
+    let pieces = comm::present().pieces(&|bytes| own.iter().for_each(|own| own.write(bytes)));
+    pieces.iter().filter_map(|piece| Gone::read(piece, slabs)).reduce(Gone::join)
 }
 
 /// More turns around the box are not counted.
@@ -208,6 +223,28 @@ impl Gone {
         self.turned.extend(other.turned);
         self.beyond |= other.beyond;
         self
+    }
+
+    /// As the message of a rank to others.
+    fn write(&self, bytes: &mut Vec<u8>) {
+        put(bytes, &[u8::from(self.beyond)]);
+        self.ways.iter().for_each(|bounds| put(bytes, bounds.as_flattened()));
+        for (row, turns) in &self.turned {
+            put(bytes, &[*row as u32]);
+            put(bytes, &turns.map(i8::cast_unsigned));
+        }
+    }
+
+    /// From the message of a rank about so many slabs; none where it has no rows.
+    fn read(mut bytes: &[u8], slabs: usize) -> Option<Self> {
+        let [beyond] = next::<u8, 1>(&mut bytes)?;
+        let mut ways = vec![STILL; slabs];
+        ways.iter_mut().for_each(|bounds| take(&mut bytes, bounds.as_flattened_mut()));
+        let mut turned = vec![];
+        while let Some(([row], turns)) = next::<u32, 1>(&mut bytes).zip(next::<u8, 3>(&mut bytes)) {
+            turned.push((row as usize, turns.map(u8::cast_signed)));
+        }
+        Some(Self { ways, turned, beyond: beyond == 1 })
     }
 }
 
