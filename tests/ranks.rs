@@ -1,5 +1,7 @@
 //! Several ranks run one deck: what they write has the bytes of one process, and one that fails or dies ends them all.
 
+mod grains;
+
 use crate::examples;
 use crate::restart::scenes::{SCENES, Scene};
 use std::collections::BTreeMap;
@@ -145,119 +147,6 @@ fn particles_come_and_go_while_bodies_are_shared_out() {
         let alone = left_by(&deck, &["-threads", "1"]);
         same(&alone, &left_by(&deck, &["-ranks", "3", "-threads", "1"]), what);
     }
-}
-
-/// Grains that fall into a bowl between planes, onto a triangle mesh, while others come and some are lost.
-const BOWL: &str = "units lj\natom_style sphere\nboundary p f f\nnewton off\ncomm_modify vel yes\n\
-    region box block 0 12 -1 11 -3 16 units box\ncreate_box 1 box\n\
-    region fill block 0 12 0.4 9.6 0.2 7 units box\ncreate_atoms 1 random 900 4711 fill overlap 0.9 maxtry 900 units box\n\
-    set group all diameter 1.0\nset group all mass 1.0\nvelocity all create 1.0 77\n\
-    pair_style gran/hooke/history 5000 NULL 50 NULL 0.5 1\npair_coeff * *\n\
-    neighbor 0.2 bin\nneigh_modify every 1 delay 0 check yes\ntimestep 0.001\n\
-    fix move all nve/sphere\nfix g all gravity 1.0 vector 0.2 0 -1\n\
-    fix sides all wall/gran hooke/history 5000 NULL 50 NULL 0.5 1 yplane 0 10 contacts\n\
-    variable lift equal 0.2*step*dt\n\
-    region floor cylinder x 5 6 7 INF INF side in units box move NULL NULL v_lift open 1 open 2\n\
-    fix bowl all wall/gran/region hooke/history 5000 NULL 50 NULL 0.5 1 region floor\n\
-    fix mesh all wall/mesh granular hooke 5000 50 damping mass_velocity tangential linear_history 2000 0 0.5 mesh floor.stl\n\
-    region slot block 2 10 2 8 12 15 units box\nfix rain all deposit 12 1 20 4711 region slot near 1.1 vz -2 -2 units box\n\
-    thermo_modify norm no lost ignore format float %.15g\n";
-
-/// What is written of it: sums, dumps of particles, of walls' contacts and of the work on the mesh, restart files.
-const BOWL_WRITES: &str = "compute s all stress/atom NULL\ncompute z all contact/atom\ncompute zs all reduce sum c_z\n\
-    thermo_style custom step atoms ke press c_zs f_sides[2] f_sides[3] f_bowl[3] f_mesh[3]\nthermo 50\n\
-    dump all all custom 100 d.*.txt id x y z vx omegay fx c_z c_s[1] f_sides[1] f_sides[4]\ndump_modify all format float %.17g\n\
-    dump work all local 100 w.*.txt f_mesh[1] f_mesh[5]\nrestart 70 r.*.restart\n";
-
-/// A plate under the bowl.
-fn plate(folder: &Path) {
-    let facet = |[a, b, c]: [&str; 3]| {
-        format!("facet normal 0 0 1\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n")
-    };
-    let corners = ["-1 -2 1", "13 -2 1", "13 12 1.5", "-1 12 1.5"];
-    let both = facet([corners[0], corners[1], corners[2]]) + &facet([corners[0], corners[2], corners[3]]);
-    fs::write(folder.join("floor.stl"), format!("solid floor\n{both}endsolid floor\n")).unwrap();
-}
-
-/// What a deck of the bowl leaves behind.
-fn left_by_bowl(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
-    let folder = tempfile::tempdir().unwrap();
-    plate(folder.path());
-    fs::write(folder.path().join("in.deck"), deck).unwrap();
-    let o = perigrain(folder.path(), &[&["-in", "in.deck", "-screen", "none"], words].concat());
-    assert!(o.status.success(), "{words:?}: {}", said(&o));
-    files(folder.path())
-}
-
-/// Forces of contacts with history, walls of three kinds, what walls feel and how often triangles are rubbed, pressures by contacts, and
-/// the warning of the first that is too deep in a wall.
-#[test]
-fn grains_are_shared_out_with_the_bytes_of_one_process() {
-    let deck = format!("{BOWL}{BOWL_WRITES}run 150\nwrite_restart end.restart\nrun 60\n");
-    let alone = left_by_bowl(&deck, &["-threads", "1"]);
-    let log = String::from_utf8_lossy(&alone["log.lammps"]).into_owned();
-    assert!(log.contains("of its radius deep in the wall"), "{log}");
-    for (ranks, threads) in [("2", "2"), ("3", "1"), ("5", "1")] {
-        let several = left_by_bowl(&deck, &["-ranks", ranks, "-threads", threads]);
-        same(&alone, &several, &format!("a bowl on {ranks} ranks"));
-    }
-}
-
-#[test]
-fn quiet_steps_of_grains_gather_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    plate(folder.path());
-    fs::write(folder.path().join("in.deck"), format!("{BOWL}thermo 100\nrun 100\n")).unwrap();
-    let o = perigrain(folder.path(), &["plan", "--measure", "-ranks", "3", "-threads", "1", "in.deck"]);
-    assert!(said(&o).contains("ranks: 765 grains are few for 3 ranks"), "{}", said(&o));
-    let ops = exchanged(&said(&o));
-    // Places of all are known where grains come, and where lists are made anew.
-    let looks = ["reneighbor", "pair gran/hooke/history", "fix rain deposit"];
-    for (op, rows, gathers) in &ops {
-        assert!(*gathers == 0 || looks.iter().any(|look| op.starts_with(look)), "`{op}` needs {rows} rows");
-        assert!(*gathers < 30, "`{op}`: {gathers} gathers in 100 steps");
-    }
-    let own = |op: &str| ops.iter().any(|(name, rows, _)| name.starts_with(op) && rows == "own");
-    assert!(["fix move", "fix g ", "fix sides", "fix bowl", "fix mesh"].into_iter().all(own), "{ops:?}");
-}
-
-/// A block of spheres held together by bonds that break where it is torn: forces, breaking, and what is told of it.
-#[test]
-fn bonds_are_evaluated_by_the_ranks_of_their_particles() {
-    let deck = "units lj\natom_style bpm/sphere\nboundary f f f\nnewton on off\n\
-        special_bonds lj 0.0 1.0 1.0 coul 0.0 1.0 1.0\ncomm_modify vel yes cutoff 3.0\nlattice fcc 1.0\n\
-        region world block -3 16 -3 9 -3 9\nregion block block 0 9.1 0 4.1 0 4.1\n\
-        create_box 1 world bond/types 1 extra/bond/per/atom 20 extra/special/per/atom 60\ncreate_atoms 1 region block\n\
-        set group all diameter 1.1\nset group all density 1.0\nneighbor 0.3 bin\n\
-        pair_style gran/hooke/history 1.0 NULL 0.5 NULL 0.1 1\npair_coeff 1 1\nbond_style zero\nbond_coeff *\n\
-        create_bonds many all all 1 0.0 1.2\nspecial_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0\n\
-        bond_style bpm/rotational break yes store/local record 5 time id1 id2 x\n\
-        bond_coeff 1 0.7 0.28 0.035 0.044 0.2 0.2 0.02 0.02 0.01 0.01 0 0\n\
-        fix 1 all nve/bpm/sphere\nvelocity all create 0.02 4534 loop geom\nvelocity all ramp vx -0.3 0.3 x 0 9 sum yes\n\
-        timestep 0.05\nthermo_style custom step ke bonds pe\nthermo_modify format float %.15g\nthermo 20\n\
-        dump all all custom 40 d.*.txt id x y z omegax fz\ndump_modify all format float %.17g\n\
-        dump local all local 20 broken.*.txt f_record[1] f_record[2] f_record[3] f_record[4]\nrun 80\nwrite_restart end.restart\n";
-    let alone = left_by(deck, &["-threads", "1"]);
-    let bonds = |step: &str| {
-        let log = String::from_utf8_lossy(&alone["log.lammps"]).into_owned();
-        let row = log.lines().find(|line| line.trim_start().starts_with(step)).map(str::to_string);
-        row.and_then(|row| row.split_whitespace().nth(2)?.parse::<f64>().ok()).unwrap()
-    };
-    assert!(bonds("80 ") < 0.95 * bonds("0 "), "some break");
-    for (ranks, threads) in [("2", "1"), ("3", "2"), ("5", "1")] {
-        same(
-            &alone,
-            &left_by(deck, &["-ranks", ranks, "-threads", threads]),
-            &format!("bonds on {ranks} ranks"),
-        );
-    }
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("in.deck"), deck).unwrap();
-    let ops = measured(folder.path(), &["in.deck"]);
-    assert!(
-        ops.iter().any(|(op, rows, _)| op.starts_with("bond bpm/rotational") && rows == "asked"),
-        "{ops:?}"
-    );
 }
 
 /// Smooth walls and one that throws back, and their numbers in log and dumps; one that a particle runs through ends all ranks with the same
