@@ -117,3 +117,38 @@ fn bonds_are_evaluated_by_the_ranks_of_their_particles() {
         "{ops:?}"
     );
 }
+
+/// Examples of grains, with enough of them for three ranks and few steps.
+const EXAMPLES: [(&str, &str); 5] = [
+    ("chute", "-var side 8 -var H 8 -var tsettle 0.5 -var tstart 0.4 -var tmean 0.4 -var picture no"),
+    ("hopper", "-var R 6 -var H 8 -var D 5 -var tsettle 1 -var tstart 1 -var tmean 1"),
+    ("rotating_drum", "-var R 8 -var L 4 -var tsettle 0.5 -var turn 0.001 -var tmean 1 -var picture no"),
+    ("angle_of_repose", "-var R 6 -var tsettle 0.5 -var tmax 1 -var speed 4 -var picture no"),
+    ("shear_cell", "-var n 8 -var I 0.1 -var start 0.02 -var strain 0.02"),
+];
+
+#[test]
+#[ignore = "takes minutes: `./check --ranks`"]
+fn examples_of_grains_are_shared_out() {
+    for (name, args) in EXAMPLES {
+        let deck = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}/in.{name}"));
+        let words: Vec<&str> = [deck.to_str().unwrap()].into_iter().chain(args.split_whitespace()).collect();
+        let left = |more: &[&str]| {
+            let folder = tempfile::tempdir().unwrap();
+            let o = perigrain(folder.path(), &[&["-in"], &words[..], &["-screen", "none"], more].concat());
+            assert!(o.status.success(), "{name}: {}", said(&o));
+            files(folder.path())
+        };
+        let alone = left(&["-threads", "1"]);
+        for ranks in ["2", "3", "5"] {
+            same(&alone, &left(&["-threads", "1", "-ranks", ranks]), &format!("{name} on {ranks} ranks"));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let ops = measured(folder.path(), &words);
+        assert!(!ops.is_empty(), "{name}: nothing is shared out");
+        for (op, rows, gathers) in ops {
+            let looks = ["reneighbor", "pair "].iter().any(|look| op.starts_with(look));
+            assert!(looks || gathers == 0, "{name}: `{op}` needs {rows} rows, {gathers} gathers");
+        }
+    }
+}

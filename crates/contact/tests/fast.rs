@@ -7,7 +7,7 @@ use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rule, Rules, Sweep};
-use perigrain_contact::fast::{Dealt, Fast, Frame, Laws, Sums};
+use perigrain_contact::fast::{Dealt, Fast, Frame, Laws, Own, Sums};
 use perigrain_contact::{
     Advance, Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting,
     normal,
@@ -471,7 +471,8 @@ fn lined_up(s: &Scene, law: Table, turn: usize) -> (Scene, Vec<Range<usize>>) {
     let order = || tiles.order.iter().map(|i| *i as usize);
     let of = |column: &Vec<Vec3>| order().map(|i| column[i]).collect();
     let numbers = |column: &Vec<f64>| order().map(|i| column[i]).collect();
-    let end = |k: usize| tiles.members(k * tiles.count() / 6).start;
+    // Not always at the end of a tile.
+    let end = |k: usize| tiles.members(k * tiles.count() / 6).start + 3 * (turn % 3);
     let (first, second) = (end(1 + turn % 2), end(3 + turn % 3));
     let scene = Scene {
         x: of(&s.x),
@@ -502,12 +503,21 @@ fn lists_of_ranks_give_the_bits_of_one_process() {
                 s.wrap();
                 (s, rows) = lined_up(&s, law, k / 7);
                 let dealt = |me: usize| Dealt { rows: &rows, me };
-                let of = |(me, part): (usize, &FastLoop)| part.fast.handed_over(&s.tag, dealt(me));
-                let handed: Vec<Vec<Contacts>> = ranks.iter().enumerate().map(of).collect();
                 let frame = Frame { lo: [0.0; 3], period: s.period, reach: SKIN, skin: SKIN };
+                let before: Vec<Fast> = ranks.iter().map(|part| part.fast.clone()).collect();
                 for (me, part) in ranks.iter_mut().enumerate() {
-                    let known: Vec<Contacts> = handed.iter().map(|to| to[me].clone()).collect();
-                    let known = Contacts::joined(&known);
+                    let handed = |from: usize| {
+                        // What the other one lists from now on says to which ranks its contacts go.
+                        let (mut other, mut out) = (before[from].clone(), vec![]);
+                        let note = |fast: &Fast, own: Option<&Own>| {
+                            out = fast.handed_over(&s.tag, dealt(from), own.unwrap());
+                            None
+                        };
+                        other.rebuild(&s.grains(), &frame, note, Some(dealt(from)), &|i, j| s.keep(i, j));
+                        out.swap_remove(me)
+                    };
+                    let known =
+                        Contacts::joined(&(0..3).filter(|from| *from != me).map(handed).collect::<Vec<_>>());
                     part.fast.rebuild(&s.grains(), &frame, |_, _| Some(known), Some(dealt(me)), &|i, j| {
                         s.keep(i, j)
                     });

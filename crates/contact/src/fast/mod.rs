@@ -37,8 +37,7 @@ use perigrain_base::par::ordered::Precedence;
 use perigrain_neigh::list::small;
 use perigrain_neigh::tiles::{Tiles, edges};
 use perigrain_world::contacts::Contacts;
-pub use ranks::Dealt;
-use ranks::Own;
+pub use ranks::{Dealt, Own};
 use std::ops::Range;
 use upkeep::Upkeep;
 
@@ -302,15 +301,14 @@ impl Fast {
     }
 
     /// Makes all lists anew from these positions (wrapped into the box; [`Fast::turn`] follows those that are elsewhere by now), pairs for
-    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; those of `known(self, part)` are taken in addition. An
-    /// evaluation must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own ([`Fast::is_part`]); not where
-    /// pairs with large grains have lists of their own, where several laws hold, or where some tile has grains of several ranks;
-    /// `part` is whether they are.
+    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; those of `known(self, own)` are taken in addition. An
+    /// evaluation must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own
+    /// ([`Fast::is_part`]), which `own` says; not where pairs with large grains have lists of their own, or where several laws hold.
     pub fn rebuild(
         &mut self,
         grains: &Grains,
         frame: &Frame,
-        known: impl FnOnce(&Self, bool) -> Option<Contacts>,
+        known: impl FnOnce(&Self, Option<&Own>) -> Option<Contacts>,
         dealt: Option<Dealt>,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
@@ -331,7 +329,7 @@ impl Fast {
         let parts = edge == far && self.laws.distinct.len() == 1;
         let ((tiles, book), large, own) = match dealt.filter(|_| parts) {
             None => {
-                let known = known(self, false);
+                let known = known(self, None);
                 let remember = || self.remember(grains.tag, known.as_ref());
                 let (found, large) = par::both(n, || par::both(n, sort, remember), large);
                 (found, large, None)
@@ -339,8 +337,8 @@ impl Fast {
             Some(dealt) => {
                 let tiles = sort();
                 let own = Own::new(dealt, &tiles);
-                let known = known(self, own.is_some());
-                ((tiles, self.remember(grains.tag, known.as_ref())), vec![], own)
+                let known = known(self, Some(&own));
+                ((tiles, self.remember(grains.tag, known.as_ref())), vec![], Some(own))
             }
         };
         // Where several laws stick, what is listed decides which contacts are evaluated together.

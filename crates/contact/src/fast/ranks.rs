@@ -24,11 +24,13 @@ enum Part {
 
 /// Which pairs a rank lists.
 #[derive(Clone, Debug)]
-pub(super) struct Own {
+pub struct Own {
     /// Whether each grain is its own.
     grains: Vec<bool>,
     /// What it has of each tile.
     parts: Vec<Part>,
+    /// The rank of each grain, and the one that has the whole list of its tile.
+    ranks: Vec<[u16; 2]>,
 }
 
 /// How grains are shared out to ranks.
@@ -41,31 +43,32 @@ pub struct Dealt<'a> {
 }
 
 impl Own {
-    /// What this rank lists. None where some tile has grains of several ranks: contacts remember at the ranks of their grains.
-    pub(super) fn new(dealt: Dealt, tiles: &Tiles) -> Option<Self> {
-        let owner = |place: usize| {
-            let row = tiles.order[place] as usize;
-            dealt.rows.partition_point(|rows| rows.end <= row)
-        };
-        let mut owners = vec![];
+    /// What this rank lists. A tile is that of the rank that has its first grain: tiles may be others than those that were dealt, where
+    /// contacts reach beyond touch.
+    pub(super) fn new(dealt: Dealt, tiles: &Tiles) -> Self {
+        let owner = |row: u32| dealt.rows.partition_point(|rows| rows.end <= row as usize) as u16;
+        let mut ranks = vec![[0; 2]; tiles.order.len()];
+        let (mut of_tiles, mut has_some) = (vec![], vec![]);
         for tile in 0..tiles.count() {
-            let members = tiles.members(tile);
-            let of = members.clone().next().map(owner);
-            if members.clone().any(|place| Some(owner(place)) != of) {
-                return None;
+            let members = &tiles.order[tiles.members(tile)];
+            let first = members.first().map(|row| owner(*row));
+            for row in members {
+                ranks[*row as usize] = [owner(*row), first.unwrap_or_default()];
             }
-            owners.push(of);
+            has_some.push(members.iter().any(|row| usize::from(ranks[*row as usize][0]) == dealt.me));
+            of_tiles.push(first.map(usize::from));
         }
-        let is_own = |tile: usize| owners[tile] == Some(dealt.me);
-        let part = |tile: usize| match is_own(tile) {
+        let part = |tile: usize| match of_tiles[tile] == Some(dealt.me) {
             true => Part::Whole,
-            false if tiles.beside(tile).iter().any(|k| is_own(*k as usize)) => Part::Touching,
+            false if has_some[tile] || tiles.beside(tile).iter().any(|k| has_some[*k as usize]) => {
+                Part::Touching
+            }
             false => Part::Nothing,
         };
         let parts = (0..tiles.count()).map(part).collect();
         let mut grains = vec![false; tiles.order.len()];
         grains[dealt.rows[dealt.me].clone()].fill(true);
-        Some(Self { grains, parts })
+        Self { grains, parts, ranks }
     }
 
     /// Whether it lists anything of a tile.
@@ -99,11 +102,10 @@ impl Fast {
         self.lists.iter().enumerate().filter(move |(k, _)| is_whole(*k))
     }
 
-    /// What each other rank is to remember of the contacts of this one, where grains of these ids stand in this order now and are dealt
-    /// so: each contact goes to the ranks of both its grains.
-    pub fn handed_over(&self, tag: &[u32], dealt: Dealt) -> Vec<Contacts> {
+    /// What each other rank is to remember of the contacts of this one, where grains of these ids stand in this order now, are dealt so, and
+    /// are listed so: each contact goes to the ranks of both its grains, and to those that have the whole lists of their tiles.
+    pub fn handed_over(&self, tag: &[u32], dealt: Dealt, own: &Own) -> Vec<Contacts> {
         let (places, width) = (super::memory::Places::new(tag), self.width);
-        let owner = |row: usize| dealt.rows.partition_point(|rows| rows.end <= row);
         let mut out = vec![Contacts { width: self.laws.memory(), ..Contacts::default() }; dealt.rows.len()];
         for (_, list) in self.whole_lists() {
             let rows = list.short.history.chunks_exact(width);
@@ -113,9 +115,13 @@ impl Fast {
                 }
                 let [a, b] = [self.tag[*i as usize], self.tag[place(*w)]];
                 let Some((p, q)) = places.of(a).zip(places.of(b)) else { continue };
-                let [first, second] = [p, q].map(|row| owner(row as usize));
-                let both = [Some(first), (second != first).then_some(second)].into_iter().flatten();
-                for rank in both.filter(|rank| *rank != dealt.me) {
+                let [[a0, a1], [b0, b1]] = [p, q].map(|row| own.ranks[row as usize]);
+                let mut takers = [a0, a1, b0, b1].map(usize::from);
+                takers.sort_unstable();
+                for (k, &rank) in takers.iter().enumerate() {
+                    if rank == dealt.me || (k > 0 && takers[k - 1] == rank) {
+                        continue;
+                    }
                     let to = &mut out[rank];
                     to.keys.push([a.min(b), a.max(b)]);
                     let from = to.history.len();

@@ -12,7 +12,7 @@ use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::sub;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use perigrain_contact::fast::{Dealt, Fast, Frame, Laws, Sums};
+use perigrain_contact::fast::{Dealt, Fast, Frame, Laws, Own, Sums};
 use perigrain_contact::mdr::Manner;
 use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
@@ -168,10 +168,10 @@ impl Force {
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             let rows = deal.and(w.share.as_ref()).map(Share::rows_of_ranks);
             let dealt = rows.as_ref().map(|rows| Dealt { rows, me: comm::present().rank() });
-            let known = |fast: &Fast, part: bool| match fast.is_part() && !w.dealings.apart {
-                true if part => Some(contacts_of_others(w, fast)),
-                true => Some(contacts_of_all(fast)),
-                false => kept_by_world,
+            let known = |fast: &Fast, own: Option<&Own>| match (own, dealt) {
+                _ if !fast.is_part() || w.dealings.apart => kept_by_world,
+                (Some(own), Some(dealt)) => Some(contacts_of_others(w, fast, dealt, own)),
+                _ => Some(contacts_of_all(fast)),
             };
             fast.rebuild(&grains, &frame, known, dealt, &|i, j| allowed.pair(i, j));
             fast.turn(&kept.turns, &now);

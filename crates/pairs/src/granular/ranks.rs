@@ -2,7 +2,7 @@
 
 use perigrain_base::comm;
 use perigrain_base::comm::numbers::{next, put};
-use perigrain_contact::fast::{Dealt, Fast};
+use perigrain_contact::fast::{Dealt, Fast, Own};
 use perigrain_world::World;
 use perigrain_world::contacts::{Contacts, Deep};
 use perigrain_world::share::joined_of_all;
@@ -12,12 +12,10 @@ pub fn contacts_of_all(fast: &Fast) -> Contacts {
     joined_of_all(&*comm::present(), &fast.contacts())
 }
 
-/// What other ranks remember of contacts with this one's grains, as these are dealt now; they have this rank's in exchange.
-pub fn contacts_of_others(w: &World, fast: &Fast) -> Contacts {
-    let Some(share) = &w.share else { return Contacts::default() };
-    let rows = share.rows_of_ranks();
+/// What other ranks remember of contacts that this one lists, as grains are dealt and listed now; they have this rank's in exchange.
+pub fn contacts_of_others(w: &World, fast: &Fast, dealt: Dealt, own: &Own) -> Contacts {
     let comm = comm::present();
-    let all = fast.handed_over(&w.particles.tag, Dealt { rows: &rows, me: comm.rank() });
+    let all = fast.handed_over(&w.particles.tag, dealt, own);
     let letter = |contacts: &Contacts| {
         let mut bytes = vec![];
         contacts.write(&mut bytes);
