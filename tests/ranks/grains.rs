@@ -79,7 +79,7 @@ fn quiet_steps_of_grains_gather_nothing() {
     assert!(["fix move", "fix g ", "fix sides", "fix bowl", "fix mesh"].into_iter().all(own), "{ops:?}");
 }
 
-/// A block of spheres held together by bonds that break where it is torn: forces, breaking, and what is told of it.
+/// A block of spheres held together by bonds that break where it is torn: forces, breaking, and what is written of it.
 #[test]
 fn bonds_are_evaluated_by_the_ranks_of_their_particles() {
     let deck = "units lj\natom_style bpm/sphere\nboundary f f f\nnewton on off\n\

@@ -378,6 +378,11 @@ impl Fast {
         self.stale = true;
     }
 
+    /// Whether there has been an evaluation since the last [`Fast::rebuild`], as [`Fast::admit`] needs it.
+    pub fn can_admit(&self) -> bool {
+        !self.stale && self.book.is_none()
+    }
+
     /// Takes pairs into the lists that `keep` has only now let in, told by their grains; `grains` and `frame` are those of the last
     /// [`Fast::rebuild`]. The lists are those that a rebuild would make. `false`, and nothing is done, where only a rebuild will do:
     /// before an evaluation, beside large grains, and where grains or images have been moved since.
@@ -391,7 +396,7 @@ impl Fast {
         let reach = frame.reach + self.span;
         let [edge, far] = edges(grains.radius, reach);
         let elsewhere = !self.turns.is_empty() || self.period != frame.period;
-        if self.stale || self.book.is_some() || edge != far || elsewhere || grains.tag != self.tag {
+        if !self.can_admit() || edge != far || elsewhere || grains.tag != self.tag {
             return false;
         }
         let mut tiles = Tiles::default();

@@ -51,8 +51,10 @@ fn floor() -> Planes {
 
 /// All of them that are of the group.
 fn meeting(mask: &[u32], group: u32) -> Meeting<'_> {
-    Meeting { mask, group, rows: &[0..usize::MAX] }
+    Meeting { mask, group, rows: std::slice::from_ref(&EVERY) }
 }
+
+static EVERY: Range<usize> = 0..usize::MAX;
 
 #[test]
 fn only_what_is_near_is_listed_and_springs_last_while_they_touch() {

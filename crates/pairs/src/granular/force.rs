@@ -4,7 +4,7 @@ use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
 use super::heating::{Heating, conducts};
 use super::images::suits;
 use super::mdr::Press;
-use super::ranks::{agree_on_deep, contacts_of_all, contacts_of_others, virial_of_all};
+use super::ranks::{agree_on_deep, all_agree, contacts_of_all, contacts_of_others, virial_of_all};
 use super::reach::{reaching, refuse_giants};
 use perigrain_base::comm;
 use perigrain_base::diag::Result;
@@ -155,7 +155,8 @@ impl Force {
             let frame = Frame { lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
-            if fast.admit(&grains, &frame, &ends, &|i, j| allowed.pair(i, j)) {
+            let ready = if fast.is_part() { all_agree(fast.can_admit()) } else { fast.can_admit() };
+            if ready && fast.admit(&grains, &frame, &ends, &|i, j| allowed.pair(i, j)) {
                 return Ok(());
             }
         }

@@ -47,6 +47,13 @@ pub fn virial_of_all(fast: &Fast) -> [f64; 6] {
     all.iter().fold([0.0; 6], |sum, (_, virial)| std::array::from_fn(|k| sum[k] + virial[k]))
 }
 
+/// Whether this holds on all ranks.
+pub fn all_agree(here: bool) -> bool {
+    let mut against = [if here { 0.0 } else { 1.0 }];
+    comm::present().most(&mut against);
+    against == [0.0]
+}
+
 /// Lets all ranks know which grains overlapped too far first: those of smallest ids in the first step in which some did on any rank.
 pub fn agree_on_deep(w: &mut World) {
     let own = w.parts.deep;
