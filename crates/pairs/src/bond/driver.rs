@@ -442,7 +442,8 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         }
         let groups = deal.map(|_| &self.part.groups[..]);
         let all = 0..w.n();
-        let rows = w.narrow_share().map_or_else(|| vec![all], |share| share.own.clone());
+        let own = w.share.as_ref().filter(|share| share.narrow).map(|share| &share.own[..]);
+        let rows = own.unwrap_or(std::slice::from_ref(&all));
         let periods = periods(w)?;
         let p = &mut w.particles;
         let none: (&[Vec3], &[Quat]) = (&[], &[]);
@@ -456,21 +457,21 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             let ends = ascending(self.columns.pair(bond).map(|i| p.tag[i]));
             w.bonds.memory.insert(ends, memory);
         }
-        let pass_breaks = self.law.breaks() && !holds && !t.trial;
+        let breaks = self.law.breaks() && !holds && !t.trial;
         let pass = Sweep {
             columns: &self.columns,
             coeffs: &self.coeffs,
             body,
             damped: self.law.damped(),
             // Nothing breaks where a line search tries.
-            breaks: pass_breaks,
+            breaks,
             counts: w.bonds.counts_losses && self.law.damped(),
             groups,
         };
         self.law.law().sweep(&pass, &mut self.out);
         let torque = if L::Law::TURNS { Some(&mut p.torque[..]) } else { None };
-        add_up(&self.columns, &self.out, &rows, &mut p.f, torque);
-        if pass_breaks && w.anywhere(self.out.broken) {
+        add_up(&self.columns, &self.out, rows, &mut p.f, torque);
+        if breaks && w.anywhere(self.out.broken) {
             self.break_off(w, t.step);
         }
         if w.bonds.counts_losses {
