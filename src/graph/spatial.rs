@@ -184,7 +184,9 @@ fn by_all(w: &World, slabs: usize, gone: impl Fn(Range<usize>) -> Gone + Sync) -
         par::reduce(rows.len(), |some| gone(some.start + rows.start..some.end + rows.start), Gone::join)
     };
     let own = share.own.iter().filter_map(of).reduce(Gone::join);
-    let pieces = comm::present().pieces(&|bytes| own.iter().for_each(|own| own.write(bytes)));
+    let mut letter = vec![];
+    own.iter().for_each(|own| own.write(&mut letter));
+    let pieces = comm::present().pieces(letter);
     pieces.iter().filter_map(|piece| Gone::read(piece, slabs)).reduce(Gone::join)
 }
 

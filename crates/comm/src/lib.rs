@@ -20,6 +20,7 @@ mod local;
 mod mail;
 pub mod numbers;
 mod present;
+pub mod rows;
 pub mod told;
 
 pub use alone::Alone;
@@ -84,11 +85,9 @@ pub trait Comm: Send + Sync {
     /// Ends all ranks at once.
     fn abort(&self, code: i32) -> !;
 
-    /// A piece of every rank, of any length, in the order of ranks: this one's is what `write` appends.
-    fn pieces(&self, write: &dyn Fn(&mut Vec<u8>)) -> Vec<Vec<u8>> {
+    /// A piece of every rank, of any length, in the order of ranks; `own` is this one's.
+    fn pieces(&self, own: Vec<u8>) -> Vec<Vec<u8>> {
         let (me, size) = (self.rank(), self.size());
-        let mut own = vec![];
-        write(&mut own);
         let mut lengths = vec![0u8; size * 8];
         lengths[me * 8..][..8].copy_from_slice(&(own.len() as u64).to_le_bytes());
         self.gather_all(&mut lengths, &vec![8; size]);

@@ -7,8 +7,7 @@ use super::{Common, Declared, Form, Surface, needs_spheres};
 use crate::elapsed::Elapsed;
 use crate::{Fix, FixStyle};
 use moving::{Motion, Placed, Running};
-use perigrain_base::comm;
-use perigrain_base::comm::numbers::{next, put};
+use perigrain_base::comm::rows;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
 use perigrain_contact::walls::{Wall, WallSweep};
@@ -179,7 +178,7 @@ impl Surface for Tracked {
         let mut work = w.memo.remove(self.work).unwrap_or_default();
         work.resize(self.areas.len(), 0.0);
         let p = &w.particles;
-        let mut done: Vec<([u32; 2], f64)> = vec![];
+        let mut done: Vec<rows::Row<2, 1>> = vec![];
         for (touch, wrench) in contacts.contacts() {
             let (i, k, n) = (touch.grain as usize, touch.near.part as usize, touch.near.normal);
             let Some(row) = rows.get_mut(k) else { continue };
@@ -189,36 +188,18 @@ impl Surface for Tracked {
                 let slip = sub(sub(p.v[i], touch.near.velocity), spin);
                 let across = sub(slip, scale(dot(slip, n), n));
                 let work = dot(wrench.force, n).max(0.0) * length(across) * t.dt;
-                done.push(([p.tag[i], touch.near.part], work));
+                done.push(([p.tag[i], touch.near.part], [work]));
             }
         }
         if w.is_narrow() {
-            done = of_all(&done);
+            // By particle and triangle: added up in the order of one process.
+            done = rows::of_all(done);
         }
-        done.iter().for_each(|([_, part], more)| work[*part as usize] += more);
+        done.iter().for_each(|([_, part], [more])| work[*part as usize] += more);
         for (k, row) in rows.iter_mut().enumerate() {
             (row[0], row[4], row[5]) = (f64::from(self.numbers[k]), work[k], work[k] / self.areas[k]);
         }
         w.memo.insert(self.work, work);
         rows.into_iter().flatten().collect()
     }
-}
-
-/// What contacts of all ranks have done, by particle and triangle: added up in the order of one process.
-fn of_all(own: &[([u32; 2], f64)]) -> Vec<([u32; 2], f64)> {
-    let write = |bytes: &mut Vec<u8>| {
-        own.iter().for_each(|(key, work)| {
-            put(bytes, key);
-            put(bytes, &[*work]);
-        });
-    };
-    let mut all = vec![];
-    for piece in comm::present().pieces(&write) {
-        let mut rest = &piece[..];
-        while let Some((key, [work])) = next(&mut rest).zip(next(&mut rest)) {
-            all.push((key, work));
-        }
-    }
-    all.sort_unstable_by_key(|(key, _)| *key);
-    all
 }

@@ -3,8 +3,7 @@
 use super::peace::Peace;
 use super::plastic::Plastic;
 use super::{Common, Surface};
-use perigrain_base::comm;
-use perigrain_base::comm::numbers::{next, put};
+use perigrain_base::comm::rows;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, length, scale, sub};
 use perigrain_base::par;
@@ -309,14 +308,9 @@ fn stayed(grains: &Spheres, rows: &[Range<usize>], anchors: &[(Vec3, f64)], far:
 
 /// Of the particles that ranks have seen too deep in a wall first, the deepest one, for all of them.
 fn deepest_of_all(own: Option<(u32, f64, i64)>) -> Option<(u32, f64, i64)> {
-    let write = |bytes: &mut Vec<u8>| {
-        if let Some((tag, part, step)) = own {
-            put(bytes, &[f64::from(tag), part, step as f64]);
-        }
-    };
-    let all = comm::present().pieces(&write);
-    let all = all.iter().filter_map(|piece| next(&mut &piece[..]));
-    all.map(|[tag, part, step]: [f64; 3]| (tag as u32, part, step as i64))
+    let all = rows::of_all(own.map(|(tag, part, step)| ([tag], [part, step as f64])));
+    all.into_iter()
+        .map(|([tag], [part, step])| (tag, part, step as i64))
         .min_by(|a, b| a.2.cmp(&b.2).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)))
 }
 

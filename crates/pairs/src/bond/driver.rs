@@ -1,8 +1,7 @@
 //! The op of bonds as columns: finds their ends, evaluates a law for all of them, lets them break.
 
 use super::store_local::Store;
-use perigrain_base::comm;
-use perigrain_base::comm::numbers::{next, put};
+use perigrain_base::comm::rows;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
 use perigrain_base::math::periods::Periods;
@@ -179,21 +178,6 @@ struct Part {
     groups: Vec<bool>,
 }
 
-/// The bonds that have broken on some rank, ascending.
-fn of_all(own: &[usize]) -> Vec<usize> {
-    let own: Vec<u32> = own.iter().map(|bond| *bond as u32).collect();
-    let mut all = vec![];
-    for piece in comm::present().pieces(&|bytes| put(bytes, &own)) {
-        let mut rest = &piece[..];
-        while let Some([bond]) = next::<u32, 1>(&mut rest) {
-            all.push(bond as usize);
-        }
-    }
-    all.sort_unstable();
-    all.dedup();
-    all
-}
-
 /// Forces of all bonds of one law, and their breaking.
 pub struct Bonded<const C: usize, L: Driven<C>> {
     law: L,
@@ -361,7 +345,10 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         let over = self.columns.living().filter(|&k| self.out.load[k] >= 1.0);
         let mut over: Vec<usize> = over.collect();
         if w.is_narrow() {
-            over = of_all(&over);
+            // A bond across a border has broken on both sides of it.
+            let all = rows::of_all(over.iter().map(|bond| ([*bond as u32], [])));
+            over = all.into_iter().map(|([bond], [])| bond as usize).collect();
+            over.dedup();
             if let Some(store) = self.law.store() {
                 w.whole(X | store.reads());
             }

@@ -4,9 +4,9 @@ use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
 use super::heating::{Heating, conducts};
 use super::images::suits;
 use super::mdr::Press;
-use super::ranks::{agree_on_deep, all_agree, contacts_of_all, contacts_of_others, virial_of_all};
+use super::ranks::{agree_on_deep, contacts_of_all, contacts_of_others, virial_of_all};
 use super::reach::{reaching, refuse_giants};
-use perigrain_base::comm;
+use perigrain_base::comm::{self, rows};
 use perigrain_base::diag::Result;
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::sub;
@@ -155,7 +155,7 @@ impl Force {
             let frame = Frame { lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
-            let ready = if fast.is_part() { all_agree(fast.can_admit()) } else { fast.can_admit() };
+            let ready = if fast.is_part() { rows::all_agree(fast.can_admit()) } else { fast.can_admit() };
             if ready && fast.admit(&grains, &frame, &ends, &|i, j| allowed.pair(i, j)) {
                 return Ok(());
             }

@@ -1,6 +1,6 @@
 //! Dealing rows out to ranks: bodies and grains tile by tile, and which rows ranks need of each other then.
 
-use super::{Listed, Share, Traffic, What};
+use super::{Link, Listed, Share, Traffic, What};
 use crate::rebuild::Rebuild;
 use crate::{Fields, Key, Named, World};
 use perigrain_base::comm::numbers::{next, put};
@@ -65,7 +65,7 @@ fn deal_bodies(
     families: &mut Option<Families>,
     n: usize,
     (me, ranks): (usize, usize),
-) -> Option<[Vec<Vec<Range<usize>>>; 2]> {
+) -> Option<(Vec<Vec<Range<usize>>>, Vec<Range<usize>>)> {
     let families = families.as_mut().filter(|families| families.place.len() == n)?;
     if !families.deal(me, ranks) {
         return None;
@@ -75,7 +75,7 @@ fn deal_bodies(
         let rows = shares.owner.iter().enumerate().filter(|(_, owner)| usize::from(**owner) == rank);
         ranges(rows.map(|(row, _)| row))
     };
-    Some([(0..ranks).map(of).collect(), vec![shares.own.clone()]])
+    Some(((0..ranks).map(of).collect(), shares.own.clone()))
 }
 
 impl World {
@@ -96,7 +96,7 @@ impl World {
         let (me, ranks) = (comm.rank(), comm.size());
         let n = self.n();
         let (what, alone, own) = match deal_bodies(self.families.past_mut(), n, (me, ranks)) {
-            Some([alone, mut own]) => (What::Bodies, alone, own.swap_remove(0)),
+            Some((alone, own)) => (What::Bodies, alone, own),
             None => {
                 let Some(rows) = self.tiling().and_then(|tiling| tiling.dealt(ranks)) else { return };
                 let alone: Vec<Vec<Range<usize>>> = rows.into_iter().map(|rows| vec![rows]).collect();
@@ -143,28 +143,17 @@ impl World {
         let Some(share) = &mut self.share else { return };
         let listed = share.listed.values().flat_map(|listed| listed.rows.iter().copied());
         let me = share.comm.rank();
-        let links = |needed: [Vec<Vec<u32>>; 2]| {
-            let [out, into] = needed.map(|rows| {
-                rows.into_iter()
-                    .map(|rows| ranges(rows.into_iter().map(|row| row as usize)))
-                    .collect::<Vec<_>>()
-            });
-            let links = out.into_iter().zip(into).enumerate().filter(|(with, _)| *with != me);
-            let links =
-                links.map(|(with, (out, into))| super::Link { with, out, into, bytes: Default::default() });
-            links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect::<Vec<_>>()
-        };
         share.links = match (share.what, self.families.past()) {
             (What::Grains, _) => {
                 let wanted = wanted(&share.alone, me, listed);
                 let asked = asked(&*share.comm, &wanted);
-                [vec![], links([asked, wanted])]
+                [vec![], links(&asked, &wanted)]
             }
             (What::Bodies, Some(families)) => {
                 [families.needed(), families.needed_by_lists(listed)].map(|needed| {
-                    let of = |with: &Vec<Vec<u32>>| with.get(me).cloned().unwrap_or_default();
-                    let out = needed.iter().map(of).collect();
-                    links([out, needed.get(me).cloned().unwrap_or_default()])
+                    let Some(into) = needed.get(me) else { return vec![] };
+                    let out: Vec<Vec<u32>> = needed.iter().map(|with| with[me].clone()).collect();
+                    links(&out, into)
                 })
             }
             (What::Bodies, None) => [vec![], vec![]],
@@ -238,6 +227,19 @@ impl Share {
     pub fn rows_of_ranks(&self) -> Vec<Range<usize>> {
         self.alone.iter().flatten().cloned().collect()
     }
+}
+
+/// The links to other ranks, where each of them needs these rows of this one, and this one needs these of each; none to itself.
+fn links(out: &[Vec<u32>], into: &[Vec<u32>]) -> Vec<Link> {
+    let rows = |rows: &Vec<u32>| ranges(rows.iter().map(|row| *row as usize));
+    let link = |(with, (out, into)): (usize, (&Vec<u32>, &Vec<u32>))| Link {
+        with,
+        out: rows(out),
+        into: rows(into),
+        bytes: Default::default(),
+    };
+    let links = out.iter().zip(into).enumerate().map(link);
+    links.filter(|link| !link.out.is_empty() || !link.into.is_empty()).collect()
 }
 
 /// Of these rows those that each other rank has, ascending.

@@ -14,6 +14,13 @@ impl Contacts {
         put(bytes, &self.history);
     }
 
+    /// These alone as a message.
+    pub fn letter(&self) -> Vec<u8> {
+        let mut bytes = vec![];
+        self.write(&mut bytes);
+        bytes
+    }
+
     /// Takes those at the front of a message.
     pub fn read(bytes: &mut &[u8]) -> Option<Self> {
         let [count, width] = next::<u32, 2>(bytes)?.map(|n| n as usize);
@@ -47,7 +54,7 @@ impl Contacts {
 
 /// What all ranks have, joined.
 pub fn joined_of_all(comm: &dyn Comm, own: &Contacts) -> Contacts {
-    let pieces = comm.pieces(&|bytes| own.write(bytes));
+    let pieces = comm.pieces(own.letter());
     let all: Vec<Contacts> = pieces.iter().filter_map(|piece| Contacts::read(&mut &piece[..])).collect();
     Contacts::joined(&all)
 }
@@ -57,7 +64,9 @@ impl World {
     pub(super) fn gather_wall_contacts(&mut self, share: &mut Share) {
         let walls = self.wall_contacts.past_mut();
         let comm = &*share.comm;
-        let pieces = comm.pieces(&|bytes| walls.values().for_each(|contacts| contacts.write(bytes)));
+        let mut own = vec![];
+        walls.values().for_each(|contacts| contacts.write(&mut own));
+        let pieces = comm.pieces(own);
         share.traffic += Traffic { gathers: 1, sent: pieces[comm.rank()].len() as u64 };
         let mut rest: Vec<&[u8]> = pieces.iter().map(|piece| &piece[..]).collect();
         for contacts in walls.values_mut() {
