@@ -26,6 +26,7 @@ mod overlaps;
 mod overlay;
 mod planning;
 mod python;
+mod ranks;
 mod rerunning;
 mod resolution;
 mod restarting;

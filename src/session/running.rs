@@ -49,10 +49,6 @@ struct RunArgs {
     every: Option<(i64, Vec<Word>)>,
 }
 
-/// So many grains a rank has at least where several are faster than one process: a step of them takes as long as some messages between
-/// processes of one machine.
-const PAYS: usize = 1000;
-
 impl Session {
     pub(super) fn run_command(&mut self, cmd: &Command) -> Result<()> {
         let args = self.read_run(cmd)?;
@@ -384,20 +380,6 @@ impl Session {
         }
         self.plan = Some(plan);
         Ok(())
-    }
-
-    /// Says once where ranks have so few grains that they wait for each other.
-    fn say_few_for_ranks(&mut self) -> Result<()> {
-        let (n, ranks) = (self.world.n(), comm::present().size());
-        let grains = self.world.particles.style.sphere && self.world.families.is_none();
-        if !grains || ranks < 2 || n == 0 || n >= ranks * PAYS || std::mem::replace(&mut self.said_few, true)
-        {
-            return Ok(());
-        }
-        let line = format!(
-            "ranks: {n} grains are few for {ranks} ranks: from some {PAYS} grains a rank on they are faster than one process"
-        );
-        self.options.log.line(&line)
     }
 
     /// The setup and the steps of a run; also why it ended early, if it used up what a deck may use.

@@ -12,6 +12,7 @@ mod bidisperse;
 mod deep;
 mod found;
 mod image_shift;
+mod laws;
 mod list_validity;
 mod lists;
 mod memory;
@@ -23,7 +24,8 @@ mod sweep;
 mod upkeep;
 
 use super::driver::Grains;
-use super::{Advance, Granular, MOST_MEMORY};
+use super::{Advance, MOST_MEMORY};
+pub use laws::Laws;
 use list_validity::ListValidity;
 use lists::{List, Short};
 use memory::Book;
@@ -54,57 +56,6 @@ const FAR: f64 = 1e200;
 const AMPLE: f64 = 1.25;
 /// No law.
 const NONE: u8 = u8::MAX;
-
-/// Which law holds between which types.
-#[derive(Clone, Debug)]
-pub struct Laws {
-    distinct: Vec<Granular>,
-    types: usize,
-    which: Vec<u8>,
-}
-
-impl Laws {
-    /// A table from `law(a, b)` for types from 1, symmetric; `None` where there are too many different laws.
-    pub fn new(types: usize, law: impl Fn(u16, u16) -> Option<Granular>) -> Option<Self> {
-        let mut t = Self { distinct: vec![], types, which: vec![] };
-        for a in 1..=types as u16 {
-            for b in 1..=types as u16 {
-                let Some(law) = law(a, b) else {
-                    t.which.push(NONE);
-                    continue;
-                };
-                let at = t.distinct.iter().position(|l| *l == law).unwrap_or_else(|| {
-                    t.distinct.push(law);
-                    t.distinct.len() - 1
-                });
-                t.which.push(u8::try_from(at).ok().filter(|at| *at < NONE)?);
-            }
-        }
-        Some(t)
-    }
-
-    /// The laws, each once.
-    pub fn distinct(&self) -> &[Granular] {
-        &self.distinct
-    }
-
-    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
-    pub fn span(&self, largest: f64) -> f64 {
-        // Spans grow with the effective radius, which is at most half of the larger one.
-        let gaps = self.distinct.iter().map(|law| law.gap(0.5 * largest));
-        AMPLE * gaps.fold(0.0, f64::max)
-    }
-
-    #[inline]
-    fn which(&self, a: u16, b: u16) -> u8 {
-        self.which[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
-    }
-
-    /// How many numbers a contact remembers at most.
-    pub fn memory(&self) -> usize {
-        self.distinct.iter().map(Granular::memory).max().unwrap_or(0)
-    }
-}
 
 /// The box as lists see it.
 #[derive(Clone, Copy, Debug, PartialEq)]

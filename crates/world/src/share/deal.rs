@@ -9,6 +9,9 @@ use perigrain_peri::families::Families;
 use perigrain_peri::families::shares::ranges;
 use std::ops::Range;
 
+/// Some rows, ascending.
+type Rows = Vec<Range<usize>>;
+
 /// Whether rows are shared out, and how often they have been.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dealings {
@@ -65,7 +68,7 @@ fn deal_bodies(
     families: &mut Option<Families>,
     n: usize,
     (me, ranks): (usize, usize),
-) -> Option<(Vec<Vec<Range<usize>>>, Vec<Range<usize>>)> {
+) -> Option<(Vec<Rows>, Rows)> {
     let families = families.as_mut().filter(|families| families.place.len() == n)?;
     if !families.deal(me, ranks) {
         return None;
@@ -99,7 +102,7 @@ impl World {
             Some((alone, own)) => (What::Bodies, alone, own),
             None => {
                 let Some(rows) = self.tiling().and_then(|tiling| tiling.dealt(ranks)) else { return };
-                let alone: Vec<Vec<Range<usize>>> = rows.into_iter().map(|rows| vec![rows]).collect();
+                let alone: Vec<Rows> = rows.into_iter().map(|rows| vec![rows]).collect();
                 let own = alone[me].clone();
                 (What::Grains, alone, own)
             }

@@ -1,0 +1,55 @@
+//! Which contact law holds between which types, as the fast loop looks it up.
+
+use super::{AMPLE, NONE};
+use crate::Granular;
+
+/// Which law holds between which types.
+#[derive(Clone, Debug)]
+pub struct Laws {
+    pub(super) distinct: Vec<Granular>,
+    pub(super) types: usize,
+    pub(super) which: Vec<u8>,
+}
+
+impl Laws {
+    /// A table from `law(a, b)` for types from 1, symmetric; `None` where there are too many different laws.
+    pub fn new(types: usize, law: impl Fn(u16, u16) -> Option<Granular>) -> Option<Self> {
+        let mut t = Self { distinct: vec![], types, which: vec![] };
+        for a in 1..=types as u16 {
+            for b in 1..=types as u16 {
+                let Some(law) = law(a, b) else {
+                    t.which.push(NONE);
+                    continue;
+                };
+                let at = t.distinct.iter().position(|l| *l == law).unwrap_or_else(|| {
+                    t.distinct.push(law);
+                    t.distinct.len() - 1
+                });
+                t.which.push(u8::try_from(at).ok().filter(|at| *at < NONE)?);
+            }
+        }
+        Some(t)
+    }
+
+    /// The laws, each once.
+    pub fn distinct(&self) -> &[Granular] {
+        &self.distinct
+    }
+
+    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    pub fn span(&self, largest: f64) -> f64 {
+        // Spans grow with the effective radius, which is at most half of the larger one.
+        let gaps = self.distinct.iter().map(|law| law.gap(0.5 * largest));
+        AMPLE * gaps.fold(0.0, f64::max)
+    }
+
+    #[inline]
+    pub(super) fn which(&self, a: u16, b: u16) -> u8 {
+        self.which[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
+    }
+
+    /// How many numbers a contact remembers at most.
+    pub fn memory(&self) -> usize {
+        self.distinct.iter().map(Granular::memory).max().unwrap_or(0)
+    }
+}
