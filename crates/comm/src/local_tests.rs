@@ -156,6 +156,28 @@ fn letters_are_taken_when_a_rank_looks_for_them() {
 }
 
 #[test]
+fn letters_in_a_ring_arrive() {
+    // Each rank looks for letters of the one before it alone, while what it has for the next one is more than a socket holds.
+    ranks(3, || {
+        let comm = present();
+        let me = comm.rank();
+        comm.post((me + 1) % 3, &vec![me as u8; 900_000]);
+        let end = Instant::now() + Duration::from_secs(60);
+        let came = loop {
+            match comm.letter((me + 2) % 3).unwrap() {
+                Some(letter) => break letter,
+                None => assert!(Instant::now() < end, "no letter comes"),
+            }
+            std::thread::yield_now();
+        };
+        assert!(came == vec![((me + 2) % 3) as u8; 900_000]);
+        while !comm.posted() {
+            std::thread::yield_now();
+        }
+    });
+}
+
+#[test]
 fn a_rank_that_ends_is_missed_by_those_that_look_for_its_letters() {
     ranks(2, || {
         let comm = present();

@@ -44,7 +44,6 @@ impl Mail {
     /// # Errors
     /// The other rank has ended.
     pub fn next(&mut self, socket: &UnixStream) -> Result<Option<Vec<u8>>, Gone> {
-        self.send(socket);
         loop {
             let wanted = match self.came.get(1..HEAD) {
                 None => HEAD,
