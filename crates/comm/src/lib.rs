@@ -21,6 +21,8 @@ mod mail;
 pub mod numbers;
 mod present;
 pub mod rows;
+#[cfg(unix)]
+mod swap;
 pub mod told;
 
 pub use alone::Alone;

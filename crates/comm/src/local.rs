@@ -3,6 +3,7 @@
 //! What goes over a socket are frames: a kind, a length, the bytes. Ranks that call different functions are found out by the kind.
 
 use super::mail::Mail;
+use super::swap::{self, Coming, Going, GoneRank};
 use super::{Comm, Gone, lost};
 use std::io::{ErrorKind, Read, Write};
 use std::os::fd::{AsRawFd, FromRawFd, RawFd};
@@ -15,9 +16,6 @@ use std::time::{Duration, Instant};
 
 /// The variable by which a started process knows its place: its rank, the number of ranks, and a socket for each.
 pub(super) const SEAT: &str = "PERIGRAIN_SEAT";
-
-/// Bytes that a socket surely takes while the other side does not read yet; more is sent by a thread of its own.
-const SMALL: usize = 16 << 10;
 
 /// Bytes of a frame before what it carries: its kind and its length.
 pub(super) const HEAD: usize = 9;
@@ -147,10 +145,7 @@ impl Local {
     }
 
     fn send(&self, to: usize, kind: Kind, bytes: &[u8]) {
-        let mut socket = self.socket(to);
-        let mut head = [kind as u8; HEAD];
-        head[1..].copy_from_slice(&(bytes.len() as u64).to_le_bytes());
-        if socket.write_all(&head).and_then(|()| socket.write_all(bytes)).is_err() {
+        if Going::new(to, self.socket(to), kind, bytes).send(true).is_err() {
             self.gone(to);
         }
     }
@@ -171,9 +166,7 @@ impl Local {
     }
 
     fn receive(&self, from: usize, kind: Kind, bytes: &mut [u8]) {
-        let length = self.head(from, kind);
-        assert!(length == bytes.len(), "rank {from} sends {length} bytes where {} were agreed", bytes.len());
-        if self.socket(from).read_exact(bytes).is_err() {
+        if Coming::new(from, self.socket(from), kind, bytes).receive(true).is_err() {
             self.gone(from);
         }
     }
@@ -256,33 +249,20 @@ impl Comm for Local {
     }
 
     fn swap(&self, out: &[(usize, &[u8])], into: &mut [(usize, &mut [u8])]) {
-        let own = out.iter().filter(|(to, _)| *to == self.rank).map(|(_, bytes)| *bytes);
-        let mut own = own.collect::<Vec<_>>().into_iter();
-        let send = || {
-            for (to, bytes) in out.iter().filter(|(to, _)| *to != self.rank) {
-                self.send(*to, Kind::Swap, bytes);
+        let mut own = out.iter().filter(|(to, _)| *to == self.rank).map(|(_, bytes)| *bytes);
+        let others = out.iter().filter(|(to, _)| *to != self.rank);
+        let mut sent: Vec<Going> =
+            others.map(|(to, bytes)| Going::new(*to, self.socket(*to), Kind::Swap, bytes)).collect();
+        let mut taken = vec![];
+        for (from, bytes) in into {
+            match *from == self.rank {
+                true => bytes.copy_from_slice(own.next().unwrap_or_default()),
+                false => taken.push(Coming::new(*from, self.socket(*from), Kind::Swap, bytes)),
             }
-        };
-        let receive = |into: &mut [(usize, &mut [u8])]| {
-            for (from, bytes) in into {
-                match *from == self.rank {
-                    true => bytes.copy_from_slice(own.next().unwrap_or_default()),
-                    false => self.receive(*from, Kind::Swap, bytes),
-                }
-            }
-        };
-        let most = (0..self.size())
-            .map(|r| out.iter().filter(|o| o.0 == r).map(|o| o.1.len() + HEAD).sum::<usize>());
-        if most.max().unwrap_or(0) <= SMALL {
-            send();
-            let mut receive = receive;
-            return receive(into);
         }
-        std::thread::scope(|s| {
-            s.spawn(send);
-            let mut receive = receive;
-            receive(into);
-        });
+        if let Err(GoneRank(rank)) = swap::swap(&mut sent, &mut taken) {
+            self.gone(rank);
+        }
     }
 
     fn gather_all(&self, all: &mut [u8], counts: &[usize]) {

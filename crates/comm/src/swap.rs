@@ -1,0 +1,146 @@
+//! Frames to and from several ranks at once, on one thread: as much at a time as each socket takes or has.
+
+use super::local::{HEAD, Kind};
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::io::Errno;
+use rustix::net::{RecvAncillaryBuffer, RecvFlags, SendAncillaryBuffer, SendFlags, recvmsg, sendmsg};
+use std::io::{IoSlice, IoSliceMut};
+use std::os::unix::net::UnixStream;
+
+/// The other rank is gone.
+#[derive(Debug)]
+pub struct GoneRank(pub usize);
+
+/// The beginning of a frame that carries so many bytes.
+pub fn head(kind: Kind, length: usize) -> [u8; HEAD] {
+    let mut head = [kind as u8; HEAD];
+    head[1..].copy_from_slice(&(length as u64).to_le_bytes());
+    head
+}
+
+/// A frame on its way to another rank.
+pub struct Going<'a> {
+    with: usize,
+    socket: &'a UnixStream,
+    head: [u8; HEAD],
+    bytes: &'a [u8],
+    /// How many bytes have left, those of the head among them.
+    done: usize,
+}
+
+impl<'a> Going<'a> {
+    pub fn new(with: usize, socket: &'a UnixStream, kind: Kind, bytes: &'a [u8]) -> Self {
+        Self { with, socket, head: head(kind, bytes.len()), bytes, done: 0 }
+    }
+
+    fn left(&self) -> usize {
+        HEAD + self.bytes.len() - self.done
+    }
+
+    /// Sends what the socket takes, and waits until it takes all where it is to `wait`; whether all has left.
+    pub fn send(&mut self, wait: bool) -> Result<bool, GoneRank> {
+        let flags = if wait { SendFlags::empty() } else { SendFlags::DONTWAIT };
+        while self.left() > 0 {
+            let pieces = [
+                IoSlice::new(&self.head[self.done.min(HEAD)..]),
+                IoSlice::new(&self.bytes[self.done.saturating_sub(HEAD)..]),
+            ];
+            match sendmsg(self.socket, &pieces, &mut SendAncillaryBuffer::default(), flags) {
+                Ok(n) => self.done += n,
+                Err(Errno::AGAIN) if !wait => return Ok(false),
+                Err(Errno::INTR) => {}
+                Err(_) => return Err(GoneRank(self.with)),
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// A frame that comes from another rank.
+pub struct Coming<'a> {
+    with: usize,
+    socket: &'a UnixStream,
+    wanted: [u8; HEAD],
+    head: [u8; HEAD],
+    bytes: &'a mut [u8],
+    /// How many bytes have come, those of the head among them.
+    done: usize,
+}
+
+impl<'a> Coming<'a> {
+    pub fn new(with: usize, socket: &'a UnixStream, kind: Kind, bytes: &'a mut [u8]) -> Self {
+        Self { with, socket, wanted: head(kind, bytes.len()), head: [0; HEAD], bytes, done: 0 }
+    }
+
+    fn left(&self) -> usize {
+        HEAD + self.bytes.len() - self.done
+    }
+
+    /// Takes what the socket has, and waits for all where it is to `wait`; whether all has come.
+    pub fn receive(&mut self, wait: bool) -> Result<bool, GoneRank> {
+        let flags = if wait { RecvFlags::WAITALL } else { RecvFlags::DONTWAIT };
+        while self.left() > 0 {
+            let mut pieces = [
+                IoSliceMut::new(&mut self.head[self.done.min(HEAD)..]),
+                IoSliceMut::new(&mut self.bytes[self.done.saturating_sub(HEAD)..]),
+            ];
+            match recvmsg(self.socket, &mut pieces, &mut RecvAncillaryBuffer::default(), flags) {
+                Ok(came) if came.bytes == 0 => return Err(GoneRank(self.with)),
+                Ok(came) => self.done += came.bytes,
+                Err(Errno::AGAIN) if !wait => return Ok(false),
+                Err(Errno::INTR) => {}
+                Err(_) => return Err(GoneRank(self.with)),
+            }
+            let (with, head) = (self.with, self.head);
+            assert!(
+                self.done < HEAD || head == self.wanted,
+                "rank {with} sends frame {head:?} where {:?} is agreed",
+                self.wanted
+            );
+        }
+        Ok(true)
+    }
+}
+
+/// Sends and takes all of these, of two with one rank the first one first.
+///
+/// # Errors
+/// A rank that is gone.
+pub fn swap(out: &mut [Going], into: &mut [Coming]) -> Result<(), GoneRank> {
+    loop {
+        let before = left(out, into);
+        let mut waiting: Vec<usize> = vec![];
+        for frame in &mut *out {
+            if waiting.contains(&frame.with) || !frame.send(false)? {
+                waiting.push(frame.with);
+            }
+        }
+        if waiting.is_empty() {
+            // Nothing waits for this rank any more: it may wait for one after the other.
+            return into.iter_mut().try_for_each(|frame| frame.receive(true).map(drop));
+        }
+        waiting.clear();
+        for frame in &mut *into {
+            if waiting.contains(&frame.with) || !frame.receive(false)? {
+                waiting.push(frame.with);
+            }
+        }
+        if left(out, into) == before {
+            wait(out, into);
+        }
+    }
+}
+
+/// How many bytes have not left or come yet.
+fn left(out: &[Going], into: &[Coming]) -> usize {
+    out.iter().map(Going::left).chain(into.iter().map(Coming::left)).sum()
+}
+
+/// Waits until a socket takes or has something.
+fn wait(out: &[Going], into: &[Coming]) {
+    let sending = out.iter().filter(|frame| frame.left() > 0).map(|f| PollFd::new(f.socket, PollFlags::OUT));
+    let taking = into.iter().filter(|frame| frame.left() > 0).map(|f| PollFd::new(f.socket, PollFlags::IN));
+    let mut sockets: Vec<PollFd> = sending.chain(taking).collect();
+    // Whatever ends the wait, a signal too: all sockets are tried again.
+    let _ = poll(&mut sockets, None);
+}
