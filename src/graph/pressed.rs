@@ -4,9 +4,9 @@ use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::SealCx;
-use perigrain_styles::pressed::Pressed;
+use perigrain_styles::pressed::exceeded;
 use perigrain_styles::probe::Probe;
-use perigrain_world::contacts::{LOOK, Pressed as Looked};
+use perigrain_world::contacts::{LOOK, Pressed};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
     TRAVEL, V, VOLUME, X, X0,
@@ -115,9 +115,8 @@ impl Op for Look {
             return Ok(());
         }
         let Self { probes, movers, .. } = self;
-        let pressed = Pressed::of(w, probes, |i| movers.of(w.particles.mask[i]))?;
-        let limit = pressed.exceeded_by(step_of(w, t.dt));
-        w.parts.pressed = Some(Looked { step: t.step, dt: t.dt, told: limit.is_some() });
+        let limit = exceeded(w, probes, |i| movers.of(w.particles.mask[i]), step_of(w, t.dt))?;
+        w.parts.pressed = Some(Pressed { step: t.step, dt: t.dt, told: limit.is_some() });
         if let Some(limit) = limit {
             let problem = self.problem(w, t, limit);
             w.parts.notes.push(problem);

@@ -7,7 +7,7 @@ use super::shared::{admit, built_at, find_frozen, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
-use perigrain_contact::driver::{Grains, Rule, Rules, Sweep};
+use perigrain_contact::driver::{Average, Grains, Rule, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, Springs};
@@ -15,6 +15,10 @@ use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::contacts::{Contacts, Rolls};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, World};
+
+/// So many pairs are evaluated at a time where nothing asks for all of them together; in test builds so few that small scenes have several
+/// blocks.
+const BLOCK: usize = if cfg!(debug_assertions) { 64 } else { 1 << 16 };
 
 /// The numbers a granular style gives to each pair, in LAMMPS' order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +30,11 @@ pub enum Own {
     Mdr,
     /// `gran/…`: tangential force and its size, relative velocity along and across the line of centres.
     Gran,
+}
+
+/// A look at contacts: nothing moves on.
+fn still(w: &World) -> Advance {
+    Advance { dt: w.clock.dt, history: false }
 }
 
 /// Evaluates the contacts of one pair style.
@@ -108,13 +117,37 @@ impl ContactProbe {
             // There the setup has kept the springs it has shrunk, and not the radii it shrank them to.
             self.keep_shrunk(w, &mut memory);
         }
-        let still = Advance { dt: w.clock.dt, history: false };
         let rules = match ask {
             Ask::Felt { setup } => &self.rules.again(setup),
             Ask::Acting | Ask::Idle => &self.rules,
         };
-        self.sweep.run(list, &grains, rules, &mut memory, still);
+        self.sweep.run(list, &grains, rules, &mut memory, still(w));
         Ok(read(&grains, rules, &self.sweep, &memory))
+    }
+
+    /// Evaluates the contacts among these pairs, some at a time, so that they take little memory, and reads the outcome of each.
+    fn swept_in_blocks(
+        &mut self,
+        w: &World,
+        list: &[Pair],
+        mut read: impl FnMut(&Grains, &Rules, &Sweep, &Contacts),
+    ) -> Result<()> {
+        let mut frozen = vec![];
+        find_frozen(w, &mut frozen);
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, w.periods(), &[], &frozen)? };
+        let tags = |p: &Pair| [p.i, p.j].map(|i| w.particles.tag[i as usize]);
+        let (none, mut rest) = (Contacts::default(), list);
+        let all = w.contacts.get(self.key).unwrap_or(&none);
+        while let Some(last) = rest.get(BLOCK.min(rest.len()).wrapping_sub(1)).map(tags) {
+            // Pairs stand in the order of their tags, those that meet in several images beside each other.
+            let some;
+            (some, rest) = rest.split_at(rest.partition_point(|p| tags(p) <= last));
+            let mut memory = all.between(tags(&some[0]), last);
+            self.sweep.run(some, &grains, &self.rules, &mut memory, still(w));
+            read(&grains, &self.rules, &self.sweep, &memory);
+        }
+        Ok(())
     }
 
     /// What contacts remember, as it shrinks no more.
@@ -223,18 +256,17 @@ impl Probe for ContactProbe {
         Ok(all)
     }
 
-    fn springs(&mut self, w: &World) -> Result<Vec<Springs>> {
+    fn springs(&mut self, w: &World, take: &mut dyn FnMut(Springs)) -> Result<()> {
         // Only what touches has any: a list for that alone is shorter than one that holds until the next rebuild.
         let list = match self.take_list(w) {
             Some(list) => list,
             None => self.within(w, &w.particles.x, 0.0)?,
         };
-        self.swept(w, &list, Ask::Acting, |grains, rules, sweep, memory| {
-            let mut all = vec![];
+        let mut read = |grains: &Grains, rules: &Rules, sweep: &Sweep, memory: &Contacts| {
             sweep.each(grains, rules, memory, |c| {
                 let g = &c.geometry;
                 let [stiffness, damping] = c.law.resistance(g, c.history).map(|all| all.map(|k| c.share * k));
-                all.push(Springs {
+                take(Springs {
                     ends: [c.pair.i, c.pair.j],
                     normal: g.normal,
                     stiffness,
@@ -242,8 +274,15 @@ impl Probe for ContactProbe {
                     arms: g.radii.map(|r| r - 0.5 * g.overlap),
                 });
             });
-            all
-        })
+        };
+        // What contacts of solids share depends on all of them.
+        if list.len() <= BLOCK
+            || self.rules.ask_for_bodies()
+            || self.rules.any(|r| r.average != Average::None)
+        {
+            return self.swept(w, &list, Ask::Acting, &mut read);
+        }
+        self.swept_in_blocks(w, &list, read)
     }
 
     fn pressed(&self, [a, b]: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 3]> {

@@ -165,11 +165,11 @@ pub fn grains(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<f64> {
     let n = w.n();
     let mut held = vec![Held::default(); n];
     for probe in probes {
-        for s in probe.springs(w)? {
+        probe.springs(w, &mut |s| {
             for (k, i) in s.ends.into_iter().enumerate() {
                 held[i as usize].add(s.normal, [s.stiffness, s.damping], s.arms[k], 2.0);
             }
-        }
+        })?;
     }
     add_walls(w, |_| true, |i, s| held[i].add(s.normal, [s.stiffness, s.damping], s.arm, 1.0));
     let (p, masses, ftm2v) = (&w.particles, w.contact_masses(), w.settings.units.constants().ftm2v);

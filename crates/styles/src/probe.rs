@@ -111,12 +111,12 @@ pub trait Probe: Send {
     /// What is missing in the scene.
     fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>>;
 
-    /// The springs of all contacts.
+    /// Calls `take` with the springs of each contact.
     ///
     /// # Errors
     /// As `look`.
-    fn springs(&mut self, _w: &World) -> Result<Vec<Springs>> {
-        Ok(vec![])
+    fn springs(&mut self, _w: &World, _take: &mut dyn FnMut(Springs)) -> Result<()> {
+        Ok(())
     }
 
     /// The elastic force of a new contact between grains of two types at an overlap, its stiffness across the normal, and the work that

@@ -56,6 +56,15 @@ pub struct Rolls {
 }
 
 impl Contacts {
+    /// Those whose keys lie between these two, both included.
+    #[must_use]
+    pub fn between(&self, first: [u32; 2], last: [u32; 2]) -> Self {
+        let from = self.keys.partition_point(|key| *key < first);
+        let end = self.keys.partition_point(|key| *key <= last);
+        let history = self.history[from * self.width..end * self.width].to_vec();
+        Self { keys: self.keys[from..end].to_vec(), width: self.width, history }
+    }
+
     /// Turns what contacts remember as vectors of space: the displacement (or force) across the normal, the first three numbers, and the
     /// rolling displacement. `types` are those of both particles, if both are turned.
     pub fn turn(
@@ -258,6 +267,18 @@ pub struct WallSpring {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn some_of_them_by_their_keys() {
+        let keys = vec![[1, 2], [1, 5], [1, 5], [3, 4]];
+        let all = Contacts { keys, width: 2, history: (0..8).map(f64::from).collect() };
+        let some = all.between([1, 3], [1, 5]);
+        assert_eq!((some.keys, some.width, some.history), (vec![[1, 5]; 2], 2, vec![2.0, 3.0, 4.0, 5.0]));
+        assert!(
+            all.between([1, 6], [3, 3]).keys.is_empty()
+                && Contacts::default().between([0, 0], [9, 9]).is_empty()
+        );
+    }
 
     #[test]
     fn contacts_keep_their_history_while_they_last() {
