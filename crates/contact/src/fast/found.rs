@@ -7,10 +7,8 @@ use perigrain_base::math::vec3::Vec3;
 use std::mem::MaybeUninit;
 use std::ops::Range;
 
-/// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
-pub(super) const BLOCK: usize = 64;
-/// Room for hits: some blocks and what a test may put behind them.
-pub(super) const ROOM: usize = 4 * BLOCK;
+/// Room for hits, of which as many are looked for at a time.
+pub(super) const ROOM: usize = 256;
 
 /// Whole lanes can be read from any of them.
 const ROW: usize = ROOM + FILL;
@@ -62,34 +60,16 @@ impl Found {
         self.count = 0;
     }
 
-    /// Takes one of others as well.
-    pub fn push(&mut self, of: &Self, from: usize) {
-        assert!(from < of.count && self.count < ROOM);
-        let (numbers, apart) = (self.numbers.as_mut_ptr(), self.apart.as_mut_ptr());
-        // SAFETY: one that has been put there, and there is room for it.
-        unsafe {
-            (*numbers)[self.count] = of.numbers()[from];
-            (0..3).for_each(|d| (*apart)[d][self.count] = *of.apart(d).add(from));
-        }
-        self.count += 1;
-    }
-
-    /// Puts those of the first `ready` first that `stays` lets stay, in their order; how many they are.
-    pub fn sift(&mut self, ready: usize, mut stays: impl FnMut(u32) -> bool) -> usize {
+    /// Puts those first that `stays` lets stay, in their order; how many they are.
+    pub fn sift(&mut self, mut stays: impl FnMut(u32) -> bool) -> usize {
         let mut kept = 0;
-        for at in 0..ready {
+        for at in 0..self.count {
             if stays(self.numbers()[at]) {
                 self.shift(at, kept);
                 kept += 1;
             }
         }
         kept
-    }
-
-    /// Forgets the first ones.
-    pub fn drop_first(&mut self, n: usize) {
-        (n..self.count).for_each(|at| self.shift(at, at - n));
-        self.count -= n;
     }
 
     /// Puts a pair at the place of an earlier one.

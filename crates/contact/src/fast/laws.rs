@@ -1,7 +1,9 @@
 //! Which contact law holds between which types, as the fast loop looks it up.
 
+use super::lists::Pairs;
 use super::{AMPLE, NONE};
 use crate::Granular;
+use perigrain_base::math::lanes::place;
 
 /// Which law holds between which types.
 #[derive(Clone, Debug)]
@@ -46,6 +48,24 @@ impl Laws {
     #[inline]
     pub(super) fn which(&self, a: u16, b: u16) -> u8 {
         self.which[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
+    }
+
+    /// Puts pairs of one law behind each other, each law's in their order: contacts of one law are evaluated together, and a list of which
+    /// some pairs are left out has the others in the same order.
+    pub(super) fn sort(&self, kind: &[u16], pairs: &mut Pairs) {
+        if self.distinct.len() < 2 {
+            return;
+        }
+        let which = |(i, w): (&u32, &u32)| self.which(kind[*i as usize], kind[place(*w)]);
+        let numbers: Vec<u8> = pairs.i.iter().zip(&pairs.w).map(which).collect();
+        if numbers.is_sorted() {
+            return;
+        }
+        let mut order: Vec<u32> = (0..numbers.len() as u32).collect();
+        order.sort_by_key(|k| numbers[*k as usize]);
+        for list in [&mut pairs.i, &mut pairs.w] {
+            *list = order.iter().map(|k| list[*k as usize]).collect();
+        }
     }
 
     /// How many numbers a contact remembers at most.

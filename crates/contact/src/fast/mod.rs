@@ -254,7 +254,7 @@ impl Fast {
     /// Makes all lists anew from these positions (wrapped into the box; [`Fast::turn`] follows those that are elsewhere by now), pairs for
     /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; those of `known(self, own)` are taken in addition. An
     /// evaluation must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own
-    /// ([`Fast::is_part`]), which `own` says; not where pairs with large grains have lists of their own, or where several laws hold.
+    /// ([`Fast::is_part`]), which `own` says; not where pairs with large grains have lists of their own.
     pub fn rebuild(
         &mut self,
         grains: &Grains,
@@ -276,9 +276,7 @@ impl Fast {
         let n = grains.x.len();
         let large =
             || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
-        // Where several laws hold, what is listed decides in which order contacts are evaluated.
-        let parts = edge == far && self.laws.distinct.len() == 1;
-        let ((tiles, book), large, own) = match dealt.filter(|_| parts) {
+        let ((tiles, book), large, own) = match dealt.filter(|_| edge == far) {
             None => {
                 let known = known(self, None);
                 let remember = || self.remember(grains.tag, known.as_ref());
@@ -292,8 +290,7 @@ impl Fast {
                 ((tiles, self.remember(grains.tag, known.as_ref())), vec![], Some(own))
             }
         };
-        // Where several laws stick, what is listed decides which contacts are evaluated together.
-        let whole = self.laws.distinct.len() == 1 && self.upkeep.takes_whole(self.pairs());
+        let whole = self.upkeep.takes_whole(self.pairs());
         // The book has what they knew: room for what is made now.
         if grains.x.len() > SMALL {
             self.lists.iter_mut().for_each(|l| l.short = Short::default());

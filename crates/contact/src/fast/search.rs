@@ -132,6 +132,7 @@ impl Fast {
         if out.i.is_empty() {
             watched.clear();
         }
+        self.laws.sort(grains.kind, out);
     }
 
     /// Long lists of the tiles in which these grains lie and that `lists` names, made anew from the positions of all of them, of the pairs

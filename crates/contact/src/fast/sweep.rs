@@ -1,10 +1,10 @@
 //! The inner loop of a step: which pairs of short lists touch, and their contacts, batch by batch.
 
 use super::batch::Batch;
-use super::found::{BLOCK, Found, ROOM};
+use super::found::{Found, ROOM};
 use super::lists::{FILL, List, Short, are_little};
 use super::near::Places;
-use super::{Alike, Fast, Laws, NONE, Sums};
+use super::{Alike, Fast, Laws, Sums};
 use crate::driver::Grains;
 use crate::law::Loop;
 use crate::{Advance, Granular};
@@ -221,7 +221,6 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
     let at = cx.places();
     let (mut k, end) = (0, list.short.i.len());
     loop {
-        // By the same steps in all forms: where it stops, blocks of what holds end.
         while k < end && found.len() + FILL <= ROOM {
             let sure = (end - k).min((ROOM - found.len()) / FILL * FILL);
             // SAFETY: lists are filled up; entries are grains. There is room for so many.
@@ -233,11 +232,10 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
             }
             k += sure;
         }
-        let ready = if k == end { found.len() } else { found.len() - found.len() % BLOCK };
-        // What holds is moved to the front of what is ready; the rest stays where it is.
+        // What holds is moved to the front.
         let holding = match cx.span > 0.0 {
-            true => found.sift(ready, |k| cx.holds::<W>(&list.short, k as usize)),
-            false => ready,
+            true => found.sift(|k| cx.holds::<W>(&list.short, k as usize)),
+            false => found.len(),
         };
         list.touching += holding;
         let ends = ends && k == end;
@@ -253,7 +251,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
         if k == end {
             break;
         }
-        found.drop_first(ready);
+        found.clear();
     }
 }
 
@@ -269,24 +267,26 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, W>(cx, law, list, batch, (found, ready), ends);
+            return of_law::<N, V, W>(cx, law, list, batch, (found, 0..ready), ends);
         }
-        let mut own = Found::new();
-        for block in (0..ready).step_by(BLOCK) {
-            for (number, law) in cx.laws.distinct.iter().enumerate() {
-                own.clear();
-                for at in block..ready.min(block + BLOCK) {
-                    let k = found.numbers()[at] as usize;
-                    let (i, w) = (list.short.i[k], list.short.w[k]);
-                    let which = cx.laws.which(cx.kind[i as usize], cx.kind[place(w)]);
-                    if which != NONE && usize::from(which) == number {
-                        own.push(found, at);
-                    }
-                }
-                of_law::<N, V, W>(cx, law, list, batch, (&own, own.len()), true);
+        // Lists have the pairs of one law behind each other.
+        let mut from = 0;
+        while from < ready {
+            let number = law_of(cx, list, found, from);
+            let end = (from + 1..ready).find(|at| law_of(cx, list, found, *at) != number).unwrap_or(ready);
+            if let Some(law) = cx.laws.distinct.get(usize::from(number)) {
+                of_law::<N, V, W>(cx, law, list, batch, (found, from..end), true);
             }
+            from = end;
         }
     }
+}
+
+/// The number of the law for one of the contacts that were found.
+#[inline(always)]
+fn law_of(cx: &Cx, list: &List, found: &Found, at: usize) -> u8 {
+    let k = found.numbers()[at] as usize;
+    cx.laws.which(cx.kind[list.short.i[k] as usize], cx.kind[place(list.short.w[k])])
 }
 
 /// Contacts of one law.
@@ -299,10 +299,10 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, const W: usize>(
     law: &Granular,
     list: &mut List,
     batch: &mut Batch<V, N>,
-    (found, ready): (&Found, usize),
+    (found, some): (&Found, Range<usize>),
     ends: bool,
 ) {
-    let many = Many::<N, V, W> { cx, list, batch, found, ready, ends };
+    let many = Many::<N, V, W> { cx, list, batch, found, some, ends };
     if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
@@ -312,20 +312,19 @@ struct Many<'a, 'b, const N: usize, V, const W: usize> {
     list: &'a mut List,
     batch: &'a mut Batch<V, N>,
     found: &'a Found,
-    /// How many of these.
-    ready: usize,
+    /// Which of these.
+    some: Range<usize>,
     ends: bool,
 }
 
 impl<const N: usize, V: Lanes<N>, const W: usize> Loop for Many<'_, '_, N, V, W> {
     #[inline(always)]
     fn run(self, law: &Granular) {
-        let Self { cx, list, batch, found, ready, ends } = self;
-        let mut taken = 0;
+        let Self { cx, list, batch, found, some: Range { start: mut taken, end }, ends } = self;
         loop {
             // SAFETY: they are pairs of the list, and its entries grains; lists stay while contacts are evaluated.
             unsafe {
-                taken += batch.take::<W>(&mut list.short, found, taken..ready);
+                taken += batch.take::<W>(&mut list.short, found, taken..end);
                 if !(batch.is_full() || (ends && batch.waits())) {
                     return;
                 }
