@@ -79,6 +79,69 @@ fn quiet_steps_of_grains_gather_nothing() {
     assert!(["fix move", "fix g ", "fix sides", "fix bowl", "fix mesh"].into_iter().all(own), "{ops:?}");
 }
 
+/// A dense gas of grains in a box that is sheared and squeezed, read in every step: more grains than one leaf of a sum has.
+const SHEARED: &str = "units lj\natom_style sphere\nboundary p p p\nnewton off\ncomm_modify vel yes\n\
+    lattice sc 1.0\nregion box prism 0 17 0 15 0 17 0 0 0\ncreate_box 2 box\ncreate_atoms 1 box\n\
+    set group all type/fraction 2 0.3 8123\nset group all diameter 0.99\nset group all density 1.0\n\
+    group some type 2\nvelocity all create 1.0 77\n\
+    pair_style gran/hooke/history 5000 NULL 50 NULL 0.5 1\npair_coeff * *\n\
+    neighbor 0.2 bin\nneigh_modify every 1 delay 0 check yes\ntimestep 0.001\nfix move all nve/sphere\n\
+    compute t all temp\ncompute d some temp/deform\ncompute s some temp/sphere\ncompute k all ke\ncompute r some erotate/sphere\n\
+    compute c some com\ncompute g all gyration\ncompute m all msd com yes\ncompute v all vacf\ncompute l some momentum\n\
+    compute p all pressure d\nthermo_modify norm no format float %.15g\nthermo_style custom step temp press c_p[4] lx xy\nthermo 10\n\
+    fix all all ave/time 1 1 1 c_t c_t[1] c_d c_s c_s[4] c_k c_r c_c[1] c_g c_m[4] c_v[2] c_l[3] c_p c_p[4] file sums.txt format \" %.17g\"\n";
+
+#[test]
+fn sums_and_boxes_that_move_ask_for_no_rows_of_other_ranks() {
+    let runs = "fix shear all deform/pressure 1 xy erate 0.5 y pressure 1.0 0.01 max/rate 0.05 remap v\nrun 40\nunfix shear\n\
+        fix squeeze all deform 1 x scale 0.99 xz erate 0.1 remap x\nrun 20\nwrite_restart end.restart\n\
+        dump last all custom 1 d.*.txt id x y z vx omegay\ndump_modify last format float %.17g\nrun 0\n";
+    let deck = format!("{SHEARED}{runs}");
+    let alone = left_by(&deck, &["-threads", "1"]);
+    for (ranks, threads) in [("2", "2"), ("3", "1"), ("5", "1")] {
+        same(
+            &alone,
+            &left_by(&deck, &["-ranks", ranks, "-threads", threads]),
+            &format!("sums on {ranks} ranks"),
+        );
+    }
+    // The sums are read in every tenth step, the box moves in all.
+    let deck =
+        deck.replace("ave/time 1 1 1", "ave/time 10 1 10").replace("deform/pressure 1", "deform/pressure 10");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), deck).unwrap();
+    for (op, rows, gathers) in measured(folder.path(), &["in.deck"]) {
+        let looks = ["reneighbor", "pair "].iter().any(|look| op.starts_with(look));
+        assert!(looks || gathers == 0, "`{op}` needs {rows} rows, {gathers} gathers");
+    }
+}
+
+/// Contacts of three laws, one of which sticks, in tiles that have all of them.
+#[test]
+fn several_laws_are_shared_out() {
+    let law = |words: &str| format!("{words} 0.5 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji");
+    let laws = format!(
+        "pair_style granular\npair_coeff 1 1 {}\npair_coeff 2 2 {}\npair_coeff 1 2 jkr 5000 0.5 0.3 2.0 tangential linear_nohistory 1.0 0.5 damping viscoelastic\n",
+        law("hertz/material 5000"),
+        law("hertz/material 20000"),
+    );
+    let deck = SHEARED
+        .replace("pair_style gran/hooke/history 5000 NULL 50 NULL 0.5 1\npair_coeff * *\n", &laws)
+        + "dump all all custom 20 d.*.txt id x y z omegay fx\ndump_modify all format float %.17g\nrun 40\nwrite_restart end.restart\n";
+    let alone = left_by(&deck, &["-threads", "1"]);
+    for (ranks, threads) in [("2", "1"), ("3", "2"), ("5", "1")] {
+        same(
+            &alone,
+            &left_by(&deck, &["-ranks", ranks, "-threads", threads]),
+            &format!("laws on {ranks} ranks"),
+        );
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), deck.replace("ave/time 1 1 1", "ave/time 10 1 10")).unwrap();
+    let ops = measured(folder.path(), &["in.deck"]);
+    assert!(ops.iter().any(|(op, rows, _)| op == "pair granular" && rows == "asked"), "{ops:?}");
+}
+
 /// A block of spheres held together by bonds that break where it is torn: forces, breaking, and what is written of it.
 #[test]
 fn bonds_are_evaluated_by_the_ranks_of_their_particles() {

@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId};
@@ -51,13 +51,13 @@ impl Compute for Declared {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
         let whole = Whole::mass(cx.world(), group);
-        Ok(fill(
+        Ok(fill_sums(
             &self.id,
             &Wanted { slot, stage, when },
             X | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
             move |w, _, out| {
                 let masses = Masses::of(w);
-                let [x, y, z, m] = sum(&w.particles.mask, group, |i| {
+                let [x, y, z, m] = sum(w, group, |i| {
                     let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
                     [x * m, y * m, z * m, m]
                 });

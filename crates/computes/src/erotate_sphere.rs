@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::sum;
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, MASS, OMEGA, RADIUS};
 use perigrain_world::{GroupId, SlotId};
@@ -62,15 +62,20 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let group = self.group;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, OMEGA | RADIUS | MASS | MASK, move |w, _, out| {
-            let p = &w.particles;
-            let [sum] = sum(&p.mask, group, |i| {
-                let (o, r) = (p.omega[i], p.radius[i]);
-                [(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]) * r * r * p.mass[i]]
-            });
-            out.scalar = 0.5 * w.settings.units.constants().mvv2e * INERTIA * sum;
-            Ok(())
-        }))
+        Ok(fill_sums(
+            &self.id,
+            &Wanted { slot, stage, when },
+            OMEGA | RADIUS | MASS | MASK,
+            move |w, _, out| {
+                let p = &w.particles;
+                let [sum] = sum(w, group, |i| {
+                    let (o, r) = (p.omega[i], p.radius[i]);
+                    [(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]) * r * r * p.mass[i]]
+                });
+                out.scalar = 0.5 * w.settings.units.constants().mvv2e * INERTIA * sum;
+                Ok(())
+            },
+        ))
     }
 }
 

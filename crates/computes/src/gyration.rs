@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId};
@@ -52,20 +52,20 @@ impl Compute for Declared {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
         let whole = Whole::mass(cx.world(), group);
-        Ok(fill(
+        Ok(fill_sums(
             &self.id,
             &Wanted { slot, stage, when },
             X | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
             move |w, _, out| {
                 let masses = Masses::of(w);
-                let [x, y, z, mass] = sum(&w.particles.mask, group, |i| {
+                let [x, y, z, mass] = sum(w, group, |i| {
                     let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
                     [x * m, y * m, z * m, m]
                 });
                 let mass = whole.of(mass);
                 let over = |a: f64| if mass > 0.0 { a / mass } else { 0.0 };
                 let center = [x, y, z].map(over);
-                let [all, tensor @ ..] = sum::<7>(&w.particles.mask, group, |i| {
+                let [all, tensor @ ..] = sum::<7>(w, group, |i| {
                     let (m, u) = (masses.get(i), unwrapped(w, i));
                     let [x, y, z]: [f64; 3] = std::array::from_fn(|d| u[d] - center[d]);
                     [

@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId};
@@ -50,13 +50,13 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(fill(
+        Ok(fill_sums(
             &self.id,
             &Wanted { slot, stage, when },
             V | MASS | MASK | KIND | TYPE_MASS,
             move |w, _, out| {
                 let (p, masses) = (&w.particles, Masses::of(w));
-                let [mv2] = sum(&p.mask, group, |i| {
+                let [mv2] = sum(w, group, |i| {
                     let v = p.v[i];
                     [masses.get(i) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])]
                 });

@@ -62,7 +62,7 @@ struct Declared {
 /// The centre of mass of a group, 0 where it has no mass.
 fn center(w: &World, group: GroupId) -> [f64; 3] {
     let masses = Masses::of(w);
-    let [x, y, z, m] = sum(&w.particles.mask, group, |i| {
+    let [x, y, z, m] = sum(w, group, |i| {
         let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
         [x * m, y * m, z * m, m]
     });
@@ -131,7 +131,7 @@ impl Compute for Declared {
                     *w.columns.vector(places, n) = means;
                 }
                 let start = w.columns.get_vector(places).unwrap_or(&[]);
-                let [x, y, z, all] = sum(&w.particles.mask, me.group, |i| {
+                let [x, y, z, all] = sum(w, me.group, |i| {
                     let x = unwrapped(w, i);
                     let [a, b, c]: [f64; 3] = std::array::from_fn(|d| {
                         let d = x[d] - shift[d] - start[i][d];
@@ -146,7 +146,9 @@ impl Compute for Declared {
                 Ok(())
             },
         );
-        Ok(op.when(when.clone()).in_setup(true).boxed())
+        let op = op.when(when.clone()).in_setup(true);
+        // Means over time are kept for all particles.
+        Ok(if self.average { op.boxed() } else { op.summing().boxed() })
     }
 }
 

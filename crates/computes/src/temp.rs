@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, count, sum};
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -119,13 +119,13 @@ impl Compute for Declared {
         let (group, extra, span) = (self.group, self.rules.extra, cx.span());
         check_masses(cx.world(), span)?;
         let mut freedom = self.rules.freedom();
-        Ok(fill(
+        Ok(fill_sums(
             &self.id,
             &Wanted { slot, stage, when },
             V | MASS | MASK | KIND | TYPE_MASS,
             move |w, t, out| {
                 let (p, masses) = (&w.particles, Masses::of(w));
-                let [mv2, tensor @ ..] = sum::<7>(&p.mask, group, |i| {
+                let [mv2, tensor @ ..] = sum::<7>(w, group, |i| {
                     let ([x, y, z], m) = (p.v[i], masses.get(i));
                     let mv2 = (x * x + y * y + z * z) * m;
                     [mv2, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]

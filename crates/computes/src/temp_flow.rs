@@ -168,7 +168,7 @@ impl Streams for Stream {
         let mut drift = [0.0; 3];
         if *self == Stream::Centre {
             let masses = Masses::of(w);
-            let [x, y, z, m] = sum(&p.mask, group, |i| {
+            let [x, y, z, m] = sum(w, group, |i| {
                 let (m, v) = (masses.get(i), p.v[i]);
                 [v[0] * m, v[1] * m, v[2] * m, m]
             });

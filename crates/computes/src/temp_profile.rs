@@ -95,6 +95,10 @@ impl Profile {
 }
 
 impl Streams for Profile {
+    fn by_sums(&self) -> bool {
+        false
+    }
+
     fn taken<'a>(&'a self, w: &'a World, group: GroupId) -> Taken<'a> {
         let (p, masses) = (&w.particles, Masses::of(w));
         let mut means = vec![[0.0; 4]; self.all_bins()];

@@ -53,7 +53,7 @@ impl Streams for Inside {
     }
 
     fn freedom(&self, w: &World, group: GroupId, extra: Option<f64>) -> f64 {
-        let [n] = sum(&w.particles.mask, group, |i| [if self.has(w, i) { 1.0 } else { 0.0 }]);
+        let [n] = sum(w, group, |i| [if self.has(w, i) { 1.0 } else { 0.0 }]);
         dimension(w) * n - extra.unwrap_or(dimension(w))
     }
 

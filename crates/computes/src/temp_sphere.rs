@@ -6,12 +6,12 @@ use super::{Compute, ComputeStyle, temp_flow};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::sub;
 use perigrain_lang::{Args, ValueRef};
-use perigrain_plan::{Op, Stage, When};
+use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::sum;
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill, fill_sums};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Slot, SlotId, World};
 
 /// The style.
 pub struct TempSphere;
@@ -75,7 +75,7 @@ impl Declared {
         let (fly, spin) = if flat { (2.0 - taken, 1.0) } else { (3.0 - taken, 3.0) };
         let fly = if self.rotate { 0.0 } else { fly };
         let p = &w.particles;
-        let [count] = sum(&p.mask, self.group, |i| match p.radius[i] > 0.0 {
+        let [count] = sum(w, self.group, |i| match p.radius[i] > 0.0 {
             _ if apart(i) => [0.0],
             true => [fly + spin],
             false => [fly],
@@ -100,10 +100,13 @@ impl Compute for Declared {
         };
         let mut freedom = self.rules.freedom();
         let reads = X | V | OMEGA | RADIUS | MASS | MASK | BOX | MEMO | REGIONS | KIND | TYPE_MASS;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
+        let wanted = Wanted { slot, stage, when };
+        // A flow is asked for all particles.
+        let by_sums = bias.is_none();
+        let read = move |w: &World, t: &Tick, out: &mut Slot| {
             let p = &w.particles;
             let flow = bias.as_ref().and_then(|b| b.flow(w));
-            let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
+            let tensor: [f64; 6] = sum(w, me.group, |i| {
                 let v = flow.as_ref().map_or(p.v[i], |f| sub(p.v[i], f.taken[i]));
                 let (o, m) = (p.omega[i], p.mass[i]);
                 let fly = if me.rotate { 0.0 } else { m };
@@ -117,7 +120,12 @@ impl Compute for Declared {
             let twice = tensor[0] + tensor[1] + tensor[2];
             offer(w, out, twice, tensor, dof);
             Ok(())
-        }))
+        };
+        Ok(if by_sums {
+            fill_sums(&self.id, &wanted, reads, read)
+        } else {
+            fill(&self.id, &wanted, reads, read)
+        })
     }
 
     fn bias(&self) -> Option<&ValueRef> {

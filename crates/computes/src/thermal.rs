@@ -5,12 +5,12 @@ use super::temp::{Rules, offer};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_lang::Args;
-use perigrain_plan::{Op, Stage, When};
+use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill, fill_sums};
 use perigrain_styles::{BuildCx, Flow, SealCx, Shape};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Slot, SlotId, World};
 
 /// The velocity that is taken away from a particle of the group.
 pub type Taken<'a> = Box<dyn Fn(usize) -> Vec3 + Sync + 'a>;
@@ -51,6 +51,11 @@ pub trait Streams: Clone + Send + Sync + 'static {
     /// Of the degrees of freedom of a bin with `n` of all particles what is left; `extra` as in `freedom`.
     fn freedom_of_bin(&self, _w: &World, _n: f64, _all: f64, _extra: Option<f64>) -> f64 {
         0.0
+    }
+
+    /// Whether what is taken away from a particle depends on sums over the group alone, and on the particle itself.
+    fn by_sums(&self) -> bool {
+        true
     }
 
     /// Checks what the flow depends on, when a run begins.
@@ -116,9 +121,11 @@ impl<S: Streams> Compute for Thermal<S> {
         let me = self.clone();
         let mut freedom = self.rules.freedom();
         let reads = X | V | MASS | MASK | REGIONS | BOX | MEMO | KIND | TYPE_MASS;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
+        let wanted = Wanted { slot, stage, when };
+        let by_sums = self.flow.by_sums();
+        let read = move |w: &World, t: &Tick, out: &mut Slot| {
             let (p, masses, taken) = (&w.particles, Masses::of(w), me.flow.taken(w, me.group));
-            let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
+            let tensor: [f64; 6] = sum(w, me.group, |i| {
                 let ([x, y, z], m) = (sub(p.v[i], taken(i)), masses.get(i));
                 [m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
             });
@@ -129,7 +136,12 @@ impl<S: Streams> Compute for Thermal<S> {
                 (out.array, out.array_cols) = (me.by_bin(w, &taken), 2);
             }
             Ok(())
-        }))
+        };
+        Ok(if by_sums {
+            fill_sums(&self.id, &wanted, reads, read)
+        } else {
+            fill(&self.id, &wanted, reads, read)
+        })
     }
 
     fn flow(&self, w: &World) -> Option<Flow> {

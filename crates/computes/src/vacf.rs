@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Whole, count, keep_places, sum};
-use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, MASK, V};
 use perigrain_world::{GroupId, Key, SlotId, Vectors, World};
@@ -70,9 +70,9 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
         let (me, key, whole) = (self.clone(), self.key, Whole::number(cx.world(), self.group));
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, V | MASK | COLUMNS, move |w, _, out| {
+        Ok(fill_sums(&self.id, &Wanted { slot, stage, when }, V | MASK | COLUMNS, move |w, _, out| {
             let first = w.columns.get_vector(key).unwrap_or(&[]);
-            let [x, y, z] = sum(&w.particles.mask, me.group, |i| {
+            let [x, y, z] = sum(w, me.group, |i| {
                 let (now, then) = (w.particles.v[i], first.get(i).copied().unwrap_or_default());
                 std::array::from_fn(|d| now[d] * then[d])
             });

@@ -104,7 +104,7 @@ impl Turn {
     fn of(w: &World, group: GroupId, torque: Vec3) -> Self {
         let (_, centre) = centre(w, group);
         let masses = Masses::of(w);
-        let [l @ .., xx, yy, zz, xy, yz, xz] = sum::<9>(&w.particles.mask, group, |i| {
+        let [l @ .., xx, yy, zz, xy, yz, xz] = sum::<9>(w, group, |i| {
             let (r, m) = (sub(unwrapped(w, i), centre), masses.get(i));
             let l = scale(m, cross(r, w.particles.v[i]));
             let [x, y, z] = r;

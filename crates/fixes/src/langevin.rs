@@ -293,7 +293,7 @@ impl Declared {
     fn count(&self, w: &mut World, t: &Tick, slot: SlotId) {
         let mut account = Account::load(w, self.key, self.seed);
         let (forces, p) = (w.columns.get_vector(self.columns[0]).unwrap_or(&[]), &w.particles);
-        let [power] = sum::<1>(&p.mask, self.group, |i| [forces.get(i).map_or(0.0, |f| dot(*f, p.v[i]))]);
+        let [power] = sum::<1>(w, self.group, |i| [forces.get(i).map_or(0.0, |f| dot(*f, p.v[i]))]);
         if !t.setup {
             account.energy += 0.5 * w.clock.dt * (account.power + power);
         } else if w.settings.lammps() {

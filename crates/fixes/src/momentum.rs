@@ -110,7 +110,7 @@ impl Fix for Declared {
 impl Declared {
     fn stop_drift(&self, w: &mut World, whole: Whole) {
         let masses = Masses::of(w);
-        let [mass, momentum @ ..] = sum::<4>(&w.particles.mask, self.group, |i| {
+        let [mass, momentum @ ..] = sum::<4>(w, self.group, |i| {
             let (v, m) = (w.particles.v[i], masses.get(i));
             [m, m * v[0], m * v[1], m * v[2]]
         });
@@ -127,7 +127,7 @@ impl Declared {
             return;
         }
         let masses = Masses::of(w);
-        let [lx, ly, lz, xx, yy, zz, xy, yz, xz] = sum::<9>(&w.particles.mask, self.group, |i| {
+        let [lx, ly, lz, xx, yy, zz, xy, yz, xz] = sum::<9>(w, self.group, |i| {
             let (r, m) = (sub(unwrapped(w, i), center), masses.get(i));
             let l = cross(r, w.particles.v[i]);
             let [x, y, z] = r;
@@ -159,7 +159,7 @@ impl Declared {
 /// Σ m v² of a group.
 fn energy(w: &World, group: GroupId) -> f64 {
     let masses = Masses::of(w);
-    let [twice] = sum(&w.particles.mask, group, |i| {
+    let [twice] = sum(w, group, |i| {
         let v = w.particles.v[i];
         [masses.get(i) * dot(v, v)]
     });

@@ -76,22 +76,10 @@ pub fn count(w: &World, group: GroupId) -> usize {
     par::reduce(mask.len(), |r| r.filter(|&i| mask[i] & bit != 0).count(), |a, b| a + b).unwrap_or(0)
 }
 
-/// Adds up `term(i)` over the particles of a group: the same bits for any number of threads.
-pub fn sum<const N: usize>(
-    mask: &[u32],
-    group: GroupId,
-    term: impl Fn(usize) -> [f64; N] + Sync,
-) -> [f64; N] {
-    let bit = group.bit();
-    let chunk = |range: std::ops::Range<usize>| {
-        let mut total = [0.0; N];
-        for i in range.filter(|&i| mask[i] & bit != 0) {
-            let t = term(i);
-            (0..N).for_each(|k| total[k] += t[k]);
-        }
-        total
-    };
-    par::reduce(mask.len(), chunk, add).unwrap_or([0.0; N])
+/// Adds up `term(i)` over the particles of a group: the same bits for any number of threads and ranks.
+pub fn sum<const N: usize>(w: &World, group: GroupId, term: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
+    let (mask, bit) = (&w.particles.mask, group.bit());
+    w.sum_rows(|i| (mask[i] & bit != 0).then(|| term(i)))
 }
 
 /// Element by element a + b.
@@ -102,7 +90,7 @@ pub fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
 /// Mass and centre of mass of a group, unwrapped; the centre of nothing is the origin.
 pub fn centre(w: &World, group: GroupId) -> (f64, [f64; 3]) {
     let masses = Masses::of(w);
-    let [mass, moment @ ..] = sum::<4>(&w.particles.mask, group, |i| {
+    let [mass, moment @ ..] = sum::<4>(w, group, |i| {
         let (x, m) = (unwrapped(w, i), masses.get(i));
         [m, m * x[0], m * x[1], m * x[2]]
     });
@@ -279,7 +267,7 @@ pub fn add_virial(w: &mut World, t: &Tick, chosen: &Chosen, of: impl Fn(&World, 
     if t.virial {
         let now = chosen.now(w);
         let one = |i: usize| if now.has(mask[i], x[i]) { of(w, i) } else { [0.0; 6] };
-        let total = sum(mask, GroupId::ALL, one);
+        let total = sum(w, GroupId::ALL, one);
         w.tally.fixes = add(w.tally.fixes, total);
     }
     if t.atom_virial {

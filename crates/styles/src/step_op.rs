@@ -13,6 +13,8 @@ pub struct StepOp<F> {
     fusing: Option<Fusing>,
     /// Where particles are shared out to ranks.
     span: Span,
+    /// Acts on one rank's rows where sums are made leaf by leaf.
+    sums: bool,
     act: F,
 }
 
@@ -33,7 +35,7 @@ where
 {
     /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
     pub fn new(name: impl Into<String>, stage: Stage, access: Needs, act: F) -> Self {
-        Self { about: About::new(name, stage, access), fusing: None, span: Span::All, act }
+        Self { about: About::new(name, stage, access), fusing: None, span: Span::All, sums: false, act }
     }
 
     /// Acts at other times.
@@ -99,6 +101,14 @@ where
         self
     }
 
+    /// Reads each particle by itself for sums alone ([`sum`](crate::matter::sum)): each of several ranks does so for its own, where
+    /// [`World::sums_by_leaves`].
+    #[must_use]
+    pub fn summing(mut self) -> Self {
+        self.sums = true;
+        self
+    }
+
     /// Asks for the rows it needs by [`World::whole`], on all ranks alike.
     #[must_use]
     pub fn asking(mut self) -> Self {
@@ -152,6 +162,7 @@ where
     fn span(&mut self, w: &mut World, t: &Tick) -> Span {
         match &self.fusing {
             Some(fusing) if (fusing.offer)(w, t, &mut Room::default()) => Span::Own,
+            _ if self.sums && w.sums_by_leaves() => Span::Own,
             _ => self.span,
         }
     }
@@ -174,7 +185,29 @@ pub struct Wanted<'a> {
 
 /// The op of a compute: reads the world and fills the slot.
 #[track_caller]
-pub fn fill<F>(name: &str, wanted: &Wanted, reads: Fields, mut read: F) -> Box<dyn Op>
+pub fn fill<F>(name: &str, wanted: &Wanted, reads: Fields, read: F) -> Box<dyn Op>
+where
+    F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
+{
+    filling(name, wanted, reads, read).boxed()
+}
+
+/// As [`fill`], of a compute that reads particles for sums alone ([`StepOp::summing`]).
+#[track_caller]
+pub fn fill_sums<F>(name: &str, wanted: &Wanted, reads: Fields, read: F) -> Box<dyn Op>
+where
+    F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
+{
+    filling(name, wanted, reads, read).summing().boxed()
+}
+
+#[track_caller]
+fn filling<F>(
+    name: &str,
+    wanted: &Wanted,
+    reads: Fields,
+    mut read: F,
+) -> StepOp<impl FnMut(&mut World, &Tick) -> Result<()> + Send + use<F>>
 where
     F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
 {
@@ -188,7 +221,6 @@ where
     StepOp::new(format!("compute {name}"), wanted.stage, Needs::new().read(reads).write(SLOTS), act)
         .when(wanted.when.clone())
         .in_setup(true)
-        .boxed()
 }
 
 /// Fills a per-atom vector: `value(i)` for the particles of the group, 0 for all others.

@@ -5,6 +5,7 @@
 //! moved by all ranks alike where bodies are shared out.
 
 mod deal;
+mod leaves;
 mod memory;
 
 use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, WALL_CONTACTS, X};

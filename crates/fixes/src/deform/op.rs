@@ -4,7 +4,8 @@ use super::Remap;
 use super::lean::{self, Lean};
 use super::track::{self, Track};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_base::par;
+use perigrain_plan::{About, Needs, Op, Span, Stage, Tick, When};
 use perigrain_styles::common::check_flat;
 use perigrain_styles::near::{bonds_across, bonds_fit};
 use perigrain_world::domain::Flow;
@@ -115,25 +116,30 @@ impl Move {
     }
 
     /// Takes particles along with the box from what it was `before`; those of a `flat` scene within their plane.
-    fn carry(&self, w: &mut World, before: &Domain, flat: bool) {
-        let Some(domain) = &*w.domain else { return };
+    fn carry(&self, w: &mut World, [before, domain]: [&Domain; 2], flat: bool) {
+        let (mut places, bit) = (std::mem::take(&mut w.particles.x), self.group.bit());
         let tilted = before.tilted() || domain.tilted();
         let (from, length, to) = (before.lo, before.lengths(), domain.lengths());
-        let (p, bit) = (&mut w.particles, self.group.bit());
-        for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
+        let place = |x: &mut [f64; 3]| {
             if tilted {
                 let z = x[2];
                 *x = domain.at(before.fractions(x));
                 if flat {
                     x[2] = z;
                 }
-                continue;
+                return;
             }
             // Where in the box, then there in the new one: dimensions that stay keep their bits.
             for d in (0..if flat { 2 } else { 3 }).filter(|&d| self.tracks[d].moves()) {
                 x[d] = (x[d] - from[d]) / length[d] * to[d] + domain.lo[d];
             }
-        }
+        };
+        let world: &World = w;
+        par::each((&mut places[..], &world.particles.mask[..]), |first, (x, mask)| {
+            let own = world.moved_in(first..first + mask.len()).flatten().map(|row| row - first);
+            own.filter(|k| mask[*k] & bit != 0).for_each(|k| place(&mut x[k]));
+        });
+        w.particles.x = places;
     }
 }
 
@@ -182,9 +188,15 @@ impl Op for Move {
             }
         }
         if self.remap == Remap::Positions {
-            self.carry(w, &before, flat);
+            let now = domain.clone();
+            self.carry(w, [&before, &now], flat);
         }
         Ok(())
+    }
+
+    fn span(&mut self, _: &mut World, t: &Tick) -> Span {
+        // Which bonds lead through faces is asked of all.
+        if t.setup { Span::All } else { Span::Own }
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
