@@ -393,7 +393,8 @@ impl<'a> Sealer<'a> {
                 Some(node) => {
                     let name = format!("f_{}", r.name);
                     let slot = self.world.slots.id(&name);
-                    if *when == When::Always {
+                    // What acts within steps reads values of the step before.
+                    if *when == When::Always || stage < Stage::EndOfStep {
                         self.plan.watched.push(name);
                     }
                     self.world.slots.get_mut(slot).offers = node.fix.shape().offers();

@@ -61,6 +61,17 @@ fn grains_are_shared_out_with_the_bytes_of_one_process() {
     }
 }
 
+/// What reads a sum over particles within a step, now and then, reads that of the step before.
+#[test]
+fn sums_are_known_where_they_are_read_within_steps() {
+    let deck = format!(
+        "{BOWL}variable wide equal 1.0+1e-7*f_g\nfix grow all adapt 10 atom diameter v_wide\nrun 40\n\
+         write_dump all custom last.txt id x y z radius modify format float %.17g\n"
+    );
+    let alone = left_by_bowl(&deck, &["-threads", "1"]);
+    same(&alone, &left_by_bowl(&deck, &["-ranks", "3", "-threads", "1"]), "grains that grow");
+}
+
 #[test]
 fn quiet_steps_of_grains_gather_nothing() {
     let folder = tempfile::tempdir().unwrap();

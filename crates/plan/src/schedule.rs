@@ -138,7 +138,7 @@ pub struct StepPlan {
     pub atom_energy: Vec<When>,
     /// When somebody reads per-particle virials.
     pub atom_virial: Vec<When>,
-    /// Fixes whose values something reads in every step.
+    /// Fixes whose values something reads in every step, or within some steps.
     pub watched: Vec<String>,
     /// By how many quiet steps of a run more have gathered rows from all ranks than have not.
     pub(super) gathering: u32,
