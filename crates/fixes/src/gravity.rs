@@ -252,7 +252,8 @@ impl Fix for Declared {
             }
             Ok(())
         };
-        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told);
+        // Where it pulls nothing it needs no rows.
+        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told).asking();
         Ok(vec![op.boxed()])
     }
 

@@ -13,10 +13,12 @@ pub struct StepOp<F> {
     fusing: Option<Fusing>,
     /// Where particles are shared out to ranks.
     span: Span,
-    /// Acts on one rank's rows where sums are made leaf by leaf.
-    sums: bool,
+    /// Where that is not the same at all ticks.
+    spans: Option<Box<Spans>>,
     act: F,
 }
+
+type Spans = dyn Fn(&World, &Tick) -> Span + Send;
 
 /// What an op offers to do to blocks of particles, and what it makes of what comes of them.
 struct Fusing {
@@ -35,7 +37,7 @@ where
 {
     /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
     pub fn new(name: impl Into<String>, stage: Stage, access: Needs, act: F) -> Self {
-        Self { about: About::new(name, stage, access), fusing: None, span: Span::All, sums: false, act }
+        Self { about: About::new(name, stage, access), fusing: None, span: Span::All, spans: None, act }
     }
 
     /// Acts at other times.
@@ -104,15 +106,21 @@ where
     /// Reads each particle by itself for sums alone ([`sum`](crate::matter::sum)): each of several ranks does so for its own, where
     /// [`World::sums_by_leaves`].
     #[must_use]
-    pub fn summing(mut self) -> Self {
-        self.sums = true;
-        self
+    pub fn summing(self) -> Self {
+        self.spanning(|w, _| if w.sums_by_leaves() { Span::Own } else { Span::All })
     }
 
     /// Asks for the rows it needs by [`World::whole`], on all ranks alike.
     #[must_use]
     pub fn asking(mut self) -> Self {
         self.span = Span::Asks;
+        self
+    }
+
+    /// Of which rows it needs values differs from tick to tick.
+    #[must_use]
+    pub fn spanning(mut self, spans: impl Fn(&World, &Tick) -> Span + Send + 'static) -> Self {
+        self.spans = Some(Box::new(spans));
         self
     }
 
@@ -162,8 +170,7 @@ where
     fn span(&mut self, w: &mut World, t: &Tick) -> Span {
         match &self.fusing {
             Some(fusing) if (fusing.offer)(w, t, &mut Room::default()) => Span::Own,
-            _ if self.sums && w.sums_by_leaves() => Span::Own,
-            _ => self.span,
+            _ => self.spans.as_ref().map_or(self.span, |spans| spans(w, t)),
         }
     }
     fn fused(&mut self, w: &mut World, t: &Tick, sums: BlockSums) {
