@@ -383,9 +383,10 @@ fn wrong(name: &str, under: Under, before: &World, now: &World, lines: &str) -> 
         }
         ("families" | "sites", Under::Nothing) => now.families.is_none(),
         // Of no particle, or of the order in which they stand.
-        ("rank" | "memo" | "controls" | "box" | "regions" | "travel" | "clock" | "facts", Under::Nothing) => {
-            true
-        }
+        (
+            "rank" | "memo" | "rigid" | "controls" | "box" | "regions" | "travel" | "clock" | "facts",
+            Under::Nothing,
+        ) => true,
         _ => return Some(format!("nothing looks at `{name}`, which is {under:?}")),
     };
     (!right).then(|| format!("`{name}`, which is {under:?}, is wrong after `{lines}`"))

@@ -8,7 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::rigid_bodies::{Body, bodies, bodies_key};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
-use perigrain_world::field::MEMO;
+use perigrain_world::field::{MEMO, RIGID};
 use perigrain_world::{Numbers, SlotId};
 
 /// `compute ke/rigid`.
@@ -116,7 +116,7 @@ impl Compute for Energy {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (me, kept) = (self.clone(), self.fix.bodies());
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, MEMO, move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, MEMO | RIGID, move |w, _, out| {
             let twice: f64 = bodies(w, kept).iter().map(me.twice).sum();
             out.scalar = 0.5 * w.settings.units.constants().mvv2e * twice;
             Ok(())

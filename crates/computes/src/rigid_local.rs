@@ -10,7 +10,7 @@ use perigrain_styles::matter::unwrapped;
 use perigrain_styles::rigid_bodies::{Body, bodies, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
+use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, MEMO, MOLECULE, RIGID, SLOTS, TAG, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
 
 /// The style.
@@ -173,7 +173,7 @@ impl Compute for Declared {
             name,
             stage,
             Needs::new()
-                .read(X | IMAGE | MASK | MEMO | BOX | COLUMNS | MOLECULE | TAG)
+                .read(X | IMAGE | MASK | MEMO | RIGID | BOX | COLUMNS | MOLECULE | TAG)
                 .write(SLOTS)
                 .keep(MEMO),
             move |w: &mut World, t| {

@@ -1,6 +1,6 @@
 //! What an op states about the fields it touches, and whether that is true.
 
-use perigrain_world::field::{CLOCK, SITES};
+use perigrain_world::field::{CLOCK, RIGID, SITES};
 use perigrain_world::{Fields, Touched};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -102,8 +102,10 @@ impl Needs {
 
     /// What is stated and can be found to be used: to read, to change.
     fn named(&self) -> [Fields; 2] {
-        // The use of sites leaves no mark.
-        let named = |fields: Fields| if fields == Fields::ALL { Fields::NONE } else { fields.without(SITES) };
+        // The use of sites leaves no mark, and that of bodies the mark of the memo.
+        let unseen = SITES | RIGID;
+        let named =
+            |fields: Fields| if fields == Fields::ALL { Fields::NONE } else { fields.without(unseen) };
         [self.reads, self.changed()].map(named)
     }
 }

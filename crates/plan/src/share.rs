@@ -2,7 +2,7 @@
 
 use super::{Needs, StepPlan, Tick};
 use perigrain_world::field::{FAMILIES, SITES, TAG};
-use perigrain_world::share::Traffic;
+use perigrain_world::share::{Halo, Traffic};
 use perigrain_world::{Fields, World};
 
 /// Of which rows an op has the values it reads, where particles are shared out to ranks.
@@ -49,8 +49,8 @@ pub(super) fn before(w: &mut World, span: Span, needs: impl Iterator<Item = Need
     }
     match span {
         Span::All => needs.for_each(|needs| w.whole(asked(&needs))),
-        Span::Near => needs.for_each(|needs| w.halo(needs.read_alone(), false)),
-        Span::Listed => needs.for_each(|needs| w.halo(needs.read_alone(), true)),
+        Span::Near => needs.for_each(|needs| w.halo(needs.read_alone(), Halo::Near)),
+        Span::Listed => needs.for_each(|needs| w.halo(needs.read_alone(), Halo::Listed)),
         Span::Own | Span::Asks => {}
     }
     if let Some(share) = &mut w.share {

@@ -80,6 +80,8 @@ fields! {
     /// What the last evaluation has left at the sites of peridynamic bodies: displacements, dilatations. An op that
     /// reads it reads `FAMILIES` too.
     SITES "sites" Nothing;
+    /// How rigid bodies stand and move, as their fixes keep it in the memo. An op that reads it reads `MEMO` too.
+    RIGID "rigid" Nothing;
     /// What touching grains remember; owned by the pair style of grains.
     CONTACTS "contacts" Springs;
     /// What grains touching walls remember; owned by the walls.

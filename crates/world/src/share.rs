@@ -7,21 +7,25 @@
 mod deal;
 mod leaves;
 mod memory;
+mod rigid;
 
-use super::field::{F, Fields, OMEGA, QUAT, SITES, TORQUE, V, WALL_CONTACTS, X};
+use super::field::{F, Fields, OMEGA, QUAT, RIGID, SITES, TORQUE, V, WALL_CONTACTS, X};
 use super::{Named, World};
 pub use deal::{Dealings, Tiling};
 pub use memory::joined_of_all;
 use perigrain_base::comm::Comm;
 use perigrain_base::comm::numbers::{put, take};
+use rigid::Parted;
+pub use rigid::RigidBodies;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The fields of which a rank may have some rows only.
-pub const SHARED: Fields = X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(SITES).and(WALL_CONTACTS);
+pub const SHARED: Fields =
+    X.and(V).and(F).and(OMEGA).and(TORQUE).and(QUAT).and(SITES).and(RIGID).and(WALL_CONTACTS);
 /// Those that are handed over as a whole, not row by row.
-const ENTIRE: Fields = SITES.and(WALL_CONTACTS);
+const ENTIRE: Fields = SITES.and(RIGID).and(WALL_CONTACTS);
 
 /// How rows are shared out.
 #[derive(Clone)]
@@ -35,14 +39,16 @@ pub struct Share {
     pub own: Vec<Range<usize>>,
     /// Rows that each rank alone moves.
     alone: Vec<Vec<Range<usize>>>,
-    /// Rows to hand out to, and to take from, each other rank: those near bodies' own ones, and those that lists name.
-    links: [Vec<Link>; 2],
-    /// Rows that lists of ops name, by where these keep contacts or by their names.
-    listed: Named<Listed>,
+    /// Rows to hand out to, and to take from, each other rank, for each [`Halo`].
+    links: [Vec<Link>; HALOS],
+    /// Rows that ops name for each of them, by where these keep contacts or bodies or by their names.
+    listed: [Named<Listed>; HALOS],
+    /// How rigid bodies are dealt out, by where their fixes keep them.
+    bodies: Named<Parted>,
     /// Fields that are up to date in this rank's own rows alone.
     stale: Fields,
     /// Those of them that are up to date in the rows of these links as well.
-    near: [Fields; 2],
+    near: [Fields; HALOS],
     /// What particles there were, in which places.
     roster: [u64; 2],
     /// Whether the op at work acts on this rank's rows alone.
@@ -60,6 +66,20 @@ enum What {
     /// Grains, tile by tile: each rank lists the pairs of its own.
     Grains,
 }
+
+/// Rows of other ranks that ops read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halo {
+    /// Those near bodies' own ones.
+    Near,
+    /// Those that lists of pairs name.
+    Listed,
+    /// Those of particles of rigid bodies that this rank moves too.
+    Members,
+}
+
+/// How many kinds of such rows there are.
+const HALOS: usize = 3;
 
 /// Rows that the lists of an op name.
 #[derive(Clone, Debug, Default)]
@@ -142,10 +162,10 @@ impl World {
         self.share = Some(share);
     }
 
-    /// Has the rows of these fields that are near this rank's own, or (`listed`) that lists of ops name.
-    pub fn halo(&mut self, fields: Fields, listed: bool) {
+    /// Has these rows of these fields, of other ranks.
+    pub fn halo(&mut self, fields: Fields, halo: Halo) {
         let Some(mut share) = self.share.take() else { return };
-        let which = usize::from(listed);
+        let which = halo as usize;
         let missing = share.stale.and_only(fields).without(share.near[which]).without(ENTIRE);
         if !missing.is_empty() {
             self.swap_rows(&mut share, (missing, which));
@@ -231,6 +251,12 @@ impl World {
         for rank in 0..share.alone.len() {
             let before = bytes.len();
             let mut length = 0;
+            if fields.has(RIGID) {
+                length += share.body_bytes(rank);
+                if rank == me {
+                    share.write_bodies(self.memo.past(), rank, &mut bytes);
+                }
+            }
             self.columns_of(fields, |numbers, width| {
                 let rows: usize = share.alone[rank].iter().map(Range::len).sum();
                 length += NUMBER * width * rows;
@@ -255,6 +281,9 @@ impl World {
             rest = after;
             if rank == me {
                 continue;
+            }
+            if fields.has(RIGID) {
+                piece = share.read_bodies(self.memo.past_mut(), rank, piece);
             }
             self.columns_of(fields, |numbers, width| {
                 piece = read(numbers, width, &share.alone[rank], piece);
@@ -321,6 +350,9 @@ impl World {
         self.columns_of(fields, |numbers, width| {
             rows.iter().for_each(|rows| numbers[width * rows.start..width * rows.end].fill(f64::NAN));
         });
+        if fields.has(RIGID) {
+            share.spoil_bodies(self.memo.past_mut());
+        }
         self.share = Some(share);
     }
 }

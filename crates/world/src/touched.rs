@@ -50,6 +50,7 @@ impl World {
             (field::FAMILIES, self.families.take_marks()),
             // Part of the families, which have the mark.
             (field::SITES, (false, false)),
+            (field::RIGID, (false, false)),
             (field::CONTACTS, self.contacts.take_marks()),
             (field::WALL_CONTACTS, self.wall_contacts.take_marks()),
             (field::TALLY, self.tally.take_marks()),

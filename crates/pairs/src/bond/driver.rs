@@ -15,7 +15,7 @@ use perigrain_styles::pull::{Found, Pull, Stretched, apart, find, periods};
 use perigrain_world::bonds::ascending;
 use perigrain_world::field::{BONDS, BOX, F, Fields, LISTS, MEMO, OMEGA, QUAT, TAG, TALLY, TORQUE, V, X};
 use perigrain_world::index::Index;
-use perigrain_world::share::Listed;
+use perigrain_world::share::{Halo, Listed};
 use perigrain_world::tally::add_share;
 use perigrain_world::{Bond, Key as ListKey, World};
 
@@ -301,7 +301,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         });
         let turns = if L::Law::TURNS { QUAT | OMEGA } else { Fields::NONE };
         let moves = if self.law.damped() { V } else { Fields::NONE };
-        w.halo(X | turns | moves, true);
+        w.halo(X | turns | moves, Halo::Listed);
     }
 
     /// Energies and virials, for those who ask.

@@ -1,6 +1,6 @@
 //! Dealing rows out to ranks: bodies and grains tile by tile, and which rows ranks need of each other then.
 
-use super::{Link, Listed, Share, Traffic, What};
+use super::{Halo, Link, Listed, Share, Traffic, What};
 use crate::rebuild::Rebuild;
 use crate::{Fields, Key, Named, World};
 use perigrain_base::comm::numbers::{next, put};
@@ -114,10 +114,11 @@ impl World {
             deal: self.dealings.count,
             own,
             alone,
-            links: [vec![], vec![]],
-            listed: Named::default(),
+            links: Default::default(),
+            listed: Default::default(),
+            bodies: Named::default(),
             stale: Fields::NONE,
-            near: [Fields::NONE; 2],
+            near: Default::default(),
             roster: roster(self.rebuild.past()),
             narrow: false,
             bytes: vec![],
@@ -144,38 +145,57 @@ impl World {
     /// Finds anew which rows ranks need of each other.
     pub fn link(&mut self) {
         let Some(share) = &mut self.share else { return };
-        let listed = share.listed.values().flat_map(|listed| listed.rows.iter().copied());
+        let named = |of: &Named<Listed>| -> Vec<u32> {
+            of.values().flat_map(|listed| listed.rows.iter().copied()).collect()
+        };
         let me = share.comm.rank();
         share.links = match (share.what, self.families.past()) {
-            (What::Grains, _) => {
-                let wanted = wanted(&share.alone, me, listed);
+            (What::Grains, _) => share.listed.each_ref().map(|of| {
+                // All ranks know whether something lists rows at all.
+                if of.is_empty() {
+                    return vec![];
+                }
+                let wanted = wanted(&share.alone, me, named(of).into_iter());
                 let asked = asked(&*share.comm, &wanted);
-                [vec![], links(&asked, &wanted)]
-            }
+                links(&asked, &wanted)
+            }),
             (What::Bodies, Some(families)) => {
-                [families.needed(), families.needed_by_lists(listed)].map(|needed| {
+                let listed = named(&share.listed[Halo::Listed as usize]).into_iter();
+                let [near, listed] = [families.needed(), families.needed_by_lists(listed)].map(|needed| {
                     let Some(into) = needed.get(me) else { return vec![] };
                     let out: Vec<Vec<u32>> = needed.iter().map(|with| with[me].clone()).collect();
                     links(&out, into)
-                })
+                });
+                [near, listed, vec![]]
             }
-            (What::Bodies, None) => [vec![], vec![]],
+            (What::Bodies, None) => Default::default(),
         };
         // Rows that are linked since now have not been handed over.
-        share.near = [Fields::NONE; 2];
+        share.near = Default::default();
     }
 
     /// Hands over the rows that an op's lists of this version name from now on, where shares are dealt and that is not done yet. Lists are
     /// those of all ranks where bodies are shared out, and those of this one where grains are.
-    pub fn list_rows(&mut self, (by, version): (Key<Listed>, u64), rows: impl FnOnce() -> Vec<u32>) {
+    pub fn list_rows(&mut self, list: (Key<Listed>, u64), rows: impl FnOnce() -> Vec<u32>) {
+        self.name_rows(Halo::Listed, list, rows);
+    }
+
+    /// The same for rows of other kinds.
+    pub(super) fn name_rows(
+        &mut self,
+        halo: Halo,
+        (by, version): (Key<Listed>, u64),
+        rows: impl FnOnce() -> Vec<u32>,
+    ) {
         let Some(share) = &mut self.share else { return };
-        let known = share.listed.get(by);
+        let named = &mut share.listed[halo as usize];
+        let known = named.get(by);
         if known.is_some_and(|listed| listed.version == version) {
             return;
         }
         let rows = rows();
         let mut other = known.map_or(!rows.is_empty(), |known| known.rows != rows);
-        share.listed.insert(by, Listed { version, rows });
+        named.insert(by, Listed { version, rows });
         if share.what == What::Grains {
             let mut others = if other { 1.0 } else { 0.0 };
             share.agree(std::iter::once(&mut others));

@@ -12,6 +12,7 @@ use perigrain_contact::driver::Grains;
 use perigrain_contact::fast::{Dealt, Fast, Frame, Own};
 use perigrain_world::field::{F, OMEGA, TORQUE, V, X};
 use perigrain_world::index::Index;
+use perigrain_world::share::Halo;
 use perigrain_world::{Allowed, Share, World};
 
 impl Force {
@@ -32,7 +33,7 @@ impl Force {
         let generation = w.rebuild.generation;
         if self.is_part() && (self.deal, self.generation) == (Some(deal), Some(generation)) {
             w.list_rows((self.key.of(), generation), || self.rows());
-            return w.halo(X | V | OMEGA, true);
+            return w.halo(X | V | OMEGA, Halo::Listed);
         }
         w.whole(X | V | OMEGA);
         if self.deal == Some(deal) && !self.is_part() {
