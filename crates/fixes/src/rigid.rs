@@ -9,6 +9,7 @@ mod mold;
 mod motion;
 mod nve;
 mod pass;
+mod ranks;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
@@ -27,9 +28,10 @@ use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
-    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TAG, TALLY, TORQUE,
-    TRAVEL, TYPE_MASS, V, X,
+    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, RIGID, SLOTS, TAG, TALLY,
+    TORQUE, TRAVEL, TYPE_MASS, V, X,
 };
+use perigrain_world::share::Halo;
 use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, Template, Vectors, World};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
@@ -383,7 +385,7 @@ impl Fix for Declared {
                         | TYPE_MASS
                         | lie,
                 )
-                .keep(MEMO | field::COLUMNS),
+                .keep(MEMO | RIGID | field::COLUMNS),
             move |w, t| {
                 if t.setup && !t.unchanged {
                     me.begin(w, span)?;
@@ -391,6 +393,7 @@ impl Fix for Declared {
                 let now = Some((w.rebuild.generation, w.n()));
                 if seen != now {
                     seen = now;
+                    w.whole(X | V | OMEGA | RIGID | lie);
                     me.adopt(w, span)?;
                     me.wrap(w);
                 }
@@ -417,16 +420,25 @@ impl Fix for Declared {
                         | KIND,
                 )
                 .write(X | V | OMEGA | SLOTS | lie)
-                .keep(MEMO | field::COLUMNS)
+                .keep(MEMO | RIGID | field::COLUMNS)
         };
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
+            if me.shares(w, t) {
+                me.take_part(w, &mut crew);
+            }
             me.advance(w, t, &mut crew);
             Ok(())
         });
+        let spans = |me: Declared| move |w: &World, t: &Tick| me.span(w, t);
         let second = |me: Declared| {
             let mut crew = Crew::of(&me);
             crew.weight = weight.clone();
             move |w: &mut World, t: &Tick| {
+                // What decks can read comes of all bodies.
+                if !t.told && me.shares(w, t) {
+                    me.take_part(w, &mut crew);
+                    w.halo(X | F | TORQUE, Halo::Members);
+                }
                 if t.on {
                     me.go_on(w, t, slot, &mut crew);
                 } else if !t.unchanged {
@@ -436,8 +448,9 @@ impl Fix for Declared {
             }
         };
         let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
-        let (first, last) = (first.reporting(), last.reporting().going_on());
-        let mut ops = vec![bodies.boxed(), first.boxed()];
+        let first = first.reporting().spanning(spans(self.clone()));
+        let last = last.reporting().going_on().with_sums().spanning(spans(self.clone()));
+        let mut ops = vec![bodies.asking().boxed(), first.boxed()];
         if cx.world().settings.lammps() {
             // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.
             let setup = StepOp::new(name, Stage::PostForce, access(), second(self.clone())).reporting();

@@ -3,6 +3,7 @@
 use super::follow::{Came, Follow, Holds};
 use super::gravity::Weight;
 use super::pass::{POSE, Part, Pass};
+use super::ranks::Own;
 use super::{COLUMNS, Declared, Keys};
 use perigrain_base::math::body::{apply_transposed, matrix};
 use perigrain_base::math::real::largest;
@@ -18,12 +19,14 @@ pub struct Crew {
     /// Generation of lists and number of particles that the members are of.
     seen: Option<(u64, usize)>,
     /// Where the members of each body begin in `members`.
-    first: Vec<usize>,
+    pub first: Vec<usize>,
     /// Particles, body by body, in the order of storage.
-    members: Vec<usize>,
+    pub members: Vec<usize>,
     /// Places of the bodies.
     poses: Vec<[f64; POSE]>,
     keys: Keys,
+    /// The bodies of this rank, where it moves its own alone.
+    pub own: Own,
     /// What pulls bodies as a whole.
     pub weight: Weight,
 }
@@ -44,6 +47,7 @@ impl Crew {
             members: vec![],
             poses: vec![],
             keys: fix.keys,
+            own: Own::default(),
             weight: Weight::default(),
         }
     }
@@ -53,11 +57,11 @@ impl Crew {
         &self.members[self.first[k]..self.first[k + 1]]
     }
 
-    /// Sorts the particles by bodies where their order may have changed.
-    fn muster(&mut self, w: &World, bodies: usize) {
+    /// Sorts the particles by bodies where their order may have changed; whether it may.
+    pub fn muster(&mut self, w: &World, bodies: usize) -> bool {
         let now = Some((w.rebuild.generation, w.n()));
         if self.seen == now && self.first.len() == bodies + 1 {
-            return;
+            return false;
         }
         self.seen = now;
         let number = w.columns.get_scalar(self.keys.body).unwrap_or_default();
@@ -77,6 +81,7 @@ impl Crew {
             self.members[next[k - 1]] = i;
             next[k - 1] += 1;
         }
+        true
     }
 }
 
@@ -123,6 +128,9 @@ impl Declared {
             }
             crew.keys.virials.into_iter().for_each(|key| w.columns.remove(key));
         }
+        if w.is_narrow() {
+            return keep_quiet(w, t, slot);
+        }
         let bodies = self.load(w);
         self.publish(w, t, slot, &bodies);
         self.tell_ledger(w, crew, &bodies);
@@ -130,7 +138,7 @@ impl Declared {
 
     /// The end of a step and the beginning of the next one, which asks for no virial; nobody sees the velocities in between.
     pub fn go_on(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
-        if w.slots.get(slot).offers == Offers::default() {
+        if w.is_narrow() || w.slots.get(slot).offers == Offers::default() {
             self.move_bodies(w, t, crew, Part::Both);
         } else {
             // Something within steps reads the values.
@@ -149,6 +157,7 @@ impl Declared {
             crew.muster(w, rows.len());
         }
         crew.poses.resize(rows.len(), [0.0; POSE]);
+        let own = w.is_narrow().then_some(&mut crew.own.room);
         let pass = Pass {
             fix: self,
             part,
@@ -162,8 +171,15 @@ impl Declared {
             pulls: crew.weight.now(w),
             first: &crew.first,
             members: &crew.members,
+            which: own.is_some().then_some(&crew.own.bodies[..]),
         };
-        par::each((rows, &mut crew.poses[..]), |start, (rows, poses)| pass.bodies(start, rows, poses));
+        let all = (rows, &mut crew.poses[..]);
+        match own {
+            Some(room) => {
+                room.move_some(&crew.own.bodies, all, |start, rows, poses| pass.bodies(start, rows, poses));
+            }
+            None => par::each(all, |start, (rows, poses)| pass.bodies(start, rows, poses)),
+        }
         w.memo.insert(crew.keys.bodies, kept);
     }
 
@@ -177,17 +193,27 @@ impl Declared {
         let number = w.columns.get_scalar(crew.keys.body).unwrap_or_default();
         let place = w.columns.get_vector(crew.keys.place).unwrap_or_default();
         let n = number.len().min(place.len());
+        let (share, all) = (w.share.as_ref().filter(|share| share.narrow), 0..n);
+        let own = share.map_or(std::slice::from_ref(&all), |share| &share.own);
         let holds = tally.then_some(Holds { masses, f: &p.f, half });
         let follow = Follow { poses: &crew.poses, image: &p.image, edges, moving, holds };
-        // Points do not turn.
-        let turning = p.style.sphere.then(|| (&mut p.omega[..n], &p.radius[..n]));
         let mut atoms = vec![[0.0; 6]; if tally && t.atom_virial { n } else { 0 }];
-        let virials = (!atoms.is_empty()).then_some(&mut atoms[..]);
-        let columns = (&mut p.x[..n], &mut p.v[..n], turning, &number[..n], &place[..n], virials);
         let both = |a: Came, b: Came| (matter::add(a.0, b.0), largest(a.1, b.1));
-        let came = par::reduce_each(columns, |start, columns| follow.chunk(start, columns), both);
-        let (total, farthest) = came.unwrap_or_default();
+        let mut came: Option<Came> = None;
+        for rows in own.iter().map(|rows| rows.start..rows.end.min(n)).filter(|rows| !rows.is_empty()) {
+            let some = || rows.clone();
+            // Points do not turn.
+            let turning = p.style.sphere.then(|| (&mut p.omega[some()], &p.radius[some()]));
+            let virials = (!atoms.is_empty()).then(|| &mut atoms[some()]);
+            let (x, v) = (&mut p.x[some()], &mut p.v[some()]);
+            let columns = (x, v, turning, &number[some()], &place[some()], virials);
+            let here =
+                par::reduce_each(columns, |start, columns| follow.chunk(rows.start + start, columns), both);
+            came = came.zip(here).map(|(a, b)| both(a, b)).or(came).or(here);
+        }
+        let (total, mut farthest) = came.unwrap_or_default();
         if moving {
+            share.iter().for_each(|share| share.agree(std::iter::once(&mut farthest)));
             w.travel.went(farthest.sqrt());
             self.turn_members(w, crew);
         }
@@ -201,7 +227,12 @@ impl Declared {
         }
         let (rows, _) = w.memo.get(crew.keys.bodies).map_or(&[][..], Vec::as_slice).as_chunks::<WIDTH>();
         let number = w.columns.get_scalar(crew.keys.body).unwrap_or_default();
-        let body = |i: usize| Some(Body::of(rows.get((*number.get(i)? as usize).wrapping_sub(1))?).q);
+        let own = w.share.as_ref().filter(|share| share.narrow).map(|share| &share.own);
+        let is_own = |i: usize| own.is_none_or(|own| own.iter().any(|rows| rows.contains(&i)));
+        let body = |i: usize| {
+            let row = rows.get((*number.get(i).filter(|_| is_own(i))? as usize).wrapping_sub(1))?;
+            Some(Body::of(row).q)
+        };
         crew.keys.turn.turn(&mut w.particles, &w.columns, true, body);
     }
 
@@ -252,6 +283,12 @@ impl Declared {
             }
         }
     }
+}
+
+/// In the place of what decks can read, where nothing does: a rank knows its own bodies alone.
+fn keep_quiet(w: &mut World, t: &Tick, slot: SlotId) {
+    let out = w.slots.get_mut(slot);
+    (out.step, out.scalar) = (Some(t.step), f64::NAN);
 }
 
 /// Half a step in units that turn force/mass into velocity.

@@ -74,6 +74,8 @@ pub struct Pass<'a> {
     pub first: &'a [usize],
     /// Particles by bodies.
     pub members: &'a [usize],
+    /// Which bodies are moved, if not all.
+    pub which: Option<&'a [u32]>,
 }
 
 /// A body, or lanes of bodies, in motion.
@@ -144,10 +146,16 @@ impl<R: Real> Moving<R> {
 }
 
 impl Pass<'_> {
-    /// The bodies from `start` on.
+    /// The number of the body at place `k` among those that are moved.
+    #[inline(always)]
+    fn number(&self, k: usize) -> usize {
+        self.which.map_or(k, |which| which[k] as usize)
+    }
+
+    /// The bodies from `start` on among those that are moved.
     pub fn bodies(&self, start: usize, rows: &mut [[f64; WIDTH]], poses: &mut [[f64; POSE]]) {
         if self.part.gathers() {
-            rows.iter_mut().enumerate().for_each(|(k, row)| self.gather(start + k, row));
+            rows.iter_mut().enumerate().for_each(|(k, row)| self.gather(self.number(start + k), row));
         }
         let done = match self.fix.exact() {
             true => 0,
@@ -158,13 +166,13 @@ impl Pass<'_> {
         rest.enumerate().for_each(|(k, (row, pose))| self.one(start + done + k, row, pose));
     }
 
-    /// Body `k`.
+    /// The body at place `k`.
     fn one(&self, k: usize, row: &mut [f64; WIDTH], pose: &mut [f64; POSE]) {
         // Bodies have more numbers than those of their motion: see `columns`.
         let (own, _) = row.split_first_chunk_mut::<MOVING>().unwrap_or_else(|| unreachable!());
         let mut b = Moving::of(own);
         let exact = self.fix.exact() || self.slender(&b.moments);
-        self.go(&mut b, &self.fix.allowed(k, self.flat), |b| {
+        self.go(&mut b, &self.fix.allowed(self.number(k), self.flat), |b| {
             exact.then(|| no_squish(b.q, b.momentum, b.moments, self.dt))
         });
         (*own, *pose) = (b.numbers(), b.pose());
@@ -193,7 +201,7 @@ impl Pass<'_> {
         for l in 0..N {
             let own = match all {
                 Some(all) => all,
-                None => self.fix.allowed(first + l, self.flat),
+                None => self.fix.allowed(self.number(first + l), self.flat),
             };
             for (s, d) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
                 on[s][d][l] = own[s][d];
