@@ -1,6 +1,7 @@
 //! Several ranks run one deck: what they write has the bytes of one process, and one that fails or dies ends them all.
 
 mod grains;
+mod rigid;
 
 use crate::examples;
 use crate::restart::scenes::{SCENES, Scene};
