@@ -46,9 +46,7 @@ pub(super) fn shared_out(
     let Some(comm) = join(o)? else { return first(None) };
     let nodes = comm::nodes(&*comm);
     if let Some(usage) = comm::run_as(comm.clone(), || differs(&*comm, &nodes)) {
-        comm.meet(FAILING);
-        comm.close();
-        return Err(usage);
+        return Ok(unlike(&*comm, &usage));
     }
     let me = comm.rank();
     let mut cores = vec![0i64; nodes.len()];
@@ -165,10 +163,7 @@ fn together(ranks: &dyn Comm, o: &Options, mode: Mode) -> Result<u8, Usage> {
     let mut o = o.clone();
     let nodes = comm::nodes(ranks);
     if let Some(usage) = differs(ranks, &nodes) {
-        // All know; the first one says it.
-        ranks.meet(FAILING);
-        ranks.close();
-        return Err(usage);
+        return Ok(unlike(ranks, &usage));
     }
     let mut plain = [f64::from(u8::from(o.portable || Form::here() == Form::Plain))];
     ranks.most(&mut plain);
@@ -182,6 +177,17 @@ fn together(ranks: &dyn Comm, o: &Options, mode: Mode) -> Result<u8, Usage> {
     let code = deck::work_off(&o, mode);
     end(ranks, &nodes, code);
     Ok(code)
+}
+
+/// Ends ranks that are not alike; the exit code. The first one says why before any of them ends: launchers end all others then, and what
+/// these still had to say is lost.
+fn unlike(ranks: &dyn Comm, usage: &Usage) -> u8 {
+    if ranks.rank() == 0 {
+        super::complain(usage);
+    }
+    ranks.meet(FAILING);
+    ranks.close();
+    USAGE
 }
 
 /// All ranks end at the same place, or are ended.

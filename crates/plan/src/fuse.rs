@@ -141,6 +141,12 @@ fn join(a: [BlockSums; MOST], b: [BlockSums; MOST]) -> [BlockSums; MOST] {
     std::array::from_fn(|k| a[k].join(b[k]))
 }
 
+/// Those of a chunk that are among these rows.
+fn chunk_of(k: usize, own: &Range<usize>) -> Range<usize> {
+    let start = own.start.max(k * CHUNK);
+    start..own.end.min((k + 1) * CHUNK).max(start)
+}
+
 /// Room for who waits for forces, used again from step to step.
 #[derive(Default)]
 pub struct Waiting {
@@ -152,27 +158,30 @@ pub struct Waiting {
 /// [`fuse`] by and by, as particles get all their forces.
 pub struct FusedPass<'a> {
     acts: Acts<'a>,
+    /// Rows that wait for forces: all, or those of this rank.
+    own: Range<usize>,
     waiting: &'a mut Waiting,
 }
 
 impl<'a> FusedPass<'a> {
-    /// With `n` particles that wait for forces; `None` if there are too many ops for one pass.
-    pub fn new(acts: Acts<'a>, n: usize, waiting: &'a mut Waiting) -> Option<Self> {
+    /// With particles of these rows that wait for forces; `None` if there are too many ops for one pass.
+    pub fn new(acts: Acts<'a>, own: Range<usize>, waiting: &'a mut Waiting) -> Option<Self> {
         if acts.len() > MOST {
             return None;
         }
         waiting.left.clear();
-        waiting.left.extend((0..n).step_by(CHUNK).map(|start| CHUNK.min(n - start)));
+        waiting.left.extend((0..own.end.div_ceil(CHUNK)).map(|k| chunk_of(k, &own).len()));
         waiting.came.clear();
         waiting.came.resize(waiting.left.len(), Default::default());
-        Some(Self { acts, waiting })
+        Some(Self { acts, own, waiting })
     }
 
     /// These particles have all their forces; each is told once. Ops act on chunks in which nobody waits any more.
     pub fn ready(&mut self, w: &mut World, particles: Range<usize>) {
+        let particles = particles.start.max(self.own.start)..particles.end.min(self.own.end);
         let end = if particles.is_empty() { 0 } else { particles.end.div_ceil(CHUNK) };
         for k in particles.start / CHUNK..end {
-            let rows = k * CHUNK..((k + 1) * CHUNK).min(w.n());
+            let rows = chunk_of(k, &self.own);
             self.waiting.left[k] -= particles.end.min(rows.end) - particles.start.max(rows.start);
             if self.waiting.left[k] == 0 {
                 let (all, columns) = columns(w);
@@ -183,12 +192,16 @@ impl<'a> FusedPass<'a> {
         }
     }
 
-    /// When all particles have been told, `came` becomes what came of each op.
-    pub fn finish(self, came: &mut Vec<BlockSums>) {
+    /// When all particles have been told, `came` becomes what came of each op, as [`fuse`] has it.
+    pub fn finish(self, w: &World, came: &mut Vec<BlockSums>) {
         debug_assert!(self.waiting.left.iter().all(|n| *n == 0), "somebody waits for forces still");
         let all = par::along_tree(&self.waiting.came, join).unwrap_or_default();
         came.clear();
         came.extend_from_slice(&all[..self.acts.len()]);
+        if let Some(share) = w.narrow_share() {
+            came.iter_mut().for_each(|came| came.sums = [f64::NAN; 3]);
+            share.agree(came.iter_mut().map(|came| &mut came.most));
+        }
     }
 }
 
@@ -260,17 +273,32 @@ mod tests {
         let (mut once, mut by_and_by) = (world(), world());
         let (mut came, mut later, mut waiting) = (vec![], vec![], Waiting::default());
         fuse(&mut once, acts, &mut came);
-        let mut pass = FusedPass::new(acts, n, &mut waiting).unwrap();
+        let mut pass = FusedPass::new(acts, 0..n, &mut waiting).unwrap();
         // In pieces that end anywhere, from the middle on, and with nobody.
         for piece in [5000..n, 5..5000, 7..7, 0..5] {
             let early = piece.start > 0;
             pass.ready(&mut by_and_by, piece);
             assert!(!early || by_and_by.particles.f[0] != [0.0; 3], "the first ones wait for forces");
         }
-        pass.finish(&mut later);
+        pass.finish(&by_and_by, &mut later);
         assert_eq!(later, came);
         assert_eq!(once.particles.v, by_and_by.particles.v);
         assert!(by_and_by.particles.f.iter().all(|f| *f == [0.0; 3]));
-        assert!(FusedPass::new(Acts::new(&rooms, &[1; MOST + 1]), n, &mut waiting).is_none());
+        assert!(FusedPass::new(Acts::new(&rooms, &[1; MOST + 1]), 0..n, &mut waiting).is_none());
+        // Rows of other ranks stay as they were.
+        let (mut some, own) = (world(), CHUNK + 9..2 * CHUNK + 5);
+        let mut pass = FusedPass::new(acts, own.clone(), &mut waiting).unwrap();
+        [0..CHUNK + 20, 2 * CHUNK..n, CHUNK + 20..2 * CHUNK]
+            .into_iter()
+            .for_each(|piece| pass.ready(&mut some, piece));
+        pass.finish(&some, &mut later);
+        let as_it_was = world();
+        for row in 0..n {
+            let of = if own.contains(&row) { &once } else { &as_it_was };
+            assert_eq!(
+                (some.particles.v[row], some.particles.f[row]),
+                (of.particles.v[row], of.particles.f[row])
+            );
+        }
     }
 }

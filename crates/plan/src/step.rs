@@ -8,6 +8,7 @@ use super::{Acts, BlockSums, FusedPass, Span, Stage, StepPlan, Tick, Way, fuse, 
 use perigrain_base::diag::Result;
 use perigrain_base::par::CHUNK;
 use perigrain_world::World;
+use std::ops::Range;
 use std::time::Duration;
 
 /// So many particles are moved without looking at the clock.
@@ -77,9 +78,8 @@ impl StepPlan {
         more: &impl Fn(&World) -> bool,
     ) -> Result<bool> {
         let order = &ending.order[..];
-        let Some(force) = ending.force.filter(|_| !needs::collecting() && w.share.is_none()) else {
-            return Ok(false);
-        };
+        let Some(force) = ending.force.filter(|_| !needs::collecting()) else { return Ok(false) };
+        let Some(rows) = self.moved_at_once(w, t, force, order) else { return Ok(false) };
         if order.is_empty() || !order.iter().all(|k| self.ops[*k].about.fuses || self.rests(w, t, *k)) {
             return Ok(false);
         }
@@ -87,7 +87,7 @@ impl StepPlan {
         let (all, last) = self.offer(w, t, (ending, order), more);
         let Rooms { acts, ops, mut came, mut waiting } = std::mem::take(&mut self.rooms);
         let own = Acts::new(&acts, &ops);
-        let pass = FusedPass::new(own, w.n(), &mut waiting).filter(|_| all == order.len());
+        let pass = FusedPass::new(own, rows, &mut waiting).filter(|_| all == order.len());
         let Some(mut pass) = pass else {
             self.rooms = Rooms { acts, ops, came, waiting };
             return Ok(false);
@@ -95,6 +95,8 @@ impl StepPlan {
         let (mut clock, mut moving) = (self.timing.clock(t), Duration::ZERO);
         let looks = clock;
         let p = &mut self.ops[force];
+        let (span, before) = (p.span(w, t), w.traffic());
+        share::before(w, span, std::iter::once(p.about.needs));
         let told = p.timed(w, t, &mut clock, |op, w| {
             op.run_streaming(w, t, &mut |w, particles| {
                 // To look at the clock takes longer than to move a few particles.
@@ -105,14 +107,46 @@ impl StepPlan {
             })
         })?;
         p.meter.time = p.meter.time.saturating_sub(moving);
+        // Nothing is dealt while particles are on their way.
+        if w.share.is_some() {
+            share::after(w, std::iter::once(p.about.needs));
+            p.note(w, t, (span, before));
+        }
+        let before = w.traffic();
+        let needs = || own.which.iter().map(|&k| self.ops[k].about.needs);
+        share::before(w, Span::Own, needs());
         match told {
-            true => pass.finish(&mut came),
+            true => pass.finish(w, &mut came),
             false => fuse(w, own, &mut came),
+        }
+        share::after(w, needs());
+        for &k in &ops {
+            self.ops[k].note(w, t, (Span::Own, if k == ops[0] { before } else { w.traffic() }));
         }
         self.rooms = Rooms { acts, ops, came, waiting };
         self.fused(w, t, last, clock.runs().then(|| moving + clock.lap()));
         end_watch(w, std::iter::once(&force).chain(order).map(|&k| self.ops[k].stated()));
         Ok(true)
+    }
+
+    /// The rows that can be moved as soon as they have their forces: all, or those of this rank where grains are shared out tile by tile, and
+    /// nothing reads sums over all of them.
+    fn moved_at_once(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        force: usize,
+        order: &[usize],
+    ) -> Option<Range<usize>> {
+        if w.share.is_none() {
+            return Some(0..w.n());
+        }
+        let told = t.told && order.iter().any(|&k| self.ops[k].about.tells);
+        let plain = w.grains_dealt().is_some() && !told && self.ops[force].span(w, t) == Span::Asks;
+        match &w.share.as_ref().filter(|_| plain)?.own[..] {
+            [rows] => Some(rows.clone()),
+            _ => None,
+        }
     }
 
     /// Tells ops what came of a fused pass, which took so long if somebody has looked.

@@ -190,10 +190,22 @@ impl Lattice {
         ControlFlow::Continue(())
     }
 
-    /// How many sites [`Self::sites`] would visit, as a bound on what can be created.
-    pub fn site_bound(&self, lo: [f64; 3], hi: [f64; 3]) -> f64 {
+    /// About how many sites lie in the box `lo … hi`: by its volume, and no more than [`Self::sites`] would visit.
+    pub fn expected(&self, lo: [f64; 3], hi: [f64; 3]) -> f64 {
         let (first, last) = self.span(lo, hi);
-        (0..3).map(|d| last[d] - first[d] + 1.0).product::<f64>() * self.basis.len() as f64
+        let bound = (0..3).map(|d| last[d] - first[d] + 1.0).product::<f64>();
+        let origin = self.from_box(lo);
+        let edge = |d: usize| {
+            let mut at = lo;
+            at[d] = hi[d];
+            let at = self.from_box(at);
+            [at[0] - origin[0], at[1] - origin[1], at[2] - origin[2]]
+        };
+        let [a, b, c] = [edge(0), edge(1), if self.flat { [0.0, 0.0, 1.0] } else { edge(2) }];
+        let cells = (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]))
+            .abs();
+        bound.min(cells) * self.basis.len() as f64
     }
 
     /// First and last cell along each edge that the box `lo … hi` can touch.
@@ -265,6 +277,17 @@ mod tests {
     use crate::region::{Region, Shape};
 
     // Spacings: golden misc_lattice is built on sc 0.9 in lj units; (1/0.9)^(1/3) by hand.
+    #[test]
+    fn expected_sites_are_those_of_the_volume() {
+        let placing = |flat| Placing { flat, ..Placing::plain(2.0, false) };
+        let cell = |name: &str| Lattice::new(&Cell::named(name).unwrap(), &placing(name == "sq2"));
+        // Cells of 2 by 2 by 2, four sites in each; of 2 by 2, two.
+        let near =
+            |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-12, "{found} {wanted}");
+        near(cell("fcc").expected([1.0; 3], [41.0, 21.0, 11.0]), 4.0 * 20.0 * 10.0 * 5.0);
+        near(cell("sq2").expected([1.0, 1.0, 0.0], [41.0, 21.0, 0.0]), 2.0 * 20.0 * 10.0);
+    }
+
     #[test]
     fn reduced_density_sets_the_spacing() {
         let l = Lattice::new(&Cell::named("sc").unwrap(), &Placing::plain(0.9, true));

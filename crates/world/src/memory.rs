@@ -40,8 +40,11 @@ pub fn bytes(w: &World) -> u64 {
         + families
 }
 
-/// Bytes a particle needs besides its columns once forces act: rows of the lattice layout, or lists of contacts.
+/// Bytes a particle of a solid needs besides its columns once forces act: rows of the lattice layout.
 const FORCES_PER_PARTICLE: f64 = 110.0;
+/// The same for a grain in a dense bed: lists of pairs, what contacts remember, and both once more while lists are made anew
+/// (`benches/decks/dem_bed.in` with 10⁶ grains, alone and on three ranks).
+const FORCES_PER_GRAIN: f64 = 560.0;
 /// Particles from which a forecast is worth a line.
 const LARGE: f64 = 200_000.0;
 /// Time of one step per particle of a peridynamic body with 122 bonds, one thread [s] (benches/versus_lammps).
@@ -50,8 +53,14 @@ const SECONDS_PER_PARTICLE: f64 = 1.5e-7;
 /// Bytes that the present scene is likely to take once forces act.
 pub fn expected(w: &World) -> f64 {
     let before = w.families.is_none() && w.rebuild.held.is_empty();
-    let forces = if before { w.n() as f64 * FORCES_PER_PARTICLE } else { 0.0 };
+    let forces = if before { w.n() as f64 * forces_per_particle(w) } else { 0.0 };
     bytes(w) as f64 + forces
+}
+
+/// Bytes a particle needs besides its columns, by what it is.
+fn forces_per_particle(w: &World) -> f64 {
+    let style = w.particles.style;
+    if style.sphere && !style.peri { FORCES_PER_GRAIN } else { FORCES_PER_PARTICLE }
 }
 
 /// What `more` particles on top of the present ones would take: a line for the log when that is much, a refusal
@@ -66,7 +75,7 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
     let oriented = if style.oriented { 32 } else { 0 };
     let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri + oriented;
     let n = w.n() as f64 + more;
-    let bytes = n * (f64::from(columns) + FORCES_PER_PARTICLE);
+    let bytes = n * (f64::from(columns) + forces_per_particle(w));
     if let Some(d) = lacking_on_ranks(bytes, &format!("about {n:.3e} particles")) {
         return Err(d.help("use a coarser lattice or a smaller region").into());
     }

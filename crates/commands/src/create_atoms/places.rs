@@ -139,7 +139,7 @@ impl Place {
             .map(|k| [at(k % SAMPLES, 0), at(k / SAMPLES % SAMPLES, 1), at(k / SAMPLES / SAMPLES, 2)])
             .filter(|x| region.is_none_or(|r| r.contains(*x)))
             .count();
-        world.lattice.site_bound(lo, hi) * inside as f64 / SAMPLES.pow(3) as f64
+        world.lattice.expected(lo, hi) * inside as f64 / SAMPLES.pow(3) as f64
     }
 }
 

@@ -92,7 +92,7 @@ impl List {
 }
 
 /// How long it takes to evaluate a contact, in units of what it takes to find out that a listed pair does not touch.
-const CONTACT: usize = 8;
+pub(super) const CONTACT: usize = 8;
 
 /// Contacts of so little work are evaluated before another thread has seen that there is some: some microseconds, in these units.
 const LITTLE: usize = 1024;

@@ -5,7 +5,7 @@
 //! forces are handed over.
 
 use super::Fast;
-use super::lists::List;
+use super::lists::{CONTACT, List};
 use perigrain_base::math::lanes::place;
 use perigrain_neigh::tiles::Tiles;
 use perigrain_world::contacts::{Contacts, mirror};
@@ -133,6 +133,13 @@ impl Fast {
             }
         }
         out
+    }
+
+    /// How much work the last evaluation was, of the lists that this rank has as a whole, and its grains are: in units of the test of a pair.
+    pub fn work(&self, grains: usize) -> f64 {
+        let lists: usize =
+            self.whole_lists().map(|(_, list)| list.short.i.len() + CONTACT * list.touching).sum();
+        (lists + CONTACT * grains) as f64
     }
 
     /// Σ d ⊗ F of the last evaluation: of each list that this rank has as a whole, with its number [energy].

@@ -177,8 +177,11 @@ impl Force {
             }
             (0..).map_while(|part| fast.ready(part)).for_each(|particles| ready(w, particles));
         }
-        let deep = fast.deep;
+        let (deep, shared) = (fast.deep, fast.is_part());
         report(w, t, deep);
+        if shared {
+            w.act_narrowly();
+        }
         Ok(true)
     }
 
@@ -193,10 +196,10 @@ impl Force {
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
         let renewed =
             stale || self.generation != Some(w.rebuild.generation) || self.deal != self.wanted_deal(w);
+        if w.parts.tiles.is_some() {
+            self.fast.iter_mut().for_each(Fast::time_tiles);
+        }
         if renewed {
-            if w.parts.tiles.is_some() {
-                self.fast.iter_mut().for_each(Fast::time_tiles);
-            }
             self.renew(w)?;
             if self.wanted_deal(w).is_some() && !self.is_part() {
                 w.whole(F | TORQUE);
@@ -325,7 +328,9 @@ impl Op for Force {
             press.begin(w, t);
         }
         let how = self.prepare(w, t)?;
-        self.act(w, t, how)
+        self.act(w, t, how)?;
+        self.note_work(w);
+        Ok(())
     }
 
     fn run_streaming(
@@ -342,6 +347,7 @@ impl Op for Force {
         if !told {
             self.act(w, t, how)?;
         }
+        self.note_work(w);
         Ok(told)
     }
 

@@ -19,6 +19,8 @@ pub struct Dealings {
     wanted: bool,
     /// How often rows have been dealt since the program began.
     count: u64,
+    /// How much work the last evaluation was for this rank where grains are shared out, in units that all ranks have in common.
+    pub work: f64,
     /// A run has failed: ranks need not have come to the same place, and nothing waits for another rank any more.
     pub apart: bool,
 }
@@ -38,23 +40,59 @@ impl Tiling {
         Self { ends, roster: roster(rebuild) }
     }
 
-    /// The rows of each rank: whole tiles, as many rows to each as to any other. None where there are fewer tiles than ranks.
-    fn dealt(&self, ranks: usize) -> Option<Vec<Range<usize>>> {
+    /// The rows of each rank: whole tiles, with as much work for each as for any other. None where there are fewer tiles than ranks.
+    fn dealt(&self, ranks: usize, work: &Work) -> Option<Vec<Range<usize>>> {
         let all = *self.ends.last()? as usize;
         if self.ends.len() < ranks {
             return None;
         }
+        let before: Vec<f64> =
+            self.ends.iter().map(|end| work.before(f64::from(*end) / all as f64)).collect();
         let end = |rank: usize| match rank {
             0 => 0,
             rank if rank == ranks => all,
             rank => {
-                let wanted = (all * rank / ranks) as u32;
-                let k = self.ends.partition_point(|end| *end < wanted).max(1);
-                let [before, after] = [k - 1, k].map(|k| self.ends[k.min(self.ends.len() - 1)]);
-                (if wanted - before.min(wanted) < after - wanted { before } else { after }) as usize
+                let wanted = work.before(1.0) * rank as f64 / ranks as f64;
+                let k = before.partition_point(|before| *before < wanted).max(1);
+                let k = k.min(before.len() - 1);
+                (if wanted - before[k - 1] < before[k] - wanted { self.ends[k - 1] } else { self.ends[k] })
+                    as usize
             }
         };
         Some((0..ranks).map(|rank| end(rank)..end(rank + 1)).collect())
+    }
+}
+
+/// How work lies along the rows: the parts of the rows at which the ranks' own ended, ascending, and how much work a row was to each.
+#[derive(Clone, Debug, Default)]
+struct Work(Vec<[f64; 2]>);
+
+/// No rank's rows are taken for so many times more or less work than those of all.
+const UNEVEN: f64 = 4.0;
+
+impl Work {
+    /// That of ranks which had these rows and did so much, as far as that is known.
+    fn of(rows: &[Range<usize>], done: &[f64]) -> Self {
+        let all = rows.last().map_or(0, |rows| rows.end) as f64;
+        let mean = done.iter().sum::<f64>() / all;
+        if !mean.is_normal() {
+            return Self::default();
+        }
+        let row = |(rows, done): (&Range<usize>, &f64)| {
+            let each = if rows.is_empty() { 1.0 } else { done / (rows.len() as f64 * mean) };
+            [rows.end as f64 / all, each.clamp(1.0 / UNEVEN, UNEVEN)]
+        };
+        Self(rows.iter().zip(done).map(row).collect())
+    }
+
+    /// How much of it comes before this part of the rows.
+    fn before(&self, part: f64) -> f64 {
+        let (mut sum, mut from) = (0.0, 0.0);
+        for [end, each] in self.0.iter().chain([&[1.0, 1.0]]) {
+            sum += each * (end.min(part) - from).max(0.0);
+            from = *end;
+        }
+        sum
     }
 }
 
@@ -91,6 +129,7 @@ impl World {
 
     /// Shares rows out to ranks anew; all rows are up to date before.
     pub fn deal(&mut self) {
+        let work = self.work_of_ranks();
         self.abandon();
         if !self.dealings.wanted {
             return;
@@ -101,7 +140,7 @@ impl World {
         let (what, alone, own) = match deal_bodies(self.families.past_mut(), n, (me, ranks)) {
             Some((alone, own)) => (What::Bodies, alone, own),
             None => {
-                let Some(rows) = self.tiling().and_then(|tiling| tiling.dealt(ranks)) else { return };
+                let Some(rows) = self.tiling().and_then(|tiling| tiling.dealt(ranks, &work)) else { return };
                 let alone: Vec<Rows> = rows.into_iter().map(|rows| vec![rows]).collect();
                 let own = alone[me].clone();
                 (What::Grains, alone, own)
@@ -125,6 +164,17 @@ impl World {
             traffic: Traffic::default(),
         });
         self.link();
+    }
+
+    /// How much work the rows have been that grains are shared out in now.
+    fn work_of_ranks(&self) -> Work {
+        let Some(share) = self.share.as_ref().filter(|share| share.what == What::Grains) else {
+            return Work::default();
+        };
+        let mut done = vec![f64::NEG_INFINITY; share.comm.size()];
+        done[share.comm.rank()] = self.dealings.work;
+        share.comm.most(&mut done);
+        Work::of(&share.rows_of_ranks(), &done)
     }
 
     /// Shares rows out where that was not possible before, and is now.
@@ -305,14 +355,30 @@ mod tests {
     #[test]
     fn ranks_get_whole_tiles_and_as_many_rows_as_others() {
         let tiling = Tiling { ends: vec![10, 30, 30, 41, 60, 75, 100], roster: [0; 2] };
-        assert_eq!(tiling.dealt(2), Some(vec![0..41, 41..100]));
-        assert_eq!(tiling.dealt(3), Some(vec![0..30, 30..60, 60..100]));
-        assert_eq!(tiling.dealt(8), None);
+        let even = Work::default();
+        assert_eq!(tiling.dealt(2, &even), Some(vec![0..41, 41..100]));
+        assert_eq!(tiling.dealt(3, &even), Some(vec![0..30, 30..60, 60..100]));
+        assert_eq!(tiling.dealt(8, &even), None);
         for ranks in 1..=7 {
-            let rows = tiling.dealt(ranks).unwrap();
+            let rows = tiling.dealt(ranks, &even).unwrap();
             assert!(rows.windows(2).all(|two| two[0].end == two[1].start && two[0].start <= two[0].end));
             assert_eq!((rows[0].start, rows[ranks - 1].end), (0, 100));
         }
+    }
+
+    #[test]
+    fn ranks_whose_rows_were_more_work_get_fewer() {
+        let tiling = Tiling { ends: (1..=100).map(|k| 10 * k).collect(), roster: [0; 2] };
+        let dealt =
+            |rows: &[Range<usize>], done: &[f64]| tiling.dealt(rows.len(), &Work::of(rows, done)).unwrap();
+        // Three quarters of the work lay in the first half: a third of a half more than it had.
+        assert_eq!(dealt(&[0..500, 500..1000], &[30.0, 10.0]), [0..330, 330..1000]);
+        // Dealt so, both did as much.
+        assert_eq!(dealt(&[0..330, 330..1000], &[20.0, 20.0]), [0..330, 330..1000]);
+        // What is not known is the same for all, and no rank is left with next to nothing.
+        assert_eq!(dealt(&[0..500, 500..1000], &[0.0, 0.0]), [0..500, 500..1000]);
+        assert!((420..=430).contains(&dealt(&[0..10, 10..1000], &[1e9, 1.0])[0].len()));
+        assert_eq!(dealt(&[0..0, 0..1000], &[0.0, 1.0]), [0..500, 500..1000]);
     }
 
     #[test]

@@ -27,6 +27,15 @@ impl Force {
         self.is_fast && self.fast.as_ref().is_some_and(Fast::is_part)
     }
 
+    /// Where grains are shared out to ranks: how much work this one's were, by which they are dealt anew.
+    pub(super) fn note_work(&self, w: &mut World) {
+        if self.is_part()
+            && let (Some(fast), Some(share)) = (&self.fast, &w.share)
+        {
+            w.dealings.work = fast.work(share.own.iter().map(|rows| rows.len()).sum());
+        }
+    }
+
     /// Where grains are shared out to ranks: has the rows that contacts read, those of all ranks where lists are due.
     pub(super) fn bring_up_to_date(&mut self, w: &mut World) {
         let Some(deal) = self.wanted_deal(w) else { return };
