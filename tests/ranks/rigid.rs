@@ -1,6 +1,7 @@
 //! Rigid bodies among free grains, shared out to ranks.
 
-use super::{exchanged, files, perigrain, said, same};
+use super::{exchanged, files, made, perigrain, said, same};
+use crate::restart::scenes::SCENES;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
@@ -115,6 +116,34 @@ fn bodies_come_during_a_run() {
         fix rain clumps deposit 5 0 25 4711 region slot near 1.0 mol four rigid r vz -2 -2 units box id next\n";
     let deck = format!("{CLUMPS}{moves}{WRITES}run 140\nwrite_restart end.restart\n");
     same_on_ranks(&deck, "clumps that come", &[("3", "1")]);
+}
+
+/// A clump that hits a peridynamic plate is moved by all ranks, which have shares of the plate.
+#[test]
+fn a_rigid_clump_hits_a_plate_that_is_shared_out() {
+    let scene = SCENES.iter().find(|scene| scene.name == "impact").unwrap();
+    let few = "set group plate diameter";
+    let more =
+        "create_atoms 2 single 0.0012 -0.0003 0.0031 units box\ngroup ball type 2\nset group plate diameter";
+    let make = made(scene)
+        .replace(few, more)
+        .replace("set group ball diameter 0.003", "set group ball diameter 0.0027");
+    let again = scene
+        .again
+        .replace("fix 2 ball nve/sphere", "neigh_modify exclude group ball ball\nfix 2 ball rigid single");
+    let deck = format!("{make}{again}");
+    let writes = "thermo_style custom step time dt ke c_dsum f_2 f_2[1][3] f_2[1][9] f_2[1][12]\n\
+        dump all all custom 7 dump.*.txt id type x y z vx vy vz fz\ndump_modify all format float %.17g\n";
+    let whole = format!("{deck}{writes}run 60\nwrite_restart end.restart\n");
+    let alone = left_by_clumps(&whole, &["-threads", "1"]);
+    for (ranks, threads) in [("2", "2"), ("3", "1")] {
+        same(&alone, &left_by_clumps(&whole, &["-ranks", ranks, "-threads", threads]), "a clump and a plate");
+    }
+    let ops = exchanged_by_clumps(&format!("{deck}thermo 30\nrun 60\n"), "3");
+    let own = |part: &str| {
+        ops.iter().any(|(op, rows, gathers)| op.starts_with(part) && rows != "all" && *gathers == 0)
+    };
+    assert!(["fix 1 nve", "fix 2 rigid"].into_iter().all(own), "{ops:?}");
 }
 
 /// No op but those that search pairs needs rows of all ranks, and bodies are moved by the ranks of their particles.

@@ -429,7 +429,7 @@ impl Fix for Declared {
             me.advance(w, t, &mut crew);
             Ok(())
         });
-        let spans = |me: Declared| move |w: &World, t: &Tick| me.span(w, t);
+        let spans = |me: Declared| move |w: &mut World, t: &Tick| me.span(w, t);
         let second = |me: Declared| {
             let mut crew = Crew::of(&me);
             crew.weight = weight.clone();

@@ -18,7 +18,7 @@ pub struct StepOp<F> {
     act: F,
 }
 
-type Spans = dyn Fn(&World, &Tick) -> Span + Send;
+type Spans = dyn Fn(&mut World, &Tick) -> Span + Send;
 
 /// What an op offers to do to blocks of particles, and what it makes of what comes of them.
 struct Fusing {
@@ -119,7 +119,7 @@ where
 
     /// Of which rows it needs values differs from tick to tick.
     #[must_use]
-    pub fn spanning(mut self, spans: impl Fn(&World, &Tick) -> Span + Send + 'static) -> Self {
+    pub fn spanning(mut self, spans: impl Fn(&mut World, &Tick) -> Span + Send + 'static) -> Self {
         self.spans = Some(Box::new(spans));
         self
     }

@@ -45,6 +45,8 @@ pub struct Share {
     listed: [Named<Listed>; HALOS],
     /// How rigid bodies are dealt out, by where their fixes keep them.
     bodies: Named<Parted>,
+    /// Of which group bits it is known whether all ranks move all particles with them.
+    common: Vec<(u32, bool)>,
     /// Fields that are up to date in this rank's own rows alone.
     stale: Fields,
     /// Those of them that are up to date in the rows of these links as well.
@@ -209,11 +211,17 @@ impl World {
         nowhere == 0.0
     }
 
-    /// Whether all particles with one of these group bits are moved by all ranks alike.
-    pub fn is_common(&self, bits: u32) -> bool {
-        let Some(share) = &self.share else { return true };
+    /// Whether all particles with one of these group bits were moved by all ranks alike when this was asked for in the present deal first.
+    pub fn is_common(&mut self, bits: u32) -> bool {
+        let Some(share) = &mut self.share else { return true };
+        if let Some((_, common)) = share.common.iter().find(|(of, _)| *of == bits) {
+            return *common;
+        }
         let mask = self.particles.mask.past();
-        !share.alone.iter().flatten().any(|rows| mask[rows.clone()].iter().any(|mask| mask & bits != 0))
+        let mut alone = share.alone.iter().flatten().flat_map(|rows| &mask[rows.clone()]);
+        let common = !alone.any(|mask| mask & bits != 0);
+        share.common.push((bits, common));
+        common
     }
 
     /// Whether the op at work acts on the rows of this rank alone.

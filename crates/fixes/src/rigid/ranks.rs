@@ -2,6 +2,7 @@
 //! bodies travel.
 
 use super::Declared;
+use super::bodies::Split;
 use super::motion::Crew;
 use super::pass::POSE;
 use perigrain_base::par;
@@ -14,7 +15,7 @@ use perigrain_world::share::RigidBodies;
 /// The bodies of this rank.
 #[derive(Default)]
 pub struct Own {
-    /// The deal of grains that they are of.
+    /// The deal that they are of.
     deal: Option<u64>,
     /// Their numbers from 0, ascending.
     pub bodies: Vec<u32>,
@@ -49,15 +50,28 @@ impl Room {
 }
 
 impl Declared {
-    /// Whether a rank moves its own bodies alone at this tick: where grains are shared out, and no sums over all particles are asked for.
-    pub fn shares(&self, w: &World, t: &Tick) -> bool {
-        let sums = t.virial || ledger::is_open(w);
+    /// Whether a rank moves its own bodies alone at this tick: where grains are shared out, or the peridynamic bodies beside these, and no
+    /// sums over all particles are asked for.
+    pub fn shares(&self, w: &mut World, t: &Tick) -> bool {
         // Dipole moments are not handed over.
-        w.grains_dealt().is_some() && !sums && !w.particles.style.dipole
+        if w.share.is_none() || t.virial || w.particles.style.dipole || ledger::is_open(w) {
+            return false;
+        }
+        w.grains_dealt().is_some() || self.is_common(w)
+    }
+
+    /// Whether all ranks move all particles of the bodies.
+    fn is_common(&self, w: &mut World) -> bool {
+        let groups = match &self.split {
+            Split::Groups(list) => &list[..],
+            _ => std::slice::from_ref(&self.group),
+        };
+        let bits = groups.iter().fold(0, |bits, group| bits | group.bit());
+        groups.iter().all(|group| w.groups.is_fixed(*group)) && w.is_common(bits)
     }
 
     /// Of which rows an op needs values that makes this part of a step.
-    pub fn span(&self, w: &World, t: &Tick) -> Span {
+    pub fn span(&self, w: &mut World, t: &Tick) -> Span {
         if self.shares(w, t) { Span::Asks } else { Span::All }
     }
 
@@ -66,7 +80,7 @@ impl Declared {
         w.act_narrowly();
         let bodies = w.memo.get(self.keys.bodies).map_or(0, |rows| rows.len() / WIDTH);
         let anew = crew.muster(w, bodies);
-        let (deal, generation) = (w.grains_dealt(), w.rebuild.generation);
+        let (deal, generation) = (w.narrow_share().map(|share| share.deal), w.rebuild.generation);
         if !anew && crew.own.deal == deal {
             return;
         }

@@ -156,6 +156,7 @@ impl World {
             links: Default::default(),
             listed: Default::default(),
             bodies: Named::default(),
+            common: vec![],
             stale: Fields::NONE,
             near: Default::default(),
             roster: roster(self.rebuild.past()),

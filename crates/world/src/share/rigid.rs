@@ -1,6 +1,6 @@
 //! Rigid bodies on ranks: a rank brings those up to date of which it moves a particle, and all have all of them where these are asked for.
 
-use super::{Halo, NUMBER, Share};
+use super::{Halo, NUMBER, Share, What};
 use crate::{Named, Numbers, World};
 use perigrain_base::comm::numbers::{put, take};
 use std::ops::Range;
@@ -56,9 +56,13 @@ impl RigidBodies<'_> {
 
 impl World {
     /// Deals out the rigid bodies of a fix, where grains are dealt out: those of which this rank moves a particle, ascending. What
-    /// [`Halo::Members`] names are their particles from now on; lists of particles of another version are others.
+    /// [`Halo::Members`] names are their particles from now on; lists of particles of another version are others. Beside peridynamic bodies
+    /// all ranks move all of them.
     pub fn deal_bodies(&mut self, bodies: &RigidBodies, version: u64) -> Vec<u32> {
         let Some(share) = &mut self.share else { return vec![] };
+        if share.what == What::Bodies {
+            return (0..bodies.count()).collect();
+        }
         let own = bodies.within(&share.own);
         let giver = bodies.givers(&share.rows_of_ranks());
         let parted = Parted { width: bodies.width, giver, own: own.clone() };
