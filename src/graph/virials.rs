@@ -2,7 +2,7 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::SealCx;
 use perigrain_styles::probe::{Ask, Probe, look_all};
 use perigrain_world::field::{
@@ -64,6 +64,9 @@ impl Op for Virials {
             )
             .write(TALLY);
         About::new("virials of particles", Stage::Force, needs)
+    }
+    fn span(&mut self, _: &mut World, t: &Tick) -> Rows {
+        if t.atom_virial { Rows::All } else { Rows::Asks }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !t.atom_virial {
