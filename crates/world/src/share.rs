@@ -76,7 +76,7 @@ pub enum Halo {
     Near,
     /// Those that lists of pairs name.
     Listed,
-    /// Those of particles of rigid bodies that this rank moves too.
+    /// Those of the other particles of rigid bodies of which this rank moves some.
     Members,
 }
 
