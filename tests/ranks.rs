@@ -43,18 +43,29 @@ pub fn said(o: &Output) -> String {
 
 /// Lines that tell of time, of processes and of memory; nothing in a run follows from them.
 fn is_of_this_run(line: &str) -> bool {
-    const BEGINNINGS: [&str; 7] =
-        ["perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank", "seconds ", "ranks: "];
+    // An example keeps a time in `Td`.
+    const BEGINNINGS: [&str; 8] = [
+        "perigrain ",
+        "Loop time",
+        "Performance",
+        "Total wall",
+        "Per MPI rank",
+        "seconds ",
+        "ranks: ",
+        "variable        Td ",
+    ];
     const PARTS: [&str; 4] = ["% CPU", "CPU = ", " | ", "[s]"];
     BEGINNINGS.iter().any(|b| line.starts_with(b)) || PARTS.iter().any(|p| line.contains(p))
 }
 
-/// A line without its numbers of seconds, and of calculations that would fit `in a run`: examples of statics print these beside what they
-/// compare.
+/// A line without its numbers of seconds, of calculations that would fit `in a run`, and of how many `times faster` they are: examples of
+/// statics print these beside what they compare.
 fn without_times(line: &str) -> String {
     let words: Vec<&str> = line.split(' ').collect();
     let is_time = |k: usize| match &words[k + 1..] {
-        ["s" | "s,", ..] | ["in", "a", "run", ..] => words[k].parse::<f64>().is_ok(),
+        ["s" | "s,", ..] | ["in", "a", "run", ..] | ["times", "faster", ..] => {
+            words[k].parse::<f64>().is_ok()
+        }
         _ => false,
     };
     (0..words.len()).map(|k| if is_time(k) { "#" } else { words[k] }).collect::<Vec<_>>().join(" ")
