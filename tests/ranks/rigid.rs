@@ -80,7 +80,7 @@ fn same_on_ranks(deck: &str, what: &str, numbers: &[(&str, &str)]) {
     }
 }
 
-/// Runs with everything that is written, and one that goes on from a restart file.
+/// Runs with everything that is written, and one that continues from a restart file.
 #[test]
 fn bodies_are_shared_out_with_the_bytes_of_one_process() {
     let again = "clear\nread_restart end.restart\nneigh_modify every 1 delay 0 check yes exclude molecule/intra clumps\n\

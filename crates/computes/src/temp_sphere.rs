@@ -101,7 +101,7 @@ impl Compute for Declared {
         let mut freedom = self.rules.freedom();
         let reads = X | V | OMEGA | RADIUS | MASS | MASK | BOX | MEMO | REGIONS | KIND | TYPE_MASS;
         let wanted = Wanted { slot, stage, when };
-        // A flow is asked for all particles.
+        // A flow needs all particles.
         let by_sums = bias.is_none();
         let read = move |w: &World, t: &Tick, out: &mut Slot| {
             let p = &w.particles;

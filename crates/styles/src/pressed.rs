@@ -81,7 +81,7 @@ type Roots = [[f64; 2]];
 type Each<'a> = dyn FnMut(&mut dyn FnMut(Contact)) -> Result<()> + 'a;
 
 /// The longest stable step of the contacts as they are pressed now, if `dt` is longer: 2/ω with the largest ω of all motions, less where
-/// dashpots resist them. Walls are those that have told of themselves at this step; `moves` tells whether a particle goes and turns as
+/// dashpots resist them. Walls are those whose contacts were booked at this step; `moves` says whether a particle goes and turns as
 /// forces want. Contacts are not kept where each particle's neighbourhood shows that the step is short enough.
 ///
 /// # Errors

@@ -195,7 +195,7 @@ impl Op for Move {
     }
 
     fn span(&mut self, _: &mut World, t: &Tick) -> Span {
-        // Which bonds lead through faces is asked of all.
+        // All bonds are looked at for those that lead through faces.
         if t.setup { Span::All } else { Span::Own }
     }
 
