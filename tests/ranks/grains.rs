@@ -1,6 +1,6 @@
 //! Grains and bonded particles shared out to ranks.
 
-use super::{exchanged, files, left_by, measured, perigrain, said, same};
+use super::{LAUNCHERS, PERIGRAIN, exchanged, files, left_by, measured, perigrain, said, same, start, works};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -151,6 +151,24 @@ fn several_laws_are_shared_out() {
     fs::write(folder.path().join("in.deck"), deck.replace("ave/time 1 1 1", "ave/time 10 1 10")).unwrap();
     let ops = measured(folder.path(), &["in.deck"]);
     assert!(ops.iter().any(|(op, rows, _)| op == "pair granular" && rows == "asked"), "{ops:?}");
+}
+
+/// Grains by each MPI library: with messages of nothing where no contact is too deep and no bond breaks.
+#[test]
+fn grains_have_the_same_bytes_by_real_launchers() {
+    let deck = format!(
+        "{SHEARED}fix squeeze all deform 1 x scale 0.99 remap x\nrun 20\nwrite_restart end.restart\n"
+    );
+    let alone = left_by(&deck, &["-threads", "1"]);
+    for launcher in LAUNCHERS.into_iter().filter(works) {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("in.deck"), &deck).unwrap();
+        let (program, own, library) = launcher;
+        let words = ["-n", "3", PERIGRAIN, "-in", "in.deck", "-screen", "none", "-threads", "1"];
+        let o = start(folder.path(), program, &[own, &words].concat()).wait_with_output().unwrap();
+        assert!(o.status.success(), "{library}: {}", said(&o));
+        same(&alone, &files(folder.path()), &format!("grains by {library}"));
+    }
 }
 
 /// A block of spheres held together by bonds that break where it is torn: forces, breaking, and what is written of it.

@@ -171,6 +171,10 @@ impl Comm for Mpi {
             }
             return;
         }
+        // The place of nothing is what Open MPI calls "in place", and refuses here.
+        if all.is_empty() {
+            return;
+        }
         let places: Vec<c_int> = counts
             .iter()
             .map(|length| {
