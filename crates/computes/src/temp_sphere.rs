@@ -8,7 +8,7 @@ use perigrain_base::math::vec3::sub;
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::sum;
-use perigrain_styles::step_op::{Wanted, fill, fill_sums};
+use perigrain_styles::step_op::{Wanted, fill_sums_if};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -121,11 +121,7 @@ impl Compute for Declared {
             offer(w, out, twice, tensor, dof);
             Ok(())
         };
-        Ok(if by_sums {
-            fill_sums(&self.id, &wanted, reads, read)
-        } else {
-            fill(&self.id, &wanted, reads, read)
-        })
+        Ok(fill_sums_if(by_sums, &self.id, &wanted, reads, read))
     }
 
     fn bias(&self) -> Option<&ValueRef> {

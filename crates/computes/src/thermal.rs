@@ -7,7 +7,7 @@ use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
-use perigrain_styles::step_op::{Wanted, fill, fill_sums};
+use perigrain_styles::step_op::{Wanted, fill_sums_if};
 use perigrain_styles::{BuildCx, Flow, SealCx, Shape};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -137,11 +137,7 @@ impl<S: Streams> Compute for Thermal<S> {
             }
             Ok(())
         };
-        Ok(if by_sums {
-            fill_sums(&self.id, &wanted, reads, read)
-        } else {
-            fill(&self.id, &wanted, reads, read)
-        })
+        Ok(fill_sums_if(by_sums, &self.id, &wanted, reads, read))
     }
 
     fn flow(&self, w: &World) -> Option<Flow> {

@@ -205,7 +205,17 @@ pub fn fill_sums<F>(name: &str, wanted: &Wanted, reads: Fields, read: F) -> Box<
 where
     F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
 {
-    filling(name, wanted, reads, read).summing().boxed()
+    fill_sums_if(true, name, wanted, reads, read)
+}
+
+/// As [`fill_sums`] where that is so, and else as [`fill`].
+#[track_caller]
+pub fn fill_sums_if<F>(sums: bool, name: &str, wanted: &Wanted, reads: Fields, read: F) -> Box<dyn Op>
+where
+    F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
+{
+    let op = filling(name, wanted, reads, read);
+    if sums { op.summing().boxed() } else { op.boxed() }
 }
 
 #[track_caller]
