@@ -394,7 +394,7 @@ impl<'a> Sealer<'a> {
                     let name = format!("f_{}", r.name);
                     let slot = self.world.slots.id(&name);
                     // What acts within steps reads values of the step before.
-                    if *when == When::Always || stage < Stage::EndOfStep {
+                    if when.is_always() || stage < Stage::EndOfStep {
                         self.plan.watched.push(name);
                     }
                     self.world.slots.get_mut(slot).offers = node.fix.shape().offers();

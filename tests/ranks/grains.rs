@@ -72,6 +72,22 @@ fn sums_are_known_where_they_are_read_within_steps() {
     same(&alone, &left_by_bowl(&deck, &["-ranks", "3", "-threads", "1"]), "grains that grow");
 }
 
+/// A variable that something looks at in every step is of the forces of that step on all ranks' grains.
+#[test]
+fn forces_on_walls_are_those_of_all_ranks_where_every_step_reads_them() {
+    let reads = "variable push equal f_sides[3]\nfix most all extremes 1 v_push\n\
+        thermo_style custom step ke f_sides[3] f_most[1] f_most[2]\nthermo 20\nrun 60\n";
+    let deck = format!("{BOWL}{reads}");
+    let alone = left_by_bowl(&deck, &["-threads", "1"]);
+    for ranks in ["2", "3"] {
+        same(
+            &alone,
+            &left_by_bowl(&deck, &["-threads", "1", "-ranks", ranks]),
+            &format!("extremes on {ranks} ranks"),
+        );
+    }
+}
+
 #[test]
 fn quiet_steps_of_grains_gather_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -295,7 +295,7 @@ const ENDLESS: [(&str, &str); 7] = [
         "units lj\natom_style sphere\nregion w block 0 90 0 90 0 90\ncreate_box 1 w\n\
         create_atoms 1 pack w 0.64 77 sizes mono 1 rounds 1000000000\nprint never\n",
     ),
-    ("shell", "shell sleep 1000\nprint never\n"),
+    ("shell", "shell (sleep 86413; true); true\nprint never\n"),
     (
         "respa",
         "units lj\natom_style sphere\nregion w block 0 12 0 12 0 8\ncreate_box 1 w\ncreate_atoms 1 single 4 4 4\n\
@@ -334,6 +334,10 @@ fn all_long_work_ends_at_a_signal() {
         // Half a second between two looks, two seconds to end a long step, and a machine that is busy with other tests.
         assert!(late < Duration::from_secs(8), "{name}: {late:?}");
     }
+    // What a shell has started ends with it.
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let words = processes.filter_map(|p| fs::read_to_string(p.path().join("cmdline")).ok());
+    assert!(!words.into_iter().any(|words| words.starts_with("sleep\u{0}86413")), "a command is left");
 }
 
 #[test]
