@@ -30,6 +30,7 @@ mod json;
 pub mod lsp;
 pub mod manual;
 pub mod plot;
+mod processes;
 pub mod report;
 pub mod session;
 pub mod sweep;

@@ -5,6 +5,7 @@ mod ranks;
 
 use super::args::{Deck, Options, Target, Usage};
 use super::{FAILED, INTERRUPTED, OK, signals};
+use crate::processes;
 use crate::sweep::starter::{self, Starter};
 use crate::sweep::worker::live_with;
 use perigrain_base::comm;
@@ -177,7 +178,7 @@ fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
     let _ = ctrlc::set_handler(|| {});
     let started: Arc<Mutex<Vec<u32>>> = Arc::default();
     let known = started.clone();
-    signals::listen(move || signals::pass_on(&known.lock().unwrap_or_else(PoisonError::into_inner)));
+    signals::listen(move || processes::signal(&known.lock().unwrap_or_else(PoisonError::into_inner), "TERM"));
     File::create(turns)?;
     let mut log = own_log(o)?;
     let mut say = |text: String| {

@@ -1,8 +1,6 @@
 //! Requests of the system to end: of a queue at its time limit, of `kill`, of a terminal that is closed; and limits of the shell.
 
 #[cfg(unix)]
-use std::process::Command;
-#[cfg(unix)]
 use std::time::{Duration, Instant};
 
 /// Calls `ask` for each of them, on a thread of its own. One that the caller has switched off, as `nohup` does, stays so.
@@ -32,21 +30,6 @@ pub fn listen(ask: impl Fn() + Send + 'static) {
 /// around this one pass on those that they get themselves.
 #[cfg(unix)]
 const ONE_REQUEST: Duration = Duration::from_secs(1);
-
-/// Passes a request to end on to other processes.
-#[cfg(unix)]
-pub fn pass_on(processes: &[u32]) {
-    let words: Vec<String> = processes.iter().map(u32::to_string).collect();
-    if !words.is_empty() {
-        // Those that are gone need none.
-        let _ =
-            Command::new("sh").args(["-c", &format!("kill -TERM {} 2>/dev/null", words.join(" "))]).status();
-    }
-}
-
-/// Nothing to pass on.
-#[cfg(not(unix))]
-pub fn pass_on(_processes: &[u32]) {}
 
 /// A file that outgrows the limit for files (`ulimit -f`) fails as on a full disk: the write returns an error, and the signal
 /// that would end the program at once does nothing.

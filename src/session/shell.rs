@@ -1,6 +1,7 @@
 //! `shell`: folders, files, environment, and commands for the system's shell.
 
 use super::Session;
+use crate::processes;
 use perigrain_base::comm::{self, told};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::{gate, stop};
@@ -134,42 +135,12 @@ fn waited(mut child: Child) -> std::io::Result<ExitStatus> {
             return Ok(status);
         }
         if stop::cuts() {
-            let below = descendants(child.id());
+            let below = processes::descendants(child.id());
             child.kill()?;
-            end(&below);
+            processes::signal(&below, "KILL");
             return child.wait();
         }
         std::thread::sleep(pause);
         pause = (2 * pause).min(Duration::from_millis(20));
-    }
-}
-
-/// The processes that a process has started, and those that these have, where the system lists them: a shell that ends leaves its commands
-/// running.
-fn descendants(process: u32) -> Vec<u32> {
-    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    let known = entries.filter_map(|entry| {
-        let own: u32 = entry.file_name().to_str()?.parse().ok()?;
-        let text = std::fs::read_to_string(entry.path().join("stat")).ok()?;
-        // Behind the name, which stands in brackets and may have blanks: the state, and the parent.
-        let parent = text.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()?;
-        Some((own, parent))
-    });
-    let known: Vec<(u32, u32)> = known.collect();
-    let (mut found, mut looked) = (vec![process], 0);
-    while let Some(parent) = found.get(looked).copied() {
-        found.extend(known.iter().filter(|(_, of)| *of == parent).map(|(own, _)| *own));
-        looked += 1;
-    }
-    found.split_off(1)
-}
-
-/// Ends processes at once.
-fn end(processes: &[u32]) {
-    let words: Vec<String> = processes.iter().map(u32::to_string).collect();
-    if !words.is_empty() {
-        // Those that are gone need no signal.
-        let line = format!("kill -KILL {} 2>/dev/null", words.join(" "));
-        let _ = std::process::Command::new("sh").args(["-c", &line]).status();
     }
 }

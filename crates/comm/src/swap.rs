@@ -7,7 +7,7 @@ use rustix::net::{RecvAncillaryBuffer, RecvFlags, SendAncillaryBuffer, SendFlags
 use std::io::{IoSlice, IoSliceMut};
 use std::os::unix::net::UnixStream;
 
-/// The other rank is gone.
+/// This rank is gone.
 #[derive(Debug)]
 pub struct GoneRank(pub usize);
 
@@ -29,6 +29,7 @@ pub struct Going<'a> {
 }
 
 impl<'a> Going<'a> {
+    /// All of these bytes, to a rank at the other end of this socket.
     pub fn new(with: usize, socket: &'a UnixStream, kind: Kind, bytes: &'a [u8]) -> Self {
         Self { with, socket, head: head(kind, bytes.len()), bytes, done: 0 }
     }
@@ -38,6 +39,9 @@ impl<'a> Going<'a> {
     }
 
     /// Sends what the socket takes, and waits until it takes all where it is to `wait`; whether all has left.
+    ///
+    /// # Errors
+    /// The other rank is gone.
     pub fn send(&mut self, wait: bool) -> Result<bool, GoneRank> {
         let flags = if wait { SendFlags::empty() } else { SendFlags::DONTWAIT };
         while self.left() > 0 {
@@ -68,6 +72,7 @@ pub struct Coming<'a> {
 }
 
 impl<'a> Coming<'a> {
+    /// As many bytes as there is room for, of this kind, from a rank at the other end of this socket.
     pub fn new(with: usize, socket: &'a UnixStream, kind: Kind, bytes: &'a mut [u8]) -> Self {
         Self { with, socket, wanted: head(kind, bytes.len()), head: [0; HEAD], bytes, done: 0 }
     }
@@ -76,7 +81,11 @@ impl<'a> Coming<'a> {
         HEAD + self.bytes.len() - self.done
     }
 
-    /// Takes what the socket has, and waits for all where it is to `wait`; whether all has come.
+    /// Takes what the socket has, and waits for all where it is to `wait`; whether all has come. A frame of another kind or length is a fault
+    /// of this program, and ends it.
+    ///
+    /// # Errors
+    /// The other rank is gone.
     pub fn receive(&mut self, wait: bool) -> Result<bool, GoneRank> {
         let flags = if wait { RecvFlags::WAITALL } else { RecvFlags::DONTWAIT };
         while self.left() > 0 {

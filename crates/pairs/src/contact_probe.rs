@@ -276,10 +276,7 @@ impl Probe for ContactProbe {
             });
         };
         // What contacts of solids share depends on all of them.
-        if list.len() <= BLOCK
-            || self.rules.ask_for_bodies()
-            || self.rules.any(|r| r.average != Average::None)
-        {
+        if self.rules.ask_for_bodies() || self.rules.any(|r| r.average != Average::None) {
             return self.swept(w, &list, Ask::Acting, &mut read);
         }
         self.swept_in_blocks(w, &list, read)

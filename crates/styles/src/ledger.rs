@@ -223,7 +223,7 @@ pub fn is_open(w: &World) -> bool {
 /// What rigid bodies have beyond their particles: twice their kinetic energies, and the power of gravity.
 fn of_bodies(w: &World) -> [f64; 3] {
     let all = w.memo.playing(*BODY_ENERGY).filter_map(|(_, own)| own.first_chunk::<3>());
-    all.fold([0.0; 3], |sum, own| super::matter::add(sum, *own))
+    all.fold([0.0; 3], |sum, own| par::add(sum, *own))
 }
 
 /// Forgets the ledger: the next run opens a new one.

@@ -1,7 +1,7 @@
 //! What many styles ask of the particles: who belongs to a group, what it weighs, where it is unwrapped.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_base::par;
+use perigrain_base::par::{self, add};
 use perigrain_plan::Tick;
 use perigrain_world::{AtomStyle, Compat, GroupId, Key, Region, SlotId, Vectors, World};
 
@@ -80,11 +80,6 @@ pub fn count(w: &World, group: GroupId) -> usize {
 pub fn sum<const N: usize>(w: &World, group: GroupId, term: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
     let (mask, bit) = (&w.particles.mask, group.bit());
     w.sum_rows(|i| (mask[i] & bit != 0).then(|| term(i)))
-}
-
-/// Element by element a + b.
-pub fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|k| a[k] + b[k])
 }
 
 /// Mass and centre of mass of a group, unwrapped; the centre of nothing is the origin.

@@ -2,6 +2,7 @@
 
 use super::{Options, Start, World, ended_in_words, own_log};
 use crate::cli::{FAILED, OK, signals};
+use crate::processes;
 use crate::sweep::ranks::Ranks;
 use perigrain_base::comm::Gone;
 use std::io::{Read, Write};
@@ -170,7 +171,9 @@ impl Team {
         let _ = ctrlc::set_handler(|| {});
         let known: Arc<Mutex<Vec<u32>>> = Arc::default();
         let all = known.clone();
-        signals::listen(move || signals::pass_on(&all.lock().unwrap_or_else(PoisonError::into_inner)));
+        signals::listen(move || {
+            processes::signal(&all.lock().unwrap_or_else(PoisonError::into_inner), "TERM")
+        });
         Ok(Self { path, listener, members: vec![], known })
     }
 

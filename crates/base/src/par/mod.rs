@@ -18,7 +18,7 @@ pub use pool::{
     two_colours,
 };
 pub use split::{Rows, Shared, Split, each, for_chunks};
-pub use sum::{along_tree, best, max, reduce, reduce_each, sum};
+pub use sum::{add, along_tree, best, max, reduce, reduce_each, sum};
 
 /// Particles per chunk, everywhere: fixed, so that the order of additions is too.
 pub const CHUNK: usize = 2048;

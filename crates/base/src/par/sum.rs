@@ -80,6 +80,11 @@ pub fn along_tree<T: Copy>(came: &[T], join: impl Fn(T, T) -> T) -> Option<T> {
     tree(came, &join)
 }
 
+/// Element by element a + b: joins sums of several numbers.
+pub fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
 /// The sum of `term(i)` for `i` below `n`: in order within a chunk, chunks along a fixed tree.
 pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     reduce(n, |range| range.fold(0.0, |sum, i| sum + term(i)), |a, b| a + b).unwrap_or(0.0)

@@ -10,7 +10,7 @@ use perigrain_base::math::real::largest;
 use perigrain_base::math::vec3::sub;
 use perigrain_base::par;
 use perigrain_plan::Tick;
-use perigrain_styles::matter::{self, Masses};
+use perigrain_styles::matter::Masses;
 use perigrain_styles::rigid_bodies::{Body, WIDTH};
 use perigrain_world::{Offers, SlotId, World};
 
@@ -198,7 +198,7 @@ impl Declared {
         let holds = tally.then_some(Holds { masses, f: &p.f, half });
         let follow = Follow { poses: &crew.poses, image: &p.image, edges, moving, holds };
         let mut atoms = vec![[0.0; 6]; if tally && t.atom_virial { n } else { 0 }];
-        let both = |a: Came, b: Came| (matter::add(a.0, b.0), largest(a.1, b.1));
+        let both = |a: Came, b: Came| (par::add(a.0, b.0), largest(a.1, b.1));
         let mut came: Option<Came> = None;
         for rows in own.iter().map(|rows| rows.start..rows.end.min(n)).filter(|rows| !rows.is_empty()) {
             let some = || rows.clone();

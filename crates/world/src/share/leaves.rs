@@ -6,7 +6,7 @@
 use super::{Share, What};
 use crate::World;
 use perigrain_base::comm::numbers::{put, take};
-use perigrain_base::par::{self, CHUNK};
+use perigrain_base::par::{self, CHUNK, add};
 use std::ops::Range;
 
 /// The rows of one rank: the first and the last ones, which share their leaf with other ranks' rows, and the leaves in between.
@@ -32,11 +32,6 @@ impl Parts {
     fn len(&self) -> usize {
         self.first.len() + self.leaves.len() + self.last.len()
     }
-}
-
-/// Element by element a + b.
-fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|k| a[k] + b[k])
 }
 
 impl World {
