@@ -249,7 +249,7 @@ fn crates() -> Vec<String> {
     names
 }
 
-/// Who opens files beside the gate, and why.
+/// What opens files or starts programs beside the gate, and why.
 const OPENERS: &[(&str, &str)] = &[
     ("crates/base/src/gate", "the gate itself"),
     ("crates/comm/src/", "what a launcher says of ranks"),
@@ -259,6 +259,7 @@ const OPENERS: &[(&str, &str)] = &[
     ("crates/out/src/movie.rs", "ffmpeg, which is not started under -safe"),
     ("crates/fixes/src/halt.rs", "what the gate has let pass"),
     ("src/session/shell.rs", "refused as a whole under -safe"),
+    ("src/processes.rs", "processes that the program itself has started"),
     ("crates/base/src/memory.rs", "memory of the machine"),
     ("crates/plan/src/run/verlet.rs", "time of the processor"),
     ("crates/lang/src/expr/pattern.rs", "name of the system"),
