@@ -15,7 +15,7 @@
 //! world + step plan    world::World, plan::StepPlan
 //!  │  run::verlet
 //!  ▼
-//! outputs              out::*               thermo, dumps, pictures
+//! outputs              output::*            thermo, dumps, pictures
 //! ```
 
 // Units stand in brackets in doc comments, as [length]; they are no links.
@@ -38,7 +38,7 @@ pub mod verify;
 
 pub use perigrain_base::{diag, math, par, units};
 pub use perigrain_lang as lang;
-pub use perigrain_out as out;
+pub use perigrain_output as output;
 pub use perigrain_peri as peri;
 pub use perigrain_plan as plan;
 pub use perigrain_world as world;

@@ -59,7 +59,7 @@ pub use perigrain_base::par::{set_threads, threads};
 use perigrain_base::{letters, memory};
 use perigrain_commands::COMMANDS;
 use perigrain_lang::{Command, Flow, Line, Script, Vars, plain_value};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
 use perigrain_world::{Unseen, World};

@@ -2,7 +2,7 @@
 
 use crate::threads::alone;
 use perigrain::math::vec3::{Vec3, add, cross, scale};
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::par::set_threads;
 use perigrain::session::{Options, Session};
 use perigrain::world::World;

@@ -4,7 +4,7 @@
 mod written;
 
 use perigrain::diag::{Code, Diagnostic, Severity};
-use perigrain::out::log::Log;
+use perigrain::output::log::Log;
 use perigrain::session::{Mode, Options, Session};
 use std::fmt::Write;
 use std::fs;

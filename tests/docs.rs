@@ -5,7 +5,7 @@ use perigrain::cli::errors_page;
 use perigrain::cli::grammar::{textmate, vim};
 use perigrain::cli::manual::{heading, pages};
 use perigrain::diag::{CODES, Code};
-use perigrain::out::log::Log;
+use perigrain::output::log::Log;
 use perigrain::session::{Mode, Options, Session};
 use std::fmt::Write;
 use std::fs;

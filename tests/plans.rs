@@ -6,7 +6,7 @@
 mod examples;
 
 use examples::examples;
-use perigrain::out::log::Log;
+use perigrain::output::log::Log;
 use perigrain::session::{Mode, Options, Session};
 use perigrain_plan::Stage;
 use std::collections::BTreeSet;

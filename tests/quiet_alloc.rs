@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use perigrain::session::{Options, Session};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 
 /// Counts allocations.
 struct Counting;

@@ -1,7 +1,7 @@
 //! The longest step of bonded particles: `compute dt/critical` and the warning before a run against steps that are just below and
 //! just beyond it.
 
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::session::{Options, Session};
 
 /// Works off a deck; what the log says, or why it ended.

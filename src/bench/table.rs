@@ -5,7 +5,7 @@ use super::{Bench, Found, Point};
 use crate::sweep::table::{aligned, line};
 use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
-use perigrain_out::file::replace;
+use perigrain_output::file::replace;
 use std::path::Path;
 
 /// The table for programs.

@@ -5,7 +5,7 @@ use super::{FAILED, OK, deck, show};
 use crate::json::quoted;
 use crate::session::{Mode, whole};
 use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 
 /// Checks each deck by itself; the exit code is that of the worst.
 pub fn check(decks: &[Options], json: bool) -> u8 {

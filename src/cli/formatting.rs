@@ -4,7 +4,7 @@ use super::args::{Deck, Usage};
 use super::{FAILED, OK, deck, show};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail};
 use perigrain_lang::format::format;
-use perigrain_out::file::{replace_durably, trouble};
+use perigrain_output::file::{replace_durably, trouble};
 use std::fmt::Write;
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use super::live::{Around, Live};
 use crate::human::{count, duration};
 pub(super) use crate::plot::short;
 use crate::session::{Ahead, Made, Options, steps_ahead};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use std::io::{IsTerminal, Stderr, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -285,7 +285,7 @@ pub fn colors_wanted() -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perigrain_out::rows::Row;
+    use perigrain_output::rows::Row;
 
     const MADE: Made = Made { done: 1, total: 10, step: 121, time: 1.21e-6, dt: 1e-8 };
 

@@ -2,8 +2,8 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::Value;
-use perigrain_out::log::Log;
-use perigrain_out::thermo::{Column, Kind, Layout, memory_line};
+use perigrain_output::log::Log;
+use perigrain_output::thermo::{Column, Kind, Layout, memory_line};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::Reading;
 use perigrain_world::field::{FACTS, LISTS, SLOTS};
@@ -30,12 +30,12 @@ pub struct Row {
 
 impl Row {
     /// The row as numbers, per particle where it is printed so.
-    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, perigrain_out::rows::Row) {
+    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, perigrain_output::rows::Row) {
         let columns = self.layout.columns.iter().map(|c| c.name.clone()).collect();
         let share = |c: &Column| if self.layout.norm && c.extensive { w.n().max(1) as f64 } else { 1.0 };
         let values =
             self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
-        (columns, perigrain_out::rows::Row { step: t.step, time: w.clock.time(), values })
+        (columns, perigrain_output::rows::Row { step: t.step, time: w.clock.time(), values })
     }
 
     /// Refuses elements that vectors do not have as the run begins; where they go later, 0 is shown, as in LAMMPS.

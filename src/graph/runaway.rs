@@ -4,7 +4,7 @@ use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{dot, length};
 use perigrain_base::par;
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::pair::Deck;

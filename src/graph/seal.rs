@@ -8,7 +8,7 @@ use super::node::{FixNode, Graph};
 use super::values::{Evaluate, Keyword, Once, groups_alone, reads};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
 use perigrain_styles::fix::Facts;
 use perigrain_styles::probe::Probe;

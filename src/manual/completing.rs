@@ -6,7 +6,7 @@ use super::syntax::is_word;
 use crate::graph::measure;
 use crate::session::Known;
 use perigrain_base::gate;
-use perigrain_out::image::{MAPS, colour_names};
+use perigrain_output::image::{MAPS, colour_names};
 use std::path::Path;
 
 /// What a candidate is.

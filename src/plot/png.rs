@@ -1,7 +1,7 @@
 //! A chart as PNG, drawn with the pens of the program's other pictures.
 
 use super::{Chart, End, INK, Shape, WIDTH};
-use perigrain_out::image::{Colour, Image};
+use perigrain_output::image::{Colour, Image};
 
 /// Pixels per unit of the drawing.
 const SCALE: f64 = 2.0;

@@ -1,7 +1,7 @@
 //! The step tables as the page's curves have them: one list of rows, thinned evenly where there are too many.
 
 use crate::json::{number, quoted};
-use perigrain_out::rows::{Row, Tables};
+use perigrain_output::rows::{Row, Tables};
 
 /// So many numbers a page has at most; more rows than that allows are thinned.
 const CELLS: usize = 400_000;

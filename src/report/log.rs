@@ -2,7 +2,7 @@
 
 use super::{Ended, Weight};
 use crate::sweep::lammps;
-use perigrain_out::rows::Tables;
+use perigrain_output::rows::Tables;
 
 /// So many lines a message has at most.
 const LINES: usize = 14;

@@ -11,7 +11,7 @@ pub use page::html;
 pub use pictures::{Gallery, Picture, gathered};
 
 use crate::session::Part;
-use perigrain_out::rows::Tables;
+use perigrain_output::rows::Tables;
 
 /// How a run came to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]

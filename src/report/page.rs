@@ -6,7 +6,7 @@ use super::{Ended, Report, Weight, short};
 use crate::json::quoted;
 use crate::plot::{escaped, page};
 use crate::session::Part;
-use perigrain_out::thermo::KEYWORDS;
+use perigrain_output::thermo::KEYWORDS;
 use std::borrow::Cow;
 use std::fmt::Write;
 

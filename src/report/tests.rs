@@ -1,7 +1,7 @@
 //! What pages must hold and must never let out.
 
 use super::*;
-use perigrain_out::rows::Row;
+use perigrain_output::rows::Row;
 
 /// A report with a text that would be a script of its own in every place that a deck can fill.
 fn hostile() -> (String, Report) {

@@ -4,7 +4,7 @@ use super::{Options, Session, whole};
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::Span;
 use perigrain_lang::{Command, Script, substitute_known};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_styles::{Use, UseKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -6,7 +6,7 @@ use crate::graph::build::bring;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Result};
 use perigrain_lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, substitute_known};
-use perigrain_out::log::Echo;
+use perigrain_output::log::Echo;
 use perigrain_styles::{Shape, Use, UseKind};
 use perigrain_world::{Compat, GroupId, Promise};
 use std::collections::BTreeMap;
@@ -154,9 +154,9 @@ impl Session {
         if let Some(name) = file {
             use std::io::Write;
             let path = Path::new(&name.text);
-            let mut out = perigrain_out::file::open(path, append).map_err(|e| e.at(name.span))?;
+            let mut out = perigrain_output::file::open(path, append).map_err(|e| e.at(name.span))?;
             let failed = writeln!(out, "{text}").and_then(|()| out.flush());
-            failed.map_err(|e| perigrain_out::file::trouble("write", path, &e).at(name.span))?;
+            failed.map_err(|e| perigrain_output::file::trouble("write", path, &e).at(name.span))?;
         }
         Ok(())
     }

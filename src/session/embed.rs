@@ -17,8 +17,8 @@ pub use globals::Global;
 pub use making::Newcomers;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail, nearest};
 use perigrain_lang::{Expr, Kind, RefKind, Value, ValueRef, substitute};
-use perigrain_out::rows::Table;
-use perigrain_out::thermo;
+use perigrain_output::rows::Table;
+use perigrain_output::thermo;
 use perigrain_styles::Names;
 use perigrain_world::{Slot, TableRow};
 

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_base::stop::Stop;
 use perigrain_base::{comm, par};
 use perigrain_lang::{Line, Script};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::run::verlet::Outcome;
 use perigrain_plan::{OpClass, StepPlan};
 use perigrain_world::{Halt, memory};

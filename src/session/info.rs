@@ -77,9 +77,9 @@ impl Session {
             Target::File(word, append) => {
                 use std::io::Write;
                 let path = Path::new(&word.text);
-                let mut out = perigrain_out::file::open(path, append).map_err(|e| e.at(word.span))?;
+                let mut out = perigrain_output::file::open(path, append).map_err(|e| e.at(word.span))?;
                 let failed = writeln!(out, "{text}").and_then(|()| out.flush());
-                failed.map_err(|e| perigrain_out::file::trouble("write", path, &e).at(word.span))?;
+                failed.map_err(|e| perigrain_output::file::trouble("write", path, &e).at(word.span))?;
             }
         }
         Ok(())

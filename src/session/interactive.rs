@@ -72,7 +72,7 @@ impl Session {
     /// As [`Session::eval`], and a file that cannot be read.
     pub fn eval_file(&mut self, path: &Path) -> Result<Heard> {
         let bytes = perigrain_base::gate::read(path)
-            .map_err(|e| perigrain_out::file::trouble("read the deck", path, &e))?;
+            .map_err(|e| perigrain_output::file::trouble("read the deck", path, &e))?;
         let folder = super::folder_of(path);
         let before = std::mem::replace(&mut self.options.folder, folder.clone());
         self.world.folder = folder;

@@ -5,7 +5,7 @@ use crate::graph::build::Context;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, nearest};
 use perigrain_lang::{Expr, Kind, RefKind, ValueRef, Word, substitute};
-use perigrain_out::rows::Row;
+use perigrain_output::rows::Row;
 use perigrain_plan::run::verlet;
 use perigrain_world::GroupId;
 use std::cell::RefCell;

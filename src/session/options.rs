@@ -2,7 +2,7 @@
 
 use super::{Limit, Overlay};
 use perigrain_lang::Partition;
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_world::Compat;
 use std::path::PathBuf;
 

@@ -58,7 +58,7 @@ impl Session {
                     return Ok(());
                 }
                 let bytes = perigrain_base::gate::read(&path)
-                    .map_err(|e| perigrain_out::file::trouble("read the code", &path, &e).at(word.span))?;
+                    .map_err(|e| perigrain_output::file::trouble("read the code", &path, &e).at(word.span))?;
                 (String::from_utf8_lossy(&bytes).into_owned(), path.display().to_string(), word)
             }
         };

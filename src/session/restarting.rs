@@ -8,7 +8,7 @@ use crate::graph::restarts::{claimable, one_process, pattern, save};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::gate;
 use perigrain_lang::{Args, Command, Word};
-use perigrain_out::restart::{Saved, fingerprint, read, resume};
+use perigrain_output::restart::{Saved, fingerprint, read, resume};
 use perigrain_world::{Halt, Key, Numbers, Particles, Parts, Promise, Said, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::gate;
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command, Script, Word};
-use perigrain_out::thermo::{Finish, Section};
+use perigrain_output::thermo::{Finish, Section};
 use perigrain_plan::run::{Pace, verlet};
 use perigrain_plan::{OpClass, Stage, StepPlan, When, explain};
 use perigrain_styles::Reading;
@@ -464,7 +464,7 @@ impl Session {
                 .iter()
                 .map(|p| (&*p.about.name, p.meter.time.as_secs_f64(), p.meter.calls))
                 .collect();
-            log.line_or(perigrain_out::thermo::ops_table(&ops, finish.seconds).trim_end(), None)?;
+            log.line_or(perigrain_output::thermo::ops_table(&ops, finish.seconds).trim_end(), None)?;
         }
         if o.interrupted {
             log.line(&format!("Interrupted at step {}: all files are complete", self.world.clock.step))?;

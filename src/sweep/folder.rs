@@ -4,7 +4,7 @@ use super::outcome::opened;
 use super::worker::{PROGRESS, RESULT, Task};
 use super::{Deck, Outcome, Sweep, lammps};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_out::file::{replace, trouble};
+use perigrain_output::file::{replace, trouble};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

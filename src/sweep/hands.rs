@@ -106,7 +106,7 @@ impl Drop for Hands {
 fn started(program: &Starter, order: &Order) -> Result<Child> {
     let task = &order.task;
     let output = File::create(order.home.join(OUTPUT))
-        .map_err(|e| perigrain_out::file::trouble("write", &order.home.join(OUTPUT), &e))?;
+        .map_err(|e| perigrain_output::file::trouble("write", &order.home.join(OUTPUT), &e))?;
     let mut command = match &task.settings.lammps {
         Some(lammps) => lammps::command(lammps, &task.deck, &task.settings.vars, task.threads),
         None => {

@@ -4,7 +4,7 @@ use super::folder::{self, Folder};
 use super::record::{digest, join, open, pairs, seal, split, unpaired};
 use super::{Job, Outcome, Settings, Sweep, other};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
-use perigrain_out::file::trouble;
+use perigrain_output::file::trouble;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};

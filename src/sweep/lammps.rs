@@ -2,8 +2,8 @@
 
 use super::worker::OUTPUT;
 use super::{Outcome, series};
-use perigrain_out::rows::{Row, Tables};
-use perigrain_out::thermo::KEYWORDS;
+use perigrain_output::rows::{Row, Tables};
+use perigrain_output::thermo::KEYWORDS;
 use std::path::Path;
 use std::process::{Command, Stdio};
 

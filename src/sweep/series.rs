@@ -1,8 +1,8 @@
 //! What a run reports, over its time: a table of the rows that its step table had.
 
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_out::file::replace;
-use perigrain_out::rows::Tables;
+use perigrain_output::file::replace;
+use perigrain_output::rows::Tables;
 use std::path::Path;
 
 /// The file in the folder of a run.
@@ -82,7 +82,7 @@ pub fn read(path: &Path, words: usize) -> Result<Vec<Series>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perigrain_out::rows::Row;
+    use perigrain_output::rows::Row;
 
     #[test]
     fn rows_of_several_runs_are_one_series_and_come_back() {

@@ -2,7 +2,7 @@
 
 use super::{Job, Outcome};
 use perigrain_base::diag::Result;
-use perigrain_out::file::replace;
+use perigrain_output::file::replace;
 use std::fmt::Write;
 use std::path::Path;
 

@@ -5,9 +5,9 @@ use super::record::{digest, join, open, seal, split};
 use super::{Outcome, Settings, series};
 use crate::session::{self, Made, Mode, Session, Watch};
 use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, render};
-use perigrain_out::file::replace;
-use perigrain_out::log::Log;
-use perigrain_out::thermo::wall_time;
+use perigrain_output::file::replace;
+use perigrain_output::log::Log;
+use perigrain_output::thermo::wall_time;
 use perigrain_world::Compat;
 use std::fs::File;
 use std::io::Read;
@@ -192,7 +192,7 @@ fn run(task: &Task) -> Outcome {
 fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources) -> Result<(), Diagnostics> {
     log.open(Path::new("log.lammps"), false)?;
     let text = std::fs::read_to_string(&task.deck)
-        .map_err(|e| perigrain_out::file::trouble("read the deck", &task.deck, &e))?;
+        .map_err(|e| perigrain_output::file::trouble("read the deck", &task.deck, &e))?;
     let s = &task.settings;
     let with = s.compat.told();
     let version = env!("CARGO_PKG_VERSION");

@@ -4,7 +4,7 @@ use super::case::{Case, Check, Expected, Size};
 use crate::session::{Options, Session};
 use perigrain_base::diag::render;
 use perigrain_base::par::STACK;
-use perigrain_out::log::{Buffer, Log};
+use perigrain_output::log::{Buffer, Log};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

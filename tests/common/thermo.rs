@@ -1,6 +1,6 @@
 //! Runs small decks in this process and compares their step tables with those that LAMMPS printed.
 
-use perigrain::out::log::Log;
+use perigrain::output::log::Log;
 use perigrain::session::{Options, Session};
 use perigrain::world::Compat;
 use std::fs;

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use perigrain::out::image::Image;
+use perigrain::output::image::Image;
 
 /// A picture with slopes, edges and noise; neither side a multiple of eight.
 fn picture(width: usize, height: usize) -> Vec<[u8; 3]> {

@@ -1,7 +1,7 @@
 //! VTU files are read back by `vtkio`, an independent reader. Here and not beside the code: the reader takes as long to compile into a
 //! crate's own tests as the crate.
 
-use perigrain::out::vtu::{Array, Storage, Values, write};
+use perigrain::output::vtu::{Array, Storage, Values, write};
 use perigrain_base::base64::encode;
 use std::path::Path;
 use vtkio::model::{Attribute, DataSet, IOBuffer, Piece};

@@ -1,6 +1,6 @@
 //! Small scenes of grains, run step by step.
 
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::session::{Made, Options, Session, Watch};
 use perigrain::world::World;
 use std::f64::consts::PI;

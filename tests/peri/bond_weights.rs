@@ -1,7 +1,7 @@
 //! Bonds that are weighed one at a time: horizons in the spacing around each particle, families made whole in each direction.
 
 use crate::threads::alone;
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::par::set_threads;
 use perigrain::session::{Options, Session};
 use perigrain::world::World;

@@ -1,7 +1,7 @@
 //! Scatter of strength and stiffness in whole scenes: Weibull's size effect, the same bits for any number of threads.
 
 use crate::threads::alone;
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::par::set_threads;
 use perigrain::session::{Options, Session};
 use perigrain::world::World;

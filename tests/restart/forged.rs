@@ -3,7 +3,7 @@
 use super::{run, scenes::*};
 use crate::fuzz_loop::bodies::forged::Case;
 use crate::random::Random;
-use perigrain::out::restart::{Saving, read, write};
+use perigrain::output::restart::{Saving, read, write};
 use perigrain::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;

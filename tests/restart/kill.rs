@@ -83,7 +83,7 @@ fn what_a_killed_run_leaves_is_whole_and_goes_on() {
         let left = restarts(folder.path());
         files += left.len();
         for file in &left {
-            let saved = perigrain::out::restart::read(&folder.path().join(file));
+            let saved = perigrain::output::restart::read(&folder.path().join(file));
             assert!(saved.is_ok(), "{file}: {}", saved.unwrap_err());
         }
         if left.is_empty() {

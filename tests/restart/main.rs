@@ -5,7 +5,7 @@ mod kill;
 mod refusals;
 pub mod scenes;
 
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::session::{Options, Session};
 use perigrain::world::World;
 use scenes::*;

@@ -3,7 +3,7 @@
 use super::text;
 use crate::restart::scenes::{self, SCENES, Scene};
 use crate::restart::{bits, memory, rows};
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::session::{Made, Options, Session, Watch};
 use perigrain::world::World;
 use std::fs;
@@ -158,7 +158,7 @@ fn a_minimization_that_is_interrupted_leaves_the_file_of_write_restart() {
         );
         // Files on the way hold the deck's time step, whatever the minimizer makes of it, and forces that the next run
         // computes anew as after a minimization that was made to its end.
-        let saved = perigrain::out::restart::read(&folder.join("each.4.restart")).unwrap();
+        let saved = perigrain::output::restart::read(&folder.join("each.4.restart")).unwrap();
         assert_eq!((saved.world.clock.dt, saved.ran, saved.standing), (0.01, false, false), "{style}");
     }
 }

@@ -4,7 +4,7 @@ use super::data::write;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::Args;
-use perigrain_out::file::{Pattern, replace, trouble};
+use perigrain_output::file::{Pattern, replace, trouble};
 use perigrain_styles::common::{domain, not_here, settle};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::Promise;

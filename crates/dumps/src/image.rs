@@ -8,9 +8,9 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, Word};
-use perigrain_out::dump::Data;
-use perigrain_out::image::{Colour, ENDINGS, Legend, ScaleBar, Scene, by_kind, edges, render};
-use perigrain_out::movie::{Movie, Pace};
+use perigrain_output::dump::Data;
+use perigrain_output::image::{Colour, ENDINGS, Legend, ScaleBar, Scene, by_kind, edges, render};
+use perigrain_output::movie::{Movie, Pace};
 use perigrain_plan::Op;
 use perigrain_styles::common::about;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
@@ -232,7 +232,7 @@ impl Declared {
             return shot.state.movie.get_or_insert_with(|| Movie::new(path, pace)).add(&image);
         }
         let file = image.file(&path.to_string_lossy());
-        perigrain_out::file::replace(&path, |to| to.write_all(&file?))
+        perigrain_output::file::replace(&path, |to| to.write_all(&file?))
     }
 
     fn diameter(&self, w: &World, data: &[Data<'_>], i: usize) -> f64 {

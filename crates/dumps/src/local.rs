@@ -5,8 +5,8 @@ use super::{Dump, DumpStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::args::blame;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_out::dump::{Data, Field, Snapshot, sort_rows};
-use perigrain_out::formats::{Formats, Kind};
+use perigrain_output::dump::{Data, Field, Snapshot, sort_rows};
+use perigrain_output::formats::{Formats, Kind};
 use perigrain_plan::{Op, Stage};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style, Wants};
 

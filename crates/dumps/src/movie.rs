@@ -5,9 +5,9 @@ use super::image::Declared;
 use super::{Dump, DumpStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
-use perigrain_out::dump::Target;
-use perigrain_out::file::Pattern;
-use perigrain_out::movie::{Pace, ffmpeg, is_own};
+use perigrain_output::dump::Target;
+use perigrain_output::file::Pattern;
+use perigrain_output::movie::{Pace, ffmpeg, is_own};
 use perigrain_styles::{BuildCx, Doc, Style};
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use perigrain_base::gate;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, Word};
-use perigrain_out::image::{Camera, Colour, Look, MAPS, Map, View, colour_by_name};
+use perigrain_output::image::{Camera, Colour, Look, MAPS, Map, View, colour_by_name};
 use perigrain_styles::BuildCx;
 use perigrain_world::memory;
 use perigrain_world::{Domain, World};

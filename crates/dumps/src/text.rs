@@ -5,10 +5,10 @@ use super::base::{Base, Sort, column, unknown};
 use super::{Dump, DumpStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_out::binary::Binary;
-use perigrain_out::dump::{Field, Snapshot};
-use perigrain_out::formats::{Formats, Kind};
-use perigrain_out::forms;
+use perigrain_output::binary::Binary;
+use perigrain_output::dump::{Field, Snapshot};
+use perigrain_output::formats::{Formats, Kind};
+use perigrain_output::forms;
 use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 

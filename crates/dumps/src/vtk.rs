@@ -7,9 +7,9 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::args::blame;
 use perigrain_lang::{Args, Word};
-use perigrain_out::dump::Data;
-use perigrain_out::formats::Kind;
-use perigrain_out::vtu::{self, Array, Series, Storage, Values};
+use perigrain_output::dump::Data;
+use perigrain_output::formats::Kind;
+use perigrain_output::vtu::{self, Array, Series, Storage, Values};
 use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 

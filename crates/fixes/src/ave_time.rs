@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
 use perigrain_computes::chunk::{hold, let_go};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_out::Sheet;
+use perigrain_output::Sheet;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};

@@ -3,7 +3,7 @@
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_out::Sheet;
+use perigrain_output::Sheet;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, FORMULAS, SealCx, Style};

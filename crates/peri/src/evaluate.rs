@@ -2,9 +2,6 @@
 
 use perigrain_base::math::periods::Periods;
 
-use crate::build::sites::{Carrier, carrier};
-use crate::build::spacing::spacings;
-use crate::build::{detect, lattice as cells, list as records, weights};
 use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::shares::Shares;
@@ -23,6 +20,9 @@ use crate::lattice::gather::gather;
 use crate::lattice::sweep::Mode;
 use crate::lattice::tables;
 use crate::list;
+use crate::setup::sites::{Carrier, carrier};
+use crate::setup::spacing::spacings;
+use crate::setup::{detect, lattice as cells, list as records, weights};
 use crate::shares::list::{forget_others, lowest_everywhere};
 use crate::shares::{agree, forget_flags, squeezed_everywhere};
 use perigrain_base::diag::{Code, Diagnostic, Result};

@@ -8,7 +8,6 @@
 
 mod advance;
 mod breaking;
-pub mod build;
 pub mod calibration;
 mod contact;
 mod cut;
@@ -28,6 +27,7 @@ pub mod moduli;
 mod pass;
 mod pulled;
 mod released;
+pub mod setup;
 pub mod shares;
 /// What bonds that soften leave of their peak where they break, and where that is.
 pub mod softening {

@@ -4,7 +4,7 @@ use super::errors;
 use super::screen::Screen;
 use super::working::beside;
 use perigrain::diag::{Diagnostics, render};
-use perigrain::out::log::{Buffer, Log};
+use perigrain::output::log::{Buffer, Log};
 use perigrain::session::{Mode, Options, Session};
 use pyo3::prelude::*;
 use pyo3::types::PyList;

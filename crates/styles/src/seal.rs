@@ -4,7 +4,7 @@ use crate::BondForce;
 use crate::probe::Probe;
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Param, ValueRef};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::{Level, Op, Stage, When};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{

@@ -7,7 +7,7 @@ use super::{
 use crate::probe::Probe;
 use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Span, fail};
 use perigrain_lang::{Args, Command, RefKind, ValueRef, Word};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_world::{AtomStyle, Boundary, Domain, GroupId, SlotId, World};
 use std::cell::RefCell;

@@ -9,7 +9,7 @@ use crate::cli::{FAILED, INTERRUPTED, OK, cases, deck, ranks, show};
 use crate::sweep::ranks::Ranks;
 use crate::sweep::starter::Starter;
 use perigrain_base::diag::Sources;
-use perigrain_out::file::replace;
+use perigrain_output::file::replace;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

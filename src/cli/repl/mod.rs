@@ -19,7 +19,7 @@ use crate::session::{Heard, Known, Mode, Session};
 use habits::Meant;
 use perigrain_base::diag::{Diagnostics, Result, render};
 use perigrain_lang::is_unfinished;
-use perigrain_out::log::{Echo, Log};
+use perigrain_output::log::{Echo, Log};
 use reading::{Read, Reader};
 use saving::{Line, Stopped};
 use std::cell::RefCell;

@@ -1,6 +1,6 @@
 //! Pictures in the terminal: two pixels per character with half blocks, or shades of characters without colours.
 
-use perigrain_out::image::{Colour, Map};
+use perigrain_output::image::{Colour, Map};
 use std::fmt::Write;
 
 /// What a terminal can show.

@@ -3,7 +3,7 @@
 use super::picture::{Ink, Picture, Pixel, legend};
 use crate::cli::progress::short;
 use crate::session::Session;
-use perigrain_out::image::Map;
+use perigrain_output::image::Map;
 
 /// Pixels (half characters) down at most.
 const HEIGHT: f64 = 56.0;

@@ -1,7 +1,7 @@
 //! Snapshots of the session before each line that counts, within a stated limit of memory.
 
 use crate::session::{Session, Snapshot};
-use perigrain_out::rows::Mark;
+use perigrain_output::rows::Mark;
 use std::collections::VecDeque;
 
 /// Bytes that snapshots may take together.
@@ -103,8 +103,8 @@ mod tests {
 
     #[test]
     fn random_numbers_come_again() {
-        let screen = perigrain_out::log::Buffer::default();
-        let log = perigrain_out::log::Log::new(Some(Box::new(screen.clone())));
+        let screen = perigrain_output::log::Buffer::default();
+        let log = perigrain_output::log::Log::new(Some(Box::new(screen.clone())));
         let mut session = Session::new(Options { log, ..Options::default() }).unwrap();
         let mut undo = Undo::new(LIMIT);
         let draw = "print $(random(0,1,4711))";

@@ -12,7 +12,7 @@ use crate::report::{self, Ended, Report, Text, Weight};
 use crate::session::{Ending, Session, threads};
 use crate::verify::report::{machine, origin};
 use perigrain_base::diag::{Diagnostics, Result, Severity, render};
-use perigrain_out::file::trouble;
+use perigrain_output::file::trouble;
 use perigrain_plan::explain;
 use std::fs::File;
 use std::io::{Seek, Write};
@@ -40,7 +40,7 @@ pub struct Told<'a> {
     /// What was seen of the particles.
     pub film: Film,
     /// The rows of step tables.
-    pub log: &'a perigrain_out::log::Log,
+    pub log: &'a perigrain_output::log::Log,
 }
 
 impl Sheet {

@@ -6,7 +6,7 @@ use crate::cli::{FAILED, OK, deck};
 use crate::report::film::{Film, dump};
 use crate::report::{self, Report, Text};
 use perigrain_base::diag::{Code, Diagnostic, Result, Sources, fail, render};
-use perigrain_out::file::trouble;
+use perigrain_output::file::trouble;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;

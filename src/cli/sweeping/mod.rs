@@ -16,7 +16,7 @@ use crate::sweep::{self, Job, Results, Settings, Standing, Sweep, table};
 use args::{List, Request};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail};
 use perigrain_base::letters;
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use show::Show;
 use std::io::IsTerminal;
 use std::path::Path;

@@ -12,7 +12,7 @@ use crate::report::film::{packed_one, taken};
 use crate::report::{self, Report, Text};
 use crate::session::Session;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use server::{Answer, Question, Server, token};
 use std::io::ErrorKind;
 use std::sync::Arc;

@@ -4,7 +4,7 @@ use super::Sealer;
 use crate::graph::said;
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{RefKind, ValueRef};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_pairs::bond::BondForce;
 use perigrain_plan::{LeftOut, Level, Op, Stage, When};
 use perigrain_styles::pair::Deck;

@@ -12,7 +12,7 @@ use perigrain_bonded::ends::Hold;
 use perigrain_bonded::network::Modes;
 use perigrain_bonded::six::Six;
 use perigrain_bonded::strength::{Break, Limits, Path, crumble};
-use perigrain_out::file;
+use perigrain_output::file;
 use perigrain_styles::{ActCx, BondForce};
 use std::path::Path as FilePath;
 use std::time::Instant;

@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span, fail, unseen};
 use perigrain_base::{gate, memory, stop};
 use perigrain_lang::Word;
-use perigrain_out::binary;
+use perigrain_output::binary;
 use perigrain_world::{Promise, World};
 use std::io::Read;
 use std::path::{Path, PathBuf};

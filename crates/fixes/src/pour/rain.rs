@@ -3,7 +3,7 @@
 use super::{Pouring, Sizes};
 use crate::crowd::Crowd;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_out::log::Log;
+use perigrain_output::log::Log;
 use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};

@@ -1,6 +1,6 @@
 //! Forces of a body on a lattice: tiles swept into their windows.
 //!
-//! Rows, stencil, bits of bonds and lengths of columns are as `build::lattice` makes them; of bodies from restart files
+//! Rows, stencil, bits of bonds and lengths of columns are as `setup::lattice` makes them; of bodies from restart files
 //! `families::sound` has looked at each of them.
 
 use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};

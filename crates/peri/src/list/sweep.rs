@@ -1,6 +1,6 @@
 //! Sweeps over the bonds of the list under any law: sums that forces need, then forces.
 //!
-//! Slabs, groups, partners and lengths of columns are as `build::list` makes them; of lists from restart files `families::sound` has
+//! Slabs, groups, partners and lengths of columns are as `setup::list` makes them; of lists from restart files `families::sound` has
 //! looked at each of them.
 
 use std::marker::PhantomData;

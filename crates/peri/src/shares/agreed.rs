@@ -160,5 +160,5 @@ pub(crate) fn broken_everywhere(mut own: Vec<Broken>) -> Vec<Broken> {
 
 /// The square of a bond's length now.
 pub(crate) fn square(view: &PeriView, [i, j]: [u32; 2]) -> f64 {
-    crate::build::detect::distance(view, i, j).0
+    crate::setup::detect::distance(view, i, j).0
 }

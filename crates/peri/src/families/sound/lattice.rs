@@ -1,9 +1,9 @@
 //! Whether a body on a lattice fits together: rows, stencil, bits of bonds, columns.
 
 use super::{Fault, at_home, equal, must, numbers, states, states_are_numbers};
-use crate::build::lattice::{Pruned, half_stencil, prune, reach};
 use crate::families::Law;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, RowMotion, staggered};
+use crate::setup::lattice::{Pruned, half_stencil, prune, reach};
 use perigrain_base::math::cell::{point, reciprocal};
 use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 

@@ -1,9 +1,9 @@
 //! Laying out a body on a lattice: rows, half stencil, alive bits.
 
-use crate::build::detect::distance;
-use crate::build::sites::Sites;
 use crate::families::lattice::{LANES, LatticeBody, Row, RowMotion, staggered};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
+use crate::setup::detect::distance;
+use crate::setup::sites::Sites;
 use perigrain_base::math::cell::{Basis, Turn, beside, point, reciprocal};
 use perigrain_base::math::vec3::{dot, length};
 

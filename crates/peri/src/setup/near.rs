@@ -6,10 +6,10 @@
 //! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search. Where that is
 //! used up, neighbours may have moved far less than the ends of the body: they are looked at place by place ([`super::wear`]).
 
-use crate::build::joined::Joined;
 use crate::families::lattice::RowMotion;
 use crate::families::shares::Shares;
 use crate::families::{Families, NearPair, PeriView};
+use crate::setup::joined::Joined;
 use crate::shares::{agreed_motion, pairs_everywhere};
 
 /// Contact between unbonded particles never reaches farther than this many lattice spacings.
