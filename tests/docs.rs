@@ -258,15 +258,15 @@ fn the_editor_grammar_is_json() {
 fn every_page_is_complete() {
     let mut wrong = String::new();
     for page in pages() {
-        let doc = page.doc;
-        if doc.syntax.is_empty() || doc.text.is_empty() || doc.example.is_empty() {
+        let (doc, syntax) = (page.doc, page.syntax());
+        if syntax.is_empty() || doc.text.is_empty() || doc.example.is_empty() {
             let _ = writeln!(wrong, "{}: syntax, text or example is missing", page.title());
         }
         if !doc.summary.starts_with(char::is_uppercase) || !doc.summary.ends_with('.') {
             let _ = writeln!(wrong, "{}: the summary is no sentence: {}", page.title(), doc.summary);
         }
-        if !doc.syntax.contains(page.name) {
-            let _ = writeln!(wrong, "{}: the syntax does not name it: {}", page.title(), doc.syntax);
+        if !syntax.contains(page.name) {
+            let _ = writeln!(wrong, "{}: the syntax does not name it: {syntax}", page.title());
         }
     }
     assert!(wrong.is_empty(), "{wrong}");

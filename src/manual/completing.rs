@@ -3,10 +3,12 @@
 use super::knowing::{self, COLON, Named};
 use super::pages;
 use super::syntax::is_word;
+use super::walk::Offer;
 use crate::graph::measure;
 use crate::session::Known;
 use perigrain_base::gate;
 use perigrain_output::image::{MAPS, colour_names};
+use perigrain_styles::words::Kind;
 use std::path::Path;
 
 /// What a candidate is.
@@ -121,7 +123,12 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
     let slot = Slot { command, typed, text: page.doc.text, known, folder, word };
     let mut out = slot.behind_region(page.doc.syntax);
     let mut skip = 0;
-    for place in &places {
+    for offer in places.iter().flat_map(|place| &place.offers) {
+        let (s, mut names) = slot.offered(offer);
+        skip = skip.max(s);
+        out.append(&mut names);
+    }
+    for place in places.iter().filter(|place| place.offers.is_empty()) {
         for here in place.here.iter().filter(|here| !PLACES.contains(&here.as_str())) {
             for one in here.trim_end_matches('…').split('|') {
                 let (s, mut names) = slot.names(one, &place.before);
@@ -176,6 +183,35 @@ impl Slot<'_> {
     /// Whether the page lists keywords that may come one after the other.
     fn text_repeats(&self) -> bool {
         !knowing::keywords_in(self.text).is_empty()
+    }
+
+    /// What a declared word may become.
+    fn offered(&self, offer: &Offer) -> (usize, Vec<Candidate>) {
+        let place = match offer {
+            Offer::Word(word, _) => return (0, of(What::Keyword, [*word])),
+            Offer::Place(place) => place,
+        };
+        let named = |kind: Named| {
+            let mut known = self.known.clone();
+            let names = kind.list(&mut known).map(std::mem::take).unwrap_or_default();
+            (0, names.into_iter().map(|text| Candidate { text, what: What::Named(kind) }).collect())
+        };
+        match place.kind {
+            Kind::Group => named(Named::Group),
+            Kind::Region => named(Named::Region),
+            Kind::Compute => named(Named::Compute),
+            Kind::Fix => named(Named::Fix),
+            Kind::Dump => named(Named::Dump),
+            Kind::Variable => named(Named::Variable),
+            Kind::Material => named(Named::Material),
+            Kind::File => files(self.word, self.folder),
+            Kind::Value => (0, values(self.known)),
+            Kind::Attribute => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
+            Kind::Param | Kind::Reference => {
+                (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())
+            }
+            _ => (0, vec![]),
+        }
     }
 
     /// What a placeholder may become, `before` being the word of the syntax line before it.

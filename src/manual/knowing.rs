@@ -1,6 +1,7 @@
 //! What completion, hints, highlighting and editors know: the manual's syntax lines, and what their placeholders mean.
 
 use super::syntax::{Form, Place, is_word};
+use super::walk::Declared;
 use super::{Page, all};
 use crate::session::{Known, THERMO};
 use std::collections::BTreeMap;
@@ -9,15 +10,64 @@ use std::sync::LazyLock;
 /// A form of a command with the page it stands on.
 struct Entry {
     page: Page,
-    form: Form,
+    form: Line,
+}
+
+/// A syntax line: declared, or written by hand.
+#[derive(Debug)]
+enum Line {
+    Declared(Declared),
+    Written(Form),
+}
+
+impl Line {
+    fn first(&self) -> Option<&str> {
+        match self {
+            Self::Declared(line) => line.head().first().map(String::as_str),
+            Self::Written(form) => form.first(),
+        }
+    }
+
+    fn index_of(&self, name: &str) -> Option<usize> {
+        match self {
+            Self::Declared(line) => line.head().iter().position(|word| word == name),
+            Self::Written(form) => form.index_of(name),
+        }
+    }
+
+    /// How well the words typed fit: words that are written as they are count for it or against it.
+    fn fit(&self, typed: &[&str]) -> i32 {
+        match self {
+            Self::Declared(line) => {
+                let fixed = line.head().iter().zip(typed).filter(|(word, _)| is_word(word));
+                fixed.map(|(word, typed)| if word == typed { 1 } else { -1 }).sum()
+            }
+            Self::Written(form) => form.fit(typed),
+        }
+    }
+
+    fn place(&self, typed: &[&str]) -> Place {
+        match self {
+            Self::Declared(line) => line.place(typed),
+            Self::Written(form) => form.place(typed),
+        }
+    }
+
+    fn shown(&self, typed: &[&str]) -> (Vec<String>, Option<usize>) {
+        match self {
+            Self::Declared(line) => line.shown(typed),
+            Self::Written(form) => form.shown(typed),
+        }
+    }
 }
 
 /// All forms by their commands, those of commands before those of their styles.
 static FORMS: LazyLock<BTreeMap<String, Vec<Entry>>> = LazyLock::new(|| {
     let mut forms: BTreeMap<String, Vec<Entry>> = BTreeMap::new();
     for page in all().iter().filter(|p| p.kind != "topic") {
-        for line in page.doc.syntax.lines().filter(|l| !l.starts_with('#')) {
-            let form = Form::read(line, page.name);
+        let written = page.doc.syntax.lines().filter(|l| !l.starts_with('#'));
+        let written = written.map(|line| Line::Written(Form::read(line, page.name)));
+        for form in page.declared().into_iter().map(Line::Declared).chain(written) {
             let Some(command) = form.first().map(String::from) else { continue };
             forms.entry(command).or_default().push(Entry { page: *page, form });
         }

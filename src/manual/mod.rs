@@ -6,6 +6,7 @@ pub mod howtos;
 pub mod knowing;
 mod pages;
 pub mod syntax;
+pub mod walk;
 
 use perigrain_commands::COMMANDS;
 use perigrain_computes::COMPUTES;
@@ -13,6 +14,7 @@ use perigrain_dumps::DUMPS;
 use perigrain_fixes::FIXES;
 use perigrain_pairs::PAIRS;
 use perigrain_pairs::bond::BONDS;
+use perigrain_styles::words::Form;
 use perigrain_styles::{Doc, Style};
 use std::fmt::Write;
 use std::sync::LazyLock;
@@ -26,6 +28,8 @@ pub struct Page {
     pub name: &'static str,
     /// What is said about it.
     pub doc: Doc,
+    /// Its lines, where their words are declared.
+    pub forms: &'static [Form],
 }
 
 impl Page {
@@ -42,10 +46,35 @@ impl Page {
         format!("{}.md", self.title().replace([' ', '/'], "_"))
     }
 
+    /// Its lines, where their words are declared.
+    pub fn declared(&self) -> Vec<walk::Declared> {
+        let head = match self.kind {
+            "fix" | "compute" => format!("{} ID group {}", self.kind, self.name),
+            "command" => self.name.to_string(),
+            kind => format!("{kind} {}", self.name),
+        };
+        self.forms.iter().map(|form| walk::Declared::new(form, &head)).collect()
+    }
+
+    /// Its syntax lines.
+    pub fn syntax(&self) -> String {
+        match self.forms {
+            [] => self.doc.syntax.to_string(),
+            _ => self.declared().iter().map(walk::Declared::line).collect::<Vec<_>>().join("\n"),
+        }
+    }
+
+    /// The tables of its declared words as Markdown, each behind an empty line.
+    pub fn tables(&self) -> String {
+        let tables = self.forms.iter().map(|form| form.grammar.table()).filter(|table| !table.is_empty());
+        tables.map(|table| format!("\n{table}")).collect()
+    }
+
     /// The page as Markdown.
     pub fn markdown(&self) -> String {
-        let Doc { syntax, summary, text, example } = self.doc;
-        let mut page = format!("# {}\n\n{summary}\n\n```text\n{syntax}\n```\n", self.title());
+        let Doc { summary, text, example, .. } = self.doc;
+        let mut page = format!("# {}\n\n{summary}\n\n```text\n{}\n```\n", self.title(), self.syntax());
+        page.push_str(&self.tables());
         if !text.is_empty() {
             let _ = write!(page, "\n{}\n", text.trim());
         }
@@ -69,10 +98,10 @@ pub fn all() -> &'static [Page] {
 
 fn gathered() -> Vec<Page> {
     fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
-        table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
+        table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc(), forms: s.words().leak() }).collect()
     }
     fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
-        table.iter().map(|&(name, doc)| Page { kind, name, doc }).collect()
+        table.iter().map(|&(name, doc)| Page { kind, name, doc, forms: &[] }).collect()
     }
     [
         own("topic", pages::TOPICS),

@@ -1,4 +1,6 @@
-//! The syntax lines of the manual as something to be walked along: which word of them stands where the cursor is.
+//! Syntax lines that are written by hand as something to be walked along: which word of them stands where the cursor is.
+
+use super::walk::Offer;
 
 /// A word of a syntax line, or something in brackets.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,7 +21,7 @@ pub struct Form {
 }
 
 /// What a form says of the word at some place.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Place {
     /// What may stand here: words as they are, or placeholders such as `ID`, `FILE`, `yes|no`.
     pub here: Vec<String>,
@@ -27,6 +29,8 @@ pub struct Place {
     pub before: String,
     /// The rest of the form from here on.
     pub rest: String,
+    /// What may stand here, of lines whose words are declared.
+    pub offers: Vec<Offer>,
 }
 
 impl Form {
@@ -114,7 +118,12 @@ impl Form {
             |all: &[&[String]]| all.iter().map(|g| format!(" [{}]", g.join(" "))).collect::<String>();
         if n < fixed.len() {
             let rest = fixed[n..].join(" ") + &optional(&options);
-            return Place { here: vec![fixed[n].into()], before: fixed[n - 1].into(), rest };
+            return Place {
+                here: vec![fixed[n].into()],
+                before: fixed[n - 1].into(),
+                rest,
+                ..Place::default()
+            };
         }
         // Behind the last keyword typed its own words follow, then other keywords.
         for (k, word) in typed.iter().enumerate().skip(fixed.len()).rev() {
@@ -124,7 +133,12 @@ impl Form {
             let into = n - k;
             if let Some(here) = group.get(into) {
                 let rest = group[into..].join(" ");
-                return Place { here: vec![here.clone()], before: group[into - 1].clone(), rest };
+                return Place {
+                    here: vec![here.clone()],
+                    before: group[into - 1].clone(),
+                    rest,
+                    ..Place::default()
+                };
             }
             break;
         }
@@ -139,7 +153,12 @@ impl Form {
         let again = last.ends_with('…').then(|| last.to_string());
         let rest = [again.clone().unwrap_or_default(), optional(&left)].concat();
         let before = typed.last().map_or(String::new(), |w| (*w).to_string());
-        Place { here: again.into_iter().chain(here).collect(), before, rest: rest.trim_start().into() }
+        Place {
+            here: again.into_iter().chain(here).collect(),
+            before,
+            rest: rest.trim_start().into(),
+            ..Place::default()
+        }
     }
 
     /// The place where the alternatives begin, or one before it.
@@ -152,14 +171,14 @@ impl Form {
             let here = self.head[n].word().unwrap_or_default().to_string();
             let before =
                 self.head.get(n.wrapping_sub(1)).and_then(Part::word).unwrap_or_default().to_string();
-            return Place { here: vec![here], before, rest };
+            return Place { here: vec![here], before, rest, ..Place::default() };
         }
         if n > self.head.len() {
             return Place::default();
         }
         let here = self.choices.iter().filter_map(|c| c.first()?.word()).map(String::from).collect();
         let before = self.head.last().and_then(Part::word).unwrap_or_default().to_string();
-        Place { here, before, rest: all }
+        Place { here, before, rest: all, ..Place::default() }
     }
 
     /// Words of optional parts that are written as they are, for keywords in lists.

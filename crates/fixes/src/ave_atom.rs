@@ -1,12 +1,13 @@
 //! fix ave/atom: averages of per-atom values over time.
 
-use super::window::{Kept, Schedule, forget};
+use super::window::{Kept, Samples, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{COLUMNS, F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, Slot, World};
@@ -20,15 +21,26 @@ impl Style for AveAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group ave/atom Nevery Nrepeat Nfreq value …",
+            syntax: "",
             summary: "Averages per-atom values over time for each particle of the group.",
-            text: "Values: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and \
-                   `v_name` of an atom-style variable. At every multiple of Nfreq the average of Nrepeat samples, Nevery \
-                   steps apart, the last of them at that step, is offered as `f_ID` (one value) or `f_ID[k]` (several). 0 \
-                   for particles outside the group and before the first average.",
+            text: "At every multiple of Nfreq the average is offered as `f_ID` (one value) or `f_ID[k]` (several). 0 for \
+                   particles outside the group and before the first average.",
             example: "fix mean all ave/atom 1 2 2 vx vy c_dmg",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    samples: Samples,
+    /// What is averaged: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and
+    /// `v_name` of an atom-style variable.
+    #[word(name = "value", what = "a value such as vx or c_ID", kind = Kind::Attribute, least = 1)]
+    values: Vec<Word>,
 }
 
 /// A per-atom value as an input.
@@ -87,11 +99,10 @@ impl Source {
 
 impl FixStyle for AveAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let schedule = Schedule::read(args)?;
+        let line: Line = read(args, cx)?;
+        let schedule = Schedule::new(&line.samples, 0)?;
         let mut inputs = vec![];
-        args.peek()
-            .map_or_else(|| args.clone().expect("a value such as vx or c_ID").map(drop), |_| Ok(()))?;
-        while let Some(word) = args.next() {
+        for word in &line.values {
             match Input::attribute(&word.text) {
                 Some(input) => inputs.push(input),
                 None => {

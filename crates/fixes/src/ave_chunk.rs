@@ -2,9 +2,9 @@
 
 use super::ave_atom::{Input, Source};
 use super::ave_time::{Output, number_format};
-use super::window::{Ave, Averager, Due, Kept, Schedule, forget};
+use super::window::{Ave, Averager, Due, Kept, Samples, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::{Format, Value, general, shortest};
 use perigrain_base::math::vec3::sub;
 use perigrain_computes::chunk::{ChunkRef, Chunks, hold, let_go};
@@ -13,6 +13,7 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, F, KIND, MASK, MASS, MEMO, REGIONS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -27,17 +28,9 @@ impl Style for AveChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group ave/chunk Nevery Nrepeat Nfreq chunkID value … [keyword value …]",
+            syntax: "",
             summary: "Averages values per particle by chunk and over time and writes them to a file.",
-            text: "chunkID names a `compute chunk/atom`. Values: `vx vy vz fx fy fz`, `density/number`, `density/mass` (per \
-                   volume of the bin, or of the box), `temp`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, \
-                   and `v_name`. At every multiple of Nfreq the average of Nrepeat samples, Nevery steps apart, the last of \
-                   them at that step, is offered and written. Only particles of the group count.\n\n\
-                   `norm all|sample|none`: the sum over all samples by the number of all particles in them, the mean of the \
-                   samples' own means, or of their sums. `ave one|running|window M`: each average for itself, the mean of all \
-                   so far, or of the last M. `adof` (3, or 2 in flat scenes) and `cdof` (0): degrees of freedom per particle \
-                   and per chunk for `temp`. `file name`, `append name`, `overwrite` (needs `ave running`), `format %g`, \
-                   `title1 title2 title3`. `bias ID`: the flow that a temperature takes away (compute temp/com, temp/partial, temp/ramp) does not count in `temp`.\n\n\
+            text: "At every multiple of Nfreq the average is offered and written. Only particles of the group count.\n\n\
                    During the samples of an average the number of chunks stays as it is; with `ave running` and `window` for \
                    good. Global array (intensive): a row per chunk with its original number where the compute compresses, \
                    the coordinates of its bin, the number of particles and the values; 0 before the first average.",
@@ -45,6 +38,40 @@ impl Style for AveChunk {
                       fix profile all ave/chunk 1 5 10 layers vz density/number file profile.txt",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    samples: Samples,
+    /// A `compute chunk/atom`.
+    #[word(name = "chunkID", with = ChunkRef::read, kind = Kind::Compute)]
+    chunks: ChunkRef,
+    /// What is averaged: `vx vy vz fx fy fz`, `density/number`, `density/mass` (per volume of the bin, or of the box), `temp`,
+    /// `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name`.
+    #[word(name = "value", what = "a value such as vx or c_ID", kind = Kind::Attribute, least = 1)]
+    values: Vec<Word>,
+    #[word(keyword)]
+    norm: Norm,
+    #[word(keyword, shown = "one")]
+    ave: Ave,
+    /// Degrees of freedom per particle, for `temp`: 3 without it, 2 in flat scenes.
+    #[word(keyword, name = "N", what = "degrees of freedom per particle")]
+    adof: Option<f64>,
+    /// Degrees of freedom per chunk, for `temp`.
+    #[word(keyword, name = "N", what = "degrees of freedom per chunk", default = 0.0)]
+    cdof: f64,
+    /// The flow that this temperature takes away (compute temp/com, temp/partial, temp/ramp) does not count in `temp`.
+    #[word(keyword, name = "ID", with = temp_flow::named, kind = Kind::Compute)]
+    bias: Option<ValueRef>,
+    /// How each number is written.
+    #[word(keyword, name = "%g", with = number_format, kind = Kind::Text, default = Format::parse(" %g").unwrap_or_default(), shown = " %g")]
+    format: Format,
+    #[word(flatten)]
+    output: Output,
 }
 
 /// What is summed over the particles of a chunk.
@@ -56,10 +83,15 @@ enum What {
     Temperature,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "kind of norm")]
 enum Norm {
+    /// The sum over all samples, by the number of all particles in them.
+    #[default]
     All,
+    /// The mean of the samples' own means.
     Sample,
+    /// The mean of the samples' sums.
     None,
 }
 
@@ -82,68 +114,29 @@ struct Declared {
     format: Format,
 }
 
-const KEYWORDS: &[&str] = &[
-    "norm",
-    "ave",
-    "bias",
-    "adof",
-    "cdof",
-    "file",
-    "append",
-    "overwrite",
-    "format",
-    "title1",
-    "title2",
-    "title3",
-];
-
 impl FixStyle for AveChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let schedule = Schedule::read(args)?;
-        let chunks = ChunkRef::read(args, cx)?;
+        let line: Line = read(args, cx)?;
+        line.output.check(line.ave, cx)?;
         let mut fix = Declared {
             id: cx.id.to_string(),
             group: cx.group,
             group_name: cx.world.groups.name(cx.group).to_string(),
-            schedule,
-            chunks,
+            schedule: Schedule::new(&line.samples, 0)?,
+            chunks: line.chunks,
             values: vec![],
             names: vec![],
-            norm: Norm::All,
-            ave: Ave::One,
-            adof: None,
-            cdof: 0.0,
-            bias: None,
-            output: Output::default(),
-            format: Format::parse(" %g").unwrap_or_default(),
+            norm: line.norm,
+            ave: line.ave,
+            adof: line.adof,
+            cdof: line.cdof,
+            bias: line.bias,
+            output: line.output,
+            format: line.format,
         };
-        while let Some(word) = args.peek().filter(|w| !KEYWORDS.contains(&w.text.as_str())) {
-            args.next();
+        for word in &line.values {
             fix.take(word, args, cx)?;
         }
-        if fix.values.is_empty() {
-            args.clone().expect("a value such as vx or c_ID")?;
-            return fail(Code::MISSING_ARGUMENT, args.here(), "a value such as vx or c_ID is missing");
-        }
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "norm" => {
-                    fix.norm = match args.choice("kind of norm", &["all", "sample", "none"])? {
-                        "all" => Norm::All,
-                        "sample" => Norm::Sample,
-                        _ => Norm::None,
-                    }
-                }
-                "ave" => fix.ave = Ave::read(args)?,
-                "adof" => fix.adof = Some(args.number("degrees of freedom per particle")?),
-                "cdof" => fix.cdof = args.number("degrees of freedom per chunk")?,
-                "format" => fix.format = number_format(args)?,
-                "bias" => fix.bias = Some(temp_flow::named(args, cx)?),
-                other if fix.output.read(other, args)? => {}
-                _ => return Err(args.unknown(word, KEYWORDS)),
-            }
-        }
-        fix.output.check(fix.ave, cx)?;
         Ok(Box::new(fix))
     }
 }
@@ -176,8 +169,9 @@ impl Declared {
         for word in cx.expand(word, Wants::PerAtom)? {
             let known = |r: &ValueRef| !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
             let Some(r) = ValueRef::parse(&word.text, word.span)?.filter(known) else {
-                if KEYWORDS.iter().any(|k| perigrain_base::diag::nearest(&word.text, [*k]).is_some()) {
-                    return Err(args.unknown(&word, KEYWORDS));
+                let keywords = Line::GRAMMAR.keywords();
+                if perigrain_base::diag::nearest(&word.text, keywords.iter().copied()).is_some() {
+                    return Err(args.unknown(&word, &keywords));
                 }
                 let text = format!("`{}` is no value of fix ave/chunk", word.text);
                 return Err(Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, text)
@@ -333,11 +327,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts {
-            counts_steps: true,
-            file: self.output.file.as_ref().map(|(path, _)| path.clone()),
-            ..Facts::default()
-        }
+        Facts { counts_steps: true, file: self.output.path(), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

@@ -1,9 +1,9 @@
 //! fix ave/histo and ave/histo/weight: histograms over time.
 
 use super::ave_atom::{Input, Source};
-use super::ave_time::Output;
+use super::ave_time::{Mode, Output};
 use super::bins::{Beyond, Bins, Histogram};
-use super::window::{Ave, Averager, Due, Kept, Schedule, forget};
+use super::window::{Ave, Averager, Due, Kept, Samples, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::cformat::{general, shortest};
@@ -11,6 +11,7 @@ use perigrain_computes::reduce::BIG;
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, GlobalValue, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, Slot, World};
@@ -22,16 +23,75 @@ pub struct AveHisto;
 /// `fix ave/histo/weight`.
 pub struct AveHistoWeight;
 
-const PAGE: &str = "Values: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and \
-    `v_name`; all of one kind (global, per atom, local). At every multiple of Nfreq the histogram of Nrepeat samples, Nevery \
-    steps apart, the last of them at that step, is offered and written. Only particles of the group count.\n\n\
-    `mode scalar|vector`: single numbers (default), or vectors, columns, per-atom and local values. `kind \
-    global|peratom|local`: which values of a style that has several. `ave one|running|window M`: each histogram for itself, \
-    the sum of all so far, or of the last M. `beyond ignore|end|extra`: what lies outside lo and hi is not counted, counts in \
-    the end bins, or in two bins of its own. `start N`, `file`, `append`, `overwrite`, `title1 title2 title3` as for fix \
-    ave/time.\n\n\
+const PAGE: &str = "All values are of one kind (global, per atom, local). At every multiple of Nfreq the histogram of the samples is \
+    offered and written. Only particles of the group count.\n\n\
     Vector of 4: values counted, values not counted, smallest and largest. Array with a row per bin: its centre, its count, \
     its share. Under `-compat lammps` smallest and largest of `ave running` begin at 0, as in LAMMPS 22Jul2025.";
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    samples: Samples,
+    /// The lower end of the first bin.
+    #[word(what = "lo")]
+    lo: At<f64>,
+    /// The upper end of the last bin.
+    #[word(what = "hi")]
+    hi: At<f64>,
+    /// The number of bins.
+    #[word(name = "Nbin", with = bins, kind = Kind::Whole)]
+    bins: usize,
+    /// What is counted: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name`.
+    #[word(name = "value", least = 1)]
+    values: Vec<Sorted>,
+    #[word(keyword)]
+    mode: Mode,
+    /// Which values of a style that has several.
+    #[word(keyword)]
+    kind: Option<Level>,
+    #[word(keyword, shown = "one")]
+    ave: Ave,
+    /// No sample before this step.
+    #[word(keyword, name = "N", what = "the first step", default = 0)]
+    start: i64,
+    #[word(keyword)]
+    beyond: Beyond,
+    #[word(flatten)]
+    output: Output,
+}
+
+/// Which values of a style that has several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+#[word(what = "kind")]
+enum Level {
+    /// Its global vector or array.
+    Global,
+    /// Its values per particle.
+    Peratom,
+    /// Its local values: of pairs, bonds and the like.
+    Local,
+}
+
+/// A value that is sorted into bins, as it stands there.
+struct Sorted(Word);
+
+impl Value for Sorted {
+    const KIND: Kind = Kind::Attribute;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let word = args.expect("a value such as vx, c_ID or v_name")?;
+        if Self::begins(word) {
+            return Ok(Self(word.clone()));
+        }
+        fail(Code::WRONG_KIND, word.span, "a value is expected: x … fz, c_ID, f_ID or v_name")
+    }
+    fn begins(word: &Word) -> bool {
+        Input::attribute(&word.text).is_some() || GlobalValue::begins(word)
+    }
+}
+
+fn bins(args: &mut Args, _: &BuildCx) -> Result<usize> {
+    args.count("the number of bins", BYTES_PER_BIN)
+}
 
 impl Style for AveHisto {
     fn name(&self) -> &'static str {
@@ -39,11 +99,14 @@ impl Style for AveHisto {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group ave/histo Nevery Nrepeat Nfreq lo hi Nbin value … [keyword value …]",
+            syntax: "",
             summary: "Counts how often values fall into each of equal bins, over time.",
             text: PAGE,
             example: "fix h all ave/histo 1 1 1 -2.0 2.0 8 vx vy vz mode vector file speeds.txt beyond end",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -53,12 +116,15 @@ impl Style for AveHistoWeight {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group ave/histo/weight Nevery Nrepeat Nfreq lo hi Nbin value weight [keyword value …]",
+            syntax: "",
             summary: "As fix ave/histo, but each value counts as much as its weight.",
             text: "Exactly two values of the same length: the first is sorted into bins, the second is what it adds to its \
                    bin. Everything else is as for [fix ave/histo](fix_ave_histo.md).",
             example: "fix h all ave/histo/weight 1 1 1 -2.0 2.0 8 vz c_dmg mode vector",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -74,86 +140,38 @@ impl FixStyle for AveHistoWeight {
     }
 }
 
-const KEYWORDS: &[&str] = &[
-    "mode",
-    "kind",
-    "ave",
-    "start",
-    "beyond",
-    "off",
-    "file",
-    "append",
-    "overwrite",
-    "title1",
-    "title2",
-    "title3",
-];
-
 /// Counts of this sample and of all so far, and a row of what is shown.
 const BYTES_PER_BIN: f64 = 80.0;
 
 fn build(args: &mut Args, cx: &BuildCx, weight: bool) -> Result<Box<dyn Fix>> {
-    let mut schedule = Schedule::read(args)?;
-    let mut unknown = args.peek().is_some_and(|w| w.unknown);
-    let lo = args.number("lo")?;
-    let span = args.here();
-    unknown |= args.peek().is_some_and(|w| w.unknown);
-    let hi = args.number("hi")?;
-    if lo >= hi && !unknown {
-        return fail(Code::BAD_VALUE, span, format!("hi must be above lo: {hi} is not above {lo}"));
-    }
-    let inner = args.count("the number of bins", BYTES_PER_BIN)?;
-    let mut words: Vec<&Word> = vec![];
-    while let Some(word) = args.peek().filter(|w| {
-        Input::attribute(&w.text).is_some() || ["c_", "f_", "v_"].iter().any(|p| w.text.starts_with(p))
-    }) {
-        args.next();
-        words.push(word);
-    }
-    if words.is_empty() {
-        let span = args.expect("a value such as vx, c_ID or v_name")?.span;
-        return fail(Code::WRONG_KIND, span, "a value is expected: x … fz, c_ID, f_ID or v_name");
-    }
-    let (mut ave, mut beyond, mut vector, mut kind) = (Ave::One, Beyond::Ignore, false, None);
-    let mut output = Output::default();
-    while let Some(word) = args.next() {
-        match word.text.as_str() {
-            "mode" => vector = args.choice("mode", &["scalar", "vector"])? == "vector",
-            "kind" => kind = Some(args.choice("kind", &["global", "peratom", "local"])?),
-            "ave" => ave = Ave::read(args)?,
-            "start" => schedule.start = args.integer("the first step")?,
-            "beyond" => {
-                beyond = match args.choice("value of beyond", &["ignore", "end", "extra"])? {
-                    "ignore" => Beyond::Ignore,
-                    "end" => Beyond::End,
-                    _ => Beyond::Extra,
-                }
-            }
-            other if output.read(other, args)? => {}
-            _ => return Err(args.unknown(word, KEYWORDS)),
-        }
+    let line: Line = read(args, cx)?;
+    let Line { samples, lo, hi, bins, values, mode, kind, ave, start, beyond, output } = line;
+    if lo.value >= hi.value && !lo.unknown && !hi.unknown {
+        let text = format!("hi must be above lo: {} is not above {}", hi.value, lo.value);
+        return fail(Code::BAD_VALUE, hi.span, text);
     }
     output.check(ave, cx)?;
-    let (inputs, wants) = inputs(&words, vector, kind, schedule.every, cx)?;
+    let schedule = Schedule::new(&samples, start)?;
+    let (inputs, wants) = inputs(&values, mode == Mode::Vector, kind, schedule.every, cx)?;
     if weight && inputs.len() != 2 {
         let text = format!("two values are needed, one to sort and its weight: here are {}", inputs.len());
-        return fail(Code::BAD_VALUE, words[0].span, text);
+        return fail(Code::BAD_VALUE, values[0].0.span, text);
     }
-    let bins = Bins { lo, hi, inner, beyond };
+    let bins = Bins { lo: lo.value, hi: hi.value, inner: bins, beyond };
     let (id, group) = (cx.id.to_string(), cx.group);
     Ok(Box::new(Declared { id, group, schedule, bins, inputs, wants, weight, ave, output }))
 }
 
 /// The inputs, all of one kind.
 fn inputs(
-    words: &[&Word],
+    words: &[Sorted],
     vector: bool,
-    kind: Option<&str>,
+    kind: Option<Level>,
     every: i64,
     cx: &BuildCx,
 ) -> Result<(Vec<Input>, Wants)> {
     let mut found: Vec<(Input, Wants, Span)> = vec![];
-    for word in words {
+    for Sorted(word) in words {
         if let Some(input) = Input::attribute(&word.text) {
             found.push((input, Wants::PerAtom, word.span));
             continue;
@@ -181,16 +199,16 @@ fn inputs(
 }
 
 /// What kind of values a reference has in mode vector.
-fn kind_of(word: &Word, kind: Option<&str>, cx: &BuildCx) -> Result<Wants> {
+fn kind_of(word: &Word, kind: Option<Level>, cx: &BuildCx) -> Result<Wants> {
     let head = word.text.split('[').next().unwrap_or(&word.text);
     let shape = match ValueRef::parse(head, word.span)? {
         Some(r) => cx.shape(&r).unwrap_or_default(),
         None => Shape::default(),
     };
     Ok(match kind {
-        Some("peratom") => Wants::PerAtom,
-        Some("local") => Wants::Local,
-        Some(_) => Wants::Vector,
+        Some(Level::Peratom) => Wants::PerAtom,
+        Some(Level::Local) => Wants::Local,
+        Some(Level::Global) => Wants::Vector,
         None if shape.vector > 0 || shape.array > 0 => Wants::Vector,
         None if shape.atom.is_some() => Wants::PerAtom,
         None if shape.local > 0 => Wants::Local,
@@ -319,7 +337,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { file: self.output.file.as_ref().map(|(path, _)| path.clone()), ..Facts::default() }
+        Facts { file: self.output.path(), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

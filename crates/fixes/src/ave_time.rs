@@ -1,6 +1,6 @@
 //! fix ave/time: averages of global values over time, for other styles and a file.
 
-use super::window::{Ave, Averager, Kept, Schedule, forget};
+use super::window::{Ave, Averager, Kept, Samples, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
@@ -9,11 +9,12 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_output::Sheet;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, GlobalValue, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, SlotId, World};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The style.
 pub struct AveTime;
@@ -24,56 +25,93 @@ impl Style for AveTime {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group ave/time Nevery Nrepeat Nfreq value … [keyword value …]",
+            syntax: "",
             summary: "Averages single numbers or global vectors over time and writes them to a file.",
-            text: "A value is `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, with ranges such as `[*]` or `[2*4]`, or `v_name`. At every \
-                   multiple of Nfreq the average of Nrepeat samples, Nevery steps apart, the last of them at that step, is \
-                   offered as `f_ID` and written. The group means nothing.\n\n\
-                   `mode scalar|vector`: values are single numbers (default), or whole vectors and columns of arrays. \
-                   `ave one|running|window M`: each average for itself, the mean of all so far, or of the last M. \
-                   `start N`: no sample before step N. `off k`: the k-th value is not averaged, its latest sample counts. \
-                   `file name` and `append name`: where averages go; `overwrite`: only the latest stays there (needs \
-                   `ave running`). `format %g`: of each number. `title1 title2 title3`: the lines at the head of the file \
-                   (the third in mode vector only). Where the elements of a compute have names, as those of energy/ledger, a line more tells them \
-                   (`# columns: step c_e[kinetic] …`, `# rows: …`), not with `compat lammps`.\n\n\
+            text: "At every multiple of Nfreq the average is offered as `f_ID` and written; before the first one it is 0. The \
+                   group means nothing.\n\n\
                    Scalar where there is one value and vector where there are several in mode scalar; vector for one, array \
-                   with a column per value for several in mode vector. 0 before the first average. Where \
-                   rows are those of chunks, their number is held from the first sample of an average to its last, for good with \
-                   `ave running` and `ave window`.",
+                   with a column per value for several in mode vector. Where rows are those of chunks, their number is held \
+                   from the first sample of an average to its last, for good with `ave running` and `ave window`.\n\n\
+                   Where the elements of a compute have names, as those of energy/ledger, the head of the file has a line more \
+                   with them (`# columns: step c_e[kinetic] …`, `# rows: …`), not with `compat lammps`.",
             example: "compute t all temp\nfix mean all ave/time 1 5 10 c_t c_t[*] v_force file mean.txt ave running",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    samples: Samples,
+    /// What is averaged: `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, with ranges such as `[*]` or `[2*4]`, or `v_name`.
+    #[word(name = "value", least = 1)]
+    values: Vec<GlobalValue>,
+    #[word(keyword)]
+    mode: Mode,
+    #[word(keyword, shown = "one")]
+    ave: Ave,
+    /// No sample before this step.
+    #[word(keyword, name = "N", what = "the first step", default = 0)]
+    start: i64,
+    /// The k-th value is not averaged: its latest sample counts.
+    #[word(keyword, name = "k", what = "the number of a value")]
+    off: Vec<At<i64>>,
+    /// How each number is written.
+    #[word(keyword, name = "%g", with = number_format, kind = Kind::Text, default = Format::parse(" %g").unwrap_or_default(), shown = " %g")]
+    format: Format,
+    #[word(flatten)]
+    output: Output,
+}
+
+/// Which values are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+#[word(what = "mode")]
+pub enum Mode {
+    /// Values are single numbers.
+    #[default]
+    Scalar,
+    /// Values are whole vectors and columns of arrays.
+    Vector,
 }
 
 /// Where averages are written.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Words)]
 pub struct Output {
-    /// The file and whether it goes on behind what is there.
-    pub file: Option<(PathBuf, bool)>,
-    /// Only the latest average stays.
-    pub overwrite: bool,
-    /// Lines at the head, where given.
-    pub titles: [Option<String>; 3],
+    /// Averages are written to this file.
+    #[word(keyword, name = "FILE", what = "the file's name")]
+    file: Option<At<PathBuf>>,
+    /// Averages are written to this file, behind what it holds.
+    #[word(keyword, name = "FILE", what = "the file's name")]
+    append: Option<At<PathBuf>>,
+    /// Only the latest average stays in the file; needs `ave running`.
+    #[word(flag)]
+    overwrite: bool,
+    /// The first line of the file.
+    #[word(keyword, name = "text", what = "the title")]
+    title1: Option<String>,
+    /// The second line of the file.
+    #[word(keyword, name = "text", what = "the title")]
+    title2: Option<String>,
+    /// The third line of the file, where its head has three.
+    #[word(keyword, name = "text", what = "the title")]
+    title3: Option<String>,
 }
 
 impl Output {
-    /// Takes `file`, `append`, `overwrite` or a title with what follows; `false` for any other word.
-    ///
-    /// # Errors
-    /// A missing name or title.
-    pub fn read(&mut self, word: &str, args: &mut Args) -> Result<bool> {
-        match word {
-            "file" | "append" => {
-                self.file = Some((PathBuf::from(&args.expect("the file's name")?.text), word == "append"));
-            }
-            "overwrite" => self.overwrite = true,
-            "title1" | "title2" | "title3" => {
-                let k = usize::from(word.as_bytes()[5] - b'1');
-                self.titles[k] = Some(args.expect("the title")?.text.clone());
-            }
-            _ => return Ok(false),
-        }
-        Ok(true)
+    /// The file, and whether averages stand behind what it holds: of `file` and `append` the later one counts.
+    fn target(&self) -> Option<(&Path, bool)> {
+        let append =
+            self.append.as_ref().filter(|a| self.file.as_ref().is_none_or(|f| a.span.start > f.span.start));
+        let (file, append) = append.map(|a| (a, true)).or(self.file.as_ref().map(|f| (f, false)))?;
+        Some((&file.value, append))
+    }
+
+    /// The file's path.
+    pub fn path(&self) -> Option<PathBuf> {
+        self.target().map(|(path, _)| path.to_path_buf())
     }
 
     /// `overwrite` goes with running averages only.
@@ -108,24 +146,24 @@ impl Output {
         defaults: &[String],
         names: Option<&str>,
     ) -> Result<()> {
-        let Some((path, append)) = self.file.as_ref().filter(|_| !w.parts.promised.instead) else {
+        let Some((path, append)) = self.target().filter(|_| !w.parts.promised.instead) else {
             return Ok(());
         };
         let mut head = String::new();
-        for (given, default) in self.titles.iter().zip(defaults) {
+        for (given, default) in [&self.title1, &self.title2, &self.title3].into_iter().zip(defaults) {
             let _ = writeln!(head, "{}", given.as_ref().unwrap_or(default));
         }
         if let Some(names) = names {
             let _ = writeln!(head, "{names}");
         }
-        let length = Sheet::begin(path, *append, &head)?;
+        let length = Sheet::begin(path, append, &head)?;
         w.memo.insert(key.with("/file"), vec![length as f64]);
         Ok(())
     }
 
     /// The file for further averages, if there is one.
     pub fn sheet(&self, w: &World, key: Numbers) -> Option<Sheet> {
-        let (path, _) = self.file.as_ref()?;
+        let (path, _) = self.target()?;
         let head = w.memo.get(key.with("/file")).and_then(|m| m.first()).map_or(0, |a| *a as u64);
         Some(Sheet::new(path, self.overwrite.then_some(head)))
     }
@@ -135,7 +173,7 @@ impl Output {
 ///
 /// # Errors
 /// Any other format.
-pub fn number_format(args: &mut Args) -> Result<Format> {
+pub fn number_format(args: &mut Args, _: &BuildCx) -> Result<Format> {
     let word = args.expect("a format such as %g")?;
     match Format::parse(&word.text) {
         Ok(f) if f.specs().count() == 1 && f.specs().all(|s| s.is_float()) => Ok(f),
@@ -150,43 +188,29 @@ pub fn number_format(args: &mut Args) -> Result<Format> {
 
 impl FixStyle for AveTime {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let mut schedule = Schedule::read(args)?;
-        let words = leading_values(args)?;
+        let line: Line = read(args, cx)?;
+        line.output.check(line.ave, cx)?;
         let mut fix = Declared {
             id: cx.id.to_string(),
-            schedule,
+            schedule: Schedule::new(&line.samples, line.start)?,
             values: vec![],
-            vector: false,
-            ave: Ave::One,
+            vector: line.mode == Mode::Vector,
+            ave: line.ave,
             off: vec![],
-            output: Output::default(),
-            format: Format::parse(" %g").unwrap_or_default(),
+            output: line.output,
+            format: line.format,
             rows: 0,
             extensive: vec![],
             named: vec![],
         };
-        let mut off = vec![];
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "mode" => fix.vector = args.choice("mode", &["scalar", "vector"])? == "vector",
-                "ave" => fix.ave = Ave::read(args)?,
-                "start" => schedule.start = args.integer("the first step")?,
-                "off" => off.push((args.here(), args.integer("the number of a value")?)),
-                "format" => fix.format = number_format(args)?,
-                other if fix.output.read(other, args)? => {}
-                _ => return Err(args.unknown(word, KEYWORDS)),
-            }
-        }
-        fix.schedule = schedule;
-        fix.output.check(fix.ave, cx)?;
         let wants = if fix.vector { Wants::Vector } else { Wants::Number };
-        for word in words {
+        for GlobalValue(word) in &line.values {
             for word in cx.expand(word, wants)? {
                 fix.take(&word, wants, cx)?;
             }
         }
         fix.off = vec![false; fix.values.len()];
-        for (span, k) in off {
+        for At { span, value: k, .. } in line.off {
             match usize::try_from(k - 1).ok().and_then(|k| fix.off.get_mut(k)) {
                 Some(off) => *off = true,
                 None => {
@@ -196,29 +220,6 @@ impl FixStyle for AveTime {
             }
         }
         Ok(Box::new(fix))
-    }
-}
-
-const KEYWORDS: &[&str] =
-    &["mode", "ave", "start", "off", "file", "append", "overwrite", "format", "title1", "title2", "title3"];
-
-/// The words up to the first that names no value.
-///
-/// # Errors
-/// No value at all.
-pub fn leading_values<'a>(args: &mut Args<'a>) -> Result<Vec<&'a perigrain_lang::Word>> {
-    let mut words = vec![];
-    while let Some(word) = args.peek().filter(|w| ["c_", "f_", "v_"].iter().any(|p| w.text.starts_with(p))) {
-        args.next();
-        words.push(word);
-    }
-    match (words.is_empty(), args.peek()) {
-        (false, _) => Ok(words),
-        (true, None) => args.expect("a value such as c_ID or v_name").map(|w| vec![w]),
-        (true, Some(w)) => {
-            let text = format!("`{}` is no value: c_ID, f_ID or v_name is expected", w.text);
-            fail(Code::WRONG_KIND, w.span, text)
-        }
     }
 }
 
@@ -350,11 +351,7 @@ fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vec
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts {
-            counts_steps: true,
-            file: self.output.file.as_ref().map(|(path, _)| path.clone()),
-            ..Facts::default()
-        }
+        Facts { counts_steps: true, file: self.output.path(), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

@@ -1,13 +1,17 @@
 //! Bins of a histogram and what falls into them.
 
+use perigrain_styles::words::Words;
+
 /// What happens to values outside the bounds.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "value of beyond")]
 pub enum Beyond {
-    /// They are not counted.
+    /// What lies outside lo and hi is not counted.
+    #[default]
     Ignore,
-    /// They count in the end bins.
+    /// What lies outside counts in the end bins.
     End,
-    /// They have two bins of their own.
+    /// What lies outside counts in two bins of its own.
     Extra,
 }
 

@@ -1,12 +1,13 @@
 //! fix damping/cundall: a part of each force that works against motion, whatever its speed.
 
-use super::resistance::Scale;
+use super::resistance::{Factor, Scale};
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, KIND, MASK, OMEGA, SLOTS, TORQUE, V};
 use perigrain_world::{GroupId, World};
@@ -20,16 +21,31 @@ impl Style for DampingCundall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group damping/cundall gamma_l gamma_a [scale type ratio]… | [scale v_name]",
+            syntax: "",
             summary: "Takes a part of each force and torque along motion, and adds it against motion.",
             text: "Each component of the force by itself: f ← f (1 − γ_l) where f v ≥ 0, f (1 + γ_l) elsewhere; torques and angular velocities \
                    likewise with γ_a (Cundall 1987; Yade and PFC have the same). The coefficients have no unit, the drag does not depend on speed, and \
                    nothing acts on uniform motion, so that a scene comes to rest at the forces that it has. It depends on the axes and is no law of nature: \
-                   a means to an equilibrium. `scale type ratio` multiplies both coefficients for a type or range of types, `scale v_name` by an atom-style variable; \
-                   one of both ways. Only forces and torques computed before count: declare `fix gravity` after this fix to keep its acceleration whole.",
+                   a means to an equilibrium.\n\n\
+                   Only forces and torques computed before count: declare `fix gravity` after this fix to keep its acceleration whole.",
             example: "fix calm ball damping/cundall 0.2 0.2 scale 2 0.5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The coefficient of forces.
+    gamma_l: f64,
+    /// The coefficient of torques.
+    gamma_a: f64,
+    /// Both coefficients are multiplied by this ratio for a type or range of types, or by an atom-style variable for all; one
+    /// of both ways.
+    #[word(keyword, name = "type ratio|v_name")]
+    scale: Vec<At<Factor>>,
 }
 
 impl FixStyle for DampingCundall {
@@ -39,8 +55,8 @@ impl FixStyle for DampingCundall {
                 .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
                 .into());
         }
-        let gamma = [args.number("the coefficient of forces")?, args.number("the coefficient of torques")?];
-        let scale = Scale::read(true, args, cx)?;
+        let line: Line = read(args, cx)?;
+        let (gamma, scale) = ([line.gamma_l, line.gamma_a], Scale::of(line.scale, cx.world.types)?);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, gamma, scale }))
     }
 }

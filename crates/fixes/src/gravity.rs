@@ -8,9 +8,9 @@ use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick, When};
-use perigrain_styles::common::{choice_or_refuse, variable_param};
 use perigrain_styles::matter::{check_masses, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Pull, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, MASS, SLOTS, X};
 use perigrain_world::{GroupId, World};
@@ -24,51 +24,59 @@ impl Style for Gravity {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group gravity g chute angle | spherical phi theta | vector x y z [disable]",
+            syntax: "",
             summary: "Pulls every particle of the group with the same acceleration.",
-            text: "f ← f + m g e, with g in force/mass units and the direction e: `vector x y z`, of whatever length; \
-                   `chute angle`, tilted by that angle from −z (in two dimensions −y) towards +x; `spherical phi theta`, \
-                   with phi from +x around z and theta from +z (in two dimensions theta from +y, phi without meaning). \
-                   Angles in degrees. Each parameter is a number or `v_name` of an equal-style variable, evaluated each \
-                   step. Scalar (extensive): the potential energy −Σ m g e·x of the positions in the box; `fix_modify ID \
-                   energy yes` adds it to the potential energy. Acts with the particles' mass: for peridynamic particles \
-                   in LAMMPS' convention that is the density, as f is a force density. With `disable` it does not act by itself: fixes use its \
-                   acceleration (`fix pour`, `gravity ID` of `fix rigid`).",
+            text: "f ← f + m g e, with e the unit vector of the direction. Each parameter is a number or `v_name` of an \
+                   equal-style variable, evaluated each step. The particles' mass counts: for peridynamic particles in \
+                   LAMMPS' convention that is the density, as f is a force density.\n\n\
+                   Scalar (extensive): the potential energy −Σ m g e·x of the positions in the box; `fix_modify ID \
+                   energy yes` adds it to the potential energy.",
             example: "fix g all gravity 9.81 vector 0 0 -1",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-/// Where the acceleration points, as the deck says it.
-#[derive(Clone)]
+#[derive(Words)]
+struct Line {
+    /// The acceleration [force/mass].
+    g: Param,
+    #[word(name = "direction")]
+    direction: At<Direction>,
+    /// It does not act by itself: other fixes use its acceleration (`fix pour`, `gravity ID` of `fix rigid`).
+    #[word(flag)]
+    disable: bool,
+}
+
+/// Where the acceleration points.
+#[derive(Clone, Words)]
+#[word(what = "direction", refused = "gradient")]
 enum Direction {
-    Chute(Param),
-    Spherical(Param, Param),
-    Vector(Param, Param, Param),
+    /// Tilted by an angle, in degrees, from −z (in two dimensions −y) towards +x.
+    Chute(
+        /// The chute's angle.
+        #[word(name = "angle")]
+        Param,
+    ),
+    /// Along a direction in spherical angles, in degrees: phi from +x around z, theta from +z (in two dimensions theta from +y; phi
+    /// means nothing).
+    Spherical(#[word(name = "phi")] Param, #[word(name = "theta")] Param),
+    /// Along a vector of any length.
+    Vector(#[word(name = "x")] Param, #[word(name = "y")] Param, #[word(name = "z")] Param),
 }
 
 impl FixStyle for Gravity {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let param = |args: &mut Args, what: &str| {
-            let p = variable_param(args, what)?;
-            cx.param(&p, false).map(|()| p)
-        };
-        let magnitude = param(args, "the acceleration")?;
-        let span = args.here();
-        let style = choice_or_refuse(args, "direction", &["chute", "spherical", "vector"], &["gradient"])?;
-        let direction = match style {
-            "chute" => Direction::Chute(param(args, "the chute's angle")?),
-            "spherical" => Direction::Spherical(param(args, "phi")?, param(args, "theta")?),
-            _ => Direction::Vector(param(args, "x")?, param(args, "y")?, param(args, "z")?),
-        };
+        let Line { g: magnitude, direction: At { value: direction, span, .. }, disable } = read(args, cx)?;
         if let Direction::Vector(Param::Number(x), Param::Number(y), Param::Number(z)) = direction
             && x * x + y * y + z * z == 0.0
         {
             return fail(Code::BAD_VALUE, span, "`vector 0 0 0` has no direction");
         }
-        let disabled = args.eat("disable");
-        args.finish()?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, magnitude, direction, disabled }))
+        let (id, group) = (cx.id.to_string(), cx.group);
+        Ok(Box::new(Declared { id, group, magnitude, direction, disabled: disable }))
     }
 }
 

@@ -6,6 +6,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Kind, Types, Value};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::{GroupId, Particles, World};
 
@@ -16,6 +17,26 @@ pub enum Scale {
     Kinds(Vec<f64>),
     /// By particle.
     Each(Param),
+}
+
+/// What stands behind `scale`.
+pub enum Factor {
+    /// A ratio for a type or a range of types.
+    ByType(Types, f64),
+    /// A variable with a value for each particle.
+    Each(Param),
+}
+
+impl Value for Factor {
+    const KIND: Kind = Kind::Text;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        if args.peek_text().starts_with("v_") {
+            let by = variable_param(args, "the factor")?;
+            cx.param(&by, true)?;
+            return Ok(Self::Each(by));
+        }
+        Ok(Self::ByType(Types::value("", args, cx)?, args.number("the ratio of coefficients")?))
+    }
 }
 
 /// The same during a run.
@@ -35,34 +56,32 @@ impl Factors {
 }
 
 impl Scale {
-    /// Reads `[scale type ratio]…`, and `scale v_name` where particles may differ (`each`).
+    /// By ranges of types, of which later ones count.
+    pub fn by_type(ranges: &[(Types, f64)], types: usize) -> Self {
+        let mut ratio = vec![1.0; types];
+        for (Types(first, last), by) in ranges {
+            (*first..=*last).for_each(|k| ratio[usize::from(k) - 1] = *by);
+        }
+        Self::Kinds(ratio)
+    }
+
+    /// By ranges of types, or by one variable.
     ///
     /// # Errors
-    /// Every mistake in the words.
-    pub fn read(each: bool, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let types = cx.world.types;
-        let (mut scale, mut given) = (Scale::Kinds(vec![1.0; types]), false);
-        while let Some(word) = args.next() {
-            if word.text != "scale" {
-                return Err(args.unknown(word, &["scale"]));
-            }
-            let twice = "scale either by type or by a variable";
-            if each && args.peek_text().starts_with("v_") {
-                if given {
-                    return fail(Code::CONFLICT, word.span.to(args.here()), twice);
+    /// Both, and several variables.
+    pub fn of(factors: Vec<At<Factor>>, types: usize) -> Result<Self> {
+        let mut ranges = vec![];
+        let several = factors.len() > 1;
+        for At { value, span, .. } in factors {
+            match value {
+                Factor::ByType(range, ratio) => ranges.push((range, ratio)),
+                Factor::Each(by) if !several => return Ok(Self::Each(by)),
+                Factor::Each(_) => {
+                    return fail(Code::CONFLICT, span, "scale either by type or by a variable");
                 }
-                let by = variable_param(args, "the factor")?;
-                cx.param(&by, true)?;
-                scale = Scale::Each(by);
-            } else {
-                let Scale::Kinds(ratio) = &mut scale else { return fail(Code::CONFLICT, word.span, twice) };
-                let (lo, hi) = args.type_range(types)?;
-                let by = args.number("the ratio of coefficients")?;
-                (lo..=hi).for_each(|k| ratio[usize::from(k) - 1] = by);
             }
-            given = true;
         }
-        Ok(scale)
+        Ok(Self::by_type(&ranges, types))
     }
 
     /// What it is at each step.
@@ -96,14 +115,9 @@ pub type Against = fn(&mut Particles) -> &mut Vec<[f64; 3]>;
 pub type Motion = fn(&Particles) -> &[[f64; 3]];
 
 impl Resistance {
-    /// Reads `gamma [scale type ratio]…`, and `scale v_name` where particles may differ (`each`).
-    ///
-    /// # Errors
-    /// Every mistake in the words.
-    pub fn read(style: &str, each: bool, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let gamma = args.number("the drag coefficient gamma")?;
-        let scale = Scale::read(each, args, cx)?;
-        Ok(Self { name: format!("fix {} {style}", cx.id), group: cx.group, gamma, scale })
+    /// Of the fix that a line declares.
+    pub fn new(style: &str, gamma: f64, scale: Scale, cx: &BuildCx) -> Self {
+        Self { name: format!("fix {} {style}", cx.id), group: cx.group, gamma, scale }
     }
 
     /// The op: the first column loses γ times the second.

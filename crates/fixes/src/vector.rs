@@ -1,12 +1,12 @@
 //! fix vector: keeps values of a run one after another.
 
-use super::ave_time::leading_values;
 use super::window::forget;
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, GlobalValue, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, Slot, World};
@@ -20,35 +20,43 @@ impl Style for VectorFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group vector Nevery value … [nmax N]",
+            syntax: "",
             summary: "Keeps single numbers every Nevery steps as a vector that grows.",
-            text: "A value is `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, with ranges such as `[*]`, or `v_name`. At multiples of \
-                   Nevery, the start of the first run among them, each adds an element: one value gives a vector, several \
-                   an array with a row per time and a column per value. `nmax N` keeps the last N only. For formulas such \
-                   as `trap(f_ID)`. The group means nothing.",
+            text: "At multiples of Nevery, the start of the first run among them, each value adds an element: one value \
+                   gives a vector, several an array with a row per time and a column per value. For formulas such as \
+                   `trap(f_ID)`. The group means nothing.",
             example: "fix keep all vector 1 v_force v_speed",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Distance of the elements [steps].
+    #[word(name = "Nevery", what = "Nevery", from = 1)]
+    every: i64,
+    /// What is kept: `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, with ranges such as `[*]`, or `v_name`.
+    #[word(name = "value", least = 1)]
+    values: Vec<GlobalValue>,
+    /// Only the last N elements are kept.
+    #[word(keyword, name = "N", what = "the number of values to keep", from = 1)]
+    nmax: Option<usize>,
 }
 
 impl FixStyle for VectorFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "Nevery")?;
+        let line: Line = read(args, cx)?;
         let (mut values, mut extensive) = (vec![], vec![]);
-        for word in leading_values(args)? {
+        for GlobalValue(word) in &line.values {
             for word in cx.expand(word, Wants::Number)? {
                 let Some(r) = ValueRef::parse(&word.text, word.span)? else { continue };
                 cx.value(&r, false)?;
-                super::compatible(&r, &cx.shape(&r).unwrap_or_default(), every, "Nevery")?;
+                super::compatible(&r, &cx.shape(&r).unwrap_or_default(), line.every, "Nevery")?;
                 extensive.push(cx.names.extensive(&r));
                 values.push(r);
-            }
-        }
-        let mut most = None;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "nmax" => most = Some(args.integer_from(1, "the number of values to keep")? as usize),
-                _ => return Err(args.unknown(word, &["nmax"])),
             }
         }
         if extensive.iter().any(|e| *e != extensive[0]) {
@@ -56,7 +64,7 @@ impl FixStyle for VectorFix {
             return fail(Code::CONFLICT, cx.span, text);
         }
         let grows = extensive.contains(&true);
-        Ok(Box::new(Declared { id: cx.id.to_string(), every, values, most, grows }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), every: line.every, values, most: line.nmax, grows }))
     }
 }
 

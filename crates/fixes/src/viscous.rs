@@ -1,10 +1,11 @@
 //! fix viscous: a drag proportional to velocity.
 
-use super::resistance::Resistance;
+use super::resistance::{Resistance, Scale};
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
+use perigrain_styles::words::{Form, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, KIND, MASK, V};
@@ -18,19 +19,33 @@ impl Style for Viscous {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group viscous gamma [scale type ratio]…",
+            syntax: "",
             summary: "Slows particles down by a drag proportional to their velocity.",
-            text: "f ← f − γ v, with γ in force/velocity units (force density/velocity for peridynamic particles in \
-                   LAMMPS' convention). `scale type ratio` makes it γ·ratio for a type or range of types. Velocities are \
-                   those of the half step at which forces are computed; in the setup of a run those of the whole step.",
+            text: "f ← f − γ v; for peridynamic particles in LAMMPS' convention γ is a force density over a velocity. \
+                   Velocities are those of the half step at which forces are computed; in the setup of a run those of the \
+                   whole step.",
             example: "fix calm all viscous 1.0e-3 scale 2 0.5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The drag coefficient gamma [force/velocity].
+    gamma: f64,
+    /// The coefficient is γ·ratio for a type or range of types.
+    #[word(keyword, name = "type ratio", what = "the ratio of coefficients")]
+    scale: Vec<(Types, f64)>,
 }
 
 impl FixStyle for Viscous {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        Ok(Box::new(Declared(Resistance::read(self.name(), false, args, cx)?)))
+        let line: Line = read(args, cx)?;
+        let scale = Scale::by_type(&line.scale, cx.world.types);
+        Ok(Box::new(Declared(Resistance::new(self.name(), line.gamma, scale, cx))))
     }
 }
 

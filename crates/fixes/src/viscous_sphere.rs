@@ -1,10 +1,11 @@
 //! fix viscous/sphere: a torque against the spin of spheres.
 
-use super::resistance::Resistance;
+use super::resistance::{Factor, Resistance, Scale};
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{KIND, MASK, OMEGA, SLOTS, TORQUE};
@@ -18,14 +19,25 @@ impl Style for ViscousSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group viscous/sphere gamma [scale type ratio]… | [scale v_name]",
+            syntax: "",
             summary: "Slows the spin of spheres by a torque proportional to their angular velocity.",
-            text: "T ← T − γ ω, with γ in torque/angular velocity units. `scale type ratio` makes it γ·ratio for a type \
-                   or range of types, `scale v_name` γ times an atom-style variable; one of both ways. Angular velocities \
-                   are those of the half step at which forces are computed; in the setup of a run those of the whole step.",
+            text: "T ← T − γ ω. Angular velocities are those of the half step at which forces are computed; in the setup of a \
+                   run those of the whole step.",
             example: "fix calm ball viscous/sphere 1.0e-9 scale 2 0.5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The drag coefficient gamma [torque/angular velocity].
+    gamma: f64,
+    /// The coefficient is γ·ratio for a type or range of types, or γ times an atom-style variable for all; one of both ways.
+    #[word(keyword, name = "type ratio|v_name")]
+    scale: Vec<At<Factor>>,
 }
 
 impl FixStyle for ViscousSphere {
@@ -35,7 +47,9 @@ impl FixStyle for ViscousSphere {
                 .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
                 .into());
         }
-        Ok(Box::new(Declared(Resistance::read(self.name(), true, args, cx)?)))
+        let line: Line = read(args, cx)?;
+        let scale = Scale::of(line.scale, cx.world.types)?;
+        Ok(Box::new(Declared(Resistance::new(self.name(), line.gamma, scale, cx))))
     }
 }
 

@@ -1,11 +1,25 @@
 //! Averages over time, as all `fix ave/…` make them: when samples are taken, and how averages follow one another.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::Args;
 use perigrain_plan::When;
+use perigrain_styles::words::{At, Words};
 use perigrain_world::{Numbers, World};
 
-/// `Nevery Nrepeat Nfreq` and `start`.
+/// `Nevery Nrepeat Nfreq`.
+#[derive(Words)]
+pub struct Samples {
+    /// Distance of the samples of an average [steps].
+    #[word(name = "Nevery", what = "Nevery", from = 1)]
+    every: i64,
+    /// Samples of an average.
+    #[word(name = "Nrepeat", what = "Nrepeat", from = 1)]
+    repeat: At<i64>,
+    /// Distance of the averages, a multiple of Nevery; the last sample of an average is at one of these steps [steps].
+    #[word(name = "Nfreq", what = "Nfreq", from = 1)]
+    freq: At<i64>,
+}
+
+/// When samples are taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
     /// Distance of two samples.
@@ -28,28 +42,24 @@ pub struct Due {
 }
 
 impl Schedule {
-    /// Takes the three numbers.
+    /// From the three numbers; no sample before the step `start`.
     ///
     /// # Errors
-    /// Numbers below 1, and samples that overlap.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        let every = args.integer_from(1, "Nevery")?;
-        let repeat_span = args.here();
-        let repeat = args.integer_from(1, "Nrepeat")?;
-        let span = args.here();
-        let unknown = args.peek().is_some_and(|w| w.unknown);
-        let freq = args.integer_from(1, "Nfreq")?;
-        if freq % every != 0 && !unknown {
-            let text = format!("Nfreq must be a multiple of Nevery: {freq} is none of {every}");
-            return fail(Code::BAD_VALUE, span, text);
+    /// Samples that overlap.
+    pub fn new(samples: &Samples, start: i64) -> Result<Self> {
+        let Samples { every, repeat, freq } = *samples;
+        if freq.value % every != 0 && !freq.unknown {
+            let text = format!("Nfreq must be a multiple of Nevery: {} is none of {every}", freq.value);
+            return fail(Code::BAD_VALUE, freq.span, text);
         }
-        if repeat.saturating_mul(every) > freq && !unknown {
+        let (span, repeat, freq) = (repeat.span, repeat.value, freq.value);
+        if repeat.saturating_mul(every) > freq && !samples.freq.unknown {
             let text = format!("{repeat} samples every {every} steps do not fit into {freq} steps");
-            return Err(Diagnostic::error(Code::BAD_VALUE, repeat_span, text)
+            return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
                 .help("Nrepeat times Nevery may be at most Nfreq")
                 .into());
         }
-        Ok(Self { every, repeat, freq, start: 0 })
+        Ok(Self { every, repeat, freq, start })
     }
 
     /// When samples may be due.
@@ -139,28 +149,20 @@ impl Kept {
 }
 
 /// How an average goes with the ones before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+#[word(what = "kind of average")]
 pub enum Ave {
-    /// Each for itself.
+    /// Each average for itself.
+    #[default]
     One,
-    /// The mean of all so far.
+    /// The mean of all averages so far.
     Running,
-    /// The mean of the last few.
-    Window(usize),
-}
-
-impl Ave {
-    /// Takes `one`, `running` or `window M`.
-    ///
-    /// # Errors
-    /// Any other word.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        Ok(match args.choice("kind of average", &["one", "running", "window"])? {
-            "one" => Ave::One,
-            "running" => Ave::Running,
-            _ => Ave::Window(args.integer_from(1, "the number of averages in a window")? as usize),
-        })
-    }
+    /// The mean of the last M averages.
+    Window(
+        /// The number of averages in a window.
+        #[word(name = "M", from = 1)]
+        usize,
+    ),
 }
 
 /// Adds up samples and joins averages; its state lives in the world's memory.

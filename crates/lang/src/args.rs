@@ -12,12 +12,14 @@ pub struct Args<'a> {
     words: &'a [Word],
     at: usize,
     end: Span,
+    /// Which words are keywords of this line.
+    keyword: fn(&str) -> bool,
 }
 
 impl<'a> Args<'a> {
     /// All words after the command's name.
     pub fn new(command: &'a Command) -> Self {
-        Self { name: &command.name, words: &command.args, at: 0, end: command.span }
+        Self { name: &command.name, words: &command.args, at: 0, end: command.span, keyword: |_| false }
     }
 
     /// The command's name.
@@ -261,7 +263,17 @@ impl<'a> Args<'a> {
         let count = rest.iter().position(|word| ends(&word.text)).unwrap_or(rest.len());
         self.at += count;
         let end = rest.get(count).map_or(self.end, |word| word.span);
-        Args { name: self.name, words: &rest[..count], at: 0, end }
+        Args { name: self.name, words: &rest[..count], at: 0, end, keyword: self.keyword }
+    }
+
+    /// Sets which words are keywords of this line: lists of words end before them.
+    pub fn keywords(&mut self, keyword: fn(&str) -> bool) {
+        self.keyword = keyword;
+    }
+
+    /// Whether the next word is a keyword of this line.
+    pub fn at_keyword(&self) -> bool {
+        self.peek().is_some_and(|word| (self.keyword)(&word.text))
     }
 
     /// The end of the line: every word left over is an error at its place.

@@ -14,6 +14,17 @@ pub fn not_here(word: &Word, what: &str) -> Diagnostics {
     Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).into()
 }
 
+/// The refusal of a word where the line should end, and of all behind it.
+pub fn left_over(word: &Word, a: &Args) -> Diagnostics {
+    let refused = |w: &Word| {
+        blame(w, Code::EXTRA_ARGUMENT, format!("`{}` does not expect `{}` here", a.command(), w.text))
+    };
+    let mut all = vec![refused(word)];
+    let rest = a.clone().rest();
+    all.extend(rest.iter().map(refused));
+    Diagnostics(all)
+}
+
 /// The refusal of a word that names no style of a command, with the nearest that does.
 pub fn unknown_style(word: &Word, what: &str, known: &[&'static str]) -> Diagnostics {
     let d = blame(word, Code::UNKNOWN_STYLE, format!("unknown {what} `{}`", word.text));

@@ -8,6 +8,9 @@
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+// What `derive(Words)` writes names this crate as others do.
+extern crate self as perigrain_styles;
+
 pub mod act;
 pub mod bond;
 mod build;
@@ -37,6 +40,7 @@ pub mod swing;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod triangles;
+pub mod words;
 
 pub use act::{ActCx, Flow, Motion, Values};
 pub use bond::{BondForce, BondStyle};
@@ -67,4 +71,8 @@ pub trait Style: Sync {
     fn name(&self) -> &'static str;
     /// Its page.
     fn doc(&self) -> Doc;
+    /// The words of its lines; without any `Doc::syntax` has the lines.
+    fn words(&self) -> Vec<words::Form> {
+        vec![]
+    }
 }

@@ -87,8 +87,10 @@ pub fn resolve(mut item: Value) -> Value {
         Some(7) => knowing::page(&format!("{command} {word}")).map(|page| page_markdown(&page)),
         Some(10) => {
             let typed: Vec<&str> = typed.iter().map(String::as_str).collect();
-            knowing::place(&typed, &Default::default())
-                .and_then(|(_, page)| knowing::told_of(page.doc.text, &word))
+            knowing::place(&typed, &Default::default()).and_then(|(place, page)| {
+                let declared = place.offers.iter().find_map(|offer| offer.about(&word));
+                declared.or_else(|| knowing::told_of(page.doc.text, &word))
+            })
         }
         _ => None,
     };

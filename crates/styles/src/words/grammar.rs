@@ -1,0 +1,339 @@
+//! Declared words as data, and as the line and the table that the manual shows.
+
+use std::fmt::Write;
+
+/// What a word is, as far as readers of the manual and editors care.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A whole number.
+    Whole,
+    /// A number or a variable.
+    Param,
+    /// `yes` or `no`.
+    Switch,
+    /// Any word.
+    Text,
+    /// A type or a range of types.
+    Types,
+    /// The ID of a group.
+    Group,
+    /// The ID of a region.
+    Region,
+    /// The ID of a compute.
+    Compute,
+    /// The ID of a fix.
+    Fix,
+    /// The ID of a dump.
+    Dump,
+    /// The name of a variable.
+    Variable,
+    /// The ID of a molecule.
+    Molecule,
+    /// The name of a material.
+    Material,
+    /// A file.
+    File,
+    /// A value of a compute, fix or variable: `c_ID`, `f_ID`, `v_name`.
+    Value,
+    /// An attribute of particles, or a value.
+    Attribute,
+    /// A variable with its `v_`.
+    Reference,
+    /// One of several words, each with words of its own behind it.
+    Choice(&'static [Alternative]),
+    /// Words in order and keywords.
+    Words(&'static Grammar),
+    /// This, or `NULL` for nothing.
+    OrNull(&'static Kind),
+}
+
+/// A place for a word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placeholder {
+    /// What stands for it in syntax lines.
+    pub name: &'static str,
+    /// What may stand there.
+    pub kind: Kind,
+    /// A sentence about it.
+    pub about: &'static str,
+    /// Its unit; empty without one.
+    pub unit: &'static str,
+}
+
+/// One of several words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alternative {
+    /// The word.
+    pub word: &'static str,
+    /// A sentence about it.
+    pub about: &'static str,
+    /// What stands behind it.
+    pub parts: &'static [Part],
+}
+
+/// Something that stands in order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// A word.
+    Word(Placeholder),
+    /// Words that may be left out.
+    Maybe(&'static [Part]),
+    /// Words of which there may be several, at least so many.
+    Many(&'static [Part], usize),
+    /// The words and keywords of another declaration.
+    All(&'static Grammar),
+}
+
+/// A keyword.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keyword {
+    /// The word.
+    pub word: &'static str,
+    /// What stands behind it.
+    pub values: &'static [Part],
+    /// A sentence about it.
+    pub about: &'static str,
+    /// What holds without it; empty if its sentence says so.
+    pub default: &'static str,
+    /// Each time that it stands there counts.
+    pub repeats: bool,
+}
+
+/// The words of a line: parts in order, then keywords in any order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grammar {
+    /// What stands in order.
+    pub parts: &'static [Part],
+    /// Keywords.
+    pub keywords: &'static [Keyword],
+    /// Keywords of LAMMPS that are refused by name.
+    pub refused: &'static [&'static str],
+}
+
+/// A grammar with what stands before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Form {
+    /// What stands before, as `pair_coeff I J`; empty for what always stands before a style of this kind.
+    pub head: &'static str,
+    /// What stands behind.
+    pub grammar: &'static Grammar,
+}
+
+impl Form {
+    /// Words behind what always stands before a style of its kind.
+    pub const fn behind(grammar: &'static Grammar) -> Self {
+        Self { head: "", grammar }
+    }
+}
+
+impl Grammar {
+    /// A line without words.
+    pub const NONE: &'static Self = &Self { parts: &[], keywords: &[], refused: &[] };
+
+    /// The declarations whose words stand here, this one first.
+    fn nested(&'static self) -> Vec<&'static Self> {
+        let mut all = vec![self];
+        for part in self.parts {
+            if let Part::All(grammar) = part {
+                all.extend(grammar.nested());
+            }
+        }
+        all
+    }
+
+    /// All keywords, those of nested declarations included.
+    pub fn every(&'static self) -> Vec<&'static Keyword> {
+        self.nested().iter().flat_map(|g| g.keywords).collect()
+    }
+
+    /// The same as words.
+    pub fn keywords(&'static self) -> Vec<&'static str> {
+        self.every().iter().map(|k| k.word).collect()
+    }
+
+    /// Whether a word is a keyword of the line.
+    pub fn has(&'static self, text: &str) -> bool {
+        self.nested().iter().any(|g| g.keywords.iter().any(|k| k.word == text))
+    }
+
+    /// Whether a word is one of LAMMPS' keywords that are refused by name.
+    pub fn refuses(&'static self, text: &str) -> bool {
+        self.nested().iter().any(|g| g.refused.contains(&text))
+    }
+
+    /// What stands in order, nested declarations opened.
+    pub fn in_order(&'static self) -> Vec<&'static Part> {
+        let mut all = vec![];
+        for part in self.parts {
+            match part {
+                Part::All(grammar) => all.extend(grammar.in_order()),
+                _ => all.push(part),
+            }
+        }
+        all
+    }
+
+    /// The syntax line, without its head.
+    pub fn line(&'static self) -> String {
+        let mut words: Vec<String> = self.in_order().into_iter().map(|part| part.shown()).collect();
+        for keyword in self.every() {
+            let again = if keyword.repeats { "…" } else { "" };
+            words.push(format!("[{}]{again}", keyword.shown()));
+        }
+        words.join(" ")
+    }
+
+    /// The table of words as Markdown; empty where no word has a sentence.
+    pub fn table(&'static self) -> String {
+        let mut rows = vec![];
+        for part in self.in_order() {
+            part.rows(&mut rows);
+        }
+        for keyword in self.every() {
+            let start = rows.len();
+            rows.push([keyword.shown(), keyword.about.into(), keyword.unit().into(), keyword.default.into()]);
+            keyword.values.iter().for_each(|part| part.choices(keyword.word, &mut rows));
+            // What each choice means says what the keyword is about.
+            if keyword.about.is_empty() && rows.len() > start + 1 {
+                rows.remove(start);
+                rows[start][3] = keyword.default.into();
+            }
+        }
+        rows.retain(|[_, about, ..]| !about.is_empty());
+        if rows.is_empty() {
+            return String::new();
+        }
+        let used = |column: usize| rows.iter().any(|row| !row[column].is_empty());
+        let columns: Vec<usize> = (0..4).filter(|&c| c < 2 || used(c)).collect();
+        let heads = ["word", "meaning", "unit", "default"];
+        let mut table = String::new();
+        let mut line = |cells: Vec<String>| {
+            let _ = writeln!(table, "| {} |", cells.join(" | "));
+        };
+        line(columns.iter().map(|&c| heads[c].to_string()).collect());
+        line(columns.iter().map(|_| "---".to_string()).collect());
+        for row in &rows {
+            let cell = |&c: &usize| match c {
+                0 => format!("`{}`", row[0].replace('|', "\\|")),
+                _ => row[c].replace('|', "\\|"),
+            };
+            line(columns.iter().map(cell).collect());
+        }
+        table
+    }
+}
+
+impl Keyword {
+    /// The keyword with what stands behind it.
+    pub fn shown(&self) -> String {
+        let values = self.values.iter().map(Part::shown);
+        std::iter::once(self.word.to_string()).chain(values).collect::<Vec<_>>().join(" ")
+    }
+
+    fn unit(&self) -> &'static str {
+        self.values.iter().map(Part::unit).find(|unit| !unit.is_empty()).unwrap_or_default()
+    }
+}
+
+impl Part {
+    /// As it stands in a syntax line.
+    pub fn shown(&self) -> String {
+        let all = |parts: &[Part]| parts.iter().map(Part::shown).collect::<Vec<_>>().join(" ");
+        match self {
+            Part::Word(word) => word.shown(),
+            Part::Maybe(parts) => format!("[{}]", all(parts)),
+            Part::Many(parts @ [_], _) => format!("{} …", all(parts)),
+            Part::Many(parts, _) => format!("{0} [{0}]…", all(parts)),
+            Part::All(grammar) => grammar.line(),
+        }
+    }
+
+    fn unit(&self) -> &'static str {
+        match self {
+            Part::Word(word) => word.unit,
+            Part::Maybe(parts) | Part::Many(parts, _) => {
+                parts.iter().map(Part::unit).find(|unit| !unit.is_empty()).unwrap_or_default()
+            }
+            Part::All(_) => "",
+        }
+    }
+
+    /// Its rows of the table: word, meaning, unit, default. Words that share a sentence share a row.
+    fn rows(&self, rows: &mut Vec<[String; 4]>) {
+        match self {
+            Part::Word(word) => {
+                let choices = word.alternatives().iter().any(|a| !a.about.is_empty());
+                match rows.last_mut() {
+                    Some(last) if !word.about.is_empty() && last[1] == word.about => {
+                        last[0] = format!("{} {}", last[0], word.name);
+                    }
+                    _ if choices && word.about.is_empty() => {}
+                    _ => rows.push([word.short(), word.about.into(), word.unit.into(), String::new()]),
+                }
+                self.choices("", rows);
+            }
+            Part::Maybe(parts) | Part::Many(parts, _) => parts.iter().for_each(|part| part.rows(rows)),
+            Part::All(_) => {}
+        }
+    }
+
+    /// The rows of the words that may stand here, behind a keyword or in order.
+    fn choices(&self, keyword: &str, rows: &mut Vec<[String; 4]>) {
+        let parts = match self {
+            Part::Word(word) => {
+                if let Kind::Words(grammar) = word.kind {
+                    grammar.in_order().iter().for_each(|part| part.choices(keyword, rows));
+                }
+                for one in word.alternatives() {
+                    let shown = format!("{keyword} {}", one.shown());
+                    rows.push([shown.trim().to_string(), one.about.into(), String::new(), String::new()]);
+                }
+                return;
+            }
+            Part::Maybe(parts) | Part::Many(parts, _) => *parts,
+            Part::All(grammar) => grammar.parts,
+        };
+        parts.iter().for_each(|part| part.choices(keyword, rows));
+    }
+}
+
+impl Alternative {
+    /// The word with what stands behind it.
+    pub fn shown(&self) -> String {
+        let parts = self.parts.iter().map(Part::shown);
+        std::iter::once(self.word.to_string()).chain(parts).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl Placeholder {
+    fn alternatives(&self) -> &'static [Alternative] {
+        match self.kind {
+            Kind::Choice(all) => all,
+            _ => &[],
+        }
+    }
+
+    /// As it stands in a syntax line: choices by their words.
+    pub fn shown(&self) -> String {
+        match self.kind {
+            Kind::Switch => "yes|no".into(),
+            Kind::Words(grammar) => grammar.line(),
+            Kind::Choice(all) if all.iter().all(|a| a.parts.is_empty()) => {
+                all.iter().map(|a| a.word).collect::<Vec<_>>().join("|")
+            }
+            Kind::Choice(all) => all.iter().map(Alternative::shown).collect::<Vec<_>>().join(" | "),
+            Kind::OrNull(_) => format!("{}|NULL", self.name),
+            _ => self.name.into(),
+        }
+    }
+
+    /// The same without the words behind choices.
+    fn short(&self) -> String {
+        match self.kind {
+            Kind::Choice(all) => all.iter().map(|a| a.word).collect::<Vec<_>>().join("|"),
+            _ => self.shown(),
+        }
+    }
+}

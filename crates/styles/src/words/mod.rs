@@ -1,0 +1,82 @@
+//! The words of a line, declared once: what a style reads is what its syntax line, its page, Tab and editors show.
+//!
+//! A style's line is a struct with `#[derive(Words)]` ([how](perigrain_words)). [`read`] takes a line apart by it, and [`Grammar`] is
+//! the same declaration as data, for everything that shows or completes lines.
+
+mod grammar;
+mod values;
+
+pub use crate::BuildCx;
+pub use grammar::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder};
+pub use perigrain_base::diag::Result;
+pub use perigrain_lang::{Args, Word};
+pub use perigrain_words::Words;
+pub use values::{At, Axis, GlobalValue, Nullable, Seed, Types, Value, Whole};
+
+use crate::common::choice_or_refuse;
+
+/// A line, or a part of one, as words in order and keywords.
+pub trait Words: Sized {
+    /// The declaration as data.
+    const GRAMMAR: &'static Grammar;
+
+    /// Takes the words that stand in order; keywords have their defaults.
+    ///
+    /// # Errors
+    /// Every mistake in them.
+    fn begin(args: &mut Args, cx: &BuildCx) -> Result<Self>;
+
+    /// Takes what stands behind a keyword; `false` if it is none of these.
+    ///
+    /// # Errors
+    /// Every mistake in the words behind it.
+    fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool>;
+}
+
+/// Takes a whole line apart.
+///
+/// # Errors
+/// Every mistake in its words; unknown keywords, with the nearest one.
+pub fn read<T: Words>(args: &mut Args, cx: &BuildCx) -> Result<T> {
+    args.keywords(|text| T::GRAMMAR.has(text));
+    let mut line = T::begin(args, cx)?;
+    while let Some(word) = args.next() {
+        if !line.keyword(word, args, cx)? {
+            return Err(unexpected::<T>(word, args));
+        }
+    }
+    Ok(line)
+}
+
+/// Takes apart what stands within another line: it ends before the first word that is none of its own.
+///
+/// # Errors
+/// Every mistake in its words.
+pub fn inner<T: Words>(args: &mut Args, cx: &BuildCx) -> Result<T> {
+    let mut part = T::begin(args, cx)?;
+    while let Some(word) = args.peek().filter(|word| T::GRAMMAR.has(&word.text)) {
+        args.next();
+        part.keyword(word, args, cx)?;
+    }
+    Ok(part)
+}
+
+/// The refusal of a word where a keyword should stand.
+fn unexpected<T: Words>(word: &Word, args: &Args) -> perigrain_base::diag::Diagnostics {
+    let known = T::GRAMMAR.keywords();
+    if T::GRAMMAR.refuses(&word.text) {
+        return crate::common::not_here(word, &format!("keyword of {}", args.command()));
+    }
+    if known.is_empty() {
+        return crate::common::left_over(word, args);
+    }
+    args.unknown(word, &known)
+}
+
+/// Takes one of the known words; one that only LAMMPS knows is refused by name.
+///
+/// # Errors
+/// Any other word, with the nearest known one.
+pub fn one_of(what: &str, args: &mut Args, known: &[&'static str], refused: &[&str]) -> Result<&'static str> {
+    choice_or_refuse(args, what, known, refused)
+}

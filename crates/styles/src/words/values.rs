@@ -1,0 +1,223 @@
+//! Types of words: how each is read, and what kind of word it is.
+
+use super::Kind;
+use crate::BuildCx;
+use crate::common::{self, variable_param};
+use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_lang::{Args, Param, Word};
+use perigrain_world::{GroupId, Region};
+use std::path::PathBuf;
+
+/// What a word of a line, or a few words, can be read as.
+pub trait Value: Sized {
+    /// What may stand there.
+    const KIND: Kind;
+
+    /// Takes it; `what` is its name in messages.
+    ///
+    /// # Errors
+    /// A missing word, or one that is none.
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self>;
+
+    /// Whether a word may begin one; a list of them ends before the first word that does not.
+    fn begins(_: &Word) -> bool {
+        true
+    }
+}
+
+/// Whole numbers with a bound.
+pub trait Whole: Sized {
+    /// Takes one of at least `least`.
+    ///
+    /// # Errors
+    /// A missing word, one that is no whole number, and smaller numbers.
+    fn from(args: &mut Args, least: i64, what: &str) -> Result<Self>;
+}
+
+macro_rules! whole {
+    ($($ty:ty: $least:expr),*) => {$(
+        impl Whole for $ty {
+            fn from(args: &mut Args, least: i64, what: &str) -> Result<Self> {
+                let k = args.integer_from(least, what)?;
+                Ok(<$ty>::try_from(k).unwrap_or(<$ty>::MAX))
+            }
+        }
+    )*};
+}
+whole!(i64: i64::MIN, u64: 0, u32: 0, usize: 0);
+
+impl Value for f64 {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.number(what)
+    }
+}
+
+impl Value for i64 {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer(what)
+    }
+}
+
+impl Value for usize {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        <Self as Whole>::from(args, 0, what)
+    }
+}
+
+impl Value for u32 {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        <Self as Whole>::from(args, 0, what)
+    }
+}
+
+impl Value for bool {
+    const KIND: Kind = Kind::Switch;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.flag(what)
+    }
+}
+
+impl Value for Word {
+    const KIND: Kind = Kind::Text;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.expect(what).cloned()
+    }
+}
+
+impl Value for String {
+    const KIND: Kind = Kind::Text;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        Ok(args.expect(what)?.text.clone())
+    }
+}
+
+impl Value for PathBuf {
+    const KIND: Kind = Kind::File;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        Ok(Self::from(&args.expect(what)?.text))
+    }
+}
+
+/// A number or a variable with one value.
+impl Value for Param {
+    const KIND: Kind = Kind::Param;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let param = variable_param(args, what)?;
+        cx.param(&param, false)?;
+        Ok(param)
+    }
+}
+
+impl Value for GroupId {
+    const KIND: Kind = Kind::Group;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        cx.group(args.expect("a group")?)
+    }
+}
+
+impl Value for Region {
+    const KIND: Kind = Kind::Region;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        cx.region(args.expect("a region")?).cloned()
+    }
+}
+
+/// A type or a range of types, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Types(pub u16, pub u16);
+
+impl Value for Types {
+    const KIND: Kind = Kind::Types;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let (first, last) = args.type_range(cx.world.types)?;
+        Ok(Self(first, last))
+    }
+}
+
+/// `x`, `y` or `z` as 0, 1 or 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axis(pub usize);
+
+impl Value for Axis {
+    const KIND: Kind = Kind::Choice(&[
+        super::Alternative { word: "x", about: "", parts: &[] },
+        super::Alternative { word: "y", about: "", parts: &[] },
+        super::Alternative { word: "z", about: "", parts: &[] },
+    ]);
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        common::axis(args, what).map(Self)
+    }
+    fn begins(word: &Word) -> bool {
+        ["x", "y", "z"].contains(&word.text.as_str())
+    }
+}
+
+/// A global value, `c_ID`, `f_ID` or `v_name`, as it stands there: what it must offer depends on other words of the line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlobalValue(pub Word);
+
+impl Value for GlobalValue {
+    const KIND: Kind = Kind::Value;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let word = args.expect("a value such as c_ID or v_name")?;
+        if Self::begins(word) {
+            return Ok(Self(word.clone()));
+        }
+        let text = format!("`{}` is no value: c_ID, f_ID or v_name is expected", word.text);
+        fail(Code::WRONG_KIND, word.span, text)
+    }
+    fn begins(word: &Word) -> bool {
+        ["c_", "f_", "v_"].iter().any(|p| word.text.starts_with(p))
+    }
+}
+
+/// A seed of the Park–Miller stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seed(pub u32);
+
+impl Value for Seed {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        common::seed(args).map(Self)
+    }
+}
+
+/// Something, or `NULL` for nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nullable<T>(pub Option<T>);
+
+impl<T: Value> Value for Nullable<T> {
+    const KIND: Kind = Kind::OrNull(&T::KIND);
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        if args.eat("NULL") {
+            return Ok(Self(None));
+        }
+        T::value(what, args, cx).map(|value| Self(Some(value)))
+    }
+}
+
+/// A value with its place, for what is checked once the line is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct At<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands.
+    pub span: Span,
+    /// `perigrain check` cannot know it: the value only stands in for it.
+    pub unknown: bool,
+}
+
+impl<T> At<T> {
+    /// Reads a value and keeps its place.
+    ///
+    /// # Errors
+    /// Those of reading it.
+    pub fn read(args: &mut Args, value: impl FnOnce(&mut Args) -> Result<T>) -> Result<Self> {
+        let (span, unknown) = (args.here(), args.peek().is_some_and(|word| word.unknown));
+        Ok(Self { value: value(args)?, span, unknown })
+    }
+}

@@ -1,0 +1,216 @@
+//! One field as words: what the grammar says of it, and the expression that reads it.
+
+use super::attributes::{Said, wrong};
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::spanned::Spanned;
+use syn::{Expr, GenericArgument, Lit, PathArguments, Type};
+
+/// A field's words.
+pub struct Field {
+    pub said: Said,
+    /// Its placeholders, one for each word that a value has.
+    names: Vec<String>,
+    what: String,
+    ty: Type,
+}
+
+/// How a type is made of others.
+enum Shape<'a> {
+    One,
+    Maybe(&'a Type),
+    Many(&'a Type),
+    Placed(&'a Type),
+    Tuple(Vec<&'a Type>),
+    Array(&'a Type, usize),
+}
+
+impl Field {
+    /// A field of this name, which stands in the syntax line unless the field says another.
+    pub fn new(said: Said, name: &str, ty: &Type) -> Self {
+        let names = said.name.as_deref().unwrap_or(name).split_whitespace().map(String::from).collect();
+        Self { what: said.what(name), names, said, ty: ty.clone() }
+    }
+
+    /// The keyword, if it is one.
+    pub fn keyword(&self, name: &str) -> Option<String> {
+        self.said.keyword.as_ref().map(|k| k.clone().unwrap_or_else(|| name.to_string()))
+    }
+
+    /// Its place in the grammar, where it stands in order.
+    pub fn parts(&self) -> syn::Result<Vec<TokenStream>> {
+        let mut names = self.names.iter();
+        let parts = match shape(&self.ty)? {
+            Shape::Maybe(of) => {
+                let inner = self.of(of, &mut names)?;
+                vec![quote!(Part::Maybe(&[#(#inner),*]))]
+            }
+            Shape::Many(of) => {
+                let (inner, least) = (self.of(of, &mut names)?, self.said.least);
+                vec![quote!(Part::Many(&[#(#inner),*], #least))]
+            }
+            _ => self.of(&self.ty, &mut names)?,
+        };
+        match names.next() {
+            Some(name) => wrong(self.ty.span(), &format!("no word is left that `{name}` could name")),
+            None => Ok(parts),
+        }
+    }
+
+    /// The words behind it, where it is a keyword.
+    pub fn values(&self) -> syn::Result<Vec<TokenStream>> {
+        if self.said.flag {
+            return Ok(vec![]);
+        }
+        match shape(&self.ty)? {
+            Shape::Many(_) if self.said.list => self.parts(),
+            Shape::Maybe(of) | Shape::Many(of) => self.of(of, &mut self.names.iter()),
+            _ => self.of(&self.ty, &mut self.names.iter()),
+        }
+    }
+
+    /// Whether each time that the keyword stands there counts.
+    pub fn repeats(&self) -> syn::Result<bool> {
+        Ok(matches!(shape(&self.ty)?, Shape::Many(_)) && !self.said.list)
+    }
+
+    fn of<'a>(
+        &self,
+        ty: &Type,
+        names: &mut impl Iterator<Item = &'a String>,
+    ) -> syn::Result<Vec<TokenStream>> {
+        let all = |types: Vec<&Type>, names: &mut dyn Iterator<Item = &'a String>| {
+            let mut parts = vec![];
+            for ty in types {
+                parts.append(&mut self.of_one(ty, names)?);
+            }
+            Ok(parts)
+        };
+        match shape(ty)? {
+            Shape::Tuple(types) => all(types, names),
+            Shape::Array(of, count) => all(vec![of; count], names),
+            Shape::Placed(of) => self.of_one(of, names),
+            _ => self.of_one(ty, names),
+        }
+    }
+
+    fn of_one<'a>(
+        &self,
+        ty: &Type,
+        names: &mut dyn Iterator<Item = &'a String>,
+    ) -> syn::Result<Vec<TokenStream>> {
+        if let Shape::Placed(of) = shape(ty)? {
+            return self.of_one(of, names);
+        }
+        let Some(name) = names.next() else {
+            return wrong(ty.span(), "say in `name` how each word is called");
+        };
+        let (about, unit) = (&self.said.about, &self.said.unit);
+        let kind = match &self.said.kind {
+            Some(kind) => quote!(#kind),
+            None => quote!(<#ty as Value>::KIND),
+        };
+        Ok(vec![quote!(Part::Word(Placeholder { name: #name, kind: #kind, about: #about, unit: #unit }))])
+    }
+
+    /// The expression that reads it in order.
+    pub fn read(&self) -> syn::Result<TokenStream> {
+        self.reading(&self.ty, true)
+    }
+
+    /// The expression that reads the words behind the keyword: of a list one of its members, unless all stand there.
+    pub fn read_value(&self) -> syn::Result<TokenStream> {
+        if self.said.flag {
+            return Ok(quote!(true));
+        }
+        match shape(&self.ty)? {
+            Shape::Maybe(of) => {
+                let value = self.reading(of, false)?;
+                Ok(quote!(Some(#value)))
+            }
+            Shape::Many(of) if !self.said.list => self.reading(of, false),
+            _ => self.reading(&self.ty, true),
+        }
+    }
+
+    fn reading(&self, ty: &Type, open: bool) -> syn::Result<TokenStream> {
+        let what = &self.what;
+        if let Some(with) = &self.said.with {
+            return Ok(match shape(ty)? {
+                Shape::Maybe(_) if open => {
+                    quote!(if args.is_empty() || args.at_keyword() { None } else { Some(#with(args, cx)?) })
+                }
+                Shape::Many(_) if open => {
+                    let least = self.said.least;
+                    quote!({
+                        let mut all = vec![];
+                        while all.len() < #least || !(args.is_empty() || args.at_keyword()) {
+                            all.push(#with(args, cx)?);
+                        }
+                        all
+                    })
+                }
+                _ => quote!(#with(args, cx)?),
+            });
+        }
+        Ok(match shape(ty)? {
+            Shape::Maybe(of) if open => {
+                let value = self.reading(of, false)?;
+                quote!(if args.is_empty() || args.at_keyword() { None } else { Some(#value) })
+            }
+            Shape::Many(of) if open => {
+                let (value, least) = (self.reading(of, false)?, self.said.least);
+                quote!({
+                    let mut all = vec![];
+                    while all.len() < #least || args.peek().is_some_and(|w| !args.at_keyword() && <#of as Value>::begins(w)) {
+                        all.push(#value);
+                    }
+                    all
+                })
+            }
+            Shape::Placed(of) => {
+                let value = self.reading(of, false)?;
+                quote!(At::read(args, |args| Ok(#value))?)
+            }
+            Shape::Tuple(types) => {
+                let values = types.iter().map(|t| self.reading(t, false)).collect::<syn::Result<Vec<_>>>()?;
+                quote!((#(#values),*))
+            }
+            Shape::Array(of, count) => {
+                let values = vec![self.reading(of, false)?; count];
+                quote!([#(#values),*])
+            }
+            _ if self.said.positive => quote!(args.positive(#what)?),
+            _ if self.said.non_negative => quote!(args.non_negative(#what)?),
+            _ => match &self.said.from {
+                Some(least) => quote!(<#ty as Whole>::from(args, #least, #what)?),
+                None => quote!(<#ty as Value>::value(#what, args, cx)?),
+            },
+        })
+    }
+}
+
+fn shape(ty: &Type) -> syn::Result<Shape<'_>> {
+    Ok(match ty {
+        Type::Tuple(tuple) => Shape::Tuple(tuple.elems.iter().collect()),
+        Type::Array(array) => match &array.len {
+            Expr::Lit(len) if matches!(len.lit, Lit::Int(_)) => {
+                let Lit::Int(count) = &len.lit else { return wrong(ty.span(), "a number is needed") };
+                Shape::Array(&array.elem, count.base10_parse()?)
+            }
+            _ => return wrong(ty.span(), "the length of a list of words is written as a number"),
+        },
+        Type::Path(path) => {
+            let Some(last) = path.path.segments.last() else { return Ok(Shape::One) };
+            let PathArguments::AngleBracketed(of) = &last.arguments else { return Ok(Shape::One) };
+            let Some(GenericArgument::Type(of)) = of.args.first() else { return Ok(Shape::One) };
+            match last.ident.to_string().as_str() {
+                "Option" => Shape::Maybe(of),
+                "Vec" => Shape::Many(of),
+                "At" => Shape::Placed(of),
+                _ => Shape::One,
+            }
+        }
+        _ => Shape::One,
+    })
+}

@@ -1,0 +1,122 @@
+//! A struct: words in order, then keywords.
+
+use super::attributes::{Said, literals, wrong};
+use super::parts::Field;
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::{DataStruct, DeriveInput, Fields, Ident};
+
+/// The parts of both implementations.
+#[derive(Default)]
+struct Built {
+    parts: Vec<TokenStream>,
+    keywords: Vec<TokenStream>,
+    /// `let field = …;`, in the order of the line.
+    begin: Vec<TokenStream>,
+    /// `"word" => …`.
+    arms: Vec<TokenStream>,
+    /// Structs whose keywords stand here, too.
+    nested: Vec<TokenStream>,
+    fields: Vec<Ident>,
+}
+
+pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream> {
+    let ident = &input.ident;
+    let Fields::Named(fields) = &data.fields else {
+        return wrong(ident.span(), "the fields of a line of words have names");
+    };
+    let own = Said::read(&input.attrs)?;
+    let mut built = Built::default();
+    for field in &fields.named {
+        let (Some(name), said) = (&field.ident, Said::read(&field.attrs)?) else { continue };
+        built.add(name, said, &field.ty)?;
+    }
+    let Built { parts, keywords, begin, arms, nested, fields } = built;
+    let refused = literals(&own.refused);
+    Ok(quote! {
+        const _: () = {
+            use ::perigrain_styles::words::*;
+            impl Words for #ident {
+                const GRAMMAR: &'static Grammar =
+                    &Grammar { parts: &[#(#parts),*], keywords: &[#(#keywords),*], refused: #refused };
+                fn begin(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+                    #(#begin)*
+                    Ok(Self { #(#fields),* })
+                }
+                fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
+                    match word.text.as_str() {
+                        #(#arms)*
+                        _ => return Ok(false #(|| #nested)*),
+                    }
+                    #[allow(unreachable_code)]
+                    Ok(true)
+                }
+            }
+            impl Value for #ident {
+                const KIND: Kind = Kind::Words(<Self as Words>::GRAMMAR);
+                fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+                    inner(args, cx)
+                }
+            }
+        };
+    })
+}
+
+impl Built {
+    fn add(&mut self, ident: &Ident, said: Said, ty: &syn::Type) -> syn::Result<()> {
+        self.fields.push(ident.clone());
+        if said.skip {
+            self.begin.push(quote!(let #ident = Default::default();));
+            return Ok(());
+        }
+        if said.flatten {
+            self.parts.push(quote!(Part::All(<#ty as Words>::GRAMMAR)));
+            self.begin.push(quote!(let #ident = <#ty as Words>::begin(args, cx)?;));
+            self.nested.push(quote!(self.#ident.keyword(word, args, cx)?));
+            return Ok(());
+        }
+        let name = ident.to_string();
+        let name = name.trim_start_matches("r#").trim_end_matches('_');
+        let field = Field::new(said, name, ty);
+        let Some(word) = field.keyword(name) else {
+            self.parts.append(&mut field.parts()?);
+            let value = field.read()?;
+            self.begin.push(quote!(let #ident = #value;));
+            return Ok(());
+        };
+        let (values, repeats, said) = (field.values()?, field.repeats()?, &field.said);
+        let about = &said.about;
+        let shown = said.shown.clone().or_else(|| said.default.as_ref().and_then(shown)).unwrap_or_default();
+        self.keywords.push(quote! {
+            Keyword { word: #word, values: &[#(#values),*], about: #about, default: #shown, repeats: #repeats }
+        });
+        let default = match &said.default {
+            Some(value) => quote!(#value),
+            None => quote!(Default::default()),
+        };
+        self.begin.push(quote!(let #ident: #ty = #default;));
+        let value = field.read_value()?;
+        self.arms.push(match repeats {
+            true => quote!(#word => self.#ident.push(#value),),
+            false => quote!(#word => self.#ident = #value,),
+        });
+        Ok(())
+    }
+}
+
+/// A default as the manual shows it: numbers, `yes` and `no`, and choices by their names.
+fn shown(default: &syn::Expr) -> Option<String> {
+    match default {
+        syn::Expr::Lit(value) => Some(match &value.lit {
+            syn::Lit::Int(k) => k.base10_digits().to_string(),
+            syn::Lit::Float(x) => x.base10_digits().trim_end_matches(".0").to_string(),
+            syn::Lit::Bool(b) => if b.value { "yes" } else { "no" }.to_string(),
+            syn::Lit::Str(text) => text.value(),
+            _ => return None,
+        }),
+        syn::Expr::Path(path) if path.path.segments.len() > 1 => {
+            Some(path.path.segments.last()?.ident.to_string().to_lowercase())
+        }
+        _ => None,
+    }
+}
