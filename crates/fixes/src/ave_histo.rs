@@ -89,7 +89,7 @@ const KEYWORDS: &[&str] = &[
     "title3",
 ];
 
-/// Counts of this sample and of all so far, and a row of what is shown.
+/// Bytes per bin: counts of this sample, total counts, and a row of output.
 const BYTES_PER_BIN: f64 = 80.0;
 
 fn build(args: &mut Args, cx: &BuildCx, weight: bool) -> Result<Box<dyn Fix>> {
@@ -180,7 +180,7 @@ fn inputs(
     Ok((found.into_iter().map(|f| f.0).collect(), wants))
 }
 
-/// What kind of values a reference has in mode vector.
+/// The kind of values that a reference gives in mode vector.
 fn kind_of(word: &Word, kind: Option<&str>, cx: &BuildCx) -> Result<Wants> {
     let head = word.text.split('[').next().unwrap_or(&word.text);
     let shape = match ValueRef::parse(head, word.span)? {
@@ -217,7 +217,7 @@ impl Declared {
         Kept::below(Key::new(&format!("{style}/{}", self.id)))
     }
 
-    /// The values of one input at present.
+    /// The current values of one input.
     fn list(&self, w: &World, source: &Source) -> Vec<f64> {
         match source {
             Source::Reading(r) if self.wants != Wants::PerAtom => r.list(w),
@@ -229,7 +229,7 @@ impl Declared {
         }
     }
 
-    /// One sample on top of those `before` in the same average: one sum, in LAMMPS' order.
+    /// Adds one sample to those `before` in the same average: one sum, in LAMMPS' order.
     fn sample(&self, w: &World, sources: &[Source], before: Option<Vec<f64>>) -> Result<Histogram> {
         let mut h = Histogram::new(&self.bins);
         if let Some(counts) = before.filter(|b| b.len() == h.counts.len()) {
@@ -249,7 +249,7 @@ impl Declared {
         Ok(h)
     }
 
-    /// Smallest and largest value of all samples that count now; `one` are those of this sample.
+    /// Smallest and largest value over all samples of the average; `one` holds those of this sample.
     fn extremes(&self, w: &mut World, key: Numbers, one: [f64; 2], due: Due) -> [f64; 2] {
         let lammps = w.settings.lammps();
         let list = w.memo.get_or(key, Vec::new);
@@ -277,7 +277,7 @@ impl Declared {
             (*lo, *hi) = (lo.min(one[0]), hi.max(one[1]));
         }
         let [lo, hi] = fold(list);
-        // Of no value at all, as `compute reduce` has it.
+        // For no values, the same result as `compute reduce`.
         if lo > hi { [BIG, -BIG] } else { [lo, hi] }
     }
 
@@ -303,7 +303,7 @@ impl Declared {
         ]
     }
 
-    /// Centre, count and share of every bin.
+    /// Centre, count and fraction of every bin.
     fn rows(&self, counts: &[f64]) -> Vec<f64> {
         let bins = self.bins.count();
         let all = counts.get(bins).copied().unwrap_or(0.0);

@@ -48,16 +48,16 @@ impl Style for AveTime {
 /// Where averages are written.
 #[derive(Clone, Default)]
 pub struct Output {
-    /// The file and whether it goes on behind what is there.
+    /// The file, and whether output is appended to its content.
     pub file: Option<(PathBuf, bool)>,
-    /// Only the latest average stays.
+    /// Only the latest average is kept in the file.
     pub overwrite: bool,
-    /// Lines at the head, where given.
+    /// The three title lines, where given.
     pub titles: [Option<String>; 3],
 }
 
 impl Output {
-    /// Takes `file`, `append`, `overwrite` or a title with what follows; `false` for any other word.
+    /// Parses `file`, `append`, `overwrite` or a title with its argument; `false` for any other word.
     ///
     /// # Errors
     /// A missing name or title.
@@ -76,10 +76,10 @@ impl Output {
         Ok(true)
     }
 
-    /// `overwrite` goes with running averages only.
+    /// Refuses `overwrite` without running averages.
     ///
     /// # Errors
-    /// Another kind.
+    /// `overwrite` with another kind of average.
     pub fn check(&self, ave: Ave, cx: &BuildCx) -> Result<()> {
         if !self.overwrite || ave == Ave::Running {
             return Ok(());
@@ -89,7 +89,7 @@ impl Output {
             .into())
     }
 
-    /// Writes the head of the file and remembers where it ends.
+    /// Writes the header of the file and stores where it ends.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -97,10 +97,10 @@ impl Output {
         self.begin_named(w, key, defaults, None)
     }
 
-    /// As [`Output::begin`], with a line of names below the head.
+    /// As [`Output::begin`], with a line of column names below the header.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Output::begin`].
     pub fn begin_named(
         &self,
         w: &mut World,
@@ -123,7 +123,7 @@ impl Output {
         Ok(())
     }
 
-    /// The file for further averages, if there is one.
+    /// The file that further averages are written to, if any.
     pub fn sheet(&self, w: &World, key: Numbers) -> Option<Sheet> {
         let (path, _) = self.file.as_ref()?;
         let head = w.memo.get(key.with("/file")).and_then(|m| m.first()).map_or(0, |a| *a as u64);
@@ -131,7 +131,7 @@ impl Output {
     }
 }
 
-/// Takes the format of numbers: one conversion for a number with a point.
+/// Parses a number format: one conversion for a floating-point number.
 ///
 /// # Errors
 /// Any other format.
@@ -202,10 +202,10 @@ impl FixStyle for AveTime {
 const KEYWORDS: &[&str] =
     &["mode", "ave", "start", "off", "file", "append", "overwrite", "format", "title1", "title2", "title3"];
 
-/// The words up to the first that names no value.
+/// The words up to the first that is not a value.
 ///
 /// # Errors
-/// No value at all.
+/// No value.
 pub fn leading_values<'a>(args: &mut Args<'a>) -> Result<Vec<&'a perigrain_lang::Word>> {
     let mut words = vec![];
     while let Some(word) = args.peek().filter(|w| ["c_", "f_", "v_"].iter().any(|p| w.text.starts_with(p))) {
@@ -232,11 +232,11 @@ struct Declared {
     off: Vec<bool>,
     output: Output,
     format: Format,
-    /// Length of the vectors, in mode vector; open if only a run can tell.
+    /// Length of the vectors in mode vector; open if it is known only during a run.
     rows: usize,
-    /// Which values grow with the scene.
+    /// Which values are extensive.
     extensive: Vec<bool>,
-    /// What the values are, in mode vector what the rows are, where computes have names for that.
+    /// Names of the values (in mode vector, of the rows), where computes name them.
     named: Vec<Option<String>>,
 }
 
@@ -245,7 +245,7 @@ impl Declared {
         Kept::below(Key::new(&format!("ave/time/{}", self.id)))
     }
 
-    /// Adds a value.
+    /// Parses and adds one value.
     fn take(&mut self, word: &perigrain_lang::Word, wants: Wants, cx: &BuildCx) -> Result<()> {
         let Some(r) = ValueRef::parse(&word.text, word.span)? else {
             return fail(Code::WRONG_KIND, word.span, "c_ID, f_ID or v_name is expected");
@@ -273,7 +273,7 @@ impl Declared {
         Ok(())
     }
 
-    /// Takes note of what a value is, or what the rows of a vector are.
+    /// Stores the name of a value, or the names of the rows of a vector.
     fn take_names(&mut self, r: &ValueRef, cx: &BuildCx) {
         let names = if r.kind == RefKind::Compute { cx.names.elements(&r.name) } else { vec![] };
         match (self.vector, r.index.first()) {
@@ -287,7 +287,7 @@ impl Declared {
         }
     }
 
-    /// A line of names below LAMMPS' own head, for files that are read without the manual.
+    /// A line of column names below LAMMPS' header, so that a file can be read without the manual.
     fn names_line(&self) -> Option<String> {
         if self.named.iter().all(Option::is_none) {
             return None;
@@ -309,7 +309,7 @@ impl Declared {
         }
     }
 
-    /// What holds the number of chunks of which values have rows: it is held as long as rows are added up.
+    /// Keys of the chunk counts that set the number of rows; these counts stay fixed while rows are summed.
     fn windows(&self, w: &World, slots: &[SlotId]) -> Vec<Numbers> {
         let adds = self.vector && (self.schedule.repeat > 1 || self.ave != Ave::One);
         slots.iter().filter(|_| adds).filter_map(|slot| w.slots.get(*slot).chunks).collect()
@@ -337,7 +337,7 @@ impl Declared {
     }
 }
 
-/// Fills a fix's slot with averages: one number or a vector of them, one vector or an array of several.
+/// Fills a fix's slot with averages: a scalar or a vector of scalars, one vector or an array of several.
 fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vector: bool) {
     let out = w.slots.get_mut(slot);
     out.step = Some(step);

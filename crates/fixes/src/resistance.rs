@@ -1,4 +1,5 @@
-//! What fix viscous, fix viscous/sphere and fix damping/cundall share: a resistance, scaled by type or by particle.
+//! Shared by fix viscous, fix viscous/sphere and fix damping/cundall: a damping coefficient scaled by type or
+//! by particle.
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
@@ -9,7 +10,7 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::{GroupId, Particles, World};
 
-/// What a coefficient is multiplied by.
+/// Scale factor of a coefficient.
 #[derive(Clone)]
 pub enum Scale {
     /// By type − 1.
@@ -18,14 +19,14 @@ pub enum Scale {
     Each(Param),
 }
 
-/// The same during a run.
+/// The factors during a run.
 pub struct Factors {
     kinds: Vec<f64>,
     each: Option<Reading>,
 }
 
 impl Factors {
-    /// That of a particle.
+    /// The factor of a particle.
     pub fn of(&self, w: &World, i: usize) -> f64 {
         match &self.each {
             Some(reading) => reading.atom(w, i),
@@ -35,7 +36,7 @@ impl Factors {
 }
 
 impl Scale {
-    /// Reads `[scale type ratio]…`, and `scale v_name` where particles may differ (`each`).
+    /// Reads `[scale type ratio]…`, and with `each` also `scale v_name`.
     ///
     /// # Errors
     /// Every mistake in the words.
@@ -65,7 +66,7 @@ impl Scale {
         Ok(scale)
     }
 
-    /// What it is at each step.
+    /// The factors at each step.
     ///
     /// # Errors
     /// A variable that is gone.
@@ -79,24 +80,24 @@ impl Scale {
     }
 }
 
-/// A declared resistance.
+/// A declared damping.
 #[derive(Clone)]
 pub struct Resistance {
-    /// What the op is called.
+    /// Name of the op.
     pub name: String,
     group: GroupId,
     gamma: f64,
     scale: Scale,
 }
 
-/// The column that loses.
+/// The column that is damped.
 pub type Against = fn(&mut Particles) -> &mut Vec<[f64; 3]>;
 
-/// The column that it loses by.
+/// The velocities that it is damped by.
 pub type Motion = fn(&Particles) -> &[[f64; 3]];
 
 impl Resistance {
-    /// Reads `gamma [scale type ratio]…`, and `scale v_name` where particles may differ (`each`).
+    /// Reads `gamma [scale type ratio]…`, and with `each` also `scale v_name`.
     ///
     /// # Errors
     /// Every mistake in the words.
@@ -106,7 +107,7 @@ impl Resistance {
         Ok(Self { name: format!("fix {} {style}", cx.id), group: cx.group, gamma, scale })
     }
 
-    /// The op: the first column loses γ times the second.
+    /// The op: subtracts γ times the second column from the first.
     ///
     /// # Errors
     /// A variable that is gone.
