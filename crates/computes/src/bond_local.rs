@@ -54,11 +54,11 @@ enum Value {
     EngTrans,
     Omega,
     VelVib,
-    /// What only some bond styles tell, by its name.
+    /// A value that only some bond styles provide, by name.
     Extra(&'static str),
 }
 
-/// What only some bond styles tell.
+/// The values that only some bond styles provide.
 const EXTRAS: [&str; 12] =
     ["b1", "b2", "b3", "b4", "b5", "b6", "b7", "tension", "shear", "bend", "twist", "load"];
 
@@ -118,7 +118,7 @@ struct Declared {
     values: Vec<Value>,
 }
 
-/// A bond as its ends are and move.
+/// A bond with the positions and velocities of its ends.
 struct Row {
     d: Vec3,
     pull: Pull,
@@ -161,7 +161,7 @@ fn norm(a: Vec3) -> f64 {
 }
 
 impl Declared {
-    /// Where the style tells what only some do.
+    /// Indices of the style's own values among those that only some styles provide.
     fn places(&self, style: Option<&dyn BondForce>, span: Span) -> Result<Vec<usize>> {
         let (told, name) = style.map_or((&[][..], ""), |s| (s.extras(), s.name()));
         let mut places = vec![];
@@ -179,7 +179,7 @@ impl Declared {
     }
 }
 
-/// What the style says of a bond.
+/// The style's values for a bond.
 fn pull_of(style: &dyn BondForce, w: &World, bond: &Stretched, span: Span) -> Result<Pull> {
     match style.single(w, bond) {
         Some(pull) => Ok(pull),

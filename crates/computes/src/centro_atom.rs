@@ -1,4 +1,4 @@
-//! compute centro/atom: how far each particle's neighbourhood is from being the same in opposite directions.
+//! compute centro/atom: deviation of each particle's neighbourhood from inversion symmetry.
 
 use super::rdf::reach;
 use super::{Compute, ComputeStyle};
@@ -60,7 +60,7 @@ impl ComputeStyle for CentroAtom {
     }
 }
 
-/// More neighbours than this are a mistake: all pairs of them are looked at.
+/// A larger number of neighbours is refused: the cost is quadratic in it.
 const MOST: usize = 1000;
 
 #[derive(Clone)]
@@ -72,7 +72,8 @@ struct Declared {
 }
 
 impl Declared {
-    /// The parameter and, with `axes`, the three axes, from the neighbours of a particle: their places beside it, by id.
+    /// The parameter and, with `axes`, the three axes, from the neighbours of a particle: ids and relative
+    /// positions.
     fn measure(&self, mut around: Vec<(u32, Vec3)>) -> Vec<f64> {
         let columns = if self.axes { 10 } else { 1 };
         if around.len() < self.neighbours {
@@ -154,7 +155,7 @@ mod tests {
             (5, [0.0, 0.0, 3.0]),
         ];
         let row = c.measure(around.clone());
-        // By hand: 0 of the upright pair, 0.1² of the other one; the fifth is too far away.
+        // By hand: 0 from the vertical pair, 0.1² from the other; the fifth is too far away.
         assert!((row[0] - 0.01).abs() < 1e-15);
         assert_eq!(row[1..], [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         assert_eq!(c.measure(around[..3].to_vec()), [0.0; 10]);

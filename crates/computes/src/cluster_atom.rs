@@ -1,4 +1,4 @@
-//! Computes cluster/atom, fragment/atom and aggregate/atom: which particles hang together.
+//! Computes cluster/atom, fragment/atom and aggregate/atom: connected sets of particles.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -110,11 +110,11 @@ impl ComputeStyle for FragmentAtom {
 struct Declared {
     id: String,
     group: GroupId,
-    /// How close particles of a cluster are.
+    /// Distance within which particles belong to one cluster.
     cutoff: Option<f64>,
-    /// Whether bonds hold particles together.
+    /// Whether bonds connect particles.
     bonds: bool,
-    /// Whether a particle by itself has a number.
+    /// Whether a single particle counts as a fragment.
     single: bool,
 }
 

@@ -62,7 +62,7 @@ impl Compute for Declared {
                     [x * m, y * m, z * m, m]
                 });
                 let m = whole.of(m);
-                // Without a mass sums are zero, or stay as they are in LAMMPS.
+                // With zero mass the sums are zero; LAMMPS does not divide them.
                 let over = if m > 0.0 { m } else { 1.0 };
                 out.vector.clear();
                 out.vector.extend([x, y, z].map(|k| k / over));

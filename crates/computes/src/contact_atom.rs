@@ -1,4 +1,4 @@
-//! compute contact/atom: how many spheres each particle touches.
+//! compute contact/atom: number of contacts of each sphere.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
@@ -87,7 +87,7 @@ mod tests {
         let mut b = Bench::new(style, &[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.9, 0.0], [5.0; 3]]);
         b.world.particles.radius.fill(0.5);
         let c = b.compute(&ContactAtom, "").unwrap();
-        // The first two touch in one point, which counts.
+        // The first two touch at a single point, which counts as contact.
         assert_eq!(b.evaluate(&*c).unwrap().atom, [1.0, 2.0, 1.0, 0.0]);
         b.world.settings.neighbor.exclude_types.push((1, 1));
         assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0; 4]);

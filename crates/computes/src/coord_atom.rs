@@ -1,4 +1,4 @@
-//! compute coord/atom: how many neighbours each particle has.
+//! compute coord/atom: number of neighbours of each particle.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
@@ -63,7 +63,7 @@ struct Declared {
     group: GroupId,
     cutoff: f64,
     among: GroupId,
-    /// Types counted in each column, both ends included.
+    /// Range of types counted in each column, both ends included.
     types: Vec<(u16, u16)>,
 }
 

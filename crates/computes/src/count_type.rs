@@ -1,4 +1,4 @@
-//! compute count/type: how many particles or bonds of each type there are.
+//! compute count/type: number of particles or bonds of each type.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -55,7 +55,7 @@ impl ComputeStyle for CountType {
 struct Declared {
     id: String,
     group: GroupId,
-    /// Bonds are counted, not particles.
+    /// Whether bonds are counted instead of particles.
     bonds: bool,
     types: usize,
 }
@@ -69,7 +69,7 @@ impl Declared {
         }
     }
 
-    /// The numbers of bonds by type, also of those that are turned off.
+    /// The numbers of bonds by type, including bonds that are switched off.
     fn bonds(&self, w: &World, counts: &mut [f64]) {
         let (tags, mask) = (&w.particles.tag, &w.particles.mask);
         let index = Index::new(tags);

@@ -1,4 +1,4 @@
-//! compute crack: where the tip of a crack is, how long it is, how fast, in which direction, and how many arms it has.
+//! compute crack: position of a crack tip, length, speed and direction of the crack, and its number of arms.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
@@ -16,11 +16,12 @@ use perigrain_world::{GroupId, SlotId, World};
 /// The style.
 pub struct CrackTip;
 
-/// Damage of a particle beside a crack through its plane of bonds is a half less its own layer: 0.4 for a horizon of
-/// three spacings (LAMMPS' weights or none); half of that is blurred, so the default lies between.
+/// Damage of a particle beside a crack through its plane of bonds is one half less the share of its own
+/// layer: 0.4 for a horizon of three spacings (with or without LAMMPS' weights). The smeared-out zone has
+/// half of that, so the default lies between.
 const DAMAGE: f64 = 0.35;
 
-/// Cracked particles no further apart than so many spacings belong to one arm.
+/// Cracked particles belong to one arm if they are at most this many spacings apart.
 const ARM: f64 = 2.1;
 
 impl Style for CrackTip {
@@ -108,7 +109,7 @@ impl Declared {
         (0..w.n()).filter(is).map(|i| i as u32).collect()
     }
 
-    /// How many separate groups there are among the cracked particles close behind the tip.
+    /// The number of separate groups among the cracked particles close behind the tip.
     fn arms(&self, w: &World, at: &[[f64; 3]], view: &PeriView, cracked: &[u32], tip: f64) -> usize {
         let near = |i: &&u32| dot(at[**i as usize], self.along) >= tip - self.width;
         let slab: Vec<u32> = cracked.iter().filter(near).copied().collect();
@@ -122,14 +123,14 @@ impl Declared {
         names.len()
     }
 
-    /// The vector; `kept` is what stays from one evaluation to the next: time, length, speed, where the crack began.
+    /// The vector; `kept` is the state between evaluations: time, length, speed, starting point of the crack.
     fn measure(&self, w: &World, kept: &mut Vec<f64>) -> Result<Vec<f64>> {
         let Some(families) = &*w.families else { return Ok(vec![0.0; 8]) };
         let view = view(w)?;
         let at = families.reference.as_deref().unwrap_or(view.x0);
         let cracked = self.cracked(w, families);
         let ahead = |i: u32| dot(at[i as usize], self.along);
-        // The first of those equally far, which are in the order of memory: ids decide.
+        // Among equally far particles, which are in memory order, the lowest id is chosen.
         let tag = &w.particles.tag;
         let farther =
             |a: &u32, b: &u32| ahead(*a).total_cmp(&ahead(*b)).then(tag[*b as usize].cmp(&tag[*a as usize]));
@@ -156,7 +157,7 @@ impl Declared {
     }
 }
 
-/// Numbers kept between evaluations.
+/// Numbers stored between evaluations.
 const KEPT: usize = 6;
 
 impl Compute for Declared {
@@ -189,7 +190,7 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    /// A plate of 20 by 20 points one apart, bonds cut across y = 9.5 where x < `to`.
+    /// A plate of 20 by 20 points with spacing 1, bonds across y = 9.5 cut where x < `to`.
     fn cut(to: f64) -> Bench {
         let places: Vec<[f64; 3]> =
             (0..400).map(|i| [f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5, 0.0]).collect();
@@ -216,7 +217,7 @@ mod tests {
         let mut b = cut(-5.0);
         let c = b.compute(&CrackTip, "1 0 0 from -9.5 0 0").unwrap();
         let first = b.evaluate(&*c).unwrap().vector.clone();
-        // Particles beside the cut have lost 12 of 28 partners; at its end about half of these.
+        // Particles beside the cut have lost 12 of 28 partners; at its end about half as many.
         assert!((first[0] + 5.5).abs() <= 1.0 && first[1].abs() == 0.5 && first[6] == 1.0, "{first:?}");
         assert_eq!(first[4], 0.0);
         grow(&mut b, 3.0);
@@ -225,9 +226,9 @@ mod tests {
         let before = b.world.clock.time();
         let then = b.evaluate(&*c).unwrap().vector.clone();
         assert!((then[0] - first[0] - 8.0).abs() < 1e-12 && then[7] > first[7]);
-        // The straight distances from the same point, over the time between.
+        // The straight distances from the same point, divided by the time between.
         assert!((then[4] - (then[3] - first[3]) / before).abs() < 1e-12 && then[5] < 5.0, "{then:?}");
-        // Asked again at the same time the speed stays.
+        // A second evaluation at the same time keeps the speed.
         assert_eq!(b.evaluate(&*c).unwrap().vector, then);
     }
 

@@ -1,4 +1,4 @@
-//! compute damage/atom: the share of each particle's family that it has lost.
+//! compute damage/atom: the fraction of each particle's family volume that it has lost.
 
 use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
@@ -61,7 +61,7 @@ mod tests {
         let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
         let view = PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds, excluded: None };
         let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
-        // Only 1-2 and 1-3 are within 1.2; without particle 2 they end: 2 of 8 volumes lost.
+        // Only 1-2 and 1-3 are within 1.2; the bonds of particle 2 end with it: 2 of 8 volumes lost.
         families.remap(&[Some(0), None, Some(1)]);
         b.world.particles.gather(&[0, 2]);
         b.world.families = Some(families).into();

@@ -1,4 +1,4 @@
-//! compute displace/atom: how far each particle has come since the compute was declared.
+//! compute displace/atom: displacement of each particle since the compute was declared.
 
 use super::origin::Origin;
 use super::{Compute, ComputeStyle};
@@ -132,7 +132,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[9.0, 0.0, 0.0], [1.0; 3]]);
         let c = b.compute(&DisplaceAtom, "").unwrap();
         c.declare(&mut b.world).unwrap();
-        // Through the periodic face of a box 20 wide: 2 along x, 1 along z.
+        // Across the periodic face of a box of width 20: 2 along x, 1 along z.
         b.world.particles.x[0] = [-9.0, 0.0, 1.0];
         b.world.particles.image[0] = [1, 0, 0];
         b.world.particles.mask[1] = 0;

@@ -1,4 +1,4 @@
-//! compute energy/ledger: where the energy of a scene is and where it goes.
+//! compute energy/ledger: energy balance of the system, by form and by source.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};

@@ -39,7 +39,7 @@ impl ComputeStyle for ErotateSphere {
     }
 }
 
-/// Refuses a compute of spheres where particles have no radius.
+/// Refuses a compute of spheres for particles without a radius.
 pub(super) fn needs_spheres(name: &str, cx: &BuildCx) -> Result<()> {
     if cx.world.particles.style.sphere {
         return Ok(());

@@ -1,4 +1,4 @@
-//! compute fabric: tensors of how contacts are arranged and what they carry.
+//! compute fabric: tensors of contact orientations and contact forces.
 
 use super::pair_local::{answering, of_group, touches};
 use super::{Compute, ComputeStyle};
@@ -87,7 +87,7 @@ impl ComputeStyle for Fabric {
     }
 }
 
-/// `1,3*4`: which types (index type − 1) are meant.
+/// `1,3*4`: the selected types (index type − 1).
 fn type_list(word: &Word, types: usize) -> Result<Vec<bool>> {
     let mut chosen = vec![false; types];
     for part in word.text.split(',') {
@@ -113,7 +113,7 @@ struct Declared {
     group: GroupId,
     touching: bool,
     tensors: Vec<Tensor>,
-    /// Types of the two ends; any where nothing is said.
+    /// Selected types of the two ends; all if none is given.
     included: Vec<[Vec<bool>; 2]>,
 }
 
@@ -201,7 +201,7 @@ fn vector(tensors: &[Tensor], pairs: &[Interaction]) -> Vec<f64> {
     tensors.iter().flat_map(one).collect()
 }
 
-/// ⟨a n n⟩ over all pairs; zero without any.
+/// ⟨a n n⟩ over all pairs; zero without pairs.
 fn mean(pairs: &[Interaction], a: impl Fn(&Interaction, [f64; 3]) -> f64) -> Symmetric {
     let mut sum = [0.0; 6];
     for p in pairs {

@@ -1,4 +1,4 @@
-//! Computes of one number that peridynamic families know of each particle.
+//! Computes with one value per particle from peridynamic families.
 
 use super::Compute;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -10,26 +10,26 @@ use perigrain_styles::{BuildCx, SealCx, Shape};
 use perigrain_world::field::Fields;
 use perigrain_world::{GroupId, SlotId, World};
 
-/// What the families of a world know of the particle of an index, after they have been looked at.
+/// Returns the function from particle index to value, for the current families.
 type Value = for<'a> fn(&'a World, &'a Families) -> Box<dyn Fn(usize) -> f64 + Sync + 'a>;
 
-/// A value that families of some pair styles know.
+/// A value that families of some pair styles provide.
 #[derive(Clone, Copy)]
 pub(super) struct Known {
-    /// The compute's name.
+    /// Name of the compute.
     pub name: &'static str,
-    /// The pair styles that know it. `bond_style bpm/peri` knows whatever its laws know.
+    /// The pair styles that provide it. `bond_style bpm/peri` provides the values of its laws.
     pub by: &'static [&'static str],
-    /// What it reads.
+    /// Fields it reads.
     pub reads: Fields,
     /// The value.
     pub value: Value,
 }
 
-/// The compute of this value: 0 before the first run and outside the group. It takes no further words.
+/// The compute of this value: 0 before the first run and outside the group. It has no arguments.
 ///
 /// # Errors
-/// Further words; a scene without peridynamic particles.
+/// Extra arguments; a system without peridynamic particles.
 pub(super) fn of_families(known: Known, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
     args.finish()?;
     super::need_bonds(known.name, cx)?;
@@ -45,7 +45,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// Refuses scenes in which nobody knows the value, so that no zeros are taken for it.
+    /// Refuses systems in which no style provides the value, so that it is not mistaken for zero.
     fn is_known(&self, cx: &dyn SealCx) -> Result<()> {
         let Known { name, by, .. } = self.known;
         let bonds = cx.bonds().is_some_and(|b| b.name() == "bpm/peri");

@@ -1,4 +1,4 @@
-//! compute fragments: the pieces of a body that bonds hold together, what has been eroded from it, and how fast it flies.
+//! compute fragments: pieces of a body that are connected by bonds, their velocities, and the mass eroded.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -85,7 +85,7 @@ struct Declared {
     id: String,
     group: GroupId,
     least: usize,
-    /// From which damage on a particle holds nothing together.
+    /// Damage from which on a particle connects nothing.
     damage: Option<f64>,
 }
 
@@ -154,12 +154,12 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     list
 }
 
-/// The volume of a sphere; none of a point.
+/// The volume of a sphere; 0 for a point.
 fn sphere(radius: Option<&f64>) -> f64 {
     radius.map_or(0.0, |r| 4.0 / 3.0 * PI * r.powi(3))
 }
 
-/// The global vector.
+/// The global vector: the spectrum of pieces.
 fn spectrum(list: &[Piece], least: usize) -> Vec<f64> {
     let (body, rest) = list.split_at(list.len().min(1));
     let large = |p: &&Piece| p.count >= least;
@@ -233,7 +233,8 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::{AtomStyle, Bond};
 
-    /// Six points in a row, one apart, of mass 2 and volume 3, bonds to the next one only; cut after the third and fifth.
+    /// Six points in a row with spacing 1, mass 2 and volume 3, bonds to the next one only; cut after the
+    /// third and fifth.
     fn row() -> Bench {
         let places: Vec<[f64; 3]> = (0..6).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
@@ -263,13 +264,13 @@ mod tests {
         assert_eq!(slot.array[11..], [4.0, 2.0, 4.0, 6.0, 3.5, 0.0, 0.0, 0.0, 1.0, 0.0, 4.0]);
         let c = b.compute(&Fragments, "least 1").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [3.0, 6.0, 6.0, 0.0]);
-        // Those beside the cuts have lost a half, and the last one all.
+        // Those beside the cuts have lost one half, the last one all.
         let c = b.compute(&Fragments, "damage 0.5").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [1.0, 4.0, 0.0, 8.0]);
         let c = b.compute(&Fragments, "damage 0.6").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [2.0, 6.0, 4.0, 2.0]);
         let c = b.compute(&Fragments, "least 1").unwrap();
-        // Densities in the place of masses: volume makes masses of them.
+        // Densities instead of masses: the volume converts them.
         b.world.families.as_mut().unwrap().options.unit = ForceUnit::Density;
         assert_eq!(b.evaluate(&*c).unwrap().vector[1], 18.0);
         b.world.particles.mask.fill(0);

@@ -1,4 +1,4 @@
-//! compute global/atom: gives each particle an element of a global vector.
+//! compute global/atom: assigns each particle an element of a global vector.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -30,7 +30,7 @@ impl Style for GlobalAtom {
     }
 }
 
-/// A reference that a run can read.
+/// A reference that can be read during a run.
 fn reference(word: &Word) -> Result<ValueRef> {
     let known = |r: &ValueRef| !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
     match ValueRef::parse(&word.text, word.span)?.filter(known) {
@@ -83,7 +83,7 @@ impl Compute for Declared {
             out.cols = lists.len();
             out.atom.clear();
             for i in 0..w.n() {
-                // A negative or missing index becomes 0 in the cast and then points nowhere.
+                // A negative or missing index becomes 0 in the cast, which is out of range.
                 let k = (index.atom(w, i) as usize)
                     .checked_sub(1)
                     .filter(|_| w.particles.mask[i] & group.bit() != 0);

@@ -37,7 +37,7 @@ impl Style for GroupGroup {
     }
 }
 
-/// Which pairs count by their molecules.
+/// Selection of pairs by molecule.
 #[derive(Clone, Copy, PartialEq)]
 enum Molecules {
     Any,

@@ -97,7 +97,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[1.0, 1.0, 0.0], [3.0, -1.0, 0.0]]);
         let c = b.compute(&Gyration, "").unwrap();
         let slot = b.evaluate(&*c).unwrap();
-        // By hand: both ends are (1, -1, 0) from the middle.
+        // By hand: both ends are at (1, -1, 0) from the middle.
         assert_eq!(slot.vector, [1.0, 1.0, 0.0, -1.0, 0.0, 0.0]);
         assert_eq!(slot.scalar, 2f64.sqrt());
         b.world.particles.mask.fill(0);

@@ -1,4 +1,4 @@
-//! compute ke: kinetic energy of translation.
+//! compute ke: translational kinetic energy.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;

@@ -1,8 +1,9 @@
-//! Computes: quantities read from the world, never changing it; one file each, one line each in [`COMPUTES`].
+//! Computes: quantities that are read from the world without changing it; one file each, one line each in
+//! [`COMPUTES`].
 //!
-//! They know no fix: what fixes leave for them stands in the world.
+//! This crate does not depend on `fixes`: data of fixes is read from the world.
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod bond_local;
@@ -140,7 +141,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &vacf::Vacf,
 ];
 
-/// Which terms of the potential energy count.
+/// Selected terms of the potential energy.
 #[derive(Clone, Copy)]
 struct Terms {
     pair: bool,
@@ -148,7 +149,7 @@ struct Terms {
     fix: bool,
 }
 
-/// Refuses what needs radii where particles have none.
+/// Refuses computes that need radii for particles without any.
 fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
     if cx.world.particles.style.sphere {
         return Ok(());
@@ -158,7 +159,7 @@ fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
         .into())
 }
 
-/// Refuses what needs families where particles cannot have any.
+/// Refuses computes that need families for particles that cannot have any.
 fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
     let w = cx.world;
     if w.particles.style.peri || (w.particles.style.bonded && w.columns.property(*VOLUME_PROPERTY).is_some())
@@ -174,7 +175,8 @@ fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
     .into())
 }
 
-/// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are known and contribute nothing.
+/// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are accepted and contribute
+/// nothing.
 fn energy_terms(args: &mut Args) -> Result<Terms> {
     let all = args.is_empty();
     let mut terms = Terms { pair: all, bond: all, fix: all };

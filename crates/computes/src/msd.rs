@@ -59,7 +59,7 @@ struct Declared {
     average: bool,
 }
 
-/// The centre of mass of a group, 0 where it has no mass.
+/// The centre of mass of a group, 0 if it has no mass.
 fn center(w: &World, group: GroupId) -> [f64; 3] {
     let masses = Masses::of(w);
     let [x, y, z, m] = sum(w, group, |i| {
@@ -74,7 +74,7 @@ impl Declared {
         if self.com { center(w, self.group) } else { [0.0; 3] }
     }
 
-    /// How often a mean of places has been taken, by the world's memory.
+    /// Key of the number of samples in the mean positions.
     fn key(&self) -> Numbers {
         Key::new(&format!("compute {} uses", self.id))
     }
@@ -147,7 +147,7 @@ impl Compute for Declared {
             },
         );
         let op = op.when(when.clone()).in_setup(true);
-        // Means over time are kept for all particles.
+        // Running means are kept for all particles.
         Ok(if self.average { op.boxed() } else { op.summing().boxed() })
     }
 }
@@ -166,7 +166,7 @@ mod tests {
         b.evaluate(&*c).unwrap().vector.clone()
     }
 
-    // By hand: squares 4 along x and 16 along z; the centre moves by (1, 0, 2); the mean place is half way.
+    // By hand: squares 4 along x and 16 along z; the centre moves by (1, 0, 2); the mean position is halfway.
     #[test]
     fn plain_without_drift_and_from_the_mean() {
         assert_eq!(means(""), [2.0, 0.0, 8.0, 10.0]);

@@ -1,4 +1,4 @@
-//! compute nbond/atom: how many bonds each particle has.
+//! compute nbond/atom: number of bonds of each particle.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -55,7 +55,7 @@ impl ComputeStyle for NbondAtom {
 struct Declared {
     id: String,
     group: GroupId,
-    /// The type of bonds that count, if not all do.
+    /// The bond type counted; `None` for all.
     kind: Option<i32>,
 }
 

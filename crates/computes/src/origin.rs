@@ -1,4 +1,4 @@
-//! Where particles were when a compute was declared: a column that follows them.
+//! Positions of particles at the time a compute was declared: a per-particle column.
 
 use perigrain_styles::matter::unwrapped;
 use perigrain_world::{Key, Numbers, Vectors, World};
@@ -6,26 +6,26 @@ use perigrain_world::{Key, Numbers, Vectors, World};
 /// The columns of a compute.
 #[derive(Clone, Copy)]
 pub struct Origin {
-    /// The places.
+    /// The positions.
     pub places: Vectors,
-    /// Whose place is known.
+    /// Flag of particles whose position is stored.
     known: Numbers,
 }
 
 impl Origin {
-    /// Those of the compute of this ID.
+    /// The columns of the compute with this ID.
     pub fn of(id: &str) -> Self {
         let key = |what| format!("compute {id} {what}");
         Self { places: Key::new(&key("origin")), known: Key::new(&key("known")) }
     }
 
-    /// Captures the present unwrapped place of every particle, less `shift`.
+    /// Stores the current unwrapped position of every particle, less `shift`.
     pub fn capture(self, w: &mut World, shift: [f64; 3]) {
         self.forget(w);
         self.welcome(w, shift);
     }
 
-    /// Captures the place of every particle that has none yet.
+    /// Stores the position of every particle that has none yet.
     pub fn welcome(self, w: &mut World, shift: [f64; 3]) {
         let n = w.n();
         w.columns.resize(n);
@@ -42,7 +42,7 @@ impl Origin {
         }
     }
 
-    /// Gives the columns up.
+    /// Deletes the columns.
     pub fn forget(self, w: &mut World) {
         w.columns.remove(self.places);
         w.columns.remove(self.known);

@@ -1,4 +1,4 @@
-//! compute pair/local: distance, energy and forces of every pair of particles that acts.
+//! compute pair/local: distance, energy and forces of every interacting pair of particles.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -48,7 +48,7 @@ impl Style for PairLocal {
     }
 }
 
-/// What a column shows.
+/// Value of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Value {
     Distance,
@@ -65,7 +65,7 @@ impl Value {
             Value::Distance => p.distance(),
             Value::Along(k) => p.d[k],
             Value::Energy => p.energy,
-            // What does not touch has the force 0, not −0.
+            // Pairs that do not touch have force 0, not −0.
             Value::Force => p.central() + 0.0,
             Value::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
             Value::Own(k) => p.own[k],
@@ -135,7 +135,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// Checks that some style knows as many numbers of its own as are asked for.
+    /// Checks that some style provides as many values of its own as are requested.
     fn check(&self, probes: &[Box<dyn Probe>], cx: &dyn SealCx) -> Result<()> {
         let most = probes.iter().map(|p| p.own()).max().unwrap_or(0);
         let asked = self.values.iter().filter_map(|v| if let Value::Own(k) = v { Some(k + 1) } else { None });
@@ -191,7 +191,7 @@ impl Compute for Declared {
     }
 }
 
-/// The pair styles that can be asked about single pairs.
+/// The pair styles that can evaluate single pairs.
 ///
 /// # Errors
 /// There is none.
@@ -206,7 +206,7 @@ pub(super) fn answering(id: &str, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Pro
         .into())
 }
 
-/// Whether both ends belong to a group.
+/// Whether both ends belong to the group.
 pub(super) fn of_group(w: &World, group: GroupId, p: &Interaction) -> bool {
     [p.i, p.j].iter().all(|&i| w.particles.mask[i as usize] & group.bit() != 0)
 }

@@ -86,7 +86,7 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    // Energies are in tests/scripts/good/peri_measures.in.
+    // The energies are tested in tests/scripts/good/peri_measures.in.
     #[test]
     fn nothing_before_the_first_run_and_refused_without_bonds() {
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[0.0; 3]; 2]);

@@ -1,4 +1,4 @@
-//! Computes peri/defgrad/atom, peri/strain/atom and peri/stress/atom: how peridynamic families are deformed.
+//! Computes peri/defgrad/atom, peri/strain/atom and peri/stress/atom: deformation of peridynamic families.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
@@ -112,7 +112,7 @@ impl ComputeStyle for CauchyAtom {
     }
 }
 
-/// The solid of `material ID`.
+/// The material given by `material ID`.
 fn of_material(args: &mut Args, cx: &BuildCx) -> Result<Elastic> {
     let id = args.expect("the material's ID")?;
     let Some(m) = cx.world.materials.get(&id.text) else {
@@ -153,16 +153,16 @@ fn declared(measure: Measure, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn C
     Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, measure, torn }))
 }
 
-/// What is said of families that are mechanisms.
+/// Output for families with too few bonds to define a deformation gradient.
 #[derive(Clone, Copy)]
 struct Torn {
-    /// The broken share beyond which families are.
+    /// The broken fraction above which a family is treated this way.
     most: f64,
-    /// What stands in all columns.
+    /// The value written to all columns.
     value: f64,
 }
 
-/// What is made of a deformation gradient.
+/// The quantity computed from a deformation gradient.
 #[derive(Clone, Copy)]
 enum Measure {
     Gradient,
@@ -257,7 +257,8 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    // Closed forms are in laws::peri::kinematics, decks in tests/scripts/good/peri_measures.in.
+    // The closed forms are tested in laws::peri::kinematics, the decks in
+    // tests/scripts/good/peri_measures.in.
     #[test]
     fn nothing_before_the_first_run_and_mistakes() {
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[0.0; 3]; 2]);

@@ -1,4 +1,4 @@
-//! compute plasticity/atom: how much each particle of an elastic, perfectly plastic body has flowed.
+//! compute plasticity/atom: plastic flow of each particle of an elastic, perfectly plastic body.
 
 use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};

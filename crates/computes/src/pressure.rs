@@ -1,4 +1,4 @@
-//! compute pressure: pressure and its tensor from kinetic energy and virial.
+//! compute pressure: pressure and pressure tensor from kinetic energy and virial.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -46,8 +46,8 @@ impl ComputeStyle for Pressure {
     }
 }
 
-/// The terms of a pressure or stress that a line names, or all where it names none: the kinetic one and the parts of the
-/// virial. Those that no style has are known and contribute nothing.
+/// The terms of a pressure or stress that a line names, or all if it names none: the kinetic term and the
+/// parts of the virial. Parts that no style has are accepted and contribute nothing.
 ///
 /// # Errors
 /// Other words.
@@ -71,7 +71,7 @@ pub(super) fn terms(who: &str, args: &mut Args) -> Result<(bool, Parts)> {
     Ok((ke, parts))
 }
 
-/// The temperature compute that a word names.
+/// The temperature compute named by a word.
 ///
 /// # Errors
 /// `NULL`, unknown names and other computes.
@@ -87,7 +87,7 @@ pub(super) fn temperature(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
     }
     let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
     cx.value(&r, false)?;
-    // A pressure has six components, too.
+    // A pressure also has six components.
     let other = cx.names.compute_style(&r.name).is_some_and(|s| !s.starts_with("temp"));
     match cx.names.compute(&r.name) {
         Some(s) if s.vector != 6 || other => {
@@ -104,19 +104,19 @@ struct Declared {
     parts: Parts,
 }
 
-/// Which parts of the virial count.
+/// Selected parts of the virial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts {
-    /// Of all pairs.
+    /// Pairs.
     pub pair: bool,
-    /// Of all bonds.
+    /// Bonds.
     pub bond: bool,
-    /// Of fixes.
+    /// Fixes.
     pub fix: bool,
 }
 
 impl Parts {
-    /// Whether some part counts.
+    /// Whether any part is selected.
     pub fn any(self) -> bool {
         self.pair || self.bond || self.fix
     }
@@ -182,7 +182,7 @@ fn virial(w: &World, step: i64, parts: Parts) -> Result<[f64; 6]> {
     }
 }
 
-/// dof k_B T and Σ m v_a v_b of a temperature's slot.
+/// dof k_B T and Σ m v_a v_b from a temperature's slot.
 fn kinetic_part(w: &World, reading: &Reading, r: &ValueRef) -> Result<(f64, [f64; 6])> {
     if let Reading::Scalar(slot) = reading {
         let slot = w.slots.get(*slot);

@@ -1,4 +1,4 @@
-//! compute property/atom: the particles' own attributes as values.
+//! compute property/atom: attributes of particles as per-atom values.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
@@ -46,7 +46,7 @@ impl Style for PropertyAtom {
     }
 }
 
-/// Which columns an attribute needs.
+/// What a particle needs to have an attribute.
 #[derive(Clone, Copy, PartialEq)]
 enum Needs {
     Nothing,
@@ -81,25 +81,25 @@ type Read = fn(&World, usize) -> f64;
 /// Reads an attribute of a particle.
 #[derive(Clone)]
 pub enum Getter {
-    /// One that particles have by themselves.
+    /// Computed per particle.
     Own(Read),
-    /// One that is found for all particles together.
+    /// Computed for all particles at once.
     Whole(fn(&World) -> Vec<f64>),
     /// A column of fix property/atom.
     Column(Numbers),
 }
 
 impl Getter {
-    /// What it reads now that a run begins: the fix of a property may have gone.
+    /// The getter for a run that begins: the fix of a property may have been deleted.
     ///
     /// # Errors
-    /// Nobody has the property any more.
+    /// No fix has the property any more.
     pub fn present(&self, w: &World, span: Span) -> Result<Self> {
         let Getter::Column(full) = self else { return Ok(self.clone()) };
         w.columns.present(*full).map(Getter::Column).ok_or_else(|| gone(full.text(), span).into())
     }
 
-    /// What reads the present values.
+    /// The current values.
     pub fn now<'w>(&self, w: &'w World) -> Values<'w> {
         match self {
             Getter::Own(read) => Values::Own(w, *read),
@@ -111,11 +111,11 @@ impl Getter {
     }
 }
 
-/// The values of an attribute at a moment.
+/// Values of an attribute at one time.
 pub enum Values<'w> {
-    /// Read one by one.
+    /// Computed on access.
     Own(&'w World, Read),
-    /// All known.
+    /// Computed in advance.
     Found(Cow<'w, [f64]>),
 }
 
@@ -129,7 +129,7 @@ impl Values<'_> {
     }
 }
 
-/// Name, needs and value of every attribute.
+/// Name, requirement and value of every attribute.
 const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
     ("id", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.tag[i]))),
     ("type", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.kind[i]))),
@@ -188,7 +188,7 @@ const ELSEWHERE: &[&str] = &[
     "erforce", "rho", "drho", "e", "de", "cv", "buckling",
 ];
 
-/// The refusal of a property of fix property/atom that somebody reads and nobody has.
+/// The error for a property of fix property/atom that is read but not defined.
 pub fn gone(full: &str, span: Span) -> Diagnostic {
     let key = full.splitn(4, '/').nth(3).unwrap_or(full);
     let name = key.split('/').next().unwrap_or(key);
@@ -196,7 +196,7 @@ pub fn gone(full: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::INCOMPLETE, span, text).help("leave out the `unfix`, or what reads the property")
 }
 
-/// How strained the bonds of a particle are under `bond_style bpm/peri`.
+/// The strain of a particle's bonds under `bond_style bpm/peri`.
 fn strain(w: &World, i: usize) -> Option<Strain> {
     let families = w.families.as_ref().filter(|f| !f.of_bonds.is_empty())?;
     families.strain(&view(w).ok()?, i)
@@ -211,14 +211,14 @@ fn critical(w: &World) -> Vec<f64> {
     (0..w.n()).map(|i| families.strain(&view, i).map_or(0.0, |s| s.critical)).collect()
 }
 
-/// The factors of each particle that `set … peri/strength` (0) or `peri/stiffness` (1) has given.
+/// The per-particle factors set by `set … peri/strength` (0) or `peri/stiffness` (1).
 fn bond_factors(w: &World, which: usize) -> Vec<f64> {
     let said = w.columns.get_scalar(*BOND_FACTORS[which]).unwrap_or_default();
     let of = |i: usize| said.get(i).copied().filter(|f| *f > 0.0).unwrap_or(1.0);
     (0..w.n()).map(of).collect()
 }
 
-/// How many bonds are listed with each particle.
+/// Number of bonds stored with each particle.
 fn bonds_of(w: &World) -> Vec<f64> {
     let tags = &w.particles.tag;
     let (index, mut counts) = (Index::new(tags), vec![0.0; w.n()]);
@@ -251,7 +251,7 @@ impl ComputeStyle for PropertyAtom {
     }
 }
 
-/// The fields of an attribute that few particles have.
+/// The fields of an attribute that few particle styles have.
 fn reads_of(name: &str) -> Fields {
     match name {
         "quatw" | "quati" | "quatj" | "quatk" => QUAT,
@@ -261,12 +261,12 @@ fn reads_of(name: &str) -> Fields {
     }
 }
 
-/// The attribute's own name, if there is one.
+/// The attribute's static name, if there is one.
 pub fn find_attribute(name: &str) -> Option<&'static str> {
     ATTRIBUTES.iter().map(|a| a.0).find(|a| *a == name)
 }
 
-/// What reads the attribute that a word names.
+/// The getter of the attribute that a word names.
 ///
 /// # Errors
 /// Unknown attributes, and those that these particles do not have.
@@ -327,7 +327,7 @@ struct Declared {
     group: GroupId,
     span: Span,
     getters: Vec<Getter>,
-    /// Some attribute is of orientations.
+    /// Fields read by attributes of orientation.
     reads: Fields,
 }
 
@@ -394,7 +394,7 @@ mod tests {
         let c = b.compute(&PropertyAtom, "id xs ys zs xu zu iz mass diameter vfrac").unwrap();
         let slot = b.evaluate(&*c).unwrap();
         assert_eq!(slot.cols, 10);
-        // The box reaches from -10 to 10; mass 2 and radius 0.5 are the bench's.
+        // The box reaches from -10 to 10; the bench sets mass 2 and radius 0.5.
         assert_eq!(slot.atom[..10], [1.0, 0.55, 0.75, 0.0, 21.0, -30.0, -1.0, 2.0, 1.0, 0.125]);
         assert_eq!(slot.atom[10..], [0.0; 10]);
     }

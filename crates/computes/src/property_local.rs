@@ -1,4 +1,4 @@
-//! compute property/local: which particles touch, and which are bonded.
+//! compute property/local: ids and types of particles in contact and of bonded particles.
 
 use super::pair_local::{answering, of_group};
 use super::{Compute, ComputeStyle};
@@ -46,9 +46,9 @@ impl Style for PropertyLocal {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Of {
-    /// Pairs of pair/local.
+    /// Pairs as in pair/local.
     Contact,
-    /// Pairs of neighbour lists.
+    /// Pairs in neighbour lists.
     List,
     Bond,
 }

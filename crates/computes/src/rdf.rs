@@ -59,10 +59,10 @@ impl ComputeStyle for Rdf {
     }
 }
 
-/// Counts and rows of one pair of types, here and where they are shown.
+/// Bytes per bin and pair of types: counts and output rows.
 const BYTES_PER_BIN: f64 = 80.0;
 
-/// More bins than this are a mistake.
+/// A larger number of bins is refused.
 const MOST: usize = 10_000_000;
 
 #[derive(Clone)]
@@ -70,15 +70,15 @@ struct Declared {
     id: String,
     group: GroupId,
     bins: usize,
-    /// Types of the particle in the middle and of those around it, both ends included.
+    /// Types of the central particle and of those around it, both ends included.
     pairs: Vec<[(u16, u16); 2]>,
     cutoff: Option<f64>,
 }
 
-/// The distance up to which neighbours are meant: as given, or the cutoff of forces.
+/// The neighbour distance: as given, or the force cutoff.
 ///
 /// # Errors
-/// There is neither, and a cutoff that is too long for a periodic box.
+/// Neither is there, or the cutoff is too long for a periodic box.
 pub(super) fn reach(id: &str, given: Option<f64>, at: Span, cx: &mut dyn SealCx) -> Result<f64> {
     let Some(cutoff) = given.or_else(|| cx.cutoff()).filter(|c| *c > 0.0) else {
         let text = format!("compute {id}: this scene has no pair style with a cutoff");
@@ -91,7 +91,7 @@ pub(super) fn reach(id: &str, given: Option<f64>, at: Span, cx: &mut dyn SealCx)
 }
 
 impl Declared {
-    /// Numbers of pairs by bin, a row for each pair of types.
+    /// Number of pairs by bin, one row per pair of types.
     fn counted(&self, w: &World, cutoff: f64) -> Vec<f64> {
         let (p, period) = (&w.particles, w.periods());
         let of = |i: usize| p.mask[i] & self.group.bit() != 0;
@@ -113,7 +113,7 @@ impl Declared {
         counts
     }
 
-    /// How many particles are in the middle, around, and both.
+    /// Number of central particles, of surrounding ones, and of particles that are both.
     fn numbers(&self, w: &World, [middle, around]: [(u16, u16); 2]) -> [f64; 3] {
         let (p, mut n) = (&w.particles, [0.0; 3]);
         for i in (0..w.n()).filter(|&i| p.mask[i] & self.group.bit() != 0) {
@@ -140,7 +140,7 @@ impl Declared {
         (0..self.bins).for_each(|k| rows[k * columns] = (k as f64 + 0.5) * width);
         for (m, pair) in self.pairs.iter().enumerate() {
             let [middle, around, both] = self.numbers(w, *pair);
-            // Nobody is around itself.
+            // A particle is not its own neighbour.
             let others = if middle > 0.0 { around - both / middle } else { 0.0 };
             let mut nearer = 0.0;
             for k in 0..self.bins {
@@ -192,7 +192,8 @@ mod tests {
         b.world.particles.kind[2] = 2;
         let c = b.compute(&Rdf, "2 1 2 * * cutoff 1.6").unwrap();
         let rows = b.evaluate(&*c).unwrap().array.clone();
-        // The second shell, 0.8 to 1.6: of type 1 there are two, of which one has the particle of type 2 at 1.0, the other at √2.
+        // The second shell, 0.8 to 1.6: there are two of type 1; for one the particle of type 2 is at 1.0,
+        // for the other at √2.
         let even = 4.0 / 3.0 * PI * (1.6f64.powi(3) - 0.8f64.powi(3)) / 8000.0;
         assert!((rows[0] - 0.4).abs() < 1e-15 && (rows[5] - 1.2).abs() < 1e-15 && rows[1] == 0.0);
         assert!((rows[6] - 1.0 / even).abs() < 1e-9 / even && (rows[7] - 1.0).abs() < 1e-12);

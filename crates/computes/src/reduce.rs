@@ -1,4 +1,4 @@
-//! Computes reduce and reduce/region: one number from one value per particle: a sum, an extreme, a mean.
+//! Computes reduce and reduce/region: a sum, an extreme or a mean of per-particle values.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -39,7 +39,7 @@ impl Style for Reduce {
     }
 }
 
-/// What is done with the values.
+/// The reduction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     Sum,
@@ -57,7 +57,7 @@ enum Mode {
 const MODES: &[&str] =
     &["sum", "min", "max", "ave", "sumsq", "avesq", "sumabs", "aveabs", "minabs", "maxabs"];
 
-/// What LAMMPS says of the extreme of nothing.
+/// LAMMPS' extreme of an empty set.
 pub const BIG: f64 = 1e20;
 
 impl Mode {
@@ -67,7 +67,7 @@ impl Mode {
         all[MODES.iter().position(|m| *m == name).unwrap_or(0)]
     }
 
-    /// What one value contributes.
+    /// The contribution of one value.
     fn term(self, a: f64) -> f64 {
         match self {
             Mode::SumSquares | Mode::AveSquares => a * a,
@@ -76,7 +76,7 @@ impl Mode {
         }
     }
 
-    /// The result of no values, and how two are joined.
+    /// The neutral element, and the operation on two values.
     fn fold(self) -> (f64, fn(f64, f64) -> f64) {
         match self {
             Mode::Min | Mode::MinAbs => (f64::INFINITY, f64::min),
@@ -90,7 +90,7 @@ impl Mode {
         matches!(self, Mode::Sum | Mode::SumSquares | Mode::SumAbs)
     }
 
-    /// The result from what all values together gave and their number.
+    /// The result from the folded value and the number of values.
     fn finish(self, folded: f64, count: usize, artefact: Artefact) -> f64 {
         match self {
             Mode::MinAbs if artefact.lammps => BIG,
@@ -103,10 +103,10 @@ impl Mode {
     }
 }
 
-/// What decides whether LAMMPS 22Jul2025 goes wrong.
+/// Conditions for the wrong results of LAMMPS 22Jul2025.
 #[derive(Clone, Copy)]
 struct Artefact {
-    /// Its numbers are wanted.
+    /// LAMMPS' numbers are requested.
     lammps: bool,
     /// There are several inputs.
     several: bool,
@@ -117,7 +117,7 @@ struct Artefact {
 enum Input {
     /// Component (0 to 2) of position, velocity or force.
     Column(Column, usize),
-    /// A compute's, fix's or variable's.
+    /// Value of a compute, fix or variable.
     Value(ValueRef),
 }
 
@@ -177,7 +177,7 @@ fn split<'a>(args: &mut Args<'a>) -> Vec<&'a Word> {
     words
 }
 
-/// `replace i j`, counted from 0.
+/// `replace i j`, returned with indices from 0.
 fn read_replace(mode: Mode, inputs: usize, args: &mut Args) -> Result<[usize; 2]> {
     let span = args.here();
     let mut pair = [0; 2];
@@ -239,7 +239,7 @@ struct Declared {
     mode: Mode,
     inputs: Vec<Input>,
     local: bool,
-    /// Which result is replaced, and where whose extreme is.
+    /// Pairs: the result replaced, and the input whose extreme selects the particle.
     replace: Vec<[usize; 2]>,
 }
 
@@ -247,7 +247,7 @@ impl Declared {
     fn read(region: Option<String>, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let mode = Mode::named(args.choice("mode of compute reduce", MODES)?);
         let words = split(args);
-        // `inputs` decides how the words before it are read.
+        // `inputs` determines how the words before it are read.
         let kind = (0..args.len()).find(|k| args.peek_at(*k).is_some_and(|w| w.text == "inputs"));
         let kind = kind.and_then(|k| args.peek_at(k + 1)).map_or("", |w| w.text.as_str());
         let local = kind == "local";
@@ -284,7 +284,7 @@ impl Declared {
     }
 }
 
-/// An input as it is read during a run.
+/// An input during a run.
 enum Source {
     Column(Column, usize),
     Reading(Reading),

@@ -65,7 +65,7 @@ fn declared(twice: fn(&Body) -> f64, args: &mut Args, cx: &BuildCx) -> Result<Bo
     Ok(Box::new(Energy { id: cx.id.to_string(), fix, twice }))
 }
 
-/// A fix of rigid bodies that another style names.
+/// A rigid fix that another style refers to.
 #[derive(Clone)]
 pub(super) struct RigidFix {
     /// Its ID.
@@ -75,15 +75,15 @@ pub(super) struct RigidFix {
 }
 
 impl RigidFix {
-    /// Where the world keeps its bodies.
+    /// Key of its bodies.
     pub fn bodies(&self) -> Numbers {
         bodies_key(self.style, &self.id)
     }
 
-    /// Takes the ID of a fix rigid.
+    /// Parses the ID of a fix rigid.
     ///
     /// # Errors
-    /// Unknown fixes and other ones.
+    /// Unknown fixes and fixes of other styles.
     pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the ID of a fix rigid")?;
         let r = ValueRef { kind: RefKind::Fix, name: word.text.clone(), index: vec![], span: word.span };

@@ -1,4 +1,4 @@
-//! compute rigid/local: what is known of each rigid body.
+//! compute rigid/local: attributes of each rigid body.
 
 use super::rigid_energy::RigidFix;
 use super::{Compute, ComputeStyle};
@@ -37,7 +37,7 @@ impl Style for RigidLocal {
     }
 }
 
-/// Body, id of its owner, how far its image counts are from the box.
+/// Arguments: body, id of its owner, offset of its image counts from the box.
 type Read = fn(&Body, [f64; 2], Vec3) -> f64;
 
 const ATTRIBUTES: &[(&str, Read)] = &[
@@ -105,7 +105,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// Under which name the world remembers the ids of owners.
+    /// Key of the ids of owners.
     fn key(&self) -> Numbers {
         Key::new(&format!("compute {} owners", self.id))
     }

@@ -1,4 +1,4 @@
-//! compute slice: some elements of vectors.
+//! compute slice: selected elements of vectors.
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
@@ -88,7 +88,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// How many elements are taken.
+    /// The number of elements taken.
     fn count(&self) -> usize {
         (self.stop - self.start).div_ceil(self.skip)
     }

@@ -105,7 +105,7 @@ impl Compute for Declared {
     }
 }
 
-/// Checks that the virials of this step were tallied, if they are wanted.
+/// Checks that the virials of this step were tallied, if they are needed.
 fn known(w: &World, parts: Parts, step: i64) -> Result<()> {
     match w.tally.step {
         Some(s) if parts.any() && (s != step || !w.tally.with_atom_virial) => {

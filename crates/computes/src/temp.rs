@@ -45,12 +45,12 @@ struct Declared {
     rules: Rules,
 }
 
-/// How a temperature counts degrees of freedom (`compute_modify`), and how it offers what it has found.
+/// How a temperature counts degrees of freedom (`compute_modify`) and stores its results.
 #[derive(Clone, Default)]
 pub(super) struct Rules {
-    /// Degrees of freedom taken off, where the deck says so.
+    /// Degrees of freedom subtracted, if set by the deck.
     pub extra: Option<f64>,
-    /// Under `-compat lammps`: counted at each use, not at the beginning of a run.
+    /// With `-compat lammps`: counted at each use, not at the beginning of a run.
     dynamic: bool,
 }
 
@@ -58,7 +58,7 @@ impl Rules {
     /// Reads the options of `compute_modify`.
     ///
     /// # Errors
-    /// Unknown words and what is no number.
+    /// Unknown words and invalid numbers.
     pub fn modify(&mut self, args: &mut Args) -> Result<()> {
         while !args.is_empty() {
             match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
@@ -69,14 +69,14 @@ impl Rules {
         Ok(())
     }
 
-    /// The count for one run.
+    /// The counter for one run.
     pub fn freedom(&self) -> Freedom {
         Freedom { dynamic: self.dynamic, begun: None }
     }
 }
 
-/// Offers twice the kinetic energy as a temperature, its tensor (xx yy zz xy xz yz), both in units of mass × velocity²,
-/// and the degrees of freedom, which the pressure reads.
+/// Stores in the slot the temperature from twice the kinetic energy, its tensor (xx yy zz xy xz yz), both in
+/// units of mass × velocity², and the degrees of freedom, which the pressure reads.
 pub(super) fn offer(w: &World, out: &mut Slot, twice: f64, tensor: [f64; 6], dof: f64) {
     let units = w.settings.units.constants();
     out.scalar = if dof > 0.0 { twice * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
@@ -86,16 +86,16 @@ pub(super) fn offer(w: &World, out: &mut Slot, twice: f64, tensor: [f64; 6], dof
     out.inner.push(dof);
 }
 
-/// Degrees of freedom, which LAMMPS counts at the beginning of a run unless `dynamic/dof yes` says otherwise.
+/// Degrees of freedom; LAMMPS counts them at the beginning of a run unless `dynamic/dof yes` is set.
 pub(super) struct Freedom {
-    /// Counted at each use.
+    /// Whether they are counted at each use.
     dynamic: bool,
-    /// What was counted when the run began.
+    /// The count at the beginning of the run.
     begun: Option<f64>,
 }
 
 impl Freedom {
-    /// The number that counts, of the present one; `before`: what was offered last.
+    /// The count to use, given the `present` one; `before` is the last output.
     pub fn now(&mut self, w: &World, t: &Tick, present: f64, before: &Slot) -> f64 {
         if !w.settings.lammps() || self.dynamic {
             return present;

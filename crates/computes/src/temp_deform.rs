@@ -1,4 +1,4 @@
-//! compute temp/deform: temperature of the group without the flow of a box that is deformed.
+//! compute temp/deform: temperature of the group relative to the flow of a deforming box.
 
 use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
@@ -39,7 +39,7 @@ impl ComputeStyle for TempDeform {
     }
 }
 
-/// What goes with the box.
+/// The velocity field of the deforming box.
 #[derive(Clone)]
 struct WithTheBox;
 
@@ -70,7 +70,7 @@ impl Streams for WithTheBox {
         };
         let at = cx.span();
         let notes = &mut cx.world().parts.notes;
-        // Once in a run, whoever asks.
+        // Once per run, for all users of the compute.
         if notes.0.iter().all(|n| n.message != text) {
             notes.push(Diagnostic::warning(Code::SUSPICIOUS, at, text));
         }

@@ -1,4 +1,4 @@
-//! compute temp/com, temp/partial, temp/ramp: temperature of what is left when a flow is taken away.
+//! compute temp/com, temp/partial, temp/ramp: temperature after a velocity bias is subtracted.
 
 use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
@@ -65,12 +65,12 @@ impl Style for TempRamp {
     }
 }
 
-/// What is taken away.
+/// The velocity bias.
 #[derive(Clone, Debug, PartialEq)]
 enum Stream {
-    /// The motion of the centre of mass.
+    /// The velocity of the centre of mass.
     Centre,
-    /// The components that do not count.
+    /// Whole components.
     Others([bool; 3]),
     /// A linear profile of component `along` over the coordinate `axis`.
     Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
@@ -118,10 +118,10 @@ fn declared(flow: Stream, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compu
     Ok(Box::new(Thermal::new(flow, cx)))
 }
 
-/// The temperature with a flow that the next word names (`bias ID`).
+/// The biased temperature compute named by the next word (`bias ID`).
 ///
 /// # Errors
-/// Unknown computes and those that take no flow away.
+/// Unknown computes and those without a bias.
 pub fn named(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
     let word = args.expect("the ID of a temperature that takes a flow away")?;
     let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
@@ -136,10 +136,10 @@ pub fn named(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
         .into())
 }
 
-/// The same at the beginning of a run.
+/// The compute at the beginning of a run.
 ///
 /// # Errors
-/// A compute that is gone.
+/// A deleted compute.
 pub fn known(r: &ValueRef, cx: &dyn SealCx) -> Result<Box<dyn Compute>> {
     match cx.bias(r) {
         Some(compute) => Ok(compute),
@@ -147,10 +147,10 @@ pub fn known(r: &ValueRef, cx: &dyn SealCx) -> Result<Box<dyn Compute>> {
     }
 }
 
-/// As `known`, for a user of this group.
+/// As `known`, for a style that acts on this group.
 ///
 /// # Errors
-/// A compute that is gone, and one of another group, which LAMMPS refuses too.
+/// A deleted compute, or one of another group, which LAMMPS refuses too.
 pub fn of_group(r: &ValueRef, group: GroupId, cx: &mut dyn SealCx) -> Result<Box<dyn Compute>> {
     let compute = known(r, cx)?;
     if compute.flow(cx.world()).is_some_and(|f| f.group != group) {
@@ -219,7 +219,7 @@ mod tests {
         let c = b.compute(&TempPartial, "0 1 0").unwrap();
         assert!((b.evaluate(&*c).unwrap().scalar - 66.0 / 2.0).abs() < 1e-14);
         assert_eq!(c.flow(&b.world).unwrap().taken[2], [4.0, 0.0, 0.0]);
-        // v_x is 1 up to x = 0 and 4 from x = 1 on: only v_y is left.
+        // v_x is 1 up to x = 0 and 4 from x = 1 on: only v_y remains.
         let c = b.compute(&TempRamp, "vx 1 4 x 0 1 units box").unwrap();
         assert!((b.evaluate(&*c).unwrap().scalar - 66.0 / 6.0).abs() < 1e-14);
         for words in ["", "1 1", "1 1 2", "1 1 1 1"] {

@@ -1,4 +1,4 @@
-//! compute temp/profile: temperature of what is left without the mean velocities of bins.
+//! compute temp/profile: temperature relative to the mean velocities of bins.
 
 use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
@@ -67,16 +67,16 @@ impl ComputeStyle for TempProfile {
     }
 }
 
-/// Sums, means and a row of a bin.
+/// Bytes per bin: sums, means and an output row.
 const BYTES_PER_BIN: f64 = 64.0;
 
-/// More bins than this are a mistake.
+/// A larger number of bins is refused.
 const MOST: usize = 100_000_000;
 
-/// The means of bins.
+/// Mean velocities of bins.
 #[derive(Clone)]
 struct Profile {
-    /// Components that are taken away.
+    /// Components that are subtracted.
     streams: [bool; 3],
     /// Bins along each axis.
     bins: [usize; 3],
@@ -135,7 +135,7 @@ impl Streams for Profile {
                 x += if x < domain.lo[d] { lengths[d] } else { 0.0 };
                 x -= if x >= domain.hi[d] { lengths[d] } else { 0.0 };
             }
-            // Beyond the faces counts with the bins there.
+            // Positions beyond the faces belong to the outermost bins.
             let place = ((x - domain.lo[d]) / lengths[d] * bins as f64).clamp(0.0, bins as f64 - 1.0);
             bin = bin * bins + place as usize;
         }

@@ -37,7 +37,7 @@ impl ComputeStyle for TempRegion {
     }
 }
 
-/// All outside of the region of this name is taken away.
+/// Excludes all particles outside the region of this name.
 #[derive(Clone)]
 struct Inside(Key<Region>);
 

@@ -1,4 +1,4 @@
-//! compute temp/sphere: temperature of spheres that fly and spin.
+//! compute temp/sphere: temperature of spheres with translation and rotation.
 
 use super::erotate_sphere::{INERTIA, needs_spheres};
 use super::temp::{Rules, offer};
@@ -59,15 +59,15 @@ impl ComputeStyle for TempSphere {
 struct Declared {
     id: String,
     group: GroupId,
-    /// Rotation alone.
+    /// Rotation only.
     rotate: bool,
-    /// The temperature whose flow does not count.
+    /// The temperature compute whose bias is subtracted.
     bias: Option<ValueRef>,
     rules: Rules,
 }
 
 impl Declared {
-    /// `flow`: what is taken away; its whole components count for no degree of freedom, nor does who is left out.
+    /// Degrees of freedom. Components removed entirely by the bias `flow` and excluded particles have none.
     fn freedom(&self, w: &World, flow: Option<&Flow>) -> f64 {
         let taken = flow.map_or(0.0, |f| f.whole.iter().filter(|d| **d).count() as f64);
         let apart = |i: usize| flow.is_some_and(|f| f.apart.get(i) == Some(&true));
@@ -81,7 +81,7 @@ impl Declared {
             false => [fly],
         });
         let centre = if flat { 2.0 } else { 3.0 };
-        // LAMMPS takes the centre's motion off only where translation counts.
+        // LAMMPS subtracts the motion of the centre only if translation counts.
         count - self.rules.extra.unwrap_or(if self.rotate { 0.0 } else { centre })
     }
 }
@@ -101,7 +101,7 @@ impl Compute for Declared {
         let mut freedom = self.rules.freedom();
         let reads = X | V | OMEGA | RADIUS | MASS | MASK | BOX | MEMO | REGIONS | KIND | TYPE_MASS;
         let wanted = Wanted { slot, stage, when };
-        // A flow needs all particles.
+        // A bias needs all particles.
         let by_sums = bias.is_none();
         let read = move |w: &World, t: &Tick, out: &mut Slot| {
             let p = &w.particles;
@@ -146,7 +146,7 @@ mod tests {
         b.world.particles.v[0] = [1.0, 2.0, 0.0];
         b.world.particles.omega[2] = [0.0, 0.0, 3.0];
         let whole = b.compute(&TempSphere, "").unwrap();
-        // m = 2: Σ m v² = 10, Σ I ω² = 0.8 · 9 = 7.2; 2 · 6 + 3 − 3 degrees of freedom; rotation alone 2 · 3.
+        // m = 2: Σ m v² = 10, Σ I ω² = 0.8 · 9 = 7.2; 2 · 6 + 3 − 3 degrees of freedom; rotation only 2 · 3.
         let slot = b.evaluate(&*whole).unwrap();
         assert!((slot.scalar - 17.2 / 12.0).abs() < 1e-14 && slot.vector[3] == 4.0);
         let mut spin = b.compute(&TempSphere, "dof rotate").unwrap();

@@ -1,4 +1,4 @@
-//! Temperatures of what is left of velocities when a flow is taken away, whatever the flow.
+//! Temperatures after subtraction of a velocity bias.
 
 use super::Compute;
 use super::temp::{Rules, offer};
@@ -12,33 +12,34 @@ use perigrain_styles::{BuildCx, Flow, SealCx, Shape};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
 
-/// The velocity that is taken away from a particle of the group.
+/// The velocity subtracted from a particle of the group.
 pub type Taken<'a> = Box<dyn Fn(usize) -> Vec3 + Sync + 'a>;
 
-/// A flow that a temperature takes away.
+/// A velocity bias.
 pub trait Streams: Clone + Send + Sync + 'static {
-    /// What is taken away from each particle now.
+    /// The velocity subtracted from each particle in this step.
     fn taken<'a>(&'a self, w: &'a World, group: GroupId) -> Taken<'a>;
 
-    /// Degrees of freedom that are left; `extra`: how many are taken off, where the deck says so.
+    /// Remaining degrees of freedom; `extra`: the number subtracted, if set by the deck.
     fn freedom(&self, w: &World, group: GroupId, extra: Option<f64>) -> f64;
 
-    /// Components that are taken away whole.
+    /// Components that are removed entirely.
     fn whole(&self) -> [bool; 3] {
         [false; 3]
     }
 
-    /// Who is left out with all its freedom; nobody if empty.
+    /// Particles excluded with all their degrees of freedom; empty if none is.
     fn apart(&self, _w: &World) -> Vec<bool> {
         vec![]
     }
 
-    /// Whether degrees of freedom change with every step, so that they are counted anew also where LAMMPS counts others once.
+    /// Whether degrees of freedom change at every step and are recounted even where LAMMPS counts others
+    /// once.
     fn counts_anew(&self) -> bool {
         false
     }
 
-    /// How many bins there are, if the numbers and temperatures of particles in bins are offered instead of a tensor.
+    /// The number of bins, if particle numbers and temperatures of bins are output instead of a tensor.
     fn bins(&self) -> usize {
         0
     }
@@ -48,20 +49,20 @@ pub trait Streams: Clone + Send + Sync + 'static {
         0
     }
 
-    /// Of the degrees of freedom of a bin with `n` of all particles what is left; `extra` as in `freedom`.
+    /// The remaining degrees of freedom of a bin with `n` of all particles; `extra` as in `freedom`.
     fn freedom_of_bin(&self, _w: &World, _n: f64, _all: f64, _extra: Option<f64>) -> f64 {
         0.0
     }
 
-    /// Whether what is taken away from a particle depends on sums over the group alone, and on the particle itself.
+    /// Whether the velocity subtracted depends only on sums over the group and on the particle itself.
     fn by_sums(&self) -> bool {
         true
     }
 
-    /// Checks what the flow depends on, when a run begins.
+    /// Checks at the beginning of a run that everything the bias depends on exists.
     ///
     /// # Errors
-    /// What is missing in the scene.
+    /// Whatever is missing.
     fn check(&self, _cx: &mut dyn SealCx) -> Result<()> {
         Ok(())
     }
@@ -72,7 +73,7 @@ pub fn dimension(w: &World) -> f64 {
     if w.settings.two_dimensional { 2.0 } else { 3.0 }
 }
 
-/// A temperature without a flow.
+/// A temperature with a bias.
 #[derive(Clone)]
 pub struct Thermal<S> {
     id: String,
@@ -82,7 +83,7 @@ pub struct Thermal<S> {
 }
 
 impl<S: Streams> Thermal<S> {
-    /// As the line says.
+    /// From the line of the deck.
     pub fn new(flow: S, cx: &BuildCx) -> Self {
         Self { id: cx.id.to_string(), group: cx.group, flow, rules: Rules::default() }
     }

@@ -41,7 +41,7 @@ impl ComputeStyle for Vacf {
 #[derive(Clone)]
 struct Declared {
     id: String,
-    /// The column with the first velocities.
+    /// The column of the initial velocities.
     key: Vectors,
     group: GroupId,
 }
@@ -77,7 +77,7 @@ impl Compute for Declared {
                 std::array::from_fn(|d| now[d] * then[d])
             });
             let n = whole.of(count(w, me.group) as f64);
-            // Of nobody sums are zero, or stay as they are in LAMMPS.
+            // For no particles the sums are zero; LAMMPS does not divide them.
             let over = if n > 0.0 { n } else { 1.0 };
             out.vector = [x, y, z, x + y + z].map(|a| a / over).to_vec();
             Ok(())

@@ -4,8 +4,8 @@ use super::driver::NO_BODY;
 use perigrain_base::math::forest::{find, join};
 use perigrain_peri::families::Families;
 
-/// The solid of each of `n` particles: the smallest index among all that bonds connected at the start, broken ones
-/// included; `NO_BODY` for particles that never had a bond.
+/// The solid of each of `n` particles: the smallest index among all particles connected by initial bonds,
+/// broken ones included; `NO_BODY` for particles that never had a bond.
 pub fn solids(families: &Families, n: usize) -> Vec<u32> {
     let mut root: Vec<u32> = (0..n as u32).collect();
     let mut bonded = vec![false; n];

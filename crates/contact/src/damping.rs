@@ -1,10 +1,10 @@
-//! Damping along the normal, F = −η v_n, with η from a coefficient or from the coefficient of restitution.
+//! Normal damping, F = −η v_n, with η from a coefficient or from the coefficient of restitution.
 
 use perigrain_base::math::real::Real;
 use perigrain_world::Compat;
 use std::f64::consts::PI;
 
-/// How η is made.
+/// How η is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Damping {
     /// `none`: η = 0.
@@ -18,8 +18,8 @@ pub enum Damping {
     Viscoelastic,
     /// `tsuji` (Tsuji et al. 1992): η = √2 α_T(e) √(m̄ k), k = F/δ; for `hooke` 2/√5 of that.
     Tsuji,
-    /// `coeff_restitution`: η = α √(m̄ k), k = F/δ, with β = −ln e/√(π² + ln² e): α = √(2 (n + 1)) β for forces ∝ δⁿ, which is
-    /// √5 β for Hertz' and 2 β for `hooke`; exact for all.
+    /// `coeff_restitution`: η = α √(m̄ k), k = F/δ, with β = −ln e/√(π² + ln² e): α = √(2 (n + 1)) β for
+    /// forces ∝ δⁿ, which is √5 β for Hertz and 2 β for `hooke`; exact for all.
     CoeffRestitution,
     /// `mdr 1`: η = η₀ √(m̄ k) with the k of plastic grains.
     Mdr,
@@ -28,7 +28,7 @@ pub enum Damping {
 }
 
 impl Damping {
-    /// Those that go with every normal model but `mdr`.
+    /// The models for every normal model except `mdr`.
     pub const ALL: [Damping; 6] = [
         Damping::None,
         Damping::Velocity,
@@ -38,7 +38,7 @@ impl Damping {
         Damping::CoeffRestitution,
     ];
 
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(self) -> &'static str {
         match self {
             Damping::None => "none",
@@ -52,15 +52,15 @@ impl Damping {
         }
     }
 
-    /// Whether the normal model's `eta` is a coefficient of restitution here.
+    /// Whether the normal model's `eta` is a coefficient of restitution for this model.
     pub fn wants_restitution(self) -> bool {
         matches!(self, Damping::Tsuji | Damping::CoeffRestitution)
     }
 
-    /// The constant in front: η₀ itself, or α(e) for normal forces ∝ δⁿ, n the `exponent`. There −ln e = π β/√(1 − β²) with
-    /// α = √(2 (n + 1)) β: the impact is that of a spring in δ^((n+1)/2), whatever the velocity.
-    /// LAMMPS 22Jul2025 leaves out the √2 of `tsuji` (it returns e = 0.78 where 0.70 is asked for); LAMMPS of 2026 has it, for
-    /// every normal model alike, `hooke` too. `compat` reproduces both.
+    /// The constant factor: η₀ itself, or α(e) for normal forces ∝ δⁿ, with n the `exponent`. For these, −ln
+    /// e = π β/√(1 − β²) with α = √(2 (n + 1)) β: the impact is that of a damped spring in δ^((n+1)/2), at
+    /// any velocity. LAMMPS 22Jul2025 omits the √2 of `tsuji` (it gives e = 0.78 for a requested 0.70);
+    /// LAMMPS of 2026 has it, for every normal model, `hooke` included. `compat` reproduces both.
     pub fn constant(self, eta: f64, exponent: f64, compat: Compat) -> f64 {
         match self {
             Damping::None => 0.0,
@@ -71,7 +71,7 @@ impl Damping {
             | Damping::MdrConstant => eta,
             Damping::Tsuji if compat == Compat::Lammps2025 => tsuji(eta),
             Damping::Tsuji if compat == Compat::Lammps2026 => std::f64::consts::SQRT_2 * tsuji(eta),
-            // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e.
+            // Tsuji's curve holds for forces ∝ δ^(3/2), where √5 β gives e.
             Damping::Tsuji if exponent == 1.0 => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
             Damping::Tsuji => std::f64::consts::SQRT_2 * (0.4 * (exponent + 1.0)).sqrt() * tsuji(eta),
             Damping::CoeffRestitution => {
@@ -82,12 +82,12 @@ impl Damping {
         }
     }
 
-    /// Whether η grows as the radius of the contact does.
+    /// Whether η grows with the contact radius.
     pub fn by_radius(self) -> bool {
         self == Damping::Viscoelastic
     }
 
-    /// η over its constant, for contact radius `a`, normal stiffness F/δ = `secant` and effective mass.
+    /// η divided by its constant, for contact radius `a`, normal stiffness F/δ = `secant` and effective mass.
     #[inline(always)]
     pub fn form<R: Real>(self, a: R, secant: R, mass: R) -> R {
         match self {
@@ -99,7 +99,7 @@ impl Damping {
     }
 }
 
-/// α_T(e), the polynomial through Tsuji's curve as LAMMPS' manual prints it.
+/// α_T(e): Tsuji's curve as a polynomial, as given in LAMMPS' manual.
 fn tsuji(e: f64) -> f64 {
     // Coefficients of e⁶ … e⁰.
     [4.8218, -18.022, 27.467, -22.348, 11.087, -4.2783, 1.2728].iter().fold(0.0, |sum, c| sum * e + c)

@@ -1,4 +1,5 @@
-//! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
+//! The loop over contacts: finds touching pairs, updates their history, evaluates the law, and sums in a
+//! fixed order.
 
 mod grains;
 mod rules;
@@ -18,44 +19,45 @@ use perigrain_world::contacts::Contacts;
 
 /// One contact of an evaluation.
 pub struct Seen<'a> {
-    /// Who touches.
+    /// The touching particles.
     pub pair: &'a Pair,
-    /// By which law.
+    /// Their contact law.
     pub law: &'a Granular,
-    /// How.
+    /// The geometry.
     pub geometry: Geometry,
-    /// What the contact remembers.
+    /// Its history.
     pub history: &'a [f64],
-    /// What it does, its share taken.
+    /// Force and torques, with the sharing factor applied.
     pub wrench: &'a Wrench,
-    /// The part of the law's force that counts.
+    /// The sharing factor: the fraction of the law's force that counts.
     pub share: f64,
 }
 
-/// One evaluation of all contacts; keeps its room from step to step.
+/// One evaluation of all contacts; keeps its buffers from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
     flags: Vec<Meeting>,
-    /// Which of the listed pairs touch, and room for the others.
+    /// Indices of the listed pairs that touch, with space for all pairs.
     places: Vec<u32>,
     touching: Vec<Pair>,
     keys: Vec<[u32; 2]>,
-    /// Where and how they touch.
+    /// Geometry of the contacts.
     geometry: Vec<Geometry>,
-    /// How far apart their centres are [length].
+    /// Distances of the centres [length].
     distances: Vec<f64>,
     shares: Vec<f64>,
     counts: Vec<u32>,
     names: Vec<[u64; 2]>,
     wrenches: Vec<Wrench>,
-    /// Heat that flows through each contact, over the difference of temperatures.
+    /// Heat flow through each contact per temperature difference.
     conductances: Vec<f64>,
     deep: Option<Pair>,
     spare: Vec<f64>,
 }
 
 impl Sweep {
-    /// Evaluates the contacts among the pairs of `list`; `memory` follows: contacts that ended are forgotten.
+    /// Evaluates the contacts among the pairs of `list`, and updates `memory`: contacts that ended are
+    /// removed.
     pub fn run(
         &mut self,
         list: &[Pair],
@@ -68,11 +70,11 @@ impl Sweep {
         self.act(grains, rules, memory, step);
     }
 
-    /// Finds the contacts among the pairs of `list`, the first half of [`Sweep::run`].
+    /// Finds the contacts among the pairs of `list`: the first half of [`Sweep::run`].
     pub fn meet(&mut self, list: &[Pair], grains: &Grains, rules: &Rules, memory: &mut Contacts) {
         self.find(list, grains, rules, memory);
         memory.carry(&self.keys, rules.memory(), &mut self.spare);
-        // All of them are written.
+        // Every element is written.
         self.geometry.resize(self.touching.len(), Geometry::default());
         self.distances.resize(self.touching.len(), 0.0);
         let columns = (&mut self.geometry[..], &mut self.distances[..], &self.touching[..]);
@@ -84,11 +86,11 @@ impl Sweep {
         });
     }
 
-    /// Evaluates the contacts that were found, the second half.
+    /// Evaluates the contacts found: the second half.
     pub fn act(&mut self, grains: &Grains, rules: &Rules, memory: &mut Contacts, step: Advance) {
         let width = rules.memory();
         self.share(grains, rules);
-        // All of them are written.
+        // Every element is written.
         self.wrenches.resize(self.touching.len(), Wrench::default());
         self.conductances.resize(self.touching.len(), 0.0);
         let history = par::Rows { data: &mut memory.history[..], width };
@@ -135,7 +137,7 @@ impl Sweep {
         });
     }
 
-    /// Where and how those touch that were found, and how far apart their centres are [length].
+    /// Geometry of the contacts found, and the distances of their centres [length].
     pub fn geometry(&self) -> (&[Geometry], &[f64]) {
         (&self.geometry, &self.distances)
     }
@@ -145,8 +147,8 @@ impl Sweep {
         self.touching.len()
     }
 
-    /// The first pair of the last evaluation that overlaps by more than [`DEEP`] of the smaller radius: its ids and
-    /// that part.
+    /// The first pair of the last evaluation that overlaps by more than [`DEEP`] of the smaller radius: its
+    /// ids, and the overlap as a fraction of that radius.
     pub fn deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
         let p = self.deep?;
         let [ri, rj] = [p.i, p.j].map(|k| grains.radius[k as usize]);
@@ -155,22 +157,22 @@ impl Sweep {
         Some(([p.i, p.j].map(|k| grains.tag[k as usize]), part))
     }
 
-    /// Whether nothing touched.
+    /// Whether there were no contacts.
     pub fn is_empty(&self) -> bool {
         self.touching.is_empty()
     }
 
-    /// The pairs that touch, and the tags of each.
+    /// The touching pairs, and the tags of each.
     pub fn touching(&self) -> (&[Pair], &[[u32; 2]]) {
         (&self.touching, &self.keys)
     }
 
-    /// The contacts of the last evaluation and what each does.
+    /// The contacts of the last evaluation with their forces and torques.
     pub fn contacts(&self) -> impl Iterator<Item = (&Pair, &Wrench)> {
         self.touching.iter().zip(&self.wrenches)
     }
 
-    /// The same with geometry, law and memory, which must be that of the last evaluation.
+    /// The same with geometry, law and history; `memory` must be from the last evaluation.
     pub fn each(&self, grains: &Grains, rules: &Rules, memory: &Contacts, mut act: impl FnMut(Seen<'_>)) {
         for (k, (pair, wrench)) in self.contacts().enumerate() {
             let Some(rule) = grains.rule(pair, rules) else { continue };
@@ -180,7 +182,7 @@ impl Sweep {
         }
     }
 
-    /// Adds forces and torques to their particles, in the order of the list.
+    /// Adds forces and torques to the particles, in list order.
     pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3]) {
         for (p, w) in self.touching.iter().zip(&self.wrenches) {
             let (i, j) = (p.i as usize, p.j as usize);
@@ -191,7 +193,7 @@ impl Sweep {
         }
     }
 
-    /// Adds the heat that flows through the contacts to `flow`, from the temperatures of all particles.
+    /// Adds the heat flow through the contacts to `flow`, from the temperatures of all particles.
     pub fn conduct(&self, temperature: &[f64], flow: &mut [f64]) {
         for (p, into) in self.touching.iter().zip(self.heat(temperature)) {
             flow[p.i as usize] += into;
@@ -199,7 +201,8 @@ impl Sweep {
         }
     }
 
-    /// The heat that flows through each contact into its first particle [energy/time], from the temperatures of all particles.
+    /// Heat flow through each contact into its first particle [energy/time], from the temperatures of all
+    /// particles.
     pub fn heat<'a>(&'a self, temperature: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let at = |i: u32| temperature[i as usize];
         self.touching.iter().zip(&self.conductances).map(move |(p, k)| k * (at(p.j) - at(p.i)))
@@ -219,7 +222,7 @@ impl Sweep {
 
     fn find(&mut self, list: &[Pair], grains: &Grains, rules: &Rules, memory: &Contacts) {
         let gaps = rules.any(|r| r.law.gap(1.0) > 0.0);
-        // All of them are written.
+        // Every element is written.
         self.flags.resize(list.len(), Meeting::Apart);
         par::each((&mut self.flags[..], list), |_, (flags, list)| {
             for (flag, p) in flags.iter_mut().zip(list) {
@@ -234,7 +237,8 @@ impl Sweep {
                 }
             }
         }
-        // Nobody can foretell which of the listed pairs touch: their places are written in any case, and kept where they do.
+        // Which pairs touch is unpredictable: each index is written unconditionally, and kept if the pair
+        // touches.
         self.places.resize(list.len(), 0);
         let mut count = 0;
         for (k, meeting) in self.flags.iter().enumerate() {

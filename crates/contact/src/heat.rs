@@ -1,9 +1,9 @@
-//! Conduction of heat through the area of contact.
+//! Heat conduction through the contact area.
 
 use super::normal::geometric;
 use perigrain_base::math::real::Real;
 
-/// How much heat flows for a difference of temperatures.
+/// Heat conduction models.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Heat {
     /// `none`.
@@ -11,12 +11,13 @@ pub enum Heat {
     None,
     /// `area h`: h π a², h [energy/(time area temperature)].
     Area(f64),
-    /// `radius k`: 2 k a, k the conductivity [energy/(time length temperature)] (constriction in a half-space).
+    /// `radius k`: 2 k a, with conductivity k [energy/(time length temperature)] (constriction in a
+    /// half-space).
     Radius(f64),
 }
 
 impl Heat {
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(&self) -> &'static str {
         match self {
             Heat::None => "none",
@@ -25,7 +26,7 @@ impl Heat {
         }
     }
 
-    /// For a pair of types with models of one kind.
+    /// The model between two types whose models are of one kind.
     pub fn mixed(&self, other: &Heat) -> Heat {
         match (*self, *other) {
             (Heat::Area(a), Heat::Area(b)) => Heat::Area(geometric(a, b)),
@@ -34,7 +35,7 @@ impl Heat {
         }
     }
 
-    /// Heat flow over difference of temperatures for a contact of radius `a` [energy/(time temperature)].
+    /// Heat flow per temperature difference for contact radius `a` [energy/(time temperature)].
     #[inline(always)]
     pub fn conductance<R: Real>(&self, a: R) -> R {
         match *self {

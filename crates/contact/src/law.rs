@@ -13,74 +13,76 @@ use perigrain_world::Compat;
 /// F = (F_n − η v_n) n + F_t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granular {
-    /// Along the normal.
+    /// Normal force.
     pub normal: Force,
-    /// How η is made.
+    /// Damping model.
     pub damping: Damping,
     /// Its constant.
     pub damping_constant: f64,
-    /// Whether the normal force never pulls.
+    /// Whether the normal force is never attractive.
     pub limit_damping: bool,
-    /// Across the normal.
+    /// Tangential force.
     pub spring: Spring,
-    /// Against rolling.
+    /// Rolling resistance.
     pub rolling: Rolling,
-    /// Against twisting.
+    /// Twisting resistance.
     pub twisting: Twisting,
-    /// Conduction of heat.
+    /// Heat conduction.
     pub heat: Heat,
     /// Lever arms of the tangential force.
     pub arm: Arm,
-    /// Whether some part asks for the radius of the contact.
+    /// Whether some part needs the contact radius.
     pub(crate) by_radius: bool,
-    /// Whether friction acts too where a dashpot pulls at the end of a contact: LAMMPS takes |F_n| for what presses.
+    /// Whether friction also acts while damping makes the normal force attractive at the end of a contact:
+    /// LAMMPS uses |F_n| as the normal load.
     pub(crate) rubs_pulling: bool,
-    /// Whose faults it has.
+    /// The LAMMPS version whose errors are reproduced.
     pub(crate) compat: Compat,
 }
 
-/// The normals and velocities that a contact goes by.
+/// Normals and velocities of a contact, by integration scheme.
 struct Way<R> {
-    /// Along whose normal forces act.
+    /// Geometry along which normal forces act.
     acts: Geometry<R>,
-    /// The normals of springs, in the middle of the step and at its end.
+    /// Normals for the springs, in the middle of the step and at its end.
     n: [Vec3<R>; 2],
-    /// The one at the end of the step.
+    /// Normal at the end of the step.
     end: Vec3<R>,
-    /// Velocity along the normal.
+    /// Normal velocity.
     v_n: R,
-    /// Velocity across that of the middle.
+    /// Velocity across the middle normal.
     v_across: Vec3<R>,
 }
 
 /// A loop over contacts of one law.
 pub(crate) trait Loop {
-    /// Runs it.
+    /// Runs the loop.
     fn run(self, law: &Granular);
 }
 
 /// The law, written once for one contact and for lanes of contacts.
 impl Granular {
-    /// How many numbers a contact remembers while it lasts: the tangential spring of i against j, then the rolling
-    /// displacement, then the angle of twisting, then what the normal law remembers. A contact that begins remembers
-    /// zeros. Seen from j the first three are negative, the others the same (`world::contacts::mirror`).
+    /// Numbers in the history of a contact: the tangential spring of i against j, then the rolling
+    /// displacement, then the twisting angle, then the history of the normal law. A new contact begins with
+    /// zeros. Seen from j the first three have the opposite sign, the others are the same
+    /// (`world::contacts::mirror`).
     #[inline(always)]
     pub fn memory(&self) -> usize {
         self.before_normal() + self.normal.memory()
     }
 
-    /// Whether somebody tells contacts their force before they are evaluated, for which the fast loop has no place.
+    /// Whether the normal force is computed before the contacts are evaluated and read from their history;
+    /// the fast loop does not support this.
     pub fn is_told(&self) -> bool {
         self.normal.is_told()
     }
 
-    /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].
+    /// The largest gap between surfaces before an existing contact ends (cohesion) [length].
     pub fn gap(&self, curvature: f64) -> f64 {
         self.normal.gap(curvature)
     }
 
-    /// Heat that flows from the warmer to the colder side, over the difference of temperatures
-    /// [energy/(time temperature)].
+    /// Heat flow from the warmer to the colder side per temperature difference [energy/(time temperature)].
     #[inline(always)]
     pub fn conductance<R: Real>(&self, g: &Geometry<R>) -> R {
         if self.heat == Heat::None {
@@ -89,13 +91,13 @@ impl Granular {
         self.heat.conductance(self.normal.radius(g))
     }
 
-    /// Stiffness of the contact along and across the normal as it is now, dF/dδ and k_t [force/length].
+    /// Current normal and tangential stiffness of the contact, dF/dδ and k_t [force/length].
     pub fn springs(&self, g: &Geometry) -> [f64; 2] {
         [self.normal.tangent(g).max(0.0), self.spring.present(self.normal.radius(g))]
     }
 
-    /// Stiffness and damping of the contact as it is now: along the normal and across it [force/length, force time/length], then
-    /// against rolling and twisting [torque, torque time].
+    /// Current stiffness and damping of the contact: normal and tangential [force/length, force time/length],
+    /// then rolling and twisting [torque, torque time].
     pub fn resistance(&self, g: &Geometry, history: &[f64]) -> [[f64; 4]; 2] {
         let a = self.normal.radius(g);
         let secant = self.normal.push(g, a, &mut self.normal_memory(history)).secant;
@@ -111,7 +113,7 @@ impl Granular {
         ]
     }
 
-    /// What the normal law remembers of `history`, then zeros.
+    /// The part of `history` of the normal law, padded with zeros.
     fn normal_memory(&self, history: &[f64]) -> [f64; MOST_MEMORY] {
         let mut memory = [0.0; MOST_MEMORY];
         let own = history.get(self.before_normal()..).unwrap_or(&[]);
@@ -119,25 +121,25 @@ impl Granular {
         memory
     }
 
-    /// The elastic and cohesive force along the normal, and of a law that flows what the contact holds, else zero.
+    /// The elastic and cohesive normal force, and, for a dissipative law, the stored energy, else zero.
     pub fn pressing(&self, g: &Geometry, history: &[f64]) -> [f64; 2] {
         let mut memory = self.normal_memory(history);
         let held = if self.normal.flows() { self.normal.energy(g, &memory) } else { 0.0 };
         [self.normal.push(g, self.normal.radius(g), &mut memory).force, held]
     }
 
-    /// The elastic and cohesive force along the normal, of one contact or of lanes; `history` may move on with it.
+    /// The elastic and cohesive normal force of one contact or of lanes; updates `history`.
     #[inline(always)]
     pub(crate) fn push<R: Real>(&self, g: &Geometry<R>, history: &mut [R]) -> R {
         self.normal.push(g, self.normal.radius(g), &mut history[self.before_normal()..]).force
     }
 
-    /// Whether what the contact takes is not given back.
+    /// Whether the law dissipates energy apart from damping.
     pub fn flows(&self) -> bool {
         self.normal.flows()
     }
 
-    /// What the contact holds, given what it remembers.
+    /// The energy stored in the contact, given its history.
     pub fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
         let mut memory = self.normal_memory(history);
         let a = self.normal.radius(g);
@@ -146,7 +148,7 @@ impl Granular {
         Stored { push, normal, across: self.spring.energy(a, history), flows: self.normal.flows() }
     }
 
-    /// Force and torques of one contact; `history`, [`Granular::memory`] numbers, moves on with it.
+    /// Force and torques of one contact; updates `history`, [`Granular::memory`] numbers.
     #[inline(always)]
     pub fn contact<R: Real>(
         &self,
@@ -200,10 +202,11 @@ impl Granular {
         w
     }
 
-    /// What a contact whose springs are synchronized goes by: in the middle of the step, when the velocities were as they are, its
-    /// normal was along d − ½ v dt (Vyas et al. 2025). Slip is across that one, and the spring turns with it. Forces act along
-    /// the normal where grains are: LAMMPS lets them act along the one of the middle as well, which brakes grains that roll about each other
-    /// though nothing rubs, and gives them an angular momentum.
+    /// Geometry and velocities of a contact with synchronized springs. In the middle of the step, when the
+    /// velocities are those given, its normal was along d − ½ v dt (Vyas et al. 2025). Slip is across that
+    /// normal, and the spring rotates with it. Forces act along the normal at the particles' current
+    /// positions: LAMMPS lets them act along the middle normal as well, which brakes grains that roll around
+    /// each other without friction, and gives them angular momentum.
     #[inline(always)]
     fn synchronized<R: Real>(&self, g: &Geometry<R>, i: &Motion<R>, j: &Motion<R>, dt: f64) -> Way<R> {
         let apart = scale(g.radii[0] + g.radii[1] - g.overlap, g.normal);
@@ -221,22 +224,23 @@ impl Granular {
         Way { acts: *g, n: [middle, g.normal], end: g.normal, v_n: split_velocity(g, i, j).0, v_across }
     }
 
-    /// Makes a contact forget the radius from which its spring shrinks as it unloads: the spring has shrunk already.
+    /// Discards the contact radius from which the spring shrinks during unloading: the spring has shrunk
+    /// already.
     pub fn keep_shrunk(&self, history: &mut [f64]) {
         if let ([_, _, _, radius, ..], 4) = (history, self.spring.memory()) {
             *radius = 0.0;
         }
     }
 
-    /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
-    /// behind; `setup`: the evaluation was that of a run's setup.
+    /// The law that reproduces the force of the last evaluation from the history it left behind; `setup`:
+    /// that evaluation was in the setup of a run.
     #[must_use]
     pub fn again(&self, setup: bool) -> Self {
         Self { spring: self.spring.again(setup), ..*self }
     }
 
-    /// Hands the law to a loop, each frequent form in a place of its own where the form is written out: the loop is
-    /// compiled there without the others.
+    /// Runs a loop with this law, with a separate call for each frequent combination of models, so that the
+    /// compiler specializes the loop for it.
     #[inline(always)]
     pub(crate) fn within(&self, work: impl Loop) {
         use {Damping::*, Friction::*};
@@ -253,14 +257,14 @@ impl Granular {
     }
 }
 
-/// Hertz' force, if it is that.
+/// The force, if it is Hertz'.
 #[inline(always)]
 fn hertz(force: &Force) -> Option<Force> {
     let Force::Hertz(law) = force else { return None };
     Some(Force::Hertz(*law))
 }
 
-/// Hooke's force, if it is that.
+/// The force, if it is Hooke's.
 #[inline(always)]
 fn hooke(force: &Force) -> Option<Force> {
     let Force::Hooke(law) = force else { return None };
@@ -268,7 +272,8 @@ fn hooke(force: &Force) -> Option<Force> {
 }
 
 impl Granular {
-    /// Itself, where it has this form and no resistance to rolling and twisting; the form is then known to the compiler.
+    /// This law, if it has the given models and no resistance to rolling and twisting, in a form in which the
+    /// compiler knows the models.
     #[inline(always)]
     fn known(
         &self,
@@ -296,7 +301,7 @@ impl Granular {
         })
     }
 
-    /// How far from the centre of i (0) or j (1) the tangential force acts.
+    /// Lever arm of the tangential force about the centre of i (0) or j (1).
     #[inline(always)]
     fn arm<R: Real>(&self, g: &Geometry<R>, k: usize) -> R {
         match self.arm {
@@ -305,20 +310,20 @@ impl Granular {
         }
     }
 
-    /// Where the rolling displacement begins in what a contact remembers.
+    /// Index of the rolling displacement in the history.
     pub fn rolls_at(&self) -> Option<usize> {
         (self.rolling.memory() > 0).then(|| self.before_turning())
     }
 
-    /// How many numbers stand before those of the normal law, which are the same seen from j: at least the three that are
-    /// not.
+    /// Number of entries before those of the normal law, which are the same seen from j: at least the three
+    /// that are not.
     #[inline(always)]
     fn before_normal(&self) -> usize {
         let own = self.before_turning() + self.rolling.memory() + self.twisting.memory();
         if self.normal.memory() > 0 { own.max(3) } else { own }
     }
 
-    /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the
+    /// Number of entries before those of rolling and twisting, which are the same seen from j: at least the
     /// three that are not.
     #[inline(always)]
     fn before_turning(&self) -> usize {
@@ -326,7 +331,7 @@ impl Granular {
         if self.rolling.memory() + self.twisting.memory() > 0 { own.max(3) } else { own }
     }
 
-    /// Adds the torques against rolling and twisting.
+    /// Adds the torques of rolling and twisting resistance.
     #[inline(always)]
     fn turn<R: Real>(
         &self,

@@ -1,9 +1,9 @@
-//! Contact of spheres: what two touching grains (or a grain and a wall) do to each other.
+//! Contacts of spheres: forces between two touching grains, or between a grain and a wall.
 //!
 //! A law is a pure function of local data: [`Geometry`] of the contact, the [`Motion`] of both sides and
 //! the contact's history give a [`Wrench`]. Pair and wall drivers call the same laws.
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod bodies;
@@ -32,10 +32,10 @@ pub use turning::{Rolling, Sds, Twisting};
 pub use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, sub};
 
-/// How many numbers at most a contact remembers where several are evaluated at once, and at most of a normal law.
+/// The largest number of history entries of a contact in the vectorized loop, and of a normal law.
 pub const MOST_MEMORY: usize = 11;
 
-/// Where and how two spheres i and j touch; a wall is a j of radius 0 and infinite mass.
+/// The geometry of a contact between spheres i and j; a wall is a j of radius 0 and infinite mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Geometry<R = f64> {
@@ -52,8 +52,8 @@ pub struct Geometry<R = f64> {
 }
 
 impl Geometry {
-    /// The contact of two spheres with centres `d` = x_i − x_j apart; `None` when they are further apart than
-    /// their radii and `gap` (what an existing cohesive contact spans) together.
+    /// The contact of two spheres whose centres are `d` = x_i − x_j apart; `None` if their distance exceeds
+    /// the sum of their radii and `gap` (which an existing cohesive contact can span).
     #[inline]
     pub fn of_spheres(d: Vec3, radii: [f64; 2], masses: [f64; 2], gap: f64) -> Option<Self> {
         let [ri, rj] = radii;
@@ -65,7 +65,7 @@ impl Geometry {
         Some(Self::between(d, square.sqrt(), radii, masses))
     }
 
-    /// The same, however far apart they are: `distance` is the length of `d`.
+    /// The same at any distance; `distance` is the length of `d`.
     #[inline]
     pub fn between(d: Vec3, distance: f64, [ri, rj]: [f64; 2], masses: [f64; 2]) -> Self {
         let sum = ri + rj;
@@ -78,14 +78,14 @@ impl Geometry {
         }
     }
 
-    /// The same contact with another effective radius, for instance that of a sphere on a flat body.
+    /// The same contact with another effective radius, for example that of a sphere on a flat body.
     #[must_use]
     pub fn with_curvature(self, curvature: f64) -> Self {
         Self { curvature, ..self }
     }
 }
 
-/// How one side of a contact moves.
+/// Motion of one side of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<R = f64> {
     /// Velocity of the centre (of a wall: of its surface at the contact) [length/time].
@@ -94,16 +94,16 @@ pub struct Motion<R = f64> {
     pub spin: Vec3<R>,
 }
 
-/// The part of a step that contact history sees.
+/// The time step as seen by contact histories.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advance {
     /// Step size [time].
     pub dt: f64,
-    /// Whether history moves on: no in the setup of a run, where forces are only evaluated.
+    /// Whether histories are updated: not in the setup of a run, where forces are only evaluated.
     pub history: bool,
 }
 
-/// What a contact does: `force` on i (its opposite on j) and the torques on both.
+/// Result of a contact: `force` on i (the opposite acts on j) and the torques on both.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Wrench<R = f64> {
@@ -115,21 +115,21 @@ pub struct Wrench<R = f64> {
     pub torque_j: Vec3<R>,
 }
 
-/// The conservative side of a contact.
+/// Conservative part of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stored {
     /// Elastic and cohesive force along the normal, without damping [force].
     pub push: f64,
-    /// Work that this force can give back [energy].
+    /// Energy that this force can return [energy].
     pub normal: f64,
     /// Energy of the tangential spring [energy].
     pub across: f64,
-    /// Whether what the force takes besides that is flow and torn surfaces.
+    /// Whether all other work of the force is dissipated by plastic flow and new surfaces.
     pub flows: bool,
 }
 
 impl Wrench {
-    /// The same contact shared among several: every part times `s`.
+    /// The wrench times `s`, for a contact that is shared among several.
     #[must_use]
     pub fn scaled(self, s: f64) -> Self {
         use perigrain_base::math::vec3::scale;
@@ -141,7 +141,7 @@ impl Wrench {
     }
 }
 
-/// Relative velocity of i against j, split along and across the normal.
+/// Relative velocity of i against j, split into normal and tangential parts.
 #[inline(always)]
 fn split_velocity<R: Real>(g: &Geometry<R>, i: &Motion<R>, j: &Motion<R>) -> (R, Vec3<R>) {
     use perigrain_base::math::vec3::{dot, scale};

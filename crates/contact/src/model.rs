@@ -1,4 +1,4 @@
-//! What a deck says about contacts of one type, and the law that the models of two types make together.
+//! Contact models of one type as declared in a deck, and the law for a pair of types.
 
 use super::normal::geometric;
 use super::slider::Sync;
@@ -7,46 +7,47 @@ use super::turning::{Rolling, Twisting};
 use super::{Damping, Granular, Heat, Normal, Tangential, normal};
 use perigrain_world::Compat;
 
-/// Where the tangential force takes hold of the spheres.
+/// Lever arm of the tangential force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arm {
     /// In the middle of the overlap: R − δ/2.
     #[default]
     Middle,
-    /// At the full radius, as `pair_style gran/*` has it.
+    /// At the full radius, as in `pair_style gran/*`.
     Radius,
-    /// At the point of a peridynamic solid, which does not turn: the grain's arm is all of the distance, and the point has none.
+    /// At the point of a peridynamic solid, which does not rotate: the grain's arm is the whole distance, the
+    /// point's is zero.
     Point,
 }
 
-/// What a deck says about contacts of one pair of types.
+/// The contact model of a pair of types as declared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
-    /// Along the normal.
+    /// Normal force.
     pub normal: Normal,
-    /// Dissipation along the normal.
+    /// Normal damping.
     pub damping: Damping,
-    /// Across the normal.
+    /// Tangential force.
     pub tangential: Tangential,
-    /// Against rolling.
+    /// Rolling resistance.
     pub rolling: Rolling,
-    /// Against twisting.
+    /// Twisting resistance.
     pub twisting: Twisting,
-    /// Conduction of heat.
+    /// Heat conduction.
     pub heat: Heat,
-    /// `limit_damping`: the normal force never pulls.
+    /// `limit_damping`: the normal force is never attractive.
     pub limit_damping: bool,
     /// Lever arms of the tangential force.
     pub arm: Arm,
-    /// `synchronized_verlet`: springs turn with the normal of the middle of the step.
+    /// `synchronized_verlet`: springs rotate with the normal in the middle of the step.
     pub synchronized: bool,
 }
 
-/// Two models of different kinds cannot be mixed: which words differ.
+/// The words of two models that differ, so that the models cannot be mixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unmixable(pub &'static str, pub &'static str);
 
-/// The numbers of `pair_style gran/*` and `fix wall/gran hooke|hooke/history|hertz/history`.
+/// The parameters of `pair_style gran/*` and `fix wall/gran hooke|hooke/history|hertz/history`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classic {
     /// Normal and tangential stiffness [force/length; pressure for `hertz`].
@@ -55,14 +56,14 @@ pub struct Classic {
     pub gamma: [f64; 2],
     /// Coefficient of friction.
     pub mu: f64,
-    /// Whether the normal force never pulls.
+    /// Whether the normal force is never attractive.
     pub limit_damping: bool,
-    /// Where friction takes hold.
+    /// Lever arm of friction.
     pub arm: Arm,
 }
 
 impl Model {
-    /// A model that resists neither rolling nor twisting.
+    /// A model without rolling and twisting resistance.
     pub fn new(normal: Normal, damping: Damping, tangential: Tangential) -> Self {
         Self {
             normal,
@@ -77,8 +78,8 @@ impl Model {
         }
     }
 
-    /// `hooke`, `hooke/history` or `hertz/history` of the older styles: mass-proportional damping, springs projected
-    /// into the tangent plane, full lever arms unless said otherwise.
+    /// `hooke`, `hooke/history` or `hertz/history` of the older styles: mass-proportional damping, springs
+    /// projected into the tangent plane, full lever arms by default.
     pub fn classic(hertz: bool, history: bool, c: &Classic) -> Self {
         let [stiffness, kt] = c.stiffness;
         let [eta, gamma_t] = c.gamma;
@@ -93,23 +94,23 @@ impl Model {
         Self { limit_damping: c.limit_damping, arm: c.arm, ..Self::new(normal, damping, tangential) }
     }
 
-    /// Whether its spring is one of those that LAMMPS 22Jul2025 shortens wrongly when they slide.
+    /// Whether LAMMPS 22Jul2025 shortens its spring incorrectly when it slides.
     pub fn slides_loosely(&self) -> bool {
         let Tangential { kind, drag, .. } = self.tangential;
         matches!(kind, Friction::LinearHistoryClassic | Friction::MindlinClassic)
             && matches!(drag, Drag::Times(_))
     }
 
-    /// The law for a pair of types whose model was given.
+    /// The law for a pair of types whose model was declared.
     pub fn law(&self, compat: Compat) -> Granular {
         self.pair(self, false, compat)
     }
 
-    /// The law for a pair of types of which only the like pairs were given, by LAMMPS' rules: geometric means,
-    /// moduli as E* and G*, `limit_damping` and `synchronized_verlet` if either has it.
+    /// The law for an undeclared pair of different types, by LAMMPS' mixing rules: geometric means, moduli as
+    /// E* and G*, `limit_damping` and `synchronized_verlet` if either model has it.
     ///
     /// # Errors
-    /// When the models are not of one kind.
+    /// Models of different kinds.
     pub fn mixed(&self, other: &Model, compat: Compat) -> Result<Granular, Unmixable> {
         for (a, b) in self.names().into_iter().zip(other.names()) {
             if a != b {

@@ -1,4 +1,4 @@
-//! A spring and a dashpot that slide at a limit: friction across the normal and resistance to rolling.
+//! A spring and a dashpot that slide at a force limit: tangential friction and rolling resistance.
 
 use super::Advance;
 use perigrain_base::math::real::Real;
@@ -7,71 +7,74 @@ use perigrain_base::math::vec3::{Vec3, add, choose, dot, length, scale, sub};
 /// Component along the normal, relative to the limit, below which a spring counts as tangential.
 const TILT: f64 = 1e-10;
 
-/// What a spring remembers, and how that follows the turning normal.
+/// The history of a spring, and how it follows the rotating normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// The displacement ξ, turned into the present tangent plane with its length kept (Luding 2008, eq. 17).
+    /// The displacement ξ, rotated into the current tangent plane at constant length (Luding 2008, eq. 17).
     Displacement,
-    /// The displacement ξ, of which the component along the normal is dropped (Silbert et al. 2001).
+    /// The displacement ξ without its component along the normal (Silbert et al. 2001).
     Projected,
-    /// The elastic force −k ξ itself, turned as a displacement; what was built up at another stiffness stays.
+    /// The elastic force −k ξ itself, rotated like a displacement; forces built up at another stiffness are
+    /// kept.
     Force,
 }
 
-/// How well a force that slid is known again as one of the size of the limit, relative to its parts: limits come from
-/// overlaps, and one of a millionth of the radius has only ten good digits.
+/// Relative tolerance for recognizing a force that slid at the limit: limits are computed from overlaps, and
+/// an overlap of a millionth of the radius has only ten correct digits.
 const KNOWN: f64 = 1e-9;
 
-/// Whether a slider acts, or is looked at after it did.
+/// Whether a slider is evaluated for the first time or reproduces an earlier evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// It acts.
+    /// First evaluation.
     First,
-    /// It has acted and left its spring behind, in the setup of a run or in a step.
+    /// Evaluates the spring that an earlier evaluation left behind, in the setup of a run or in a step.
     Again {
-        /// Whether in a setup, where the spring does not move on before it acts.
+        /// Whether that was in a setup, where the spring is not advanced before it acts.
         setup: bool,
     },
 }
 
-/// Where the normal that turns a spring is from (`synchronized_verlet`, Vyas et al. 2025).
+/// Which normal a spring rotates with (`synchronized_verlet`, Vyas et al. 2025).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sync {
-    /// The end of the step.
+    /// The one at the end of the step.
     Off,
-    /// Its middle, as the velocities that move the spring on; then the spring is turned on into the plane of its end. The dashpot does
-    /// not turn.
+    /// The one in the middle of the step, as for the velocities that advance the spring; then the spring is rotated into the
+    /// tangent plane at the end of the step. The dashpot is not rotated.
     Spring,
-    /// The same, and the dashpot turns.
+    /// The same, with the dashpot rotated too.
     Both,
-    /// The same, but what a spring that slides is shortened by is a dashpot that does not turn, as LAMMPS 22Jul2025 has it.
+    /// The same, but a sliding spring is shortened by the dashpot before its rotation, as in LAMMPS
+    /// 22Jul2025.
     Lammps2025,
 }
 
-/// One contact's spring, dashpot and limit in the tangent plane.
+/// Spring, dashpot and limit of one contact in the tangent plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Slider<R> {
-    /// The normal in the middle of the step (where springs are synchronized) and at its end.
+    /// The normal in the middle of the step (for synchronized springs) and at its end.
     pub n: [Vec3<R>; 2],
-    /// Whether these differ.
+    /// Which normal the spring rotates with.
     pub sync: Sync,
     /// k [force/length].
     pub stiffness: R,
-    /// The stiffness by which a spring that slides is shortened: k, but where LAMMPS is wrong.
+    /// Stiffness used to shorten a sliding spring: k, except where LAMMPS' error is reproduced.
     pub slack: R,
     /// η [mass/time].
     pub damping: R,
-    /// Whether a spring that slides is rid of no more drag along the sliding than the limit: a spring that must not be set beyond rest.
+    /// Whether the drag subtracted from a sliding spring is limited along the sliding direction, so that the
+    /// spring never pushes in that direction.
     pub capped: bool,
-    /// The largest force it carries.
+    /// Largest force.
     pub limit: R,
-    /// The velocity v across the normal that it resists.
+    /// Tangential velocity v.
     pub v: Vec3<R>,
 }
 
 impl<R: Real> Slider<R> {
-    /// F = −k ξ − η v, at most the limit; `xi` moves on by v dt and is shortened to what the slider carries when
-    /// it slides (Luding 2008, eq. 20).
+    /// F = −k ξ − η v, at most the limit. Advances `xi` by v dt, and when it slides shortens it to the force
+    /// that the slider carries (Luding 2008, eq. 20).
     #[inline(always)]
     pub fn force(&self, xi: &mut Vec3<R>, memory: Memory, step: Advance) -> Vec3<R> {
         let zero = self.limit.like(0.0);
@@ -81,23 +84,23 @@ impl<R: Real> Slider<R> {
         let trial = if by_force { add(drag, *xi) } else { sub(drag, scale(self.stiffness, *xi)) };
         let size = length(trial);
         let slides = size.above(self.limit);
-        // In lanes, where now some slide and now none, the branch costs more than what it saves.
+        // In lanes some contacts slide and some do not: the branch would cost more than it saves.
         if R::ONE && !R::any(slides) {
             return trial;
         }
         let stretched = dot(*xi, *xi).above(zero);
-        // Without stiffness no displacement carries a force: it stays as it is.
+        // With zero stiffness no displacement carries a force: it is kept.
         let stiff = self.slack.above(zero);
         let slack = R::choose(stiff, self.slack, zero.like(1.0));
-        // Both quotients by one division.
+        // Both quotients from one division.
         let inverse = zero.like(1.0) / (size * slack);
         let along = slack * inverse;
         let sliding = scale(R::choose(stretched, self.limit * along, zero), trial);
         let unturned = self.sync == Sync::Lammps2025;
         let mut elastic = sub(sliding, if unturned { scale(-self.damping, self.v) } else { drag });
         if self.capped {
-            // Along the sliding direction a drag beyond the limit leaves the spring at rest; across it all of the drag counts, so that
-            // what slid gives the same force when it is looked at once more.
+            // Along the sliding direction, a drag beyond the limit leaves the spring at rest; across it all
+            // of the drag counts, so that a second evaluation gives the same force.
             let beyond = (dot(drag, trial) * along - self.limit).most(zero);
             elastic = add(elastic, scale(beyond * along, trial));
         }
@@ -110,8 +113,8 @@ impl<R: Real> Slider<R> {
         choose::<R>(slides, sliding, trial)
     }
 
-    /// The force that [`Slider::force`] gave as it left the displacement `xi` behind, where a spring that slides is
-    /// shortened by another stiffness than its own: then −`slack` ξ − η v is as large as the limit.
+    /// The force that [`Slider::force`] returned when it left the displacement `xi` behind, if sliding
+    /// springs are shortened with another stiffness than k: then −`slack` ξ − η v has the size of the limit.
     #[inline(always)]
     pub fn again(&self, mut xi: Vec3<R>, setup: bool) -> Vec3<R> {
         let zero = self.limit.like(0.0);
@@ -120,19 +123,19 @@ impl<R: Real> Slider<R> {
         let off = (length(sliding) - self.limit).abs();
         let parts = length(drag) + self.slack * length(xi) + self.limit;
         let slid = (parts * KNOWN).above(off);
-        // Any other gives the same force twice.
+        // All others give the same force twice.
         let other = self.force(&mut xi, Memory::Projected, Advance { dt: 0.0, history: false });
         let felt = choose::<R>(slid, sliding, other);
         if !setup {
             return felt;
         }
-        // In a setup the spring may be what the step before it left. Without a drag and with a softer spring, what slid
-        // then does not slide again.
+        // In a setup, the spring may be the one left by the previous step. Without drag and with a softer
+        // spring, a spring that slid does not slide again.
         let [drags, stiffens] = [dot(drag, drag).above(zero), self.stiffness.above(self.slack)];
         choose::<R>(drags, felt, choose::<R>(stiffens, felt, other))
     }
 
-    /// What is remembered, turned with the normal and moved on; the velocity that the dashpot resists.
+    /// The history, rotated with the normal and advanced; returns the velocity for the dashpot.
     #[inline(always)]
     fn advance(&self, xi: &mut Vec3<R>, memory: Memory, dt: f64) -> Vec3<R> {
         let dt = self.limit.like(dt);
@@ -155,7 +158,7 @@ impl<R: Real> Slider<R> {
         choose::<R>(tilted, into_plane(self.v, end, dot(self.v, end)), self.v)
     }
 
-    /// Turns what is remembered into the plane across `n` where it leans out of it; where it does.
+    /// Rotates the history into the plane normal to `n` if it is tilted; returns whether it was.
     #[inline(always)]
     fn turn(&self, xi: &mut Vec3<R>, n: Vec3<R>, memory: Memory) -> R::Mask {
         let tilt = dot(*xi, n);
@@ -168,7 +171,7 @@ impl<R: Real> Slider<R> {
     }
 }
 
-/// `xi` without its component `tilt` along `n`, at its old length.
+/// `xi` without its component `tilt` along `n`, rescaled to its old length.
 #[inline(always)]
 fn into_plane<R: Real>(xi: Vec3<R>, n: Vec3<R>, tilt: R) -> Vec3<R> {
     let flat = sub(xi, scale(tilt, n));

@@ -1,4 +1,4 @@
-//! Friction across the normal: the models decks name and their constants for one pair of types.
+//! Tangential friction: the models named in decks, and their constants for a pair of types.
 
 use super::damping::Damping;
 use super::normal::{effective_shear, effective_young, geometric};
@@ -17,17 +17,18 @@ pub enum Friction {
     LinearNohistory,
     /// `linear_history`: F_t = −k_t ξ − η_t v_t.
     LinearHistory,
-    /// `linear_history_classic`: the same, ξ projected into the tangent plane as by `pair_style gran/hooke/history`.
+    /// `linear_history_classic`: the same, ξ projected into the tangent plane as in
+    /// `pair_style gran/hooke/history`.
     LinearHistoryClassic,
     /// `mindlin`: F_t = −k_t a ξ − η_t v_t.
     Mindlin,
-    /// `mindlin_classic`: the same, ξ projected as by `pair_style gran/hertz/history`.
+    /// `mindlin_classic`: the same, ξ projected as in `pair_style gran/hertz/history`.
     MindlinClassic,
-    /// `mindlin/force`: the force is remembered, dF_t = −k_t a v_t dt.
+    /// `mindlin/force`: the history is the force, dF_t = −k_t a v_t dt.
     MindlinForce,
-    /// `mindlin_rescale`: as `mindlin`; ξ shrinks with the contact radius (Thornton et al. 2013, eq. 18b).
+    /// `mindlin_rescale`: like `mindlin`; ξ shrinks with the contact radius (Thornton et al. 2013, eq. 18b).
     MindlinRescale,
-    /// `mindlin_rescale/force`: as `mindlin/force`; the force shrinks with the contact radius.
+    /// `mindlin_rescale/force`: like `mindlin/force`; the force shrinks with the contact radius.
     MindlinRescaleForce,
 }
 
@@ -45,7 +46,7 @@ impl Friction {
         Friction::MindlinRescaleForce,
     ];
 
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(self) -> &'static str {
         match self {
             Friction::None => "none",
@@ -72,7 +73,7 @@ impl Friction {
         )
     }
 
-    /// Whether k_t may follow from the material (`NULL`).
+    /// Whether k_t may be derived from the material (`NULL`).
     pub fn takes_material(self) -> bool {
         self.by_radius() && self != Friction::MindlinClassic
     }
@@ -82,7 +83,7 @@ impl Friction {
         matches!(self, Friction::MindlinRescale | Friction::MindlinRescaleForce)
     }
 
-    /// Whether what a displacement carries grows with the radius of the contact.
+    /// Whether the stiffness grows with the contact radius.
     fn stiffens(self) -> bool {
         self.by_radius() && self.memory() != Memory::Force
     }
@@ -96,7 +97,7 @@ impl Friction {
     }
 }
 
-/// Damping across the normal.
+/// Tangential damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drag {
     /// η_t = x_gamma η_n.
@@ -105,7 +106,7 @@ pub enum Drag {
     Own(f64),
 }
 
-/// A tangential model with the coefficients a deck gives it.
+/// A tangential model with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tangential {
     /// Its kind.
@@ -128,14 +129,15 @@ impl Tangential {
         Self { kind, stiffness, drag: Drag::Times(x_gamma), mu }
     }
 
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(&self) -> &'static str {
         self.kind.name()
     }
 
-    /// The spring between grains of two types whose normal damping has a form and the constant `eta`: coefficients mix
-    /// geometrically, G* as Mindlin's theory wants. LAMMPS 22Jul2025 takes E* of the pair for both moduli of a mixed
-    /// pair and √(ν_i ν_j) for both ratios, against its own manual, which `mixed` and `compat` together reproduce.
+    /// The spring between grains of two types; `eta` is the constant of the normal damping. Coefficients are
+    /// mixed geometrically, G* by Mindlin's theory. For a mixed pair, LAMMPS 22Jul2025 uses E* of the pair
+    /// for both moduli and √(ν_i ν_j) for both Poisson ratios, against its own manual; `mixed` and `compat`
+    /// together reproduce this.
     pub fn spring(
         &self,
         other: &Tangential,
@@ -153,7 +155,7 @@ impl Tangential {
             (Drag::Own(a), Drag::Own(b)) => geometric(a, b),
             (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
         };
-        // Both are mended in 2026.
+        // Both errors are fixed in 2026.
         let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
         let loose = classic && compat == Compat::Lammps2025 && matches!(self.drag, Drag::Times(_));
         Spring {
@@ -169,7 +171,7 @@ impl Tangential {
     }
 }
 
-/// G* of two materials; zero for normal models without one (decks that ask for it are refused).
+/// G* of two materials; zero for normal models without a material (decks that need it are refused).
 fn shear(normals: [&Normal; 2], artefact: bool) -> f64 {
     let [Some((e1, nu1)), Some((e2, nu2))] = normals.map(Normal::material) else { return 0.0 };
     if artefact {
@@ -179,38 +181,39 @@ fn shear(normals: [&Normal; 2], artefact: bool) -> f64 {
     effective_shear([e1, e2], [nu1, nu2])
 }
 
-/// Friction with a slider, ready for contacts of one pair of types.
+/// A friction slider for contacts of one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// Its kind.
     pub kind: Friction,
     /// k_t [pressure, or force/length for linear models].
     pub stiffness: f64,
-    /// Constant of the tangential damping, in the form of the normal one.
+    /// Constant of the tangential damping, in the form of the normal damping.
     pub damping: f64,
     /// Coefficient of friction.
     pub mu: f64,
-    /// `…_classic` springs of granular models and walls in LAMMPS 22Jul2025: the contact radius stiffens
-    /// `linear_history_classic` too, and is forgotten where a spring that slides is shortened.
+    /// `…_classic` springs of granular models and walls in LAMMPS 22Jul2025: the contact radius also stiffens
+    /// `linear_history_classic`, and it is omitted when a sliding spring is shortened.
     pub loose: bool,
-    /// Whether a spring that slides is rid of no more drag along the sliding than it may carry. Luding's rule leaves
-    /// −k ξ = F + η v; in young contacts η v is beyond all friction, and a spring that k ∝ a stiffens more than η grows then
-    /// drives the sliding it should resist, the harder the shorter the first steps are. LAMMPS 22Jul2025 has it so.
+    /// Whether the drag subtracted from a sliding spring is limited along the sliding direction. Luding's
+    /// rule leaves −k ξ = F + η v. In young contacts η v exceeds the friction limit, and a spring with k ∝ a,
+    /// which stiffens faster than η grows, then drives the sliding that it should resist, more strongly the
+    /// shorter the first steps are. LAMMPS 22Jul2025 behaves that way.
     pub capped: bool,
-    /// Whether a contact is looked at once more.
+    /// Whether a contact is evaluated again.
     pub look: Look,
-    /// Whether it turns in two halves of the step.
+    /// Which normal it rotates with.
     pub sync: Sync,
 }
 
 impl Spring {
-    /// Whether its stiffness grows with the radius of the contact.
+    /// Whether its stiffness grows with the contact radius.
     #[inline(always)]
     pub fn by_radius(&self) -> bool {
         self.kind.by_radius() || self.loose
     }
 
-    /// How many numbers it remembers: a displacement or force and, to shrink it, the contact radius.
+    /// Size of its history: a displacement or force and, for rescaling, the contact radius.
     #[inline(always)]
     pub fn memory(&self) -> usize {
         match self.kind {
@@ -220,7 +223,7 @@ impl Spring {
         }
     }
 
-    /// The spring that gives the force of its last evaluation once more, from what this one left behind.
+    /// The spring that reproduces the force of the last evaluation from the history it left behind.
     #[must_use]
     pub fn again(&self, setup: bool) -> Self {
         // All others give the same force twice.
@@ -228,7 +231,7 @@ impl Spring {
         Self { look, ..*self }
     }
 
-    /// k_t of a contact of radius `a` [force/length]; 0 of friction without springs.
+    /// k_t at contact radius `a` [force/length]; 0 for friction without a spring.
     pub fn present(&self, a: f64) -> f64 {
         match self.kind {
             Friction::None | Friction::LinearNohistory => 0.0,
@@ -237,7 +240,7 @@ impl Spring {
         }
     }
 
-    /// The energy of a spring that remembers `history`: ½ k_t ξ², or F²/(2 k_t) where a force is remembered.
+    /// The energy of a spring with this `history`: ½ k_t ξ², or F²/(2 k_t) if the history is the force.
     pub fn energy(&self, a: f64, history: &[f64]) -> f64 {
         let stiffness = self.present(a);
         let [x, y, z, ..] = *history else { return 0.0 };
@@ -249,8 +252,8 @@ impl Spring {
         }
     }
 
-    /// The tangential force on i, at most `mu` times `carried`, the normal force that counts for friction; `a`: radius
-    /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity, `n` as in [`Slider`].
+    /// The tangential force on i, at most `mu` times `carried`, the normal load for friction; `a`: contact
+    /// radius, `form`: normal damping divided by its constant, `v`: slip velocity, `n` as in [`Slider`].
     #[inline(always)]
     pub fn force<R: Real>(
         &self,
@@ -278,7 +281,8 @@ impl Spring {
                 if kind.rescales() {
                     let shrinks = history[3].above(a);
                     xi = scale(R::choose(shrinks, a / history[3], a.like(1.0)), xi);
-                    // Where LAMMPS stores what it computes in a setup, it forgets that the spring has shrunk, which shrinks again.
+                    // Where LAMMPS stores results of a setup, it discards that the spring has shrunk, so that
+                    // it shrinks again.
                     if step.history {
                         history[3] = a;
                     }

@@ -1,4 +1,5 @@
-//! The law against LAMMPS, closed forms and conservation, with a plain velocity-Verlet driver of two spheres.
+//! The law compared with LAMMPS, closed forms and conservation laws, using a plain velocity-Verlet integrator
+//! for two spheres.
 
 mod closed_forms;
 mod oblique;
@@ -8,7 +9,7 @@ use super::*;
 use perigrain_base::math::vec3::{add, cross, length, scale};
 use perigrain_world::Compat;
 
-/// A sphere, or with infinite mass and radius 0 a wall.
+/// A sphere; or, with infinite mass and radius 0, a wall.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     x: Vec3,
@@ -37,7 +38,7 @@ impl Ball {
     }
 }
 
-/// Two balls, one law, LAMMPS' step: forces between the half kicks, from half-step velocities.
+/// Two balls and one law, with LAMMPS' step: forces between the half kicks, from half-step velocities.
 struct Duel {
     balls: [Ball; 2],
     law: Granular,

@@ -1,53 +1,53 @@
-//! What touching spheres do, several contacts of one law at a time: one by one a drum's wall takes a quarter of its step, a bed of
-//! plastic grains a fifth.
+//! Evaluates several contacts of one law at a time. One by one, the wall of a drum takes a quarter of its
+//! step and a bed of plastic grains a fifth.
 
 use super::{Advance, Geometry, Granular, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::vec3::Vec3;
 
-/// Fewer contacts are evaluated one by one: lanes that repeat a contact are in vain.
+/// Fewer contacts are evaluated one by one, because the lanes would mostly repeat a contact.
 const FEW: usize = 3;
 
 /// Four numbers of a row.
 const FOUR: usize = 4;
 
-/// Who meets in each of some contacts.
+/// The two sides of some contacts.
 pub(super) trait Met {
     /// The grain on the first side of contact `k`.
     fn own(&self, k: usize) -> u32;
-    /// How the second side moves.
+    /// Motion of the second side.
     fn other(&self, k: usize) -> Motion;
-    /// The grains on the second sides, where these move as grains do.
+    /// The grains on the second sides, if these are grains.
     fn others<const N: usize>(&self, k: [usize; N]) -> Option<[u32; N]>;
 }
 
 /// Contacts of one law.
 pub(super) struct Together<'a, M> {
     pub law: &'a Granular,
-    /// Where and how they touch.
+    /// Geometry.
     pub geometry: &'a [Geometry],
     pub met: M,
     /// Velocities of all grains.
     pub v: &'a [Vec3],
     /// Angular velocities.
     pub omega: &'a [Vec3],
-    /// What each contact remembers: rows of `width` numbers.
+    /// Histories: rows of `width` numbers.
     pub history: &'a mut [f64],
     pub width: usize,
-    /// What each contact does.
+    /// Force and torques of each contact.
     pub wrenches: &'a mut [Wrench],
     pub step: Advance,
 }
 
 impl<M: Met> Together<'_, M> {
-    /// Evaluates them all.
+    /// Evaluates all contacts.
     pub fn evaluate(self) {
         let n = self.geometry.len();
         assert!(self.wrenches.len() == n && self.history.len() == n * self.width);
         if n >= FEW && self.width <= MOST_MEMORY {
             assert_eq!(self.v.len(), self.omega.len());
-            // SAFETY: this processor has what its own form needs; the columns have as many rows as there are contacts.
+            // SAFETY: this processor supports its own form; the columns have one row per contact.
             return unsafe { Form::here().run(self) };
         }
         for (k, w) in self.wrenches.iter_mut().enumerate() {
@@ -58,29 +58,29 @@ impl<M: Met> Together<'_, M> {
         }
     }
 
-    /// How grains move.
+    /// Motion of grains.
     ///
     /// # Safety
-    /// The processor must have what the lanes need.
+    /// The processor must support the lanes.
     #[inline(always)]
     unsafe fn motion<const N: usize, V: Lanes<N>>(&self, grains: [u32; N]) -> Motion<V> {
         for grain in grains {
             assert!((grain as usize) < self.v.len());
         }
         let at = grains.as_ptr();
-        // SAFETY: passed on; there are such grains, and as many angular velocities.
+        // SAFETY: the caller's guarantee; these grains exist, and angular velocities have the same length.
         unsafe {
             Motion { velocity: V::vectors(self.v.as_ptr(), at), spin: V::vectors(self.omega.as_ptr(), at) }
         }
     }
 
-    /// How the second sides move.
+    /// Motion of the second sides.
     ///
     /// # Safety
     /// As [`Together::motion`].
     #[inline(always)]
     unsafe fn other<const N: usize, V: Lanes<N>>(&self, k: [usize; N]) -> Motion<V> {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             if let Some(grains) = self.met.others(k) {
                 return self.motion(grains);
@@ -102,7 +102,7 @@ impl<M: Met> Together<'_, M> {
 impl<M: Met> InLanes for Together<'_, M> {
     type Out = ();
 
-    /// There must be at least one contact, and a row of each column for each.
+    /// There must be at least one contact, and one row per contact in each column.
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let (count, width) = (self.geometry.len(), self.width);
@@ -112,7 +112,7 @@ impl<M: Met> InLanes for Together<'_, M> {
             let (null, mut k, mut own) = (std::ptr::null_mut::<f64>(), [0; N], [0; N]);
             let (mut touch, mut past, mut done) = ([null; N], [null; N], [null; N]);
             for lane in 0..N {
-                // Lanes without a contact repeat the last one, in whose place they write the same.
+                // Lanes without a contact repeat the last one and write identical values.
                 k[lane] = (first + lane).min(count - 1);
                 own[lane] = self.met.own(k[lane]);
                 // SAFETY: each of these contacts has its rows. Geometry is only read.
@@ -122,7 +122,7 @@ impl<M: Met> InLanes for Together<'_, M> {
                     done[lane] = wrenches.add(k[lane]).cast();
                 }
             }
-            // SAFETY: the processor has what the form needs; a geometry is eight numbers, a wrench nine.
+            // SAFETY: the processor supports the form; a geometry is eight numbers, a wrench nine.
             unsafe {
                 let [nx, ny, nz, overlap] = load_rows(&touch, 0);
                 let [ri, rj, curvature, mass] = load_rows(&touch, FOUR);
@@ -143,19 +143,20 @@ impl<M: Met> InLanes for Together<'_, M> {
     }
 }
 
-/// Where four of `width` numbers begin that go on from `part`: the last four may repeat some.
+/// Start of the group of four, out of `width` numbers, that continues at `part`: the last group may repeat
+/// some.
 #[inline(always)]
 fn four_of(width: usize, part: usize) -> usize {
     part.min(width - FOUR)
 }
 
-/// What contacts remember: `width` numbers of each row, then zeros.
+/// Histories: `width` numbers of each row, padded with zeros.
 ///
 /// # Safety
-/// The processor must have what the lanes need, and there must be such rows.
+/// The processor must support the lanes, and the rows must exist.
 #[inline(always)]
 unsafe fn remembered<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], width: usize) -> [V; MOST_MEMORY] {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         let mut lanes = [V::all(0.0); MOST_MEMORY];
         if width < FOUR {
@@ -176,14 +177,14 @@ unsafe fn remembered<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], width: u
     }
 }
 
-/// The way back.
+/// Writes histories back.
 ///
 /// # Safety
 /// As [`remembered`].
 #[inline(always)]
 unsafe fn remember<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], lanes: &[V]) {
     let width = lanes.len();
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         if width < FOUR {
             for part in 0..width {

@@ -1,4 +1,4 @@
-//! Resistance to rolling and twisting: a spring, a dashpot and a slider for the difference of spins.
+//! Rolling and twisting resistance: a spring, a dashpot and a slider for the relative spin.
 
 use super::normal::geometric;
 use super::slider::{Memory, Slider, Sync};
@@ -8,7 +8,7 @@ use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, cross, scale};
 use perigrain_world::Compat;
 
-/// The three coefficients of a spring-dashpot-slider.
+/// Coefficients of a spring-dashpot-slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sds {
     /// Stiffness [force/length; torque for twisting].
@@ -29,7 +29,7 @@ impl Sds {
     }
 }
 
-/// Resistance to rolling (Luding 2008): a pseudo-force between the surfaces that only makes torques.
+/// Rolling resistance (Luding 2008): a pseudo-force between the surfaces that produces torques only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rolling {
     /// `none`.
@@ -40,7 +40,7 @@ pub enum Rolling {
 }
 
 impl Rolling {
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(&self) -> &'static str {
         match self {
             Rolling::None => "none",
@@ -48,7 +48,7 @@ impl Rolling {
         }
     }
 
-    /// For a pair of types with models of one kind.
+    /// The model between two types whose models are of one kind.
     pub fn mixed(&self, other: &Rolling) -> Rolling {
         match (self, other) {
             (Rolling::Sds(a), Rolling::Sds(b)) => Rolling::Sds(a.mixed(b)),
@@ -56,7 +56,7 @@ impl Rolling {
         }
     }
 
-    /// How many numbers it remembers: the rolling displacement.
+    /// Size of its history: the rolling displacement.
     #[inline(always)]
     pub fn memory(&self) -> usize {
         if *self == Rolling::None { 0 } else { 3 }
@@ -70,9 +70,9 @@ impl Rolling {
         }
     }
 
-    /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω the difference of spins, at most
-    /// `mu` times the normal force `carried` at the arm R̄; its opposite acts on j. `n` as in [`Slider`], and the arm's direction is
-    /// the normal of `g`.
+    /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω being the relative spin,
+    /// at most `mu` times the normal load `carried` at the arm R̄; the opposite acts on j. `n` as in
+    /// [`Slider`]; the direction of the arm is the normal of `g`.
     #[inline(always)]
     pub fn torque<R: Real>(
         &self,
@@ -98,7 +98,7 @@ impl Rolling {
         };
         let mut xi = [history[0], history[1], history[2]];
         let force = slider.force(&mut xi, Memory::Displacement, step);
-        // Not even LAMMPS, whose setup shortens the spring of friction, does so with this one.
+        // LAMMPS' setup shortens the friction spring, but not this one.
         if step.history {
             history[..3].copy_from_slice(&xi);
         }
@@ -106,7 +106,7 @@ impl Rolling {
     }
 }
 
-/// Resistance to twisting about the normal.
+/// Twisting resistance about the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Twisting {
     /// `none`.
@@ -119,7 +119,7 @@ pub enum Twisting {
 }
 
 impl Twisting {
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(&self) -> &'static str {
         match self {
             Twisting::None => "none",
@@ -128,7 +128,7 @@ impl Twisting {
         }
     }
 
-    /// For a pair of types with models of one kind.
+    /// The model between two types whose models are of one kind.
     pub fn mixed(&self, other: &Twisting) -> Twisting {
         match (self, other) {
             (Twisting::Sds(a), Twisting::Sds(b)) => Twisting::Sds(a.mixed(b)),
@@ -136,7 +136,7 @@ impl Twisting {
         }
     }
 
-    /// How many numbers it remembers: the angle.
+    /// Size of its history: the angle.
     #[inline(always)]
     pub fn memory(&self) -> usize {
         usize::from(*self != Twisting::None)
@@ -152,12 +152,12 @@ impl Twisting {
         }
     }
 
-    /// The torque about the normal on i, against the twisting velocity `omega` about it, at most a friction
-    /// coefficient times the normal force `carried`; `a`: radius of the contact, `form`: the normal damping over its
-    /// constant.
+    /// The torque about the normal on i, against the twisting velocity `omega`, at most a friction
+    /// coefficient times the normal load `carried`; `a`: contact radius, `form`: normal damping divided by
+    /// its constant.
     ///
-    /// LAMMPS 22Jul2025 gives a sliding twist the direction of the velocity even where the spring pushes the other
-    /// way, which `compat` reproduces.
+    /// LAMMPS 22Jul2025 gives a sliding twist the direction of the velocity even where the spring pushes the
+    /// other way; `compat` reproduces this.
     #[inline(always)]
     pub fn torque<R: Real>(
         &self,

@@ -1,4 +1,4 @@
-//! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
+//! Contacts of spheres with walls: finding them, their histories, and their forces.
 
 mod shapes;
 mod told;
@@ -12,32 +12,33 @@ pub use perigrain_world::region::{FacetNear, Near};
 pub use shapes::{Planes, Tube};
 use std::ops::Range;
 
-/// Which spheres meet a wall.
+/// Selects the spheres that interact with a wall.
 #[derive(Clone, Copy)]
 pub struct Meeting<'a> {
-    /// The groups of each.
+    /// Group masks.
     pub mask: &'a [u32],
-    /// Those with a bit of these groups do.
+    /// Spheres with a bit of these groups are selected.
     pub group: u32,
-    /// Of these rows, ascending.
+    /// Row ranges, ascending.
     pub rows: &'a [Range<usize>],
 }
 
-/// Something spheres lean on.
+/// A wall for spheres.
 pub trait Wall: Sync {
-    /// Whether a sphere at `x` may come nearer than `reach` to the wall, from whatever side; generous where that is
-    /// not easily told. `spare` is room.
+    /// Whether a sphere at `x` may be within `reach` of the wall, on any side; `true` where this is expensive
+    /// to decide. `spare` is a buffer.
     fn close(&self, x: Vec3, reach: f64, spare: &mut Vec<Near>) -> bool;
 
-    /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
+    /// Finds the contact points within `reach` of `x`, at most one per part of the wall.
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
 
-    /// Adds the numbers of the wall's pieces nearer than `reach` to `x` to `out`; `false` where it is not made of pieces.
+    /// Appends the indices of the wall's pieces within `reach` of `x` to `out`; `false` if the wall has no
+    /// pieces.
     fn pieces(&self, _x: Vec3, _reach: f64, _out: &mut Vec<u32>) -> bool {
         false
     }
 
-    /// What [`Wall::near`] finds, where no other pieces than these are so near. `spare` is room.
+    /// The result of [`Wall::near`], given that no other pieces are within reach. `spare` is a buffer.
     fn near_pieces(
         &self,
         _pieces: &[u32],
@@ -49,28 +50,29 @@ pub trait Wall: Sync {
         self.near(x, reach, out);
     }
 
-    /// The wall as planes, if it is nothing else: to look for those near them takes less than to ask for each sphere.
+    /// The wall as planes, if it consists of nothing else: a loop over planes is faster than calls per
+    /// sphere.
     fn planes(&self) -> Option<&Planes> {
         None
     }
 
-    /// Whether a sticky sphere that touched there holds on until it is torn off.
+    /// Whether a cohesive sphere that touched this point remains in contact until it is torn off.
     fn holds(&self, _near: &Near) -> bool {
         true
     }
 
-    /// Whether any contact may go on with the springs of another one.
+    /// Whether a contact may inherit the springs of another one.
     fn passes_some(&self) -> bool {
         false
     }
 
-    /// Whether a contact with part `to` may go on with the springs of one with part `from` that ends.
+    /// Whether a contact with part `to` may inherit the springs of one with part `from` that ends.
     fn passes(&self, _from: u32, _to: u32) -> bool {
         false
     }
 }
 
-/// The particles as walls see them: columns of equal length.
+/// Particles as walls access them: columns of equal length.
 #[derive(Clone, Copy)]
 pub struct Spheres<'a> {
     /// Positions [length].
@@ -83,16 +85,16 @@ pub struct Spheres<'a> {
     pub radius: &'a [f64],
     /// Masses.
     pub mass: &'a [f64],
-    /// Identities.
+    /// Ids.
     pub tag: &'a [u32],
 }
 
 /// A sphere that touches a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Which particle.
+    /// Particle index.
     pub grain: u32,
-    /// Where.
+    /// Contact point.
     pub near: Near,
 }
 
@@ -100,7 +102,7 @@ pub struct Touch {
 #[derive(Clone, Copy, Debug)]
 struct Listed {
     grain: u32,
-    /// Which of the listed pieces it may come near; none where the wall is not made of pieces.
+    /// Range of the listed pieces it may come near; empty if the wall has no pieces.
     pieces: [u32; 2],
 }
 
@@ -123,26 +125,26 @@ impl Met for Touches<'_> {
     }
 }
 
-/// One evaluation of all contacts with a wall; keeps its room from step to step.
+/// One evaluation of all contacts with a wall; keeps its buffers from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct WallSweep {
-    /// Particles that may come near the wall, by their tags.
+    /// Particles that may come near the wall, ordered by tag.
     list: Vec<Listed>,
     /// Pieces of the wall that they may come near, particle by particle.
     pieces: Vec<u32>,
     touching: Vec<Touch>,
     keys: Vec<[u32; 2]>,
-    /// Where and how they touch.
+    /// Geometry of the contacts.
     geometry: Vec<Geometry>,
     wrenches: Vec<Wrench>,
-    /// Heat into the particles, contact by contact.
+    /// Heat flow into the particles, by contact.
     heat: Vec<f64>,
     spare: Vec<f64>,
     near: Vec<Near>,
 }
 
 impl WallSweep {
-    /// Lists those that meet the wall and may come within `skin` of touching it.
+    /// Lists the selected particles that may come within `skin` of the wall.
     pub fn list(&mut self, wall: &dyn Wall, grains: &Spheres, which: &Meeting, law: &Granular, skin: f64) {
         match wall.planes() {
             Some(planes) => self.list_near(planes, grains, which, law, skin),
@@ -182,7 +184,8 @@ impl WallSweep {
         self.list.sort_unstable_by_key(|l| grains.tag[l.grain as usize]);
     }
 
-    /// Evaluates the contacts among the listed particles; `memory` follows: contacts that ended are forgotten.
+    /// Evaluates the contacts among the listed particles, and updates `memory`: contacts that ended are
+    /// removed.
     pub fn run(
         &mut self,
         wall: &dyn Wall,
@@ -195,7 +198,7 @@ impl WallSweep {
         self.act(grains, law, memory, step);
     }
 
-    /// Finds the contacts among the listed particles, the first half of [`WallSweep::run`].
+    /// Finds the contacts among the listed particles: the first half of [`WallSweep::run`].
     pub fn meet(&mut self, wall: &dyn Wall, grains: &Spheres, law: &Granular, memory: &mut Contacts) {
         match wall.planes() {
             Some(planes) => self.find(planes, grains, law, memory),
@@ -208,20 +211,20 @@ impl WallSweep {
         memory.carry(&self.keys, width, &mut self.spare);
     }
 
-    /// What [`WallSweep::meet`] does where nobody is listed, whatever the wall.
+    /// Like [`WallSweep::meet`] with no listed particle, for any wall.
     pub fn leave(&mut self, law: &Granular, memory: &mut Contacts) {
         self.touching.clear();
         self.keys.clear();
         memory.carry(&self.keys, law.memory(), &mut self.spare);
     }
 
-    /// Evaluates the contacts that were found, the second half.
+    /// Evaluates the contacts found: the second half.
     pub fn act(&mut self, grains: &Spheres, law: &Granular, memory: &mut Contacts, step: Advance) {
         let width = law.memory();
         if self.touching.is_empty() {
             return self.wrenches.clear();
         }
-        // All of them are written.
+        // Every element is written.
         self.wrenches.resize(self.touching.len(), Wrench::default());
         self.geometry.clear();
         let spheres = self.touching.iter().map(|t| (t, t.grain as usize));
@@ -243,7 +246,8 @@ impl WallSweep {
                 let i = grain as usize;
                 let radius = grains.radius[i];
                 near.clear();
-                // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
+                // Concave walls have larger effective radii, so that cohesion may reach farther than on flat
+                // ones.
                 let reach = radius + 2.0 * law.gap(radius);
                 match from < to {
                     true => wall.near_pieces(
@@ -282,7 +286,7 @@ impl WallSweep {
         self.touching = par::reduce(list.len(), some, join).unwrap_or_default();
     }
 
-    /// Gives contacts that begin the springs of contacts of the same particle that end, where the wall lets them pass.
+    /// Passes the springs of ending contacts to new contacts of the same particle, where the wall allows it.
     fn hand_over(&self, wall: &dyn Wall, memory: &mut Contacts) {
         if !wall.passes_some() || memory.keys == self.keys {
             return;
@@ -297,7 +301,7 @@ impl WallSweep {
             let ends = |old: &[u32; 2]| self.keys.binary_search(old).is_err() && wall.passes(old[1], part);
             let Some(at) = memory.keys[from..to].iter().position(ends).map(|k| from + k) else { continue };
             memory.keys[at][1] = part;
-            // Into its place among the particle's contacts.
+            // Moves it to its place among the particle's contacts.
             let mut at = at;
             while at > from && memory.keys[at - 1] > memory.keys[at] {
                 swap(memory, at - 1);
@@ -310,7 +314,8 @@ impl WallSweep {
         }
     }
 
-    /// Adds forces and torques to the particles; what the wall feels: force, and torque about `center`.
+    /// Adds forces and torques to the particles; returns the load on the wall: force, and torque about
+    /// `center`.
     pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3], x: &[Vec3], center: Vec3) -> [f64; 6] {
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
         for (t, w) in self.contacts() {
@@ -323,7 +328,8 @@ impl WallSweep {
         [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
     }
 
-    /// Adds the heat that a wall of this temperature gives to the particles to `flow`: what it loses in all.
+    /// Adds to `flow` the heat flow from a wall of this temperature to the particles; returns the wall's
+    /// total loss.
     pub fn conduct(
         &mut self,
         grains: &Spheres,
@@ -343,12 +349,12 @@ impl WallSweep {
         self.heat.iter().sum()
     }
 
-    /// The heat that contact `k` of the last evaluation gave to its particle.
+    /// Heat flow into the particle of contact `k` in the last evaluation.
     pub fn heat(&self, k: usize) -> f64 {
         self.heat.get(k).copied().unwrap_or(0.0)
     }
 
-    /// The contacts of the last evaluation and what they do.
+    /// The contacts of the last evaluation with their forces and torques.
     pub fn contacts(&self) -> impl Iterator<Item = (&Touch, &Wrench)> {
         self.touching.iter().zip(&self.wrenches)
     }
@@ -358,7 +364,7 @@ impl WallSweep {
         (&self.touching, &self.keys)
     }
 
-    /// How far the listed particles may go before one of them touches the wall [length], `most` at most.
+    /// How far the listed particles can move before one of them touches the wall [length], at most `most`.
     pub fn room(&mut self, wall: &dyn Wall, grains: &Spheres, law: &Granular, most: f64) -> f64 {
         let (mut room, near) = (most, &mut self.near);
         for &Listed { grain, .. } in &self.list {
@@ -371,13 +377,13 @@ impl WallSweep {
         room
     }
 
-    /// How many particles are looked at in each step.
+    /// The number of particles tested in each step.
     pub fn listed(&self) -> usize {
         self.list.len()
     }
 }
 
-/// Lets contact `at` and the next one change places.
+/// Swaps contact `at` and the next one.
 fn swap(memory: &mut Contacts, at: usize) {
     memory.keys.swap(at, at + 1);
     let width = memory.width;
@@ -385,7 +391,7 @@ fn swap(memory: &mut Contacts, at: usize) {
     first.swap_with_slice(second);
 }
 
-/// Particles and pieces of two parts of a list, one behind the other.
+/// Concatenates two parts of a list, with their pieces.
 fn listed_both(a: (Vec<Listed>, Vec<u32>), b: (Vec<Listed>, Vec<u32>)) -> (Vec<Listed>, Vec<u32>) {
     let before = a.1.len() as u32;
     let shifted = b.0.into_iter().map(|l| Listed { pieces: l.pieces.map(|k| k + before), ..l });
@@ -397,7 +403,7 @@ fn join<T>(mut a: Vec<T>, mut b: Vec<T>) -> Vec<T> {
     a
 }
 
-/// R̄ of a sphere on a wall with this radius of curvature: R where the wall is flat, or too hollow for the sphere.
+/// R̄ of a sphere on a wall of this radius of curvature: R if the wall is flat or too concave for the sphere.
 fn effective(radius: f64, wall: f64) -> f64 {
     if wall == 0.0 {
         return radius;
@@ -406,7 +412,7 @@ fn effective(radius: f64, wall: f64) -> f64 {
     if curvature > 0.0 && curvature.is_finite() { curvature } else { radius }
 }
 
-/// The contact as laws see it: the wall is a sphere of radius 0 and infinite mass.
+/// The contact geometry for the laws: the wall is a sphere of radius 0 and infinite mass.
 fn geometry(near: &Near, radius: f64, mass: f64) -> Geometry {
     Geometry {
         normal: near.normal,

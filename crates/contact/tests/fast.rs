@@ -1,4 +1,5 @@
-//! The fast loop against the plain driver on dense packings that move, are rebuilt and have several laws.
+//! The fast loop compared with the plain driver on dense packings that move, are rebuilt and have several
+//! laws.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
 #[path = "fast/ranks.rs"]
@@ -31,7 +32,7 @@ struct Scene {
     tag: Vec<u32>,
     frozen: Vec<bool>,
     period: Periods,
-    /// How the box changes, and which images move with it.
+    /// Velocity gradient of the box, and the group whose images move with it.
     flow: Option<Flow>,
     mask: Vec<u32>,
 }
@@ -39,8 +40,8 @@ struct Scene {
 const SKIN: f64 = 0.2;
 const DT: f64 = 2e-3;
 
-/// A disturbed lattice of overlapping grains of two types and many sizes, in no particular order of tags; slabs have
-/// many more contacts than are looked at in one go.
+/// A disturbed lattice of overlapping grains of two types and many sizes, in no particular order of tags;
+/// slabs have many more contacts than fit one batch.
 fn scene(period: [f64; 3]) -> Scene {
     let mut random = ParkMiller::new(4711);
     let mut any = |lo: f64, hi: f64| lo + (hi - lo) * random.uniform();
@@ -68,7 +69,7 @@ fn scene(period: [f64; 3]) -> Scene {
     }
 }
 
-/// The same in a box that leans, and further while it grows: across its faces images pass by.
+/// The same in a tilted box, with increasing tilt if it deforms: images slide along its faces.
 fn sheared(length: [f64; 3]) -> Scene {
     let mut s = scene(length);
     let tilt = if length[2] > 0.0 { [3.0, -2.0, 4.0] } else { [3.0, 0.0, 0.0] };
@@ -83,7 +84,7 @@ fn sheared(length: [f64; 3]) -> Scene {
     s
 }
 
-/// The same with some grains that are four to seven times as large as the smallest, and no others inside them.
+/// The same with some grains four to seven times as large as the smallest, without others inside them.
 fn bidisperse(period: [f64; 3]) -> Scene {
     let mut s = scene(period);
     let large = [13, 350, 401, 888, 1200];
@@ -109,7 +110,7 @@ fn bidisperse(period: [f64; 3]) -> Scene {
     Scene { x, v, omega, radius, mass, kind, tag, frozen, mask, ..s }
 }
 
-/// The law of two types: there are three, one of them with all that contacts can remember.
+/// The law of two types: there are three, one of them with the largest history.
 fn between(a: u16, b: u16) -> Granular {
     let stiffness = 200.0 * f64::from(a + b);
     let normal = Normal::new(&normal::HERTZ, &[stiffness, 3.0]);
@@ -142,14 +143,15 @@ fn sticky(a: u16, b: u16) -> Granular {
     if a + b == 4 {
         return between(a, b);
     }
-    // Grains of radius 0.5 hold across 0.026 with these, an eighth of the skin.
+    // Grains of radius 0.5 stick across 0.026 with these parameters, an eighth of the skin.
     let normal = Normal::new(&normal::JKR, &[150.0 * f64::from(a + b), 0.5, 0.3, 1.0]);
     let friction = Tangential::new(Friction::Mindlin, Some(300.0), 0.4, 0.2);
     let model = Model::new(normal, Damping::Viscoelastic, friction);
     Model { heat: Heat::Area(0.7), ..model }.law(Compat::Perigrain)
 }
 
-/// The same where grains of type 1 flow and stick to each other and to those of type 2: of all that contacts can remember.
+/// The same where grains of type 1 are plastic and cohesive among themselves and with those of type 2, with
+/// the largest history.
 fn plastic(a: u16, b: u16) -> Granular {
     if a + b == 4 {
         return between(a, b);
@@ -186,7 +188,7 @@ impl Scene {
         }
     }
 
-    /// Half of the pairs of type 2 are excluded, and pairs of two frozen grains, between which nobody defines a mass.
+    /// Half of the pairs of type 2 are excluded, and pairs of two frozen grains, which have no reduced mass.
     fn keep(&self, i: usize, j: usize) -> bool {
         if self.frozen[i] && self.frozen[j] {
             return false;
@@ -232,7 +234,7 @@ impl Scene {
     }
 }
 
-/// What grains get in a step.
+/// Results of a step.
 #[derive(Debug, PartialEq)]
 struct Got {
     f: Vec<Vec3>,
@@ -242,7 +244,7 @@ struct Got {
     virial: [f64; 6],
 }
 
-/// Some steps, with lists made anew every seventh.
+/// Some steps, with lists remade every seventh.
 trait Loop {
     fn step(&mut self, s: &Scene, k: usize) -> Got;
 }
@@ -277,9 +279,9 @@ impl Loop for PlainLoop {
 
 struct FastLoop {
     fast: Fast,
-    /// Contacts go through the world at every rebuild.
+    /// Whether contacts are passed through the world at every rebuild.
     through_world: bool,
-    /// Grains are looked up one by one even if they are alike.
+    /// Whether grains are looked up one by one even if they are equal.
     one_by_one: bool,
 }
 
@@ -329,7 +331,7 @@ const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [10.45, 9.5, 0.0], [10.45, 9.5, 11.4]]
 fn the_numbers_of_the_plain_driver() {
     let scenes =
         PERIODS.into_iter().flat_map(|p| [between as Table, sticky, plastic].map(|law| (scene(p), law)));
-    // With large grains reaching farther, only boxes that do not repeat or are wide enough.
+    // Large grains reach farther: only boxes that are not periodic or wide enough.
     let large = [bidisperse(PERIODS[0]), bidisperse([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
     let leaning = PERIODS[1..].iter().map(|p| (sheared(*p), between as Table));
     for (mut s, law) in scenes.chain(large).chain(leaning) {
@@ -345,8 +347,8 @@ fn the_numbers_of_the_plain_driver() {
             let other = fast.step(&s, k);
             let (f2, torque2, contacts2, virial2) = (other.f, other.torque, other.contacts, other.virial);
             assert_eq!(contacts.keys, contacts2.keys);
-            // One contact has the same bits in both loops; sums of a dozen forces of size 100 differ by their order.
-            // What differs grows with the steps, by collisions, hence the width.
+            // One contact has the same bits in both loops; sums of a dozen forces of size 100 differ by their
+            // order. Differences grow with the steps, by collisions, hence the tolerance.
             let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * (1.0 + a.abs());
             let same = |a: &[Vec3], b: &[Vec3]| {
                 a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| near(*a, *b))
@@ -413,7 +415,7 @@ fn beside_grains_that_went_around_the_box_only_a_rebuild_will_do() {
     assert!(!admit(&mut fast));
 }
 
-/// What is left of 20 steps.
+/// The final state after 20 steps.
 fn end(first: &Scene, mut fast: FastLoop) -> (Vec<Vec3>, Vec<Vec3>, Got) {
     let mut s = first.clone();
     let mut step = |k: usize| {

@@ -1,4 +1,4 @@
-//! fix adapt: sizes of spheres and coefficients of forces that follow variables.
+//! fix adapt: sphere sizes and force coefficients that follow variables.
 
 mod coefficients;
 
@@ -78,7 +78,7 @@ impl FixStyle for Adapt {
 /// What LAMMPS' fix changes.
 const ATTRIBUTES: [&str; 7] = ["atom", "pair", "bond", "angle", "dihedral", "improper", "kspace"];
 
-/// Reads one change.
+/// Parses one attribute with its words.
 fn attribute(fix: &mut Declared, args: &mut Args, cx: &BuildCx) -> Result<()> {
     let span = args.here();
     match args.choice("attribute", &ATTRIBUTES)? {
@@ -118,7 +118,7 @@ fn size(args: &mut Args, cx: &BuildCx) -> Result<Size> {
     Ok(Size { variable: variable(args, true, cx)?, disc: what == "diameter/disc" })
 }
 
-/// The diameter of particles.
+/// The attribute `atom diameter`.
 #[derive(Clone)]
 struct Size {
     variable: ValueRef,
@@ -126,7 +126,7 @@ struct Size {
     disc: bool,
 }
 
-/// Takes `v_name`, an equal-style variable or where particles may differ an atom-style one.
+/// Reads `v_name`: an equal-style variable, or with `per_atom` an atom-style one as well.
 fn variable(args: &mut Args, per_atom: bool, cx: &BuildCx) -> Result<ValueRef> {
     let word = args.expect("the variable v_name")?;
     match ValueRef::parse(&word.text, word.span)? {
@@ -141,11 +141,11 @@ fn variable(args: &mut Args, per_atom: bool, cx: &BuildCx) -> Result<ValueRef> {
 #[derive(Clone)]
 struct Declared {
     id: String,
-    /// Where the factor of the last change is remembered.
+    /// Key of the factor applied by the last change.
     factor: Numbers,
-    /// The columns that hold radii and masses before a run.
+    /// Columns that hold the radii and masses from before the run.
     columns: [Numbers; 2],
-    /// The column of the last factors where each particle has its own; 0 where it has had none.
+    /// Column of the last factor of each particle for atom-style variables; 0 before the first change.
     factors: Numbers,
     group: GroupId,
     every: i64,
@@ -157,14 +157,14 @@ struct Declared {
 }
 
 impl Declared {
-    /// What is above all that is remembered.
+    /// Common prefix of the keys above.
     fn key(&self) -> Numbers {
         Key::new(&format!("adapt/{}", self.id))
     }
 }
 
 impl Size {
-    /// Space that a particle of this radius fills: an area for discs.
+    /// Volume of a particle of this radius; its area for discs.
     fn space(&self, r: f64) -> f64 {
         if self.disc { PI * r * r } else { 4.0 * PI / 3.0 * r * r * r }
     }
@@ -214,7 +214,7 @@ impl Fix for Declared {
     }
 }
 
-/// What a variable says: one number for all, or one for each particle.
+/// Value of a variable: one number for all particles, or one for each.
 enum Values {
     One(f64),
     Each(Vec<f64>),
@@ -234,7 +234,7 @@ impl Values {
 }
 
 impl Change {
-    /// Refuses what is no size.
+    /// Refuses values that are not valid sizes.
     fn check(&self, values: &Values, w: &World, t: &Tick) -> Result<()> {
         let (p, bit) = (&w.particles, self.fix.group.bit());
         let wrong = |value: f64| !(value > 0.0 && value.is_finite());
@@ -252,7 +252,7 @@ impl Change {
         fail(Code::BAD_VALUE, variable.span, text)
     }
 
-    /// By what the radii change: the new factors over the last ones, which they then are.
+    /// The ratios of the new factors to the last ones; stores the new factors.
     fn factors(&self, values: &Values, w: &mut World) -> Values {
         match values {
             Values::One(new) => {
@@ -271,7 +271,7 @@ impl Change {
     }
 }
 
-/// Gives the particles their present size, and the old one back at the end.
+/// Sets the current sizes, and restores the original ones at the end.
 struct Change {
     name: String,
     fix: Declared,

@@ -153,7 +153,7 @@ impl Fix for Declared {
     }
 }
 
-/// f x of the force added to particle `i` with its unwrapped position: xx yy zz xy xz yz.
+/// Virial f x of the added force at the unwrapped position of particle `i`: xx yy zz xy xz yz.
 fn virial_of(w: &World, force: &[Reading; 3], i: usize) -> [f64; 6] {
     let (x, [fx, fy, fz]) = (unwrapped(w, i), force.map(|r| r.atom(w, i)));
     [fx * x[0], fy * x[1], fz * x[2], fx * x[1], fx * x[2], fy * x[2]]

@@ -93,7 +93,7 @@ impl Fix for Declared {
     }
 }
 
-/// How a group turns, and how fast it shall turn faster.
+/// How a group rotates, and the angular acceleration it gets.
 struct Turn {
     centre: Vec3,
     omega: Vec3,
@@ -125,7 +125,7 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    // The forces make the torque asked for, no net force, and the inward pull of the spin.
+    // The forces give the requested torque and no net force; the spin adds its inward pull.
     #[test]
     fn forces_sum_to_the_torque() {
         let places = [[1.0, 0.0, 0.0], [-1.0, 0.5, 0.0], [0.0, 1.0, 0.5], [0.0, -1.5, -0.5]];
@@ -140,7 +140,7 @@ mod tests {
             .iter()
             .zip(f)
             .fold(([0.0; 3], [0.0; 3]), |(a, b), (x, f)| (add(a, *f), add(b, cross(*x, *f))));
-        let near = |a: Vec3, b: Vec3| dot(sub(a, b), sub(a, b)) < 1e-24; // some ulp of forces of order 1
+        let near = |a: Vec3, b: Vec3| dot(sub(a, b), sub(a, b)) < 1e-24; // a few ulp of forces of order 1
         assert!(near(force, [0.0; 3]) && near(torque, [1.0, -2.0, 3.0]), "{force:?} {torque:?}");
         assert_eq!(b.slot_of("f_f").vector, [0.0; 3]);
         for words in ["", "1 2", "1 2 x", "1 2 v_no", "1 2 3 4"] {

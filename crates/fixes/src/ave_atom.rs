@@ -43,17 +43,17 @@ struct Line {
     values: Vec<Word>,
 }
 
-/// A per-atom value as an input.
+/// A per-atom input.
 #[derive(Clone)]
 pub enum Input {
     /// Component (0 to 2) of position, velocity or force.
     Column(char, usize),
-    /// A compute's, fix's or variable's.
+    /// Value of a compute, fix or variable.
     Value(ValueRef),
 }
 
 impl Input {
-    /// One of the words `x` … `fz`.
+    /// The input named by one of the words `x` … `fz`.
     pub fn attribute(word: &str) -> Option<Self> {
         let (kind, axis) = match word.as_bytes() {
             [axis] => ('x', axis),
@@ -64,7 +64,7 @@ impl Input {
         matches!(axis, b'x'..=b'z').then(|| Input::Column(kind, usize::from(axis - b'x')))
     }
 
-    /// Plans it.
+    /// Plans the reading of this input.
     ///
     /// # Errors
     /// As `SealCx::reading`.
@@ -76,7 +76,7 @@ impl Input {
     }
 }
 
-/// Where an input is found in a step.
+/// Location of an input during a step.
 #[derive(Clone, Copy)]
 pub enum Source {
     /// As in [`Input::Column`].
@@ -139,7 +139,7 @@ impl Declared {
         Kept::below(Key::new(&format!("ave/atom/{}", self.id)))
     }
 
-    /// The columns of the sums of values.
+    /// Columns that hold the sums.
     fn columns(&self) -> Vec<Numbers> {
         let key = self.kept().key;
         (0..self.inputs.len()).map(|k| key.with(&format!("/{k}"))).collect()

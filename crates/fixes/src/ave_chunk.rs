@@ -74,11 +74,11 @@ struct Line {
     output: Output,
 }
 
-/// What is summed over the particles of a chunk.
+/// The quantity summed over the particles of a chunk.
 #[derive(Clone)]
 enum What {
     Input(Input),
-    /// Of numbers, or of masses.
+    /// Number density, or mass density.
     Density(bool),
     Temperature,
 }
@@ -108,7 +108,7 @@ struct Declared {
     ave: Ave,
     adof: Option<f64>,
     cdof: f64,
-    /// The temperature whose flow does not count.
+    /// The temperature compute whose velocity bias is subtracted.
     bias: Option<ValueRef>,
     output: Output,
     format: Format,
@@ -141,7 +141,7 @@ impl FixStyle for AveChunk {
     }
 }
 
-/// Sums of one step: a row per chunk of the number of particles and the sums of values.
+/// Sums of one step: per chunk the number of particles and the sums of the values.
 struct Sample {
     rows: Vec<f64>,
     volumes: Vec<f64>,
@@ -152,7 +152,7 @@ impl Declared {
         Kept::below(Key::new(&format!("ave/chunk/{}", self.id)))
     }
 
-    /// Adds a value.
+    /// Parses and adds one value.
     fn take(&mut self, word: &Word, args: &Args, cx: &BuildCx) -> Result<()> {
         let plain = match word.text.as_str() {
             "density/number" => Some(What::Density(false)),
@@ -205,7 +205,7 @@ impl Declared {
         ]
     }
 
-    /// Sums over the particles of each chunk now, in storage order.
+    /// Sums over the particles of each chunk in this step, in storage order.
     fn sample(&self, w: &World, sources: &[Option<Source>], flow: Option<&Flow>, chunks: &Chunks) -> Sample {
         let width = 1 + self.values.len();
         let mut rows = vec![0.0; width * chunks.count()];
@@ -229,7 +229,7 @@ impl Declared {
         Sample { rows, volumes: (0..chunks.count()).map(|k| chunks.volume(k)).collect() }
     }
 
-    /// The value that sums of `samples` samples stand for.
+    /// Converts a sum over `samples` samples into the output value.
     fn value(&self, w: &World, what: &What, sum: f64, count: f64, volume: f64, samples: f64) -> f64 {
         let units = w.settings.units.constants();
         let adof = self.adof.unwrap_or(if w.settings.two_dimensional { 2.0 } else { 3.0 });
@@ -244,7 +244,7 @@ impl Declared {
         }
     }
 
-    /// Turns sums of a row into values; rows without particles stay as they are.
+    /// Converts the sums of each row into output values; rows of empty chunks stay unchanged.
     fn settle(&self, w: &World, rows: &mut [f64], volumes: &[f64], samples: f64) {
         let width = 1 + self.values.len();
         for (row, volume) in rows.chunks_exact_mut(width).zip(volumes) {
@@ -257,7 +257,7 @@ impl Declared {
         }
     }
 
-    /// Adds a sample; after the last one of an average, its rows.
+    /// Adds a sample; returns the averaged rows after the last sample of an average.
     fn add(&self, w: &mut World, key: Numbers, sample: Sample, due: Due) -> Option<Vec<f64>> {
         let mut many = w.memo.remove(key).unwrap_or_default();
         let Sample { mut rows, volumes } = sample;
@@ -283,7 +283,7 @@ impl Declared {
         Some(many)
     }
 
-    /// What comes before the number of particles in a row.
+    /// The columns before the particle count of a row.
     fn lead(&self, chunks: &Chunks, k: usize) -> Vec<f64> {
         let kind = self.chunks.kind;
         let mut lead = vec![];
@@ -294,7 +294,7 @@ impl Declared {
         lead
     }
 
-    /// Offers an average, and gives its block in the file.
+    /// Stores an average in the slots and returns its block for the file.
     fn publish(&self, w: &mut World, t: &Tick, at: [SlotId; 2], total: &[f64], times: f64) -> String {
         let [slot, chunk_slot] = at;
         let width = 1 + self.values.len();
@@ -361,7 +361,7 @@ impl Fix for Declared {
         let (me, kept, slot) = (self.clone(), self.kept(), cx.slot(&format!("f_{}", self.id)));
         let mut sheet = self.output.sheet(cx.world(), kept.key);
         let many = kept.key.with("/many");
-        // Averages come here whole: each is joined with those before it.
+        // The averages arrive complete: each is combined with the earlier ones.
         let averager = Averager { kept, repeat: 1, ave: self.ave, off: vec![] };
         let access = Needs::new()
             .read(X | V | F | MASS | MASK | SLOTS | BOX | REGIONS | TYPE_MASS | KIND)

@@ -235,7 +235,7 @@ impl Declared {
         Kept::below(Key::new(&format!("{style}/{}", self.id)))
     }
 
-    /// The values of one input at present.
+    /// The current values of one input.
     fn list(&self, w: &World, source: &Source) -> Vec<f64> {
         match source {
             Source::Reading(r) if self.wants != Wants::PerAtom => r.list(w),
@@ -247,7 +247,7 @@ impl Declared {
         }
     }
 
-    /// One sample on top of those `before` in the same average: one sum, in LAMMPS' order.
+    /// Adds one sample to those `before` in the same average: one sum, in LAMMPS' order.
     fn sample(&self, w: &World, sources: &[Source], before: Option<Vec<f64>>) -> Result<Histogram> {
         let mut h = Histogram::new(&self.bins);
         if let Some(counts) = before.filter(|b| b.len() == h.counts.len()) {
@@ -267,7 +267,7 @@ impl Declared {
         Ok(h)
     }
 
-    /// Smallest and largest value of all samples that count now; `one` are those of this sample.
+    /// Smallest and largest value over all samples of the average; `one` holds those of this sample.
     fn extremes(&self, w: &mut World, key: Numbers, one: [f64; 2], due: Due) -> [f64; 2] {
         let lammps = w.settings.lammps();
         let list = w.memo.get_or(key, Vec::new);
@@ -295,7 +295,7 @@ impl Declared {
             (*lo, *hi) = (lo.min(one[0]), hi.max(one[1]));
         }
         let [lo, hi] = fold(list);
-        // Of no value at all, as `compute reduce` has it.
+        // For no values, the same result as `compute reduce`.
         if lo > hi { [BIG, -BIG] } else { [lo, hi] }
     }
 
@@ -321,7 +321,7 @@ impl Declared {
         ]
     }
 
-    /// Centre, count and share of every bin.
+    /// Centre, count and fraction of every bin.
     fn rows(&self, counts: &[f64]) -> Vec<f64> {
         let bins = self.bins.count();
         let all = counts.get(bins).copied().unwrap_or(0.0);

@@ -114,10 +114,10 @@ impl Output {
         self.target().map(|(path, _)| path.to_path_buf())
     }
 
-    /// `overwrite` goes with running averages only.
+    /// Refuses `overwrite` without running averages.
     ///
     /// # Errors
-    /// Another kind.
+    /// `overwrite` with another kind of average.
     pub fn check(&self, ave: Ave, cx: &BuildCx) -> Result<()> {
         if !self.overwrite || ave == Ave::Running {
             return Ok(());
@@ -127,7 +127,7 @@ impl Output {
             .into())
     }
 
-    /// Writes the head of the file and remembers where it ends.
+    /// Writes the header of the file and stores where it ends.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -135,10 +135,10 @@ impl Output {
         self.begin_named(w, key, defaults, None)
     }
 
-    /// As [`Output::begin`], with a line of names below the head.
+    /// As [`Output::begin`], with a line of column names below the header.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Output::begin`].
     pub fn begin_named(
         &self,
         w: &mut World,
@@ -161,7 +161,7 @@ impl Output {
         Ok(())
     }
 
-    /// The file for further averages, if there is one.
+    /// The file that further averages are written to, if any.
     pub fn sheet(&self, w: &World, key: Numbers) -> Option<Sheet> {
         let (path, _) = self.target()?;
         let head = w.memo.get(key.with("/file")).and_then(|m| m.first()).map_or(0, |a| *a as u64);
@@ -169,7 +169,7 @@ impl Output {
     }
 }
 
-/// Takes the format of numbers: one conversion for a number with a point.
+/// Parses a number format: one conversion for a floating-point number.
 ///
 /// # Errors
 /// Any other format.
@@ -233,11 +233,11 @@ struct Declared {
     off: Vec<bool>,
     output: Output,
     format: Format,
-    /// Length of the vectors, in mode vector; open if only a run can tell.
+    /// Length of the vectors in mode vector; open if it is known only during a run.
     rows: usize,
-    /// Which values grow with the scene.
+    /// Which values are extensive.
     extensive: Vec<bool>,
-    /// What the values are, in mode vector what the rows are, where computes have names for that.
+    /// Names of the values (in mode vector, of the rows), where computes name them.
     named: Vec<Option<String>>,
 }
 
@@ -246,7 +246,7 @@ impl Declared {
         Kept::below(Key::new(&format!("ave/time/{}", self.id)))
     }
 
-    /// Adds a value.
+    /// Parses and adds one value.
     fn take(&mut self, word: &perigrain_lang::Word, wants: Wants, cx: &BuildCx) -> Result<()> {
         let Some(r) = ValueRef::parse(&word.text, word.span)? else {
             return fail(Code::WRONG_KIND, word.span, "c_ID, f_ID or v_name is expected");
@@ -274,7 +274,7 @@ impl Declared {
         Ok(())
     }
 
-    /// Takes note of what a value is, or what the rows of a vector are.
+    /// Stores the name of a value, or the names of the rows of a vector.
     fn take_names(&mut self, r: &ValueRef, cx: &BuildCx) {
         let names = if r.kind == RefKind::Compute { cx.names.elements(&r.name) } else { vec![] };
         match (self.vector, r.index.first()) {
@@ -288,7 +288,7 @@ impl Declared {
         }
     }
 
-    /// A line of names below LAMMPS' own head, for files that are read without the manual.
+    /// A line of column names below LAMMPS' header, so that a file can be read without the manual.
     fn names_line(&self) -> Option<String> {
         if self.named.iter().all(Option::is_none) {
             return None;
@@ -310,7 +310,7 @@ impl Declared {
         }
     }
 
-    /// What holds the number of chunks of which values have rows: it is held as long as rows are added up.
+    /// Keys of the chunk counts that set the number of rows; these counts stay fixed while rows are summed.
     fn windows(&self, w: &World, slots: &[SlotId]) -> Vec<Numbers> {
         let adds = self.vector && (self.schedule.repeat > 1 || self.ave != Ave::One);
         slots.iter().filter(|_| adds).filter_map(|slot| w.slots.get(*slot).chunks).collect()
@@ -338,7 +338,7 @@ impl Declared {
     }
 }
 
-/// Fills a fix's slot with averages: one number or a vector of them, one vector or an array of several.
+/// Fills a fix's slot with averages: a scalar or a vector of scalars, one vector or an array of several.
 fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vector: bool) {
     let out = w.slots.get_mut(slot);
     out.step = Some(step);

@@ -54,7 +54,7 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            // Of several levels of steps the added force belongs to one.
+            // With several time step levels, the added force acts at one of them.
             let here = level.acts(&t.phase);
             let [count, before @ ..] = change_forces::<4>(w, &chosen, |_, _, f| [1.0, f[0], f[1], f[2]]);
             if count > 0.0 {

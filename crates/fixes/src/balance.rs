@@ -1,4 +1,4 @@
-//! fix balance: read for the sake of LAMMPS decks; the box is not divided among processes.
+//! fix balance: parsed so that LAMMPS decks run; the box is not divided among processes.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};

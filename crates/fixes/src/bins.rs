@@ -1,4 +1,4 @@
-//! Bins of a histogram and what falls into them.
+//! Histogram bins and the sorting of values into them.
 
 use perigrain_styles::words::Words;
 
@@ -24,7 +24,7 @@ pub struct Bins {
     pub hi: f64,
     /// Number of bins between the bounds.
     pub inner: usize,
-    /// What happens outside.
+    /// Treatment of values outside the bounds.
     pub beyond: Beyond,
 }
 
@@ -45,7 +45,7 @@ impl Bins {
         Some(first + (((value - self.lo) * inverse) as usize).min(self.inner - 1))
     }
 
-    /// The centre of a bin; the bounds themselves for the bins of what lies outside.
+    /// The centre of a bin; for the two extra bins the bounds themselves.
     pub fn centre(&self, k: usize) -> f64 {
         let size = (self.hi - self.lo) / self.inner as f64;
         match self.beyond {
@@ -57,16 +57,16 @@ impl Bins {
     }
 }
 
-/// A histogram: counts, counted, not counted; smallest and largest value.
+/// A histogram: counts, totals inside and outside the bounds, smallest and largest value.
 pub struct Histogram {
-    /// Per bin; then what was counted and what was not.
+    /// One per bin; then the totals of counted and uncounted values.
     pub counts: Vec<f64>,
     /// Smallest and largest value.
     pub extremes: [f64; 2],
 }
 
 impl Histogram {
-    /// An empty one.
+    /// An empty histogram.
     pub fn new(bins: &Bins) -> Self {
         Self { counts: vec![0.0; bins.count() + 2], extremes: [f64::INFINITY, f64::NEG_INFINITY] }
     }

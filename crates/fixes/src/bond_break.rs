@@ -1,4 +1,4 @@
-//! fix bond/break: bonds that have become too long are taken away.
+//! fix bond/break: deletes bonds that have become too long.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -69,31 +69,31 @@ struct Declared {
     id: String,
     group: GroupId,
     every: i64,
-    /// Type of the bonds.
+    /// Bond type.
     kind: u16,
     limit: f64,
-    /// With which probability, and the seed.
+    /// Probability and seed.
     chance: Option<(f64, u32)>,
 }
 
-/// A bond that is longer than the limit.
+/// A bond longer than the limit.
 #[derive(Clone, Copy)]
 struct Long {
-    /// Where it is in the list of bonds.
+    /// Index in the list of bonds.
     at: usize,
-    /// Places of the ends.
+    /// Indices of the ends.
     ends: [usize; 2],
-    /// Square of its length.
+    /// Square of the length.
     square: f64,
 }
 
 impl Declared {
-    /// How many were taken away when it last looked and in all, and where its random stream stands.
+    /// Key of the number deleted at the last check and in total, and of the state of the random stream.
     fn key(&self) -> Numbers {
         Key::new(&format!("bond/break/{}", self.id))
     }
 
-    /// The bonds to take away: the longest of both ends.
+    /// The bonds to delete: each is the longest bond of both its ends.
     fn chosen(&self, w: &World, stream: Option<&mut Marsaglia>, span: Span) -> Result<Vec<Long>> {
         let (period, p) = (periods(w)?, &w.particles);
         let member = |i: &usize| p.mask[*i] & self.group.bit() != 0;
@@ -110,7 +110,7 @@ impl Declared {
             return Ok(vec![]);
         }
         long.sort_by_key(|bond| ascending(bond.ends.map(|i| p.tag[i])));
-        // For each particle the longest of its bonds, by its place in the list.
+        // For each particle, the index of its longest bond.
         let mut longest = vec![usize::MAX; w.n()];
         for (k, bond) in long.iter().enumerate() {
             for i in bond.ends {
@@ -128,7 +128,8 @@ impl Declared {
         Ok(list.filter(|bond| passes(lower(bond.ends))).collect())
     }
 
-    /// A random number for each particle with a bond that is too long, in the order of their IDs; none where chance has no say.
+    /// A random number for each particle with a bond that is too long, in the order of IDs; empty without
+    /// `prob`.
     fn chances(&self, w: &World, stream: Option<&mut Marsaglia>, longest: &[usize]) -> Vec<f64> {
         let Some(stream) = stream else { return vec![] };
         let mut order: Vec<usize> = (0..w.n()).filter(|i| longest[*i] != usize::MAX).collect();
@@ -138,7 +139,7 @@ impl Declared {
         drawn
     }
 
-    /// Takes bonds away.
+    /// Deletes bonds.
     fn part(&self, w: &mut World, bonds: &[Long], style: Option<&dyn BondForce>) -> Result<()> {
         if w.bonds.counts_losses
             && let Some(style) = style
@@ -152,12 +153,12 @@ impl Declared {
         let broken: Vec<([u32; 2], i32)> = ends.iter().map(|e| (*e, i32::from(self.kind))).collect();
         w.bonds.lose(&broken);
         w.rebuild.freed.extend(ends);
-        // Weights of pairs that are two or three bonds apart change as well.
+        // The special weights of pairs two or three bonds apart change as well.
         w.rebuild.due = true;
         Ok(())
     }
 
-    /// What the bonds held.
+    /// Energy stored in the bonds.
     fn energy(&self, w: &World, bonds: &[Long], style: &dyn BondForce) -> Result<f64> {
         let (period, v) = (periods(w)?, &w.particles.v);
         let of = |long: &Long| {
@@ -221,7 +222,7 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::{AtomStyle, Bond};
 
-    /// Five in a row with bonds between neighbours, the ends' ones longer than the middle's.
+    /// Five in a row with bonds between neighbours; the outer bonds are longer than the inner ones.
     fn row() -> Bench {
         let places: Vec<[f64; 3]> = [-3.0, -1.0, 0.5, 2.0, 4.2].map(|x| [x, 0.0, 0.0]).into();
         let mut b = Bench::new(AtomStyle { bonded: true, ..AtomStyle::default() }, &places);
@@ -239,7 +240,8 @@ mod tests {
         let fix = b.fix(&BondBreak, "2 1 1.4").unwrap();
         fix.declare(&mut b.world).unwrap();
         let mut ops = b.seal(&*fix).unwrap();
-        // Lengths 2, 1.5, 1.5, 2.2: those of the ends go first, then the first of two alike, then the last.
+        // Lengths 2, 1.5, 1.5, 2.2: the outer bonds go first, then the first of the two equal ones, then the
+        // last.
         for (left, counts) in [(2, [2.0, 2.0]), (1, [1.0, 3.0]), (0, [1.0, 4.0]), (0, [0.0, 4.0])] {
             b.world.clock.step += 2;
             b.stage(&mut ops, Stage::PostIntegrate).unwrap();

@@ -135,15 +135,15 @@ fn molecules(args: &mut Args, cx: &BuildCx) -> Result<Molecules> {
     Ok(which)
 }
 
-/// How many bonds a particle may have, and what it then becomes.
+/// Maximum number of bonds per particle, and the type a particle gets when it reaches it.
 #[derive(Clone, Copy, PartialEq)]
 struct Limit {
-    /// No limit where it is 0.
+    /// 0: no limit.
     most: usize,
     becomes: u16,
 }
 
-/// Whether molecules count.
+/// Whether molecule IDs matter.
 #[derive(Clone, Copy, PartialEq)]
 enum Molecules {
     Off,
@@ -151,13 +151,13 @@ enum Molecules {
     Within,
 }
 
-/// Which bonds are made.
+/// Rule for the bonds to create.
 #[derive(Clone)]
 struct Rule {
     group: GroupId,
     types: [u16; 2],
     range: f64,
-    /// Type of the bonds.
+    /// Bond type.
     kind: u16,
     limits: [Limit; 2],
     molecules: Molecules,
@@ -166,26 +166,26 @@ struct Rule {
 #[derive(Clone)]
 struct Declared {
     id: String,
-    /// How many were made when it last looked and in all, and where its random stream stands.
+    /// Key of the number created at the last check and in total, and of the state of the random stream.
     key: Numbers,
-    /// The column in which LAMMPS' counts of bonds stand.
+    /// Column of LAMMPS' bond counts.
     counts: Numbers,
     every: i64,
     rule: Rule,
-    /// With which probability, and the seed.
+    /// Probability and seed.
     chance: Option<(f64, u32)>,
     span: Span,
 }
 
 impl Declared {
-    /// Whether some particle may become one of another type.
+    /// Whether particles can change their type.
     fn changes_types(&self) -> bool {
         let becomes =
             |k: usize| self.rule.limits[k].most > 0 && self.rule.limits[k].becomes != self.rule.types[k];
         becomes(0) || becomes(1)
     }
 
-    /// Makes bonds between these particles.
+    /// Bonds these pairs.
     fn join(&self, w: &mut World, ends: &[[usize; 2]], mut count: Count) {
         for pair in ends {
             let tags = perigrain_world::bonds::ascending(pair.map(|i| w.particles.tag[i]));
@@ -202,7 +202,7 @@ impl Declared {
         }
         w.bonds.special.sort_unstable();
         w.bonds.special.dedup();
-        // Bonded pairs leave the lists, and what lists know of types is new.
+        // Bonded pairs leave the neighbour lists, and types may have changed.
         w.rebuild.due = true;
         if self.changes_types() {
             w.rebuild.roster += 1;
@@ -213,7 +213,7 @@ impl Declared {
         }
     }
 
-    /// How many bonds of the type each particle has.
+    /// The number of bonds of the type at each particle.
     fn count(&self, w: &mut World) -> Count {
         let n = w.n();
         if w.settings.lammps() {

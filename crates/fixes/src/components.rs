@@ -1,4 +1,4 @@
-//! Three components of a force as fixes read them: numbers, variables, `NULL`, and a region that limits them.
+//! Three force components as fixes read them: numbers, variables or `NULL`, with an optional region.
 
 use super::region_keyword;
 use perigrain_base::diag::Result;
@@ -9,7 +9,7 @@ use perigrain_styles::matter::Chosen;
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::GroupId;
 
-/// `fx fy fz [region ID]`; a component of `NULL` stays as it is.
+/// `fx fy fz [region ID]`; `NULL` leaves a component unchanged.
 #[derive(Clone)]
 pub struct Components {
     group: GroupId,
@@ -18,7 +18,7 @@ pub struct Components {
 }
 
 impl Components {
-    /// Reads the words, to the end of the line. `per_atom`: atom-style variables are welcome too.
+    /// Reads the words to the end of the line; with `per_atom`, atom-style variables are allowed.
     ///
     /// # Errors
     /// Every mistake in them.
@@ -38,7 +38,7 @@ impl Components {
         Ok(Self { group: cx.group, force, region })
     }
 
-    /// Whom they concern, and where their values are found during a run.
+    /// The particles it acts on, and where the component values are found during a run.
     ///
     /// # Errors
     /// A region or variable that is gone.

@@ -1,4 +1,4 @@
-//! fix controller: a variable that is steered so that a measured value comes to a wanted one (a PID controller).
+//! fix controller: steers a variable so that a measured value reaches a setpoint (PID control).
 
 use super::window::forget;
 use super::{Fix, FixStyle};
@@ -69,7 +69,7 @@ struct Declared {
     id: String,
     every: i64,
     alpha: f64,
-    /// Of the proportional, integral and derivative term.
+    /// Gains of the proportional, integral and derivative terms.
     gains: [f64; 3],
     value: ValueRef,
     setpoint: f64,

@@ -1,4 +1,4 @@
-//! Spheres sorted into cells, to find out whether a place is free.
+//! Spheres sorted into cells, to test whether a new sphere would overlap any.
 
 use perigrain_world::Domain;
 
@@ -8,18 +8,18 @@ pub struct Crowd<'a> {
     lo: [f64; 3],
     size: [f64; 3],
     cells: [usize; 3],
-    /// Whether the cells go round.
+    /// Directions in which the cells wrap around.
     round: [bool; 3],
     heads: Vec<Vec<u32>>,
     spheres: Vec<([f64; 3], f64)>,
 }
 
-/// Cells along one direction: more would take more memory than they save time.
+/// Maximum number of cells along one direction: more would cost more memory than they save time.
 const MOST: usize = 100;
 
 impl<'a> Crowd<'a> {
-    /// No spheres yet; `reach` is the largest distance at which two of them touch, `lo` to `hi` is where places will be
-    /// asked about.
+    /// Without spheres. `reach` is the largest distance at which two of them touch; positions to be tested
+    /// lie between `lo` and `hi`.
     pub fn new(domain: &'a Domain, lo: [f64; 3], hi: [f64; 3], reach: f64) -> Self {
         let round = domain.periodic();
         let lengths = domain.lengths();
@@ -31,7 +31,7 @@ impl<'a> Crowd<'a> {
         Self { domain, lo, size, cells, round, heads: vec![vec![]; cells.iter().product()], spheres: vec![] }
     }
 
-    /// The cell of a coordinate; those beyond the ends count as in the last one.
+    /// The cell index of a coordinate; coordinates beyond the ends belong to the end cells.
     fn cell(&self, d: usize, x: f64) -> usize {
         let k = ((x - self.lo[d]) / self.size[d]).floor();
         if self.round[d] {
@@ -51,7 +51,7 @@ impl<'a> Crowd<'a> {
         self.spheres.push((x, radius));
     }
 
-    /// Whether a sphere fits there without touching another.
+    /// Whether a sphere at `x` would touch no other sphere.
     pub fn fits(&self, x: [f64; 3], radius: f64) -> bool {
         let [xs, ys, zs] = [0, 1, 2].map(|d| self.near(d, x[d]));
         for &k in &zs {
@@ -67,7 +67,7 @@ impl<'a> Crowd<'a> {
         true
     }
 
-    /// The cells at and beside a coordinate.
+    /// The cell of a coordinate and its neighbours.
     fn near(&self, d: usize, x: f64) -> Vec<usize> {
         let (at, n) = (self.cell(d, x), self.cells[d]);
         let mut list = match self.round[d] {

@@ -1,4 +1,5 @@
-//! fix damping/cundall: a part of each force that works against motion, whatever its speed.
+//! fix damping/cundall: damping by a fraction of each force, opposed to the velocity and independent of the
+//! speed.
 
 use super::resistance::{Factor, Scale};
 use super::{Facts, Fix, FixStyle, Minimizing};
@@ -65,12 +66,12 @@ impl FixStyle for DampingCundall {
 struct Declared {
     id: String,
     group: GroupId,
-    /// Of forces and of torques.
+    /// Coefficients for forces and for torques.
     gamma: [f64; 2],
     scale: Scale,
 }
 
-/// A force, or torque, with its part γ turned against the motion, component by component.
+/// Changes a force or torque by the fraction γ of its size, against the velocity, component by component.
 #[inline(always)]
 fn damp(f: &mut [f64; 3], v: &[f64; 3], gamma: f64) {
     for (f, v) in f.iter_mut().zip(v) {
@@ -133,7 +134,7 @@ mod tests {
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();
         let p = &b.world.particles;
-        // At rest a force counts as one along the motion that it begins.
+        // At rest, a force counts as acting along the motion that it starts.
         assert_eq!(p.f, [[8.0, 12.0, 8.0], [9.0, 11.0, 9.0]]);
         assert_eq!(p.torque, [[1.5, 0.5, 0.5], [1.25, 0.75, 0.75]]);
         for words in ["", "1", "1 x", "1 1 scale 3 1", "1 1 scale v_q", "1 1 x"] {

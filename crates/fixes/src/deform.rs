@@ -1,4 +1,4 @@
-//! fix deform: a box that changes its lengths and tilts while a run goes on.
+//! fix deform: changes the lengths and tilts of the box during a run.
 
 mod lean;
 mod op;
@@ -58,7 +58,7 @@ impl Style for Deform {
     }
 }
 
-/// What a dimension does.
+/// Motion of a dimension.
 #[derive(Clone, Debug)]
 enum Motion {
     Final(f64, f64),
@@ -90,7 +90,7 @@ impl FixStyle for Deform {
     }
 }
 
-/// Reads the words of a line; `controls`: those that pressures steer may stand among them.
+/// Reads the words of a line; with `controls`, the words of pressure control are allowed.
 ///
 /// # Errors
 /// Every mistake in them.
@@ -156,10 +156,10 @@ fn read(args: &mut Args, cx: &BuildCx, controls: Option<Controls>) -> Result<Dec
     Ok(fix)
 }
 
-/// The words that begin a part of the line.
+/// The words that begin a section of the line.
 const WORDS: [&str; 9] = ["x", "y", "z", "xy", "xz", "yz", "remap", "flip", "units"];
 
-/// Refuses dimensions whose faces follow the particles.
+/// Refuses dimensions whose faces are shrink-wrapped.
 fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
     let Some(domain) = &*cx.world.domain else { return Ok(()) };
     if domain.boundary.0[d].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
@@ -171,7 +171,7 @@ fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
     Ok(())
 }
 
-/// Refuses tilts of a box that cannot lean, or not that way.
+/// Refuses tilts that the box cannot have.
 fn check_tilt(cx: &BuildCx, word: &Word, k: usize) -> Result<()> {
     let Some(domain) = &*cx.world.domain else { return Ok(()) };
     if cx.world.settings.two_dimensional && k > 0 {
@@ -240,14 +240,14 @@ struct Declared {
     group: GroupId,
     every: i64,
     motions: [Option<Motion>; 3],
-    /// What xy, xz and yz do.
+    /// Motion of xy, xz and yz.
     leans: [Option<lean::Motion>; 3],
-    /// Whether a box that leans too far is flipped.
+    /// Whether a box that tilts too far is flipped.
     flips: bool,
     remap: Remap,
-    /// Factors from the line's distances to the box's.
+    /// Factors from the units of the line to box units.
     scales: [f64; 3],
-    /// How pressures steer, if they may.
+    /// Settings of pressure control, for styles that have it.
     controls: Option<Controls>,
 }
 
@@ -260,12 +260,12 @@ impl Declared {
         Key::new(&format!("deform/{}", self.id))
     }
 
-    /// How fast it deforms the box.
+    /// Key of the deformation rates.
     fn rates(&self) -> Numbers {
         self.key().with(RATES.text())
     }
 
-    /// `volume` needs another dimension that moves by itself.
+    /// `volume` needs another dimension with a motion of its own.
     fn check_volume(&self, cx: &BuildCx) -> Result<()> {
         let follows = |m: &Option<Motion>| matches!(m, Some(Motion::Volume));
         let leads = |m: &Option<Motion>| m.is_some() && !follows(m);
@@ -298,7 +298,8 @@ impl Fix for Declared {
         let when = when.or(When::First);
         let (remap, group) = (self.remap, self.group);
         let w = cx.world();
-        // Forces of the setup see the flow already; a variable's rate is known from the first change on.
+        // The forces of the setup already see the flow; the rate of a variable is known after the first
+        // change.
         let t = Tick::between_runs(&w.clock);
         let now = Shape::at(&tracks, &leans, w, &t)?;
         let leans_now = w.domain.as_ref().is_some_and(|d| d.tilt.is_some());

@@ -1,4 +1,4 @@
-//! fix deposit: particles that join one by one.
+//! fix deposit: inserts particles one by one.
 
 mod words;
 
@@ -56,14 +56,14 @@ impl FixStyle for Deposit {
     }
 }
 
-/// Where along the vertical a particle is put.
+/// Vertical position of a new particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Height {
-    /// Where it was drawn.
+    /// As drawn.
     Drawn,
-    /// This far above everybody.
+    /// This far above all particles.
     Global([f64; 2]),
-    /// This far above those within a distance sideways.
+    /// This far above the particles within a lateral distance.
     Local([f64; 2], f64),
 }
 
@@ -87,9 +87,9 @@ struct Depositing {
     rate: f64,
     velocity: [[f64; 2]; 3],
     target: Option<[f64; 3]>,
-    /// Molecules in the place of particles.
+    /// Molecules inserted instead of single particles.
     molecules: Option<Molecules>,
-    /// The deciding variable and those that take the coordinates.
+    /// The deciding variable, and the variables that receive the coordinates.
     test: Option<(ValueRef, [Option<ValueRef>; 3])>,
 }
 
@@ -98,7 +98,7 @@ impl Depositing {
         Key::new(&format!("deposit/{}", self.id))
     }
 
-    /// A place in the region.
+    /// Draws a position in the region.
     fn draw(&self, stream: &mut ParkMiller) -> [f64; 3] {
         let (lo, hi) = self.corners;
         loop {
@@ -112,7 +112,7 @@ impl Depositing {
         }
     }
 
-    /// The height above those that count.
+    /// The height above the particles that count.
     fn above(&self, w: &World, x: [f64; 3], stream: &mut ParkMiller) -> Result<Option<f64>> {
         let ([lo, hi], delta) = match self.height {
             Height::Drawn => return Ok(None),
@@ -130,7 +130,7 @@ impl Depositing {
         Ok(Some(top + lo + stream.uniform() * (hi - lo)))
     }
 
-    /// Whether nobody is nearer than `near`.
+    /// Whether no particle is nearer than `near`.
     fn free(&self, w: &World, x: [f64; 3]) -> Result<bool> {
         let domain = w.domain()?;
         Ok(!w.particles.x.iter().any(|y| {
@@ -139,7 +139,7 @@ impl Depositing {
         }))
     }
 
-    /// A place for a new particle or molecule, if one is found.
+    /// A free position for a new particle or molecule, if one is found.
     fn find(
         &self,
         w: &World,
@@ -152,7 +152,7 @@ impl Depositing {
         for _ in 0..self.tries {
             let mut x = self.draw(&mut account.stream);
             if flat && !w.settings.lammps() {
-                // LAMMPS leaves them beside the plane.
+                // LAMMPS leaves them off the plane.
                 x[2] = 0.0;
             }
             if let Some(test) = test
@@ -186,12 +186,12 @@ impl Depositing {
         if distance > 0.0 { way.map(|a| a * (1.0 / distance).sqrt() * speed) } else { v }
     }
 
-    /// A warning where new spheres may overlap others.
+    /// Warns if new spheres may overlap others.
     fn check_distance(&self, w: &mut World, span: Span) {
         if !w.particles.style.sphere {
             return;
         }
-        // The radius of LAMMPS' default sphere.
+        // Radius of LAMMPS' default sphere.
         let own = self.molecules.as_ref().map_or(0.5, Molecules::widest);
         let widest = w.particles.radius.iter().fold(own, |a, r| r.max(a));
         if self.near >= own + widest {
@@ -255,7 +255,7 @@ impl Fix for Depositing {
     }
 }
 
-/// Puts particles in.
+/// The op that inserts particles.
 struct Drop {
     name: String,
     key: Numbers,
@@ -263,7 +263,7 @@ struct Drop {
     span: Span,
     slot: SlotId,
     test: Option<PlaceTest>,
-    /// Steps of this run whose particle found no place.
+    /// Number of insertions in this run that found no free position.
     failed: u64,
 }
 
@@ -305,7 +305,7 @@ impl Op for Drop {
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
         let steps = std::mem::take(&mut self.failed);
-        // Later steps may have made up for them.
+        // Later steps may have made up for the failures.
         let all_in = Account::load(w, self.key).is_some_and(|a| a.done >= self.fix.count);
         if steps > 0 && !all_in {
             let tries = self.fix.tries;

@@ -7,20 +7,20 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_world::field::{MASK, MU, OMEGA};
 use perigrain_world::{GroupId, World};
 
-/// How moments follow.
+/// Integration scheme of the moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Update {
-    /// μ + Δt ω × μ, at the old length.
+    /// μ + Δt ω × μ, rescaled to the old length.
     Plain,
-    /// By rotations about the axes of the body one after the other.
+    /// Successive rotations about the axes of the body.
     Rotations,
 }
 
-/// The op that turns the moments of a group behind the first half kick of a step.
+/// The op that rotates the moments of a group after the first half kick of a step.
 pub fn op(name: String, group: GroupId, update: Update) -> Box<dyn Op> {
     let needs = Needs::new().read(MASK).write(MU | OMEGA);
     let op = StepOp::new(name, Stage::InitialIntegrate, needs, move |w: &mut World, t: &Tick| {
-        // Of several levels of steps the shortest turns.
+        // With several time step levels, the shortest step rotates.
         if t.phase.level > 0 {
             return Ok(());
         }
@@ -48,7 +48,7 @@ fn plain(mu: Vec3, omega: Vec3, size: f64, dt: f64) -> Vec3 {
     scale(size / length(turned), turned)
 }
 
-/// A turn about axis `k` by `angle`, with LAMMPS' cosine (1 − a²/4)/(1 + a²/4) and sine a/(1 + a²/4) of it.
+/// Rotation about axis `k` by `angle`, with LAMMPS' cosine (1 − a²/4)/(1 + a²/4) and sine a/(1 + a²/4).
 fn about(k: usize, angle: f64, v: Vec3) -> Vec3 {
     let quarter = 0.25 * angle * angle;
     let (c, s) = ((1.0 - quarter) / (1.0 + quarter), angle / (1.0 + quarter));
@@ -58,8 +58,9 @@ fn about(k: usize, angle: f64, v: Vec3) -> Vec3 {
     turned
 }
 
-/// Moment and spin after Dullweber's, Leimkuhler's and McLachlan's rotations (J. Chem. Phys. 107, 1997): the body's z lies along the
-/// moment, spins are turned by R, and the rows of Q, the body's axes in space, by its inverse.
+/// Moment and spin by the rotations of Dullweber, Leimkuhler and McLachlan (J. Chem. Phys. 107, 1997). The
+/// body's z axis lies along the moment; spins are rotated by R, and the rows of Q (the body's axes in space)
+/// by its inverse.
 fn rotated(mu: Vec3, omega: Vec3, size: f64, dt: f64) -> (Vec3, Vec3) {
     let a = scale(1.0 / size, mu);
     let aside = a[0] * a[0] + a[1] * a[1];
@@ -77,7 +78,7 @@ fn rotated(mu: Vec3, omega: Vec3, size: f64, dt: f64) -> (Vec3, Vec3) {
     for (k, part) in [(0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)] {
         let angle = part * dt * w[k];
         w = about(k, angle, w);
-        // Columns of Q turn with R transposed.
+        // The columns of Q are rotated by R transposed.
         for column in 0..3 {
             let turned = about(k, -angle, [q[0][column], q[1][column], q[2][column]]);
             (0..3).for_each(|row| q[row][column] = turned[row]);
@@ -91,7 +92,7 @@ fn rotated(mu: Vec3, omega: Vec3, size: f64, dt: f64) -> (Vec3, Vec3) {
 mod tests {
     use super::*;
 
-    /// A moment across its spin turns by ω Δt a step.
+    /// A moment perpendicular to its spin rotates by ω Δt per step.
     #[test]
     fn moments_turn_at_the_rate_of_the_spin() {
         let (rate, dt, steps) = (2.0, 1e-3, 500);
@@ -102,12 +103,12 @@ mod tests {
         }
         let angle = rate * dt * f64::from(steps);
         let exact = [0.7 * angle.cos(), 0.7 * angle.sin(), 0.0];
-        // Both are of second order about a fixed axis: ω³ Δt² t of about 2e-6 and less.
+        // Both are second order for a fixed axis: ω³ Δt² t is about 2e-6 or less.
         for found in [plainly, by_rotations] {
             assert!((0..3).all(|d| (found[d] - exact[d]).abs() < 3e-6), "{found:?} {exact:?}");
             assert!((length(found) - 0.7).abs() < 1e-13);
         }
-        // Rounding of Q adds up: 9e-12 in these steps.
+        // Rounding errors of Q add up to 9e-12 in these steps.
         assert!((length(spin) - rate).abs() < 1e-10 && spin[2] > 0.999 * rate);
     }
 }

@@ -98,7 +98,8 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    // By hand: the first is 5 away from (0, 0, any z), the second nearer than delta, the third across the face.
+    // By hand: the first is 5 from (0, 0, any z), the second nearer than delta, the third across the periodic
+    // face.
     #[test]
     fn towards_a_line() {
         let mut b = Bench::new(AtomStyle::default(), &[[3.0, 4.0, 7.0], [0.5, 0.0, 0.0], [9.0, 0.0, 0.0]]);

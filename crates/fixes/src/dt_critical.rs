@@ -63,7 +63,7 @@ impl FixStyle for DtCritical {
     }
 }
 
-/// How the step follows from the limits.
+/// How the step follows from the stability limits.
 #[derive(Clone, Copy)]
 struct Rule {
     how: Estimate,
@@ -75,14 +75,14 @@ struct Rule {
 impl Rule {
     fn step(&self, w: &World, solids: f64, grains: f64, bonds: f64) -> f64 {
         let contacts = grains;
-        // Only levels of steps tell contacts and bonds apart.
+        // Only time step levels treat contacts and bonds separately.
         let grains = contacts.min(bonds);
         let limit = match &w.settings.run_style {
             RunStyle::Verlet => solids.min(grains),
             RunStyle::Staggered { ratio: None, .. } => grains,
             RunStyle::Staggered { ratio: Some(m), rare: false, .. } => grains.min(*m as f64 * solids),
             RunStyle::Staggered { ratio: Some(m), .. } => grains.min(solids / *m as f64),
-            // Whoever acts in the longest steps of all has the last word.
+            // A force that acts at the outermost level limits the longest step.
             RunStyle::Respa(r) => {
                 let pairs = r.subs.iter().flatten().copied().max().unwrap_or(r.pair);
                 (solids.min(contacts) * r.steps(pairs) as f64).min(bonds * r.steps(r.bond) as f64)
@@ -155,7 +155,7 @@ mod tests {
             w.settings.run_style = style.clone();
             assert_eq!(rule.step(&w, solids, grains, inf), step, "{style:?}");
         }
-        // Bonds are of the innermost level of three: fifteen of their steps in the longest one.
+        // Bonds act at the innermost of three levels, with fifteen steps in one outer step.
         assert_eq!(rule.step(&w, 2.0, inf, 0.1), 0.75);
         w.settings.run_style = RunStyle::Verlet;
         assert_eq!(rule.step(&w, inf, 8.0, 0.5), 0.25);

@@ -1,4 +1,5 @@
-//! fix dt/guard: a run whose energy is off goes back to where it was right, and on in shorter steps.
+//! fix dt/guard: when the energy balance fails, the run returns to the last good state and continues with
+//! shorter steps.
 
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
@@ -71,7 +72,7 @@ struct Declared {
 
 impl Fix for Declared {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        // The run's loop does the work: it alone can go back.
+        // The step loop does the work: only it can restore an earlier state.
         Ok(vec![])
     }
 

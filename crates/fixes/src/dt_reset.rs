@@ -1,4 +1,4 @@
-//! fix dt/reset: a time step that follows the fastest particle.
+//! fix dt/reset: adapts the time step to the fastest particle.
 
 use super::time_step::Follower;
 use super::{Facts, Fix, FixStyle};
@@ -67,20 +67,20 @@ fn bound(args: &mut Args, what: &str) -> Result<Option<f64>> {
     if args.eat("NULL") { Ok(None) } else { args.non_negative(what).map(Some) }
 }
 
-/// How a step size follows from velocities and forces.
+/// How the step follows from velocities and forces.
 #[derive(Clone, Copy, Debug)]
 struct Rule {
     group: GroupId,
     shortest: Option<f64>,
     longest: Option<f64>,
-    /// Furthest way in one step [length].
+    /// Largest displacement in one step [length].
     reach: f64,
     /// Largest change of kinetic energy in one step.
     energy: Option<f64>,
 }
 
 impl Rule {
-    /// The step for the present velocities and forces.
+    /// The step for the current velocities and forces.
     fn step(&self, w: &World) -> f64 {
         let (p, masses, bit) = (&w.particles, Masses::of(w), self.group.bit());
         let units = w.settings.units.constants();
@@ -93,7 +93,7 @@ impl Rule {
             w.families.as_ref().is_some_and(|f| f.place.get(i).is_some_and(|place| *place != u32::MAX))
         };
         let chunk = |range: std::ops::Range<usize>| {
-            // What is longer than the longest step does not matter, nor what is longer than that of somebody else.
+            // Limits longer than the longest step, or than the shortest limit so far, have no effect.
             let mut least = self.longest.unwrap_or(f64::INFINITY);
             let mut bounds = self.bounds(least, units.ftm2v, root);
             for i in w.moved_in(range).flatten().filter(|&i| p.mask[i] & bit != 0) {
@@ -121,16 +121,18 @@ impl Rule {
         dt
     }
 
-    /// What the squares of velocity, of force over mass, and of velocity times force must stay below for a step to be longer than `least`:
-    /// in half the step that each of them alone allows nobody goes further than `reach`. `unit` turns force over mass into acceleration.
+    /// Bounds for the squares of velocity, of force over mass, and of velocity times force, below which a
+    /// particle's step is longer than `least`: in half the step that each bound alone allows, no particle
+    /// moves farther than `reach`. `unit` turns force over mass into acceleration.
     fn bounds(&self, least: f64, unit: f64, root: f64) -> [f64; 3] {
         let half = 2.0 * least;
         let energy = self.energy.map_or(f64::INFINITY, |e| e / (half * root));
-        // Rounding takes far less than 1e-9.
+        // Far above the rounding error of these operations.
         [self.reach / half, self.reach / (half * least * unit), energy].map(|b| b * b * (1.0 - 1e-9))
     }
 
-    /// The longest step of a particle with velocity `v`, force `f` and inverse mass `a` (times the unit of force).
+    /// The longest step for a particle with velocity `v`, force `f` and inverse mass `a` (times the unit of
+    /// force).
     fn limit(&self, v: [f64; 3], f: [f64; 3], a: f64, root: f64) -> f64 {
         let (vsq, fsq) = (square(v), square(f));
         let mut dt = f64::INFINITY;
@@ -153,7 +155,7 @@ impl Rule {
     }
 }
 
-/// Whether a particle's step is sure to be longer than that of these [`Rule::bounds`].
+/// Whether a particle's step is certainly longer than the one these [`Rule::bounds`] stand for.
 #[inline]
 fn longer(vsq: f64, fsq: f64, mass: f64, [v, f, both]: [f64; 3]) -> bool {
     vsq < v && fsq < f * (mass * mass) && fsq * vsq < both
@@ -227,13 +229,13 @@ mod tests {
         b.world.particles.f[1] = [0.0, 100.0, 0.0]; // √(2 · 0.25 · 2 / 100) = 0.1
         b.world.particles.v[0] = [0.0; 3];
         assert!((step(&mut b, "1 NULL NULL 0.25 units box") - 0.1).abs() < 1e-16);
-        // v and f along each other: 0.1 alone for either, way 0.75, so 0.1/3.
+        // v and f parallel: either alone gives 0.1; the displacement 0.75 gives 0.1/3.
         b.world.particles.v[1] = [0.0, 2.5, 0.0];
         assert!((step(&mut b, "1 NULL NULL 0.25 units box") - 0.05).abs() < 1e-16);
         assert!((step(&mut b, "1 NULL NULL 0.25 emax 5 units box") - 0.02).abs() < 1e-16);
     }
 
-    // Many particles at random, in steps of all sizes: whoever is passed over would not have decided.
+    // Many random particles with steps of all sizes: a skipped particle must never be the limiting one.
     #[test]
     fn nobody_who_decides_is_passed_over() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 5000]);
@@ -268,7 +270,7 @@ mod tests {
         assert_eq!(b.slot_of("f_f").scalar, 7.0);
         assert_eq!(b.world.memo["dt/reset/f"], [7.0]);
         b.world.particles.v[0] = [0.0; 3];
-        assert_eq!(step(&mut b, "5 NULL NULL 0.5"), 0.5); // nothing moves: stays
+        assert_eq!(step(&mut b, "5 NULL NULL 0.5"), 0.5); // nothing moves: unchanged
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! fix efield: an electric field that pulls charges and turns dipole moments.
+//! fix efield: an electric field that acts on charges and dipole moments.
 
 use super::{Facts, Fix, FixStyle, Minimizing, region_keyword};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -76,7 +76,7 @@ impl FixStyle for Efield {
     }
 }
 
-/// Whether the field turns particles.
+/// Whether the field exerts torques.
 fn turns(style: AtomStyle) -> bool {
     style.dipole && style.sphere
 }
@@ -96,14 +96,14 @@ fn atom_variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> 
     }
 }
 
-/// Where the energy comes from.
+/// Source of the energy.
 #[derive(Clone)]
 enum Energy {
-    /// That of a constant field.
+    /// The energy of a constant field.
     Own,
-    /// None, as a variable field has without a word about it.
+    /// None: a variable field without an energy variable.
     None,
-    /// From an atom-style variable: the energy itself, or the potential at the charge.
+    /// An atom-style variable: the energy itself, or the potential at the charge.
     Said { of: ValueRef, potential: bool },
 }
 
@@ -145,7 +145,7 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            // Fields are said in units in which force and charge may have others.
+            // Fields may have other units than force over charge.
             let unit = w.settings.units.field_to_force();
             let at = |w: &World, i: usize| scale(unit, field.map(|r| r.atom(w, i)));
             let mut energy = 0.0;

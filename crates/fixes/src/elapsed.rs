@@ -1,24 +1,24 @@
-//! Time since the declaration of a fix.
+//! Time since a fix was declared.
 
 use perigrain_world::{Numbers, World};
 
-/// How much time has passed since the declaration, also where the time step changes or steps are renumbered.
+/// Time since the declaration, valid also when the time step changes or steps are renumbered.
 #[derive(Clone, Copy)]
 pub struct Elapsed {
     /// Step of the declaration.
     pub origin: f64,
-    /// Time up to `step`.
+    /// Time at `step`.
     time: f64,
-    /// Since which step `dt` holds.
+    /// The step since which `dt` has been in effect.
     step: f64,
-    /// The present time step.
+    /// The current time step.
     dt: f64,
     /// The latest step.
     last: f64,
 }
 
 impl Elapsed {
-    /// As the world remembers it under this key; from now on where it does not.
+    /// Loads the state stored under this key, or starts at the current step.
     pub fn load(w: &World, key: Numbers) -> Self {
         match w.memo.get(key).map(Vec::as_slice) {
             Some(&[origin, time, step, dt, last]) => Self { origin, time, step, dt, last },
@@ -29,7 +29,7 @@ impl Elapsed {
         }
     }
 
-    /// Lets the world remember it.
+    /// Stores the state in the world.
     pub fn store(self, w: &mut World, key: Numbers) {
         let Self { origin, time, step, dt, last } = self;
         match w.memo.get_mut(key) {
@@ -38,12 +38,12 @@ impl Elapsed {
         }
     }
 
-    /// The time at the latest step.
+    /// Time at the latest step.
     pub fn now(&self) -> f64 {
         self.time + (self.last - self.step) * self.dt
     }
 
-    /// Goes on to `step` by one time step `dt`.
+    /// Advances to `step` with time step `dt`.
     pub fn follow(&mut self, step: i64, dt: f64) {
         let before = (step - 1) as f64;
         self.step += before - self.last;

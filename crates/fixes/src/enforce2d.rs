@@ -1,4 +1,4 @@
-//! fix enforce2d: keeps a two-dimensional scene in its plane.
+//! fix enforce2d: keeps a two-dimensional system in its plane.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -48,14 +48,14 @@ struct Declared {
     group: GroupId,
 }
 
-/// Velocities and forces along z become zero.
+/// Sets velocities and forces along z to zero.
 pub(super) fn flatten([v, f]: [&mut [Vec3]; 2], mask: &[u32], bit: u32) {
     for ((v, f), _) in v.iter_mut().zip(f).zip(mask).filter(|(_, m)| *m & bit != 0) {
         (v[2], f[2]) = (0.0, 0.0);
     }
 }
 
-/// Spins and torques across z, where there are some, become zero.
+/// Sets spins and torques about x and y to zero, if there are any.
 pub(super) fn flatten_turning([omega, torque]: [&mut [Vec3]; 2], mask: &[u32], bit: u32) {
     for ((a, b), _) in omega.iter_mut().zip(torque).zip(mask).filter(|(_, m)| *m & bit != 0) {
         (*a, *b) = ([0.0, 0.0, a[2]], [0.0, 0.0, b[2]]);

@@ -1,4 +1,4 @@
-//! fix evaporate: particles that vanish at random.
+//! fix evaporate: deletes particles at random.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
@@ -72,9 +72,9 @@ impl Declared {
         Key::new(&format!("evaporate/{}", self.id))
     }
 
-    /// Deletes this step's share.
+    /// Deletes the particles of this step.
     fn act(&self, w: &mut World, chosen: &Chosen, account: &mut Account) {
-        // Who is drawn depends on the order of creation.
+        // The choice depends on the order of creation.
         w.fall_back();
         let p = &w.particles;
         let here = chosen.now(w);
@@ -88,7 +88,7 @@ impl Declared {
         if !gone.contains(&true) {
             return;
         }
-        // From the end, so that nobody who moves into a hole is one of them.
+        // From the end, so that a particle moved into a gap is never one of them.
         let mut order: Vec<usize> = (0..p.len()).collect();
         for k in (0..p.len()).rev().filter(|&k| gone[k]) {
             order.swap_remove(k);

@@ -1,4 +1,4 @@
-//! fix external: forces from the program that hosts the session.
+//! fix external: forces from the host program of the session.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -14,12 +14,12 @@ use perigrain_world::{GroupId, Key, Numbers, Outside, Vectors, World};
 /// The style.
 pub struct External;
 
-/// Under which name the world keeps a fix's forces and the program it talks to.
+/// The name under which the world stores a fix's forces and the host program finds them.
 pub fn name(id: &str) -> String {
     format!("external/{id}")
 }
 
-/// The columns that keep what was told of each particle: energies, and virials as two vectors.
+/// The columns of the per-particle values from the host: energies, and virials as two vectors.
 #[derive(Clone, Copy)]
 pub struct Kept {
     energy: Numbers,
@@ -27,13 +27,13 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Those of a fix.
+    /// The columns of a fix.
     pub fn new(id: &str) -> Self {
         let key = Key::<()>::new(&name(id));
         Self { energy: key.with("/energy"), virial: ["/normal", "/shear"].map(|part| key.with(part)) }
     }
 
-    /// Keeps what was said; what stands behind the last particle is left out.
+    /// Stores the values; those beyond the last particle are ignored.
     ///
     /// # Errors
     /// Fewer values than particles.
@@ -61,7 +61,7 @@ impl Kept {
         self.virial.into_iter().for_each(|key| w.columns.remove(key));
     }
 
-    /// Adds energies and virials where they are asked for.
+    /// Adds energies and virials where requested.
     fn add(self, w: &mut World, (energy, virial): (bool, bool)) {
         let World { columns, tally, .. } = w;
         if let Some(own) = columns.get_scalar(self.energy).filter(|_| energy) {
@@ -124,9 +124,9 @@ struct Declared {
     group: GroupId,
     key: Vectors,
     kept: Kept,
-    /// Steps between calls, if there are calls.
+    /// Steps between calls, if the host is called.
     call: Option<i64>,
-    /// Steps between additions.
+    /// Steps between applications of the forces.
     apply: i64,
     /// `fix_modify virial`.
     virial: bool,
@@ -216,7 +216,7 @@ impl Fix for Declared {
 }
 
 impl Declared {
-    /// Has the program write forces.
+    /// Calls the host program to write forces.
     fn ask(&self, w: &mut World, t: &Tick, outside: Option<&dyn Outside>) -> Result<()> {
         let n = w.n();
         let mut f = std::mem::take(w.columns.vector(self.key, n));
@@ -253,7 +253,7 @@ mod tests {
     use perigrain_world::AtomStyle;
     use std::sync::Arc;
 
-    /// Gives the particle with id k the force (step, k, 0) on top of what it had, and fails in step 3.
+    /// Adds the force (step, k, 0) to the particle with ID k, and fails in step 3.
     #[derive(Debug)]
     struct Program;
 
@@ -292,7 +292,7 @@ mod tests {
         b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
         at_step(&mut b, &mut ops, 2).unwrap();
         assert_eq!(b.world.particles.f, [[3.0, 1.0, 0.0], [3.0, 2.0, 0.0]]);
-        // Not called in step 3, in which it would fail: the forces of step 2 are added again.
+        // No call in step 3, which would fail: the forces of step 2 are applied again.
         at_step(&mut b, &mut ops, 3).unwrap();
         assert_eq!(b.world.particles.f, [[3.0, 1.0, 0.0], [3.0, 2.0, 0.0]]);
         at_step(&mut b, &mut ops, 4).unwrap();

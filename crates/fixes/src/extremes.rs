@@ -1,4 +1,4 @@
-//! `fix extremes`: the smallest and the largest value each of some quantities has had.
+//! `fix extremes`: the smallest and largest value that quantities have had so far.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
@@ -94,7 +94,7 @@ impl Fix for Extremes {
     }
 }
 
-/// Looks at the values and keeps what is beyond all before.
+/// The op that updates the extremes.
 struct Watch {
     name: String,
     memo: Numbers,
@@ -123,7 +123,7 @@ impl Op for Watch {
     }
 }
 
-/// Lets each pair (smallest, largest) of `known` take in the next value.
+/// Extends each pair (smallest, largest) of `known` by the next value.
 fn widen(known: &mut [f64], values: impl Iterator<Item = f64>) {
     for (pair, v) in known.chunks_exact_mut(2).zip(values) {
         pair[0] = pair[0].min(v);

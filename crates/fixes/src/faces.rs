@@ -1,4 +1,4 @@
-//! Flat walls along the faces of the box, as the fixes wall/reflect and wall/harmonic take them.
+//! Flat walls parallel to the faces of the box, for fix wall/reflect and wall/harmonic.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
@@ -7,23 +7,23 @@ use perigrain_styles::common::{orthogonal, variable_param};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::World;
 
-/// The words for faces, two for each direction: the lower one first.
+/// The words for faces, two per direction, the lower one first.
 pub const FACES: [&str; 6] = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"];
 
-/// One wall: on which side of whom it stands, and where.
+/// One wall: its axis, its side and its position.
 #[derive(Clone)]
 pub struct Face {
-    /// Along which direction: 0, 1, 2.
+    /// Its axis: 0, 1 or 2.
     pub axis: usize,
-    /// Whether particles are below it.
+    /// Whether the particles are below it.
     pub high: bool,
     /// Its coordinate, times `units` unless it is the face of the box.
     place: Param,
-    /// Whether it is where the face of the box was when it was declared.
+    /// Whether it stands at the face of the box at the time of declaration.
     edge: bool,
 }
 
-/// Where a wall is read from during a run.
+/// Source of a wall's position during a run.
 #[derive(Clone, Copy)]
 pub struct Spot {
     place: Reading,
@@ -31,17 +31,17 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// Its coordinate now.
+    /// The current coordinate.
     pub fn get(self, w: &World) -> f64 {
         self.scale * self.place.get(w)
     }
 }
 
 impl Face {
-    /// Takes where the face named by `word` is; `None` if it names none.
+    /// Parses the position of the face named by `word`; `None` if it names none.
     ///
     /// # Errors
-    /// A face that is there already, and mistakes in the place.
+    /// A repeated face, and mistakes in the position.
     pub fn read(word: &Word, before: &[Face], args: &mut Args, cx: &BuildCx) -> Result<Option<Self>> {
         let Some(k) = FACES.iter().position(|f| *f == word.text) else { return Ok(None) };
         let (axis, high) = (k / 2, k % 2 == 1);
@@ -58,18 +58,18 @@ impl Face {
         Ok(Some(Self { axis, high, place, edge }))
     }
 
-    /// The word for it.
+    /// Its word.
     pub fn name(&self) -> &'static str {
         FACES[2 * self.axis + usize::from(self.high)]
     }
 
-    /// How deep inside of the box a coordinate is, seen from a wall at `at`.
+    /// Distance of a coordinate from a wall at `at`, positive on the inside.
     #[inline]
     pub fn depth(&self, x: [f64; 3], at: f64) -> f64 {
         if self.high { at - x[self.axis] } else { x[self.axis] - at }
     }
 
-    /// Where it is read from during a run, at `stage`; `scales`: of numbers and variables.
+    /// The source of the position during a run, at `stage`; `scales` apply to numbers and variables.
     ///
     /// # Errors
     /// A variable that is gone.
@@ -83,15 +83,15 @@ impl Face {
     }
 }
 
-/// The face of the box as it is now.
+/// The current face of the box.
 fn edge_of(w: &World, axis: usize, high: bool) -> f64 {
     w.domain.as_ref().map_or(0.0, |d| if high { d.hi[axis] } else { d.lo[axis] })
 }
 
-/// Checks that there are walls at all and, unless `through`, that none stands in a direction that repeats.
+/// Checks that there is a wall and, unless `through`, that none stands across a periodic direction.
 ///
 /// # Errors
-/// No wall, or one that would be passed through.
+/// No wall, or a wall across a periodic direction.
 pub fn check(faces: &[Face], through: bool, args: &Args, cx: &BuildCx) -> Result<()> {
     if faces.is_empty() {
         let text = "there is no wall: name at least one of xlo xhi ylo yhi zlo zhi";

@@ -1,4 +1,4 @@
-//! fix freeze: grains that nothing moves.
+//! fix freeze: holds grains in place.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -43,10 +43,10 @@ impl FixStyle for Freeze {
     }
 }
 
-/// Sets forces and torques, where there are some, of particles with the bit to zero and adds up the forces [force].
+/// Sets forces and torques (if any) of particles with the bit to zero, and sums the forces [force].
 #[inline(always)]
 pub(super) fn hold(f: &mut [Vec3], torque: &mut [Vec3], mask: &[u32], bit: u32, taken: &mut [f64; 3]) {
-    // Frozen grains lie together: most eights have none.
+    // Frozen grains are contiguous in memory: most groups of eight have none.
     for (k, eight) in mask.chunks(8).enumerate() {
         if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
             continue;
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(p.f, [[0.0; 3], [0.0; 3], [4.0; 3]]);
         assert_eq!(p.torque, [[0.0; 3], [0.0; 3], [1.0; 3]]);
         assert_eq!(b.slot_of("f_f").vector, [11.0, 22.0, 33.0]);
-        // Another one stays when this one goes.
+        // Another one remains when this one is deleted.
         b.world.parts.frozen.push(("other".into(), GroupId::ALL));
         fix.remove(&mut b.world);
         assert_eq!(b.world.parts.frozen, [("other".to_string(), GroupId::ALL)]);

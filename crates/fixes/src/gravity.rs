@@ -1,4 +1,4 @@
-//! fix gravity: the same acceleration for everyone.
+//! fix gravity: the same acceleration for all particles.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
@@ -86,11 +86,11 @@ struct Declared {
     group: GroupId,
     magnitude: Param,
     direction: Direction,
-    /// Does not act by itself.
+    /// Without effect of its own.
     disabled: bool,
 }
 
-/// A direction as it is read during a run.
+/// A direction during a run.
 #[derive(Clone, Copy)]
 enum Pointer {
     Angles { phi: Reading, theta: Reading },
@@ -99,7 +99,7 @@ enum Pointer {
 }
 
 impl Pointer {
-    /// Whether it never turns.
+    /// Whether it is constant.
     fn is_const(self) -> bool {
         match self {
             Pointer::Chute(angle) => angle.is_const(),
@@ -108,7 +108,7 @@ impl Pointer {
         }
     }
 
-    /// The unit vector now.
+    /// The current unit vector.
     fn unit(self, w: &World, flat: bool) -> [f64; 3] {
         match self {
             Pointer::Chute(angle) => turned(0.0, 180.0 - angle.get(w), flat),
@@ -123,7 +123,7 @@ impl Pointer {
     }
 }
 
-/// The unit vector of spherical angles in degrees.
+/// The unit vector for spherical angles in degrees.
 fn turned(phi: f64, theta: f64, flat: bool) -> [f64; 3] {
     let radian = std::f64::consts::PI / 180.0;
     let (phi, theta) = (radian * phi, radian * theta);
@@ -133,14 +133,14 @@ fn turned(phi: f64, theta: f64, flat: bool) -> [f64; 3] {
     [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()]
 }
 
-/// f ← f + m a for those whose mask has the bit; Σ −m a·x.
+/// f ← f + m a for particles whose mask has the bit; returns Σ −m a·x.
 fn pulled(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
         // SAFETY: the processor has AVX2.
         return unsafe { pulled_avx2(f, x, mass, mask, bit, a) };
     }
-    // SAFETY: this form needs nothing.
+    // SAFETY: the portable form has no requirements.
     unsafe { pulled_in::<Plain>(f, x, mass, mask, bit, a) }
 }
 
@@ -151,10 +151,10 @@ fn pulled_avx2(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32,
     unsafe { pulled_in::<perigrain_base::math::four::Avx2>(f, x, mass, mask, bit, a) }
 }
 
-/// Four at a time, and those one by one that are not all of the group.
+/// Four particles at a time; groups of four that are not all in the group one by one.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 unsafe fn pulled_in<F: Threes>(
     f: &mut [Vec3],
@@ -169,7 +169,7 @@ unsafe fn pulled_in<F: Threes>(
     let (f4, f1) = f.as_chunks_mut::<4>();
     let (x4, x1) = x.as_chunks::<4>();
     let mut energy = pulled_each(f1, x1, mass1, mask1, bit, a);
-    // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
+    // SAFETY (all below): the caller's guarantee; arrays of twelve and of four numbers.
     let (along, mut sum) = unsafe { (threes::repeated::<F>(a), F::splat(0.0)) };
     for (((f, x), m), mask) in f4.iter_mut().zip(x4).zip(mass4).zip(mask4) {
         if mask[0] & mask[1] & mask[2] & mask[3] & bit == 0 {
@@ -187,7 +187,7 @@ unsafe fn pulled_in<F: Threes>(
     energy + sum.numbers().iter().sum::<f64>()
 }
 
-/// f + m a of four, and m a·x; `along`: four times a.
+/// f + m a of four particles, and m a·x; `along` repeats a four times.
 #[inline(always)]
 pub(super) fn pulled_four<F: Threes>(
     [fa, fb, fc]: [F; 3],
@@ -201,7 +201,7 @@ pub(super) fn pulled_four<F: Threes>(
     (f, m * (x * a[0] + y * a[1] + z * a[2]))
 }
 
-/// [`pulled`], one by one.
+/// [`pulled`], one particle at a time.
 #[inline(always)]
 pub(super) fn pulled_each(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
     let mut energy = 0.0;
@@ -248,7 +248,7 @@ impl Fix for Declared {
             });
             true
         };
-        // Others read the acceleration where it stands (`SealCx::gravities`); decks do not see it.
+        // Other styles read the acceleration from the slot (`SealCx::gravities`); decks cannot see it.
         let told = move |w: &mut World, t: &Tick, sums: BlockSums| {
             let a = steady.unwrap_or_else(|| acceleration(w));
             publish(w, slot, t, sums.sums[0], &a);
@@ -260,7 +260,7 @@ impl Fix for Declared {
             }
             Ok(())
         };
-        // Where it pulls nothing it needs no rows.
+        // An idle gravity needs no rows.
         let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told).asking();
         Ok(vec![op.boxed()])
     }
@@ -336,11 +336,11 @@ mod tests {
         let (x, mass, a) = (some(1), some(2).iter().map(|m| m[0]).collect::<Vec<_>>(), [0.3, -0.7, 1.1]);
         for mask in [[1; 11], std::array::from_fn(|k| (k % 5) as u32 & 1)] {
             let (mut one, mut each) = (some(3), some(3));
-            // SAFETY: the portable form needs nothing.
+            // SAFETY: the portable form has no requirements.
             let energy = unsafe { pulled_in::<Plain>(&mut one, &x, &mass, &mask, 1, a) };
             let expected = pulled_each(&mut each, &x, &mass, &mask, 1, a);
             assert_eq!(one, each);
-            // Eleven terms of about 10, added in another order.
+            // Eleven terms of about 10, summed in a different order.
             assert!((energy - expected).abs() < 1e-13, "{energy} {expected}");
             let mut wide = some(3);
             assert_eq!(pulled(&mut wide, &x, &mass, &mask, 1, a).to_bits(), energy.to_bits());

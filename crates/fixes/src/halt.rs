@@ -1,4 +1,4 @@
-//! fix halt: ends a run when something has happened.
+//! fix halt: ends a run when a condition is met.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::comm::told;
@@ -34,7 +34,7 @@ impl Style for HaltFix {
     }
 }
 
-/// What is looked at.
+/// The quantity compared.
 #[derive(Clone)]
 enum Attribute {
     Bonds,
@@ -43,10 +43,10 @@ enum Attribute {
     Variable(ValueRef),
 }
 
-/// A comparison, from `left` and `right`.
+/// Compares `left` and `right`.
 type Compare = fn(f64, f64) -> bool;
 
-/// The operators and what they mean.
+/// The operators and their comparisons.
 const OPERATORS: [(&str, Compare); 7] = [
     ("<", |a, b| a < b),
     ("<=", |a, b| a <= b),
@@ -110,10 +110,10 @@ struct Declared {
 }
 
 impl Declared {
-    /// The present value of the attribute.
+    /// The current value of the attribute.
     fn now(&self, w: &World, reading: Option<Reading>) -> Result<f64> {
         match &self.attribute {
-            // No bond_style, no bonds.
+            // Without a bond_style there are no bonds.
             Attribute::Bonds => Ok(0.0),
             Attribute::Seconds => {
                 Ok(told::number(|| w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64())))
@@ -124,13 +124,13 @@ impl Declared {
     }
 }
 
-/// Free space of the file system a path is on.
+/// Free space of the file system that contains a path.
 fn free_megabytes(path: &Path) -> Result<f64> {
     perigrain_base::gate::pass(path).map_err(|e| {
         let text = format!("the free space at `{}` is not told: {e}", path.display());
         Diagnostic::error(perigrain_base::gate::code(&e), None::<Span>, text)
     })?;
-    // `df` is asked because the standard library cannot tell.
+    // Uses `df`, because the standard library has no function for this.
     let text = told::text(|| {
         let output = std::process::Command::new("df").arg("-Pk").arg("--").arg(path).output();
         output.ok().filter(|o| o.status.success()).map(|o| String::from_utf8_lossy(&o.stdout).into_owned())

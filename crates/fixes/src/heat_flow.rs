@@ -1,4 +1,4 @@
-//! fix heat/flow: temperatures of particles that follow the heat they take up.
+//! fix heat/flow: integrates temperatures from the heat that flows into particles.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};

@@ -119,7 +119,7 @@ fn read_form(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Form<Param>> 
     }
 }
 
-/// Numbers become lengths of the box; variables stay.
+/// Scales numbers to box units; variables stay.
 fn scaled(form: &Form<Param>, scale: [f64; 3]) -> Result<Form<Param>> {
     form.map(|p, axis| {
         Ok(match p {
@@ -200,7 +200,7 @@ mod tests {
         b
     }
 
-    // Depth 2 (or where said otherwise), K = 6: force 24, energy 6/3 · 8 = 16, by hand.
+    // Depth 2 (unless noted), K = 6: force 24, energy 6/3 · 8 = 16, by hand.
     #[test]
     fn shapes_and_sides() {
         let mut b = scene();
@@ -214,14 +214,14 @@ mod tests {
         assert_eq!(force(&mut b, "6 plane z -1 hi units box").0, [0.0, 0.0, -24.0]);
         assert_eq!(force(&mut b, "6 plane z 3 hi units box").0, [0.0; 3]);
         assert_eq!(force(&mut b, "6 sphere 3 0 v_z 5 units box").0, [0.0; 3]);
-        // Cones that are cylinders with ends.
+        // Cones of constant radius: cylinders with ends.
         assert_eq!(force(&mut b, "6 cone z 0 0 5 5 -9 9 units box").0, [24.0, 0.0, 0.0]);
         assert_eq!(force(&mut b, "6 cone z 0 0 1 1 -9 9 side in units box").0, [-24.0, 0.0, 0.0]);
         assert_eq!(force(&mut b, "6 cone z 0 0 5 5 -3 9 units box").0, [24.0, 0.0, 0.0]);
         assert_eq!(force(&mut b, "6 cone z 0 0 9 9 -1 9 units box").0, [0.0, 0.0, -24.0]);
         // In lattice spacings of 0.5.
         assert_eq!(force(&mut b, "6 sphere 0 0 2 10").0, [24.0, 0.0, 0.0]);
-        // The box repeats after 20: the sphere's image at -18 is 5 away from x = -13 … and 2 deep from x = 3.
+        // The box repeats after 20: the sphere's image at -18 is 5 from x = -13 and overlaps x = 3 by 2.
         assert_eq!(force(&mut b, "6 sphere 20 0 v_z 5 units box").0, [24.0, 0.0, 0.0]);
     }
 

@@ -1,4 +1,5 @@
-//! Half kicks and drifts of velocity Verlet in one pass over memory, with what acts on particles right before and after.
+//! Half kicks and drifts of velocity Verlet in one pass over memory, fused with forces that act right before
+//! and after.
 
 mod pass;
 
@@ -11,17 +12,17 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::{GroupId, World};
 
-/// How particles turn.
+/// Rotation of particles.
 #[derive(Clone, Copy)]
 pub struct Turning {
     /// I / (m R²).
     pub inertia: f64,
-    /// They have orientations, which follow their spins.
+    /// Whether they have orientations.
     pub oriented: bool,
 }
 
-/// Lets the op that begins a step make whole ones in blocks of particles: half kicks and drifts of a group; what turns gets
-/// spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.
+/// Lets the op that begins a step integrate whole blocks of particles: half kicks and drifts of a group; with
+/// `turning` also spins, ω += Δt/2 · torque/I. The largest displacement is recorded in the world's `Travel`.
 pub fn first<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> StepOp<F>
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
@@ -29,7 +30,7 @@ where
     op.fusing(move |w, t, room| whole(w, (group, turning), t, Part::First, room), went).without_sums()
 }
 
-/// The same for the op that ends a step, and can begin the next one.
+/// The same for the op that ends a step and may begin the next one.
 pub fn second<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> StepOp<F>
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
@@ -38,8 +39,8 @@ where
     op.fusing(move |w, t, room| whole(w, (group, turning), t, part(t), room), went).without_sums()
 }
 
-/// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and
-/// solids see [`some`]. Always `true`: something is in the room.
+/// A part of a step, or of one time step level; only the shortest level drifts. For separate step lengths of
+/// grains and solids see [`some`]. Always `true`: a part is always added to `room`.
 fn whole(
     w: &World,
     (group, turning): (GroupId, Option<Turning>),
@@ -49,7 +50,7 @@ fn whole(
 ) -> bool {
     let (short, solids) = (t.phase.level == 0, t.phase.solids.clone());
     let part = if part == Part::First && !short && solids.is_none() { Part::Second } else { part };
-    // Bonds of solids turn nothing, so that short steps have none of it.
+    // Bonds of solids exert no torques, so that short steps skip rotation.
     let turning = turning.filter(|_| solids.is_none() || !short);
     let half = half_step(w, t.dt);
     let k = Kick {
@@ -77,13 +78,14 @@ fn whole(
     true
 }
 
-/// What came of a motion: the largest v².
+/// Result of a motion: the largest v².
 fn moved(most: f64) -> BlockSums {
     BlockSums { most, ..BlockSums::default() }
 }
 
-/// A part of a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do
-/// both. Solids are created one after the other: what a particle does is decided once for all like it that follow.
+/// A part of a step of two lengths: the long one kicks all particles and drifts all but the solids; the short
+/// ones kick and drift the solids. The particles of a solid are contiguous: one decision serves the whole run
+/// of particles.
 fn some(
     k: &Kick,
     s: &mut ParticleBlock,
@@ -107,12 +109,12 @@ fn some(
     most
 }
 
-/// How many particles from the first on have its type and groups.
+/// The number of particles from the first on that share its type and groups.
 fn alike(kind: &[u16], mask: &[u32]) -> usize {
     const EACH: usize = 16;
     let (first, bits) = (kind[0], mask[0]);
     let mut n = 0;
-    // Whole groups are compared without a branch for each.
+    // Whole chunks are compared without a branch per particle.
     for (kind, mask) in kind.chunks_exact(EACH).zip(mask.chunks_exact(EACH)) {
         let differ = kind.iter().fold(0, |d, k| d | (k ^ first)) != 0;
         if differ || mask.iter().fold(0, |d, m| d | (m ^ bits)) != 0 {
@@ -123,7 +125,7 @@ fn alike(kind: &[u16], mask: &[u32]) -> usize {
     n + kind[n..].iter().zip(&mask[n..]).take_while(|(k, m)| (**k, **m) == (first, bits)).count()
 }
 
-/// Tells the account of ways what came of a part.
+/// Records the displacement of a part in the world's `Travel`.
 fn went(w: &mut World, t: &Tick, sums: BlockSums) {
     w.travel.went(t.dt.abs() * sums.most.sqrt());
 }

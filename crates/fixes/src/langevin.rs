@@ -1,4 +1,4 @@
-//! fix langevin: friction and random forces, as if particles were in a bath of some temperature.
+//! fix langevin: friction and random forces of a heat bath.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -111,7 +111,7 @@ impl FixStyle for Langevin {
     }
 }
 
-/// Tstart: a number or a variable.
+/// Parses Tstart: a number or a variable.
 fn temperature(args: &mut Args, cx: &BuildCx) -> Result<Param> {
     let span = args.here();
     let start = variable_param(args, "the temperature Tstart")?;
@@ -135,25 +135,25 @@ fn omega(args: &mut Args, cx: &BuildCx) -> Result<bool> {
 #[derive(Clone)]
 struct Declared {
     id: String,
-    /// Where the world keeps what outlives a step.
+    /// Key of the state that persists between steps.
     key: Numbers,
-    /// And the energy that has been taken.
+    /// Key of the energy exchanged.
     coupled: Numbers,
-    /// The columns of the forces and torques that were added last.
+    /// Columns of the forces and torques added last.
     columns: [Vectors; 2],
     group: GroupId,
     start: Param,
     stop: f64,
     damp: f64,
     seed: u32,
-    /// Times of damping by type − 1, in those of `damp`.
+    /// Damping times by type − 1, as multiples of `damp`.
     ratios: Vec<f64>,
     omega: bool,
     tally: bool,
     zero: bool,
 }
 
-/// Energy taken so far, power at the last step, and the stream: what outlives a step.
+/// State between steps: energy exchanged so far, power at the last step, and the random stream.
 struct Account {
     energy: f64,
     power: f64,
@@ -175,7 +175,7 @@ impl Account {
     }
 }
 
-/// The particles of a group in the order of their creation.
+/// The particles of a group in their order of creation.
 fn by_creation(w: &World, group: GroupId) -> Vec<usize> {
     let (p, bit) = (&w.particles, group.bit());
     let mut members: Vec<usize> = (0..p.len()).filter(|&i| p.mask[i] & bit != 0).collect();
@@ -186,7 +186,7 @@ fn by_creation(w: &World, group: GroupId) -> Vec<usize> {
 }
 
 impl Declared {
-    /// √T of each of these particles.
+    /// √T for each of these particles.
     fn roots(&self, w: &World, members: &[usize], start: Reading, span: Span) -> Result<Vec<f64>> {
         if let Param::Number(start) = self.start {
             let c = &w.clock;
@@ -209,7 +209,8 @@ impl Declared {
         }
     }
 
-    /// Forces on these particles: inertia by inertia, `push` √m and `drag` m times the velocity, each over times of damping.
+    /// Forces on these particles by inertia: `push` √m and `drag` m times the velocity, each divided by the
+    /// damping time.
     fn bath(
         &self,
         w: &World,
@@ -242,7 +243,7 @@ impl Declared {
         forces
     }
 
-    /// Draws, and adds forces and torques.
+    /// Draws the random numbers and adds forces and torques.
     fn act(&self, w: &mut World, t: &Tick, start: Reading, span: Span) -> Result<()> {
         if t.unchanged && !w.settings.lammps() {
             return Ok(());
@@ -267,7 +268,7 @@ impl Declared {
         Ok(())
     }
 
-    /// Adds forces or torques; where LAMMPS draws once more, in place of those of the step before.
+    /// Adds forces or torques; where LAMMPS draws a second time, replaces those of the step before.
     fn add(&self, w: &mut World, t: &Tick, (members, forces): (&[usize], &[Vec3]), rotation: bool) {
         let (n, kept) = (w.n(), self.tally || w.settings.lammps());
         let column = self.columns[usize::from(rotation)];
@@ -289,7 +290,7 @@ impl Declared {
         }
     }
 
-    /// Counts the energy of the step: power by the trapezoidal rule.
+    /// Accumulates the energy of the step by the trapezoidal rule.
     fn count(&self, w: &mut World, t: &Tick, slot: SlotId) {
         let mut account = Account::load(w, self.key, self.seed);
         let (forces, p) = (w.columns.get_vector(self.columns[0]).unwrap_or(&[]), &w.particles);
@@ -392,7 +393,7 @@ mod tests {
         for i in [0, 2] {
             for (d, v) in [1.0, 0.0, -2.0].into_iter().enumerate() {
                 let expected = push * (stream.uniform() - 0.5) - 0.5 * v;
-                // A handful of roundings.
+                // A few roundings.
                 assert!((f[i][d] - expected).abs() < 1e-12, "{i} {d}");
             }
         }

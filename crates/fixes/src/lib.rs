@@ -1,6 +1,7 @@
-//! Fixes: what is done to particles during the steps besides their mutual forces; one file each, one line each in [`FIXES`].
+//! Fixes: operations on particles during the steps, apart from their mutual forces; one file each, one line
+//! each in [`FIXES`].
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod adapt;
@@ -160,7 +161,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &wall_region::WallRegion,
 ];
 
-/// The fields that say how particles of this scene lie: orientations and dipole moments.
+/// The fields that describe how particles of this system are oriented: quaternions and dipole moments.
 fn lying(w: &World) -> Fields {
     let style = w.particles.style;
     let of = |there: bool, field: Fields| if there { field } else { Fields::NONE };
@@ -177,7 +178,7 @@ fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
     Err(d.help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck").into())
 }
 
-/// Refuses particles that cannot be turned by torques.
+/// Refuses particles that torques cannot rotate.
 fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
     if cx.world.particles.style.sphere {
         return Ok(());
@@ -188,13 +189,13 @@ fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
         .into())
 }
 
-/// Takes the region after the keyword `region`.
+/// Reads the region after the keyword `region`.
 fn region_keyword(args: &mut Args, cx: &BuildCx) -> Result<String> {
     let word = args.expect("the region's ID")?;
     cx.region(word).map(|_| word.text.clone())
 }
 
-/// Refuses a fix whose values are not new at all the steps they are wanted: multiples of `every`.
+/// Refuses a fix whose values are not updated at all the steps needed: multiples of `every`.
 fn compatible(r: &ValueRef, shape: &Shape, every: i64, what: &str) -> Result<()> {
     if shape.every <= 1 || every % shape.every == 0 {
         return Ok(());

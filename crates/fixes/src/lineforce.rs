@@ -1,4 +1,4 @@
-//! fix lineforce: forces held along a line.
+//! fix lineforce: keeps only the force component along a line.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
@@ -36,10 +36,10 @@ impl FixStyle for LineForce {
     }
 }
 
-/// Takes three numbers as a direction of length 1.
+/// Parses three numbers as a direction, normalized to length 1.
 ///
 /// # Errors
-/// Words that are no numbers, and the direction 0 0 0.
+/// Words that are not numbers, and the direction 0 0 0.
 pub fn direction(args: &mut Args) -> Result<Vec3> {
     let span = args.here();
     let unknown = args.peek().is_some_and(|w| w.unknown);
@@ -56,13 +56,13 @@ pub fn direction(args: &mut Args) -> Result<Vec3> {
 pub struct Held {
     /// The fix's ID.
     pub id: String,
-    /// Whose forces.
+    /// Group of particles it acts on.
     pub group: GroupId,
     /// The style's name.
     pub name: &'static str,
     /// The direction, of length 1.
     pub along: Vec3,
-    /// Takes the part along the direction away instead of leaving it.
+    /// Removes the component along the direction instead of keeping it.
     pub plane: bool,
 }
 

@@ -1,4 +1,4 @@
-//! fix momentum: takes drift and rotation of a group away every so many steps.
+//! fix momentum: removes drift and rotation of a group every N steps.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -183,7 +183,7 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    /// Four particles of mass 2 that turn about (0, 0, 0) with ω = (0, 0, 3) and drift along x and y.
+    /// Four particles of mass 2 that rotate about (0, 0, 0) with ω = (0, 0, 3) and drift along x and y.
     fn scene() -> Bench {
         let places = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, -1.0, -0.5]];
         let mut b = Bench::new(AtomStyle::default(), &places);

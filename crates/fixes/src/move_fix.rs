@@ -1,4 +1,4 @@
-//! fix move: prescribed motion of particles, straight or swinging.
+//! fix move: prescribed motion of particles.
 
 use super::elapsed::Elapsed;
 use super::lineforce::direction;
@@ -95,7 +95,7 @@ impl FixStyle for Move {
     }
 }
 
-/// Three numbers, each of which may be `NULL`.
+/// Parses three numbers, each of which may be `NULL`.
 fn components(args: &mut Args) -> Result<[Option<f64>; 3]> {
     let mut found = [None; 3];
     for (found, axis) in found.iter_mut().zip(["x", "y", "z"]) {
@@ -104,13 +104,13 @@ fn components(args: &mut Args) -> Result<[Option<f64>; 3]> {
     Ok(found)
 }
 
-/// Three numbers.
+/// Parses three numbers.
 fn three(args: &mut Args, what: &str) -> Result<[f64; 3]> {
     let mut number = |axis| args.number(&format!("{what}{axis}"));
     Ok([number("x")?, number("y")?, number("z")?])
 }
 
-/// A variable or `NULL`.
+/// Parses a variable or `NULL`.
 fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef>> {
     let word = args.peek();
     match param_or_null(args, &format!("the variable for {what}"))? {
@@ -130,14 +130,14 @@ fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef
 struct Declared {
     id: String,
     key: Numbers,
-    /// How particles lay when they started.
+    /// Orientations at the start.
     turn: Grip,
     group: GroupId,
     path: Path,
 }
 
 impl Declared {
-    /// Remembers where particles of the group that are not known yet would have started, and how they would have lain.
+    /// Stores the initial positions and orientations of particles that joined the group since the last call.
     fn capture(&self, w: &mut World) {
         let (key, bit) = (self.key, self.group.bit());
         let now = Elapsed::load(w, key).now();
@@ -148,7 +148,8 @@ impl Declared {
         new.into_iter().for_each(|i| self.turn.take(w, i, turned));
     }
 
-    /// How the path has turned particles at time `t`, if it turns them and they have orientations or dipole moments.
+    /// The rotation by the path at time `t`, if it rotates particles that have orientations or dipole
+    /// moments.
     fn turned(&self, w: &World, t: f64) -> Option<Quat> {
         self.path.turn(t).filter(|_| w.particles.style.turns())
     }
@@ -201,7 +202,7 @@ impl Fix for Declared {
             } else {
                 let time = advance(w, group, &path, &readings, key, t);
                 if let Some(turned) = me.turned(w, time) {
-                    // LAMMPS leaves dipole moments as they were.
+                    // LAMMPS leaves dipole moments unchanged.
                     let moments = !w.settings.lammps();
                     me.turn.turn(&mut w.particles, &w.columns, moments, |_| Some(turned));
                 }
@@ -238,7 +239,7 @@ impl Fix for Declared {
     }
 }
 
-/// Offers the starting positions as per-atom values.
+/// Offers the initial positions as per-atom values.
 fn show_starts(w: &mut World, key: Vectors, slot: SlotId, t: &Tick) {
     let out = w.slots.get_mut(slot);
     (out.step, out.cols) = (Some(t.step), 3);
@@ -246,7 +247,8 @@ fn show_starts(w: &mut World, key: Vectors, slot: SlotId, t: &Tick) {
     out.atom.extend(w.columns.get_vector(key).unwrap_or_default().as_flattened());
 }
 
-/// The path's positions and velocities at this step, whose time it returns; free components kicked and drifted.
+/// Sets the path's positions and velocities at this step; kicks and drifts the free components. Returns the
+/// time.
 fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: Numbers, t: &Tick) -> f64 {
     let mut elapsed = Elapsed::load(w, key);
     elapsed.follow(t.step, t.dt);
@@ -287,7 +289,8 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
                     }
                 }
                 if lengths[d] > 0.0 && !tilted {
-                    // The image nearest to where it was: wrapping is left to the next reneighbouring.
+                    // The image nearest to the previous position: wrapping happens at the next
+                    // reneighbouring.
                     x[d] -= lengths[d] * ((x[d] - before) / lengths[d]).round();
                 }
             }
@@ -335,7 +338,7 @@ mod tests {
         b
     }
 
-    /// Declares the fix and makes one step.
+    /// Declares the fix and runs the first half of one step.
     fn begin(b: &mut Bench, words: &str) -> Vec<Box<dyn Op>> {
         let fix = b.fix(&Move, words).unwrap();
         fix.declare(&mut b.world).unwrap();

@@ -54,7 +54,7 @@ mod tests {
         b
     }
 
-    /// A spin kept for a time turns by their product; one by one and in fours alike.
+    /// A constant spin rotates by spin times time; one by one and in fours alike.
     #[test]
     fn orientations_follow_spins() {
         let (mut b, dt, steps) = (bench(7), 1e-3, 1000);

@@ -1,4 +1,4 @@
-//! fix nve/limit: velocity Verlet that lets no particle go farther than a limit in one step.
+//! fix nve/limit: velocity Verlet with a limit on the displacement per step.
 
 use super::nve::half_step;
 use super::{Facts, Fix, FixStyle, Moves};
@@ -39,7 +39,7 @@ impl FixStyle for NveLimit {
     }
 }
 
-/// Places, velocities, forces and group bits of a chunk.
+/// Positions, velocities, forces and group bits of a chunk.
 type Parts<'a> = (&'a mut [[f64; 3]], &'a mut [[f64; 3]], &'a [[f64; 3]], &'a [u32]);
 
 #[derive(Clone)]
@@ -54,10 +54,10 @@ impl Declared {
         Key::new(&format!("nve/limit/{}", self.id))
     }
 
-    /// A half kick, limited; the number of velocities that were shortened.
+    /// A half kick with the limit; returns the number of velocities that were shortened.
     fn kick(&self, w: &mut World, t: &Tick, drift: bool) -> f64 {
         let (half, bit) = (half_step(w, t.dt), self.group.bit());
-        // The way in the deck's step, however short those are in which it is gone.
+        // The limit is per step of the deck, even when that is divided into shorter ones.
         let fastest = self.most / w.clock.dt;
         let square = fastest * fastest;
         let p = &mut w.particles;
@@ -108,7 +108,7 @@ impl Fix for Declared {
             );
             let key = me.key();
             StepOp::new(name, stage, access, move |w: &mut World, t: &Tick| {
-                // In steps of two lengths solids alone move in the short ones, and none of them by this fix.
+                // With two step lengths only solids move in the short steps, and this fix moves none of them.
                 let short = t.phase.solids.is_some() && !t.phase.outermost();
                 let drift = drift && (t.phase.level == 0 || t.phase.solids.is_some());
                 let shortened = if t.setup || short { 0.0 } else { me.kick(w, t, drift) };
@@ -144,7 +144,8 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    // m = 2, dt = 0.5: the first feels f = 40 and would fly at 5; the limit 1 per step is a speed of 2.
+    // m = 2, dt = 0.5: the first feels f = 40 and would reach a speed of 5; the limit of 1 per step is a
+    // speed of 2.
     #[test]
     fn fast_ones_are_slowed_and_counted() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);

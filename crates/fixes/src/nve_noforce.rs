@@ -1,4 +1,4 @@
-//! fix nve/noforce: particles fly on, whatever the forces on them.
+//! fix nve/noforce: motion at constant velocity, without regard to forces.
 
 use super::{Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::Result;

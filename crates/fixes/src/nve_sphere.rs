@@ -16,7 +16,7 @@ const INERTIA: f64 = 0.4;
 /// I / (m R²) of a disc about its axis.
 const DISC: f64 = 0.5;
 
-/// The style whose particles have orientations.
+/// The style for particles with orientations.
 pub(crate) const ORIENTED: &str = "nve/bpm/sphere";
 
 /// The style.
@@ -50,7 +50,7 @@ impl FixStyle for NveSphere {
     }
 }
 
-/// Reads the words of either style; [`ORIENTED`] turns orientations too.
+/// Reads the words of either style; [`ORIENTED`] integrates orientations too.
 pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
     let (oriented, mut inertia, mut update) = (name == ORIENTED, INERTIA, None);
     while let Some(word) = args.next() {
@@ -87,7 +87,7 @@ struct Declared {
     id: String,
     group: GroupId,
     turning: Turning,
-    /// How dipole moments follow.
+    /// Integration scheme of the dipole moments.
     update: Option<Update>,
 }
 

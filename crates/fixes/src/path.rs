@@ -1,4 +1,4 @@
-//! Prescribed paths of particles for fix move: straight, swinging, turning, or as variables say.
+//! Prescribed paths of particles for fix move: linear, oscillating, rotating, or given by variables.
 
 use perigrain_base::math::body::{Quat, turn};
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
@@ -13,11 +13,11 @@ pub enum Path {
     Linear([Option<f64>; 3]),
     /// Amplitude and angular frequency 2π/period.
     Wiggle([Option<f64>; 3], f64),
-    /// About an axis, on top of a velocity.
+    /// Rotation about an axis, in addition to a velocity.
     Turn {
         /// A point of the axis.
         point: Vec3,
-        /// Its direction, of length 1.
+        /// Direction of the axis, of length 1.
         axis: Vec3,
         /// Angular velocity.
         omega: f64,
@@ -28,20 +28,20 @@ pub enum Path {
     Variables(Box<[[Option<ValueRef>; 3]; 2]>),
 }
 
-/// Where a variable path finds its values in a step: displacements, velocities.
+/// Where a variable path finds its values during a step: displacements, velocities.
 pub type Readings = [[Option<Reading>; 3]; 2];
 
-/// What a path prescribes for one particle at one time: places and velocities by component.
+/// Prescribed motion of one particle at one time: positions and velocities by component.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Given {
-    /// Unwrapped places.
+    /// Unwrapped positions.
     pub x: [Option<f64>; 3],
     /// Velocities.
     pub v: [Option<f64>; 3],
 }
 
 impl Path {
-    /// Which components are prescribed at all.
+    /// Which components are prescribed.
     pub fn given(&self) -> [bool; 3] {
         match self {
             Path::Linear(a) | Path::Wiggle(a, _) => a.map(|a| a.is_some()),
@@ -58,7 +58,7 @@ impl Path {
         }
     }
 
-    /// What the path prescribes at time `t` for the particle `i` that started at `start`.
+    /// The prescribed motion at time `t` of the particle `i` that started at `start`.
     pub fn at(&self, w: &World, i: usize, start: Vec3, t: f64, readings: &Readings) -> Given {
         match self {
             Path::Linear(v) => Given { x: std::array::from_fn(|d| v[d].map(|v| start[d] + v * t)), v: *v },
@@ -84,7 +84,8 @@ impl Path {
         }
     }
 
-    /// Where a particle that is at `x` at time `t` would have started. A path of variables has no past: it starts there.
+    /// The initial position of a particle that is at `x` at time `t`; for variables, which have no past, `x`
+    /// itself.
     pub fn start(&self, x: Vec3, t: f64) -> Vec3 {
         match self {
             Path::Linear(v) => std::array::from_fn(|d| x[d] - v[d].unwrap_or(0.0) * t),
@@ -97,7 +98,7 @@ impl Path {
         }
     }
 
-    /// A place turned about the axis for a time, and its distance vector from the axis.
+    /// A position rotated about the axis for a time, and its distance vector from the axis.
     fn turned(&self, start: Vec3, t: f64) -> (Vec3, Vec3) {
         let Path::Turn { point, axis, omega, .. } = self else { return (start, [0.0; 3]) };
         let (sin, cos) = (omega * t).sin_cos();
@@ -109,7 +110,7 @@ impl Path {
         (add(add(*point, along), turned), turned)
     }
 
-    /// How particles have turned at time `t`, if the path turns them.
+    /// The rotation of particles at time `t`, if the path rotates them.
     pub fn turn(&self, t: f64) -> Option<Quat> {
         match self {
             Path::Turn { axis, omega, .. } => Some(turn(*axis, omega * t)),
@@ -117,7 +118,7 @@ impl Path {
         }
     }
 
-    /// The angular velocity that the path gives to spheres.
+    /// The angular velocity that the path imposes on spheres.
     pub fn spin(&self) -> Option<Vec3> {
         match self {
             Path::Turn { axis, omega, .. } => Some(scale(*omega, *axis)),

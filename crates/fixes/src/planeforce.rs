@@ -1,4 +1,4 @@
-//! fix planeforce: forces held in a plane.
+//! fix planeforce: removes the force component normal to a plane.
 
 use super::lineforce::{Held, direction};
 use super::{Fix, FixStyle};

@@ -1,4 +1,4 @@
-//! fix print: a line of text with values in it every so many steps.
+//! fix print: prints a line of text with current values every N steps.
 
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, Span};
@@ -42,7 +42,7 @@ pub enum Pace {
 }
 
 impl Pace {
-    /// Takes a number from `least`, or a variable.
+    /// Parses a number not below `least`, or a variable.
     ///
     /// # Errors
     /// Other words.
@@ -130,7 +130,7 @@ impl Fix for Declared {
         let (log, screen) = (cx.log(), self.screen);
         let access = Needs::new().read(FORMULAS | F | TORQUE);
         let op = StepOp::new(format!("fix {} print", self.id), Stage::Output, access, move |w, t| {
-            // `pre no` leaves out the line that a setup prints.
+            // `pre no` omits the line that a setup prints.
             if t.setup && w.clock.onward {
                 return Ok(());
             }

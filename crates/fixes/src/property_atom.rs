@@ -1,4 +1,4 @@
-//! fix property/atom: further properties of particles, by names of the deck's own.
+//! fix property/atom: user-named per-particle properties.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -65,14 +65,15 @@ impl FixStyle for PropertyAtomFix {
     }
 }
 
-/// Checks that particles have no molecule IDs yet, from their style, this line or another fix.
+/// Checks that molecule IDs are not yet defined by the atom style, by this line or by another fix.
 fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
     let style = &cx.world.particles.style;
     if style.bonded {
         let text = format!("particles of atom_style {} have molecules by themselves", style.name());
         return fail(Code::CONFLICT, word.span, text);
     }
-    // A fix of this ID may be declared again. Behind `read_restart` particles have their molecules, and no fix has declared them yet.
+    // A fix with this ID may be declared again. After `read_restart` the particles have molecule IDs that no
+    // fix has declared yet.
     let other = |p: &Properties| p.fix != cx.id && p.names.iter().any(|name| name == MOLECULE);
     if before || cx.world.properties.iter().any(other) {
         return fail(Code::DUPLICATE_NAME, word.span, "`mol` exists already");
@@ -80,10 +81,10 @@ fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
     Ok(())
 }
 
-/// What a column takes besides its numbers: its name, here and where columns are kept.
+/// Bytes of a column apart from its numbers: its name, in the declaration and in the store of columns.
 const BYTES_PER_NAME: f64 = 200.0;
 
-/// The columns of one name, as `d_heat` or `d2_heat/1`.
+/// The columns of one name, such as `d_heat` or `d2_heat/1`.
 fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Result<Vec<String>> {
     if [TEMPERATURE.text(), HEATFLOW.text()].contains(&word.text.as_str()) {
         return free(word, cx, before, &word.text).map(|()| vec![word.text.clone()]);
@@ -108,13 +109,13 @@ fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Res
     Ok((1..=count).map(key).collect())
 }
 
-/// The name alone, of `i_heat`, `d_heat` and `d2_heat/1` alike; `None` of `temperature` and `heatflow`.
+/// The bare name of `i_heat`, `d_heat` or `d2_heat/1`; `None` for `temperature` and `heatflow`.
 fn stem(key: &str) -> Option<&str> {
     let head = key.split_once('/').map_or(key, |(head, _)| head);
     head.split_once('_').map(|(_, stem)| stem)
 }
 
-/// Checks that there is no property of this name yet, of whatever kind. A fix of this ID may be declared again.
+/// Checks that no property has this name yet, of any kind. A fix with this ID may be declared again.
 fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
     let own = format!("property/atom/{}/", cx.id);
     let columns = cx.world.columns.names();

@@ -1,4 +1,4 @@
-//! fix python/invoke: functions of the program that hosts the session, called within steps.
+//! fix python/invoke: calls functions of the host program during steps.
 
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -59,7 +59,7 @@ struct Declared {
     id: String,
     /// Steps between calls.
     every: i64,
-    /// Called after forces, else after steps.
+    /// Called after the forces, else at the end of the step.
     forces: bool,
     function: String,
     host: Arc<dyn Host>,
@@ -96,7 +96,7 @@ mod tests {
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
-    /// Knows `push`, which moves the first particle by the step and fails in step 4.
+    /// Has `push`, which displaces the first particle by the step and fails in step 4.
     #[derive(Debug)]
     struct Program;
 

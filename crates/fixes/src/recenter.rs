@@ -1,4 +1,4 @@
-//! fix recenter: holds the centre of mass of a group at a place.
+//! fix recenter: holds the centre of mass of a group at a position.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::Result;
@@ -35,7 +35,7 @@ impl Style for Recenter {
     }
 }
 
-/// Where one coordinate of the centre is held.
+/// How one coordinate of the centre is held.
 #[derive(Clone, Copy)]
 enum Hold {
     Free,
@@ -83,12 +83,12 @@ struct Declared {
 }
 
 impl Declared {
-    /// What must be added to the positions now.
+    /// The displacement to add to the positions in this step.
     fn shift(&self, w: &World, whole: Whole) -> [f64; 3] {
         let (_, now) = whole.centre(w, self.group);
         let lo = w.domain.as_ref().map_or([0.0; 3], |d| d.lo);
         let edges = w.edges();
-        // A direction that is free counts as none of the others.
+        // A free direction is ignored.
         let held = self.hold.map(|hold| if let Hold::At(c) = hold { c } else { 0.0 });
         let inside = edges.shift(held);
         let initial = w.memo.get(self.key);

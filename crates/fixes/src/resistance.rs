@@ -1,4 +1,5 @@
-//! What fix viscous, fix viscous/sphere and fix damping/cundall share: a resistance, scaled by type or by particle.
+//! Shared by fix viscous, fix viscous/sphere and fix damping/cundall: a damping coefficient scaled by type or
+//! by particle.
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
@@ -10,7 +11,7 @@ use perigrain_styles::words::{At, Kind, Types, Value};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::{GroupId, Particles, World};
 
-/// What a coefficient is multiplied by.
+/// Scale factor of a coefficient.
 #[derive(Clone)]
 pub enum Scale {
     /// By type − 1.
@@ -46,7 +47,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// That of a particle.
+    /// The factor of a particle.
     pub fn of(&self, w: &World, i: usize) -> f64 {
         match &self.each {
             Some(reading) => reading.atom(w, i),
@@ -84,7 +85,7 @@ impl Scale {
         Ok(Self::by_type(&ranges, types))
     }
 
-    /// What it is at each step.
+    /// The factors at each step.
     ///
     /// # Errors
     /// A variable that is gone.
@@ -98,20 +99,20 @@ impl Scale {
     }
 }
 
-/// A declared resistance.
+/// A declared damping.
 #[derive(Clone)]
 pub struct Resistance {
-    /// What the op is called.
+    /// Name of the op.
     pub name: String,
     group: GroupId,
     gamma: f64,
     scale: Scale,
 }
 
-/// The column that loses.
+/// The column that is damped.
 pub type Against = fn(&mut Particles) -> &mut Vec<[f64; 3]>;
 
-/// The column that it loses by.
+/// The velocities that it is damped by.
 pub type Motion = fn(&Particles) -> &[[f64; 3]];
 
 impl Resistance {
@@ -120,7 +121,7 @@ impl Resistance {
         Self { name: format!("fix {} {style}", cx.id), group: cx.group, gamma, scale }
     }
 
-    /// The op: the first column loses γ times the second.
+    /// The op: subtracts γ times the second column from the first.
     ///
     /// # Errors
     /// A variable that is gone.

@@ -112,7 +112,7 @@ impl FixStyle for RigidSmall {
     }
 }
 
-/// Few bodies of any kind.
+/// A style for few bodies of any kind.
 fn large(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
     let split = match args.choice("kind of bodies", &["single", "molecule", "group", "custom"])? {
         "single" => Split::Single,
@@ -123,7 +123,7 @@ fn large(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn F
     build(style, true, split, args, cx)
 }
 
-/// Molecules, as many as there are.
+/// A style for many bodies, one per molecule.
 fn small(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
     let split = match args.choice("kind of bodies", &["molecule", "custom"])? {
         "custom" => custom(args, cx)?,
@@ -160,7 +160,7 @@ fn groups(args: &mut Args, cx: &BuildCx) -> Result<Split> {
     Ok(Split::Groups(list?))
 }
 
-/// Components of force or torque that are turned off for some bodies.
+/// Force or torque components that are switched off for some bodies.
 #[derive(Clone)]
 struct Switch {
     torque: bool,
@@ -217,7 +217,7 @@ fn switch(word: &Word, args: &mut Args) -> Result<Switch> {
     Ok(Switch { torque: word.text == "torque", bodies, on, span: at.span })
 }
 
-/// The template that bodies come from.
+/// Parses the template of the bodies.
 fn mold(args: &mut Args, cx: &BuildCx) -> Result<Mold> {
     let word = args.expect("a molecule template")?;
     let set = named(word, cx)?;
@@ -232,23 +232,23 @@ fn mold(args: &mut Args, cx: &BuildCx) -> Result<Mold> {
     Ok(Mold { name: word.text.clone(), set })
 }
 
-/// Where the world keeps its state.
+/// Keys of the state in the world.
 #[derive(Clone, Copy)]
 struct Keys {
     bodies: Numbers,
-    /// The virial of the first half of a step.
+    /// Virial of the first half of a step.
     virial: Numbers,
-    /// Each particle's part of it: xx yy zz and xy xz yz.
+    /// Per-particle part of it: xx yy zz and xy xz yz.
     virials: [Vectors; 2],
-    /// The number of each particle's body.
+    /// Number of each particle's body.
     body: Numbers,
-    /// The mass of each particle's body.
+    /// Mass of each particle's body.
     mass: Numbers,
-    /// Where particles are as seen from their bodies.
+    /// Positions of particles in the frames of their bodies.
     place: Vectors,
-    /// What bodies have beyond their particles: see [`BODY_ENERGY`](perigrain_world::BODY_ENERGY).
+    /// Body energy that is not in the particles: see [`BODY_ENERGY`](perigrain_world::BODY_ENERGY).
     energy: Numbers,
-    /// How they lie as seen from there, where they have orientations.
+    /// Orientations of particles in the frames of their bodies, if they have any.
     turn: Grip,
 }
 
@@ -267,7 +267,7 @@ impl Keys {
 #[derive(Clone)]
 struct Declared {
     style: &'static str,
-    /// `rigid` and `rigid/nve`: with an array, and components that can be turned off.
+    /// `rigid` and `rigid/nve`: styles with a global array and switchable components.
     whole: bool,
     id: String,
     keys: Keys,
@@ -284,22 +284,22 @@ struct Declared {
 }
 
 impl Declared {
-    /// Whether a file gives masses that are not the sums over particles.
+    /// Whether a file gives masses that differ from the sums over particles.
     fn gives(&self) -> bool {
         self.infile.is_some() || self.casts()
     }
 
-    /// Whether a template does.
+    /// Whether a template gives such masses.
     fn casts(&self) -> bool {
         self.mold.as_ref().is_some_and(Mold::gives)
     }
 
-    /// Whether orientations move by NO_SQUISH.
+    /// Whether orientations are integrated by NO_SQUISH.
     fn exact(&self) -> bool {
         self.style.starts_with("rigid/nve")
     }
 
-    /// By component whether forces and torques on body `k` (from 0) count.
+    /// Per component, whether forces and torques on body `k` (from 0) count.
     fn allowed(&self, k: usize, flat: bool) -> [[f64; 3]; 2] {
         let mut on = if flat { [[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]] } else { [[1.0; 3]; 2] };
         let body = k as i64 + 1;
@@ -312,7 +312,7 @@ impl Declared {
         on
     }
 
-    /// Sets the bodies up at the beginning of a run where that is due.
+    /// Sets the bodies up at the beginning of a run, if that is due.
     fn begin(&self, w: &mut World, span: Span) -> Result<()> {
         let there = w.memo.contains(self.keys.bodies);
         if there && !self.reinit {
@@ -363,7 +363,7 @@ impl Fix for Declared {
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} {}", self.id, self.style);
-        // Orientations, where particles have them.
+        // Orientations, for particles that have them.
         let lie = super::lying(cx.world());
         let (me, mut seen) = (self.clone(), None);
         let bodies = StepOp::new(
@@ -434,7 +434,7 @@ impl Fix for Declared {
             let mut crew = Crew::of(&me);
             crew.weight = weight.clone();
             move |w: &mut World, t: &Tick| {
-                // What decks can read comes of all bodies.
+                // Values that decks can read need all bodies.
                 if !t.told && me.shares(w, t) {
                     me.take_part(w, &mut crew);
                     w.halo(X | F | TORQUE, Halo::Members);
@@ -452,7 +452,8 @@ impl Fix for Declared {
         let last = last.reporting().going_on().with_sums().spanning(spans(self.clone()));
         let mut ops = vec![bodies.asking().boxed(), first.boxed()];
         if cx.world().settings.lammps() {
-            // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.
+            // Its setup sums the forces at its place among the fixes: those of fixes declared later are
+            // missing.
             let setup = StepOp::new(name, Stage::PostForce, access(), second(self.clone())).reporting();
             ops.extend([setup.when(When::First).boxed(), last.in_setup(false).boxed()]);
         } else {

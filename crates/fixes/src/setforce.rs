@@ -1,4 +1,4 @@
-//! fix setforce: forces replaced by given ones.
+//! fix setforce: sets forces to given values.
 
 use super::components::Components;
 use super::{Facts, Fix, FixStyle, Minimizing};
@@ -64,7 +64,7 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            // Of several levels of steps the value belongs to one.
+            // With several time step levels, the value belongs to one of them.
             let here = level.acts(&t.phase);
             let before = change_forces(w, &chosen, |w, i, f| {
                 let before = *f;
@@ -90,7 +90,7 @@ impl Fix for Declared {
     }
 }
 
-/// The components, if all that are given are numbers.
+/// The components, if all given ones are plain numbers.
 fn numbers(force: &[Option<Reading>; 3]) -> Option<[Option<f64>; 3]> {
     let mut values = [None; 3];
     for (value, reading) in values.iter_mut().zip(force) {
@@ -103,10 +103,10 @@ fn numbers(force: &[Option<Reading>; 3]) -> Option<[Option<f64>; 3]> {
     Some(values)
 }
 
-/// Replaces components of the forces of a group's particles by numbers; the sum of what was there before.
+/// Replaces force components of a group's particles; returns the sum of the replaced forces.
 fn replace(s: &mut ParticleBlock, bit: u32, values: &[Option<f64>; 3]) -> BlockSums {
     let mut sums = BlockSums::default();
-    // Particles that are held lie together: most eights have none.
+    // Held particles are contiguous in memory: most groups of eight have none.
     for (k, eight) in s.mask().chunks(8).enumerate() {
         if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
             continue;

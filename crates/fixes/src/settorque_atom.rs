@@ -1,4 +1,4 @@
-//! fix settorque/atom: torques replaced by given ones.
+//! fix settorque/atom: sets torques to given values.
 
 use super::components::Components;
 use super::{Facts, Fix, FixStyle, Minimizing, needs_torques};
@@ -56,7 +56,7 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            // Of several levels of steps the value belongs to one.
+            // With several time step levels, the value belongs to one of them.
             let here = level.acts(&t.phase);
             let before = change_torques(w, &chosen, |w, i, own| {
                 let before = *own;

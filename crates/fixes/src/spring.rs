@@ -74,7 +74,7 @@ struct Declared {
 const SMALL: f64 = 1e-10;
 
 impl Declared {
-    /// The force on the group, its strength and the energy for centres this far apart (towards the target).
+    /// The force on the group, its magnitude and the energy for the two centres (towards the target).
     fn pull(&self, from: [f64; 3], to: [f64; 3]) -> ([f64; 3], f64, f64) {
         let tether = self.other.is_none();
         let way: [f64; 3] = std::array::from_fn(|d| match self.at[d] {
@@ -133,9 +133,9 @@ impl Fix for Declared {
     }
 }
 
-/// Shares a force out by mass.
+/// Distributes a force by mass.
 fn share(w: &mut perigrain_world::World, chosen: &Chosen, mass: f64, force: [f64; 3]) {
-    // Without a mass nobody feels it, or LAMMPS does not divide.
+    // With zero total mass no particle feels it, and LAMMPS does not divide.
     let over = if mass > 0.0 { mass } else { 1.0 };
     let each = force.map(|f| f / over);
     change_forces::<0>(w, chosen, |w, i, f| {

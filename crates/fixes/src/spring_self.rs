@@ -1,4 +1,4 @@
-//! fix spring/self: every particle on a spring to where it was.
+//! fix spring/self: ties every particle to its initial position by a spring.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};

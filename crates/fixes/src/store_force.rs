@@ -1,4 +1,4 @@
-//! fix store/force: keeps the forces as they are at this place among the fixes.
+//! fix store/force: stores the forces as they are at this point of the fix list.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
@@ -44,7 +44,7 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let (id, n) = (w.slots.id(&format!("f_{}", self.id)), w.n());
         let out = w.slots.get_mut(id);
-        // A restart file brings what the last step kept.
+        // A restart file contains the forces stored by the last step.
         if out.atom.len() != 3 * n {
             (out.cols, out.atom) = (3, vec![0.0; 3 * n]);
         }
@@ -62,7 +62,7 @@ impl Fix for Declared {
                 let (forces, mask) = (&w.particles.f, &w.particles.mask);
                 let out = w.slots.get_mut(slot);
                 (out.step, out.cols) = (Some(t.step), 3);
-                // Of several levels of steps the longer ones add up.
+                // With several time step levels, the longer ones are added.
                 if t.phase.level == 0 {
                     out.atom.clear();
                 }

@@ -1,4 +1,4 @@
-//! fix store/state: keeps attributes and values of particles from one moment to the next.
+//! fix store/state: stores attributes and values of particles.
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
@@ -67,7 +67,7 @@ impl FixStyle for StoreState {
 
 fn value(word: &Word, every: i64, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> {
     if ValueRef::parse(word.text.split('[').next().unwrap_or(""), word.span)?.is_none() {
-        // Says which attributes there are.
+        // Lists the available attributes.
         return read_attribute(word, cx).map(drop);
     }
     for word in cx.expand(word, Wants::PerAtom)? {
@@ -86,15 +86,15 @@ struct Declared {
     every: i64,
     inputs: Vec<Input>,
     relative: bool,
-    /// Whether values have been kept once.
+    /// Key of the flag that values have been stored.
     filled: Numbers,
-    /// Where inputs are kept.
+    /// Columns of the inputs.
     columns: Vec<Numbers>,
 }
 
 impl Input {
-    /// When this one is not kept: attributes are when the fix is declared, values and properties of fix property/atom in the
-    /// setup of a run.
+    /// The inputs not stored at this time: attributes are stored when the fix is declared; values and
+    /// properties of fix property/atom in the setup of a run.
     fn left_out_at(&self) -> Which {
         match self {
             Input::Attribute(_, Getter::Own(_) | Getter::Whole(_)) => Which::Values,
@@ -103,7 +103,7 @@ impl Input {
     }
 }
 
-/// Which inputs are kept now.
+/// Which inputs are stored.
 #[derive(Clone, Copy, PartialEq)]
 enum Which {
     Attributes,
@@ -112,7 +112,7 @@ enum Which {
 }
 
 impl Declared {
-    /// Keeps inputs; `readings` are those of values.
+    /// Stores inputs; `readings` are those of values.
     fn keep(&self, w: &mut World, which: Which, readings: &[Option<Reading>]) {
         let (n, bit) = (w.n(), self.group.bit());
         let center = if self.relative { centre(w, self.group).1 } else { [0.0; 3] };
@@ -142,7 +142,7 @@ impl Declared {
         }
     }
 
-    /// Offers what is kept.
+    /// Offers the stored values.
     fn show(&self, w: &mut World, slot: SlotId, step: i64) {
         let (n, cols) = (w.n(), self.inputs.len());
         let lists: Vec<&[f64]> =
@@ -174,7 +174,7 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
         let (mut me, mut readings) = (self.clone(), vec![]);
-        // What is stored once and for all may go.
+        // Values that are stored once may no longer be computable.
         let stored = self.every == 0 && cx.world().memo.contains(self.filled);
         for input in &mut me.inputs {
             readings.push(match input {

@@ -1,4 +1,4 @@
-//! Fixes that set the time step: when they look, and what they remember.
+//! Shared by the fixes that set the time step: their schedule and their state.
 
 use perigrain_base::diag::Result;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
@@ -11,17 +11,17 @@ use perigrain_world::field::{
 };
 use perigrain_world::{Key, Numbers, World};
 
-/// What such fixes share: their name, how often they look, and as scalar the last step at which the step changed.
+/// Name, schedule and, as scalar output, the last step at which the time step changed.
 #[derive(Clone)]
 pub struct Follower {
     style: &'static str,
     id: String,
-    /// Steps between two looks.
+    /// Steps between updates.
     every: i64,
 }
 
 impl Follower {
-    /// Of a fix with this style and ID.
+    /// For a fix of this style and ID.
     pub fn new(style: &'static str, id: &str, every: i64) -> Self {
         Self { style, id: id.to_string(), every }
     }
@@ -30,18 +30,19 @@ impl Follower {
         Key::new(&format!("{}/{}", self.style, self.id))
     }
 
-    /// Counts from now on.
+    /// Starts counting at the current step.
     pub fn declare(&self, w: &mut World) {
         w.memo.insert(self.memo(), vec![w.clock.step as f64]);
     }
 
-    /// Forgets.
+    /// Deletes the state.
     pub fn remove(&self, w: &mut World) {
         w.memo.remove(self.memo());
     }
 
-    /// The op that looks in the setup of a run and every so many steps; `step` says how long a step is to be. A run that merely
-    /// continues another one looks at no other steps than one long run would. On ranks `step` asks for the rows it needs, or looks at those
+    /// The op that updates the time step in the setup of a run and every N steps; `step` computes it. A run
+    /// that continues another one updates at the same steps as one long run. On ranks `step` requests the
+    /// rows it needs, or reads those of its own rank (`one_by_one`), and all ranks agree on the result.
     /// of its rank (`one_by_one`), and all agree.
     pub fn ops(
         &self,

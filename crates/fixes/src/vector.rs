@@ -1,4 +1,4 @@
-//! fix vector: keeps values of a run one after another.
+//! fix vector: accumulates values over a run.
 
 use super::window::forget;
 use super::{Facts, Fix, FixStyle};
@@ -111,7 +111,7 @@ impl Fix for Declared {
         let (last, list) = (key.with("/last"), key.with("/list"));
         let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} vector", self.id), Stage::EndOfStep, access, move |w, t| {
-            // The setup of a run stands at a step that the run before may have kept already.
+            // The setup of a run may be at a step that the previous run has stored already.
             if w.memo.get(last).is_some_and(|s| s.first() == Some(&(t.step as f64))) {
                 return Ok(());
             }
@@ -131,7 +131,8 @@ impl Fix for Declared {
             let out = w.slots.get_mut(slot);
             out.step = Some(t.step);
             let shown = if cols == 1 { &mut out.vector } else { &mut out.array };
-            // What is shown grows with what is kept: to copy all of it each time makes long runs quadratic.
+            // The output grows with the stored values: copying all of it each time would make long runs
+            // quadratic.
             if shown.len() == before {
                 grow(shown);
             } else {
@@ -180,7 +181,7 @@ mod tests {
                 b.stage(&mut ops, Stage::EndOfStep).unwrap();
             }
             assert_eq!(b.slot_of("f_f").vector, wanted);
-            // A slot that was emptied is whole again after the next step.
+            // A slot that was emptied is complete again after the next step.
             let slot = b.world.slots.id("f_f");
             b.world.slots.get_mut(slot).empty();
             b.world.clock.step = 3;

@@ -64,7 +64,7 @@ impl FixStyle for ViscousNonlinear {
     }
 }
 
-/// What is around the spheres.
+/// The fluid around the spheres.
 #[derive(Clone)]
 struct Fluid {
     density: f64,
@@ -73,7 +73,8 @@ struct Fluid {
 }
 
 impl Fluid {
-    /// F/u of a sphere that moves with u [force/velocity]: 6 π μ r (1 + 0.15 Re^0.687), the formula of the page with 24/Re put in.
+    /// F/u of a sphere that moves with u [force/velocity]: 6 π μ r (1 + 0.15 Re^0.687), the page's formula
+    /// with 24/Re inserted.
     fn drag(&self, radius: f64, speed: f64) -> f64 {
         let reynolds = 2.0 * self.density * speed * radius / self.viscosity;
         6.0 * PI * self.viscosity * radius * (1.0 + 0.15 * reynolds.powf(0.687))
@@ -136,7 +137,7 @@ mod tests {
         let f = &b.world.particles.f;
         assert!((f[0][2] / (0.5 * c * 1000.0 * PI * 0.0025) - 1.0).abs() < 1e-14, "{f:?}");
         assert!((f[1][0] / (-6.0 * PI * 0.5 * 0.05 * 1e-9) - 1.0).abs() < 1e-4, "{f:?}");
-        // Who goes with the fluid feels nothing.
+        // A particle that moves with the fluid feels no force.
         let fix = b.fix(&ViscousNonlinear, "1000 0.5 velocity 0 0 -1").unwrap();
         let mut ops = b.seal(&*fix).unwrap();
         b.world.particles.f = vec![[0.0; 3]; 2].into();

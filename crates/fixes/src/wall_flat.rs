@@ -1,4 +1,4 @@
-//! fix wall/harmonic, wall/lj93 and their like: flat walls that push and pull without friction.
+//! fix wall/harmonic, wall/lj93 and the like: flat walls with normal forces and no friction.
 
 use super::faces::{Face, Spot, check};
 use super::wall_law::{Law, NAMES, formula, numbers};
@@ -15,27 +15,27 @@ use perigrain_world::{GroupId, World};
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A style, `wall/` and the name of the law of this number.
+/// The style `wall/` with the law of this number.
 pub struct FlatWall(usize);
 
-/// A half-space of points of a 12-6 law.
+/// A half-space of points with a 12-6 law.
 pub static LJ93: FlatWall = FlatWall(0);
-/// Points of a 12-6 law.
+/// Points with a 12-6 law.
 pub static LJ126: FlatWall = FlatWall(1);
 /// Layers of a lattice.
 pub static LJ1043: FlatWall = FlatWall(2);
-/// A half-space for spheres.
+/// A half-space acting on spheres.
 pub static COLLOID: FlatWall = FlatWall(3);
 /// Springs.
 pub static HARMONIC: FlatWall = FlatWall(4);
-/// A well of two exponentials.
+/// Morse potential.
 pub static MORSE: FlatWall = FlatWall(5);
 
-/// The names of the styles.
+/// Names of the styles.
 const STYLES: [&str; 6] =
     ["wall/lj93", "wall/lj126", "wall/lj1043", "wall/colloid", "wall/harmonic", "wall/morse"];
 
-/// Their syntax, text and example.
+/// Syntax, text and example of each style.
 static PAGES: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| NAMES.iter().map(|law| page(law)).collect());
 
 fn page(law: &str) -> [String; 3] {
@@ -114,7 +114,7 @@ impl FixStyle for FlatWall {
     }
 }
 
-/// `fld yes` makes no sense without a pair style that asks for the walls' forces.
+/// Refuses `fld yes`: no pair style here uses the walls' forces.
 fn no_lubrication(args: &mut Args) -> Result<()> {
     let span = args.here();
     if args.flag("fld")? {
@@ -124,7 +124,7 @@ fn no_lubrication(args: &mut Args) -> Result<()> {
     Ok(())
 }
 
-/// What pushes: the numbers of the law.
+/// Parameters of the law.
 #[derive(Clone)]
 struct Words {
     numbers: Vec<Param>,
@@ -143,17 +143,17 @@ impl Words {
     }
 }
 
-/// One wall as it is read during a run.
+/// One wall during a run.
 struct Sealed {
     face: Face,
     spot: Spot,
     law: &'static str,
-    /// The numbers of the law, and whether each is a variable's, which must not be negative.
+    /// Parameters of the law; `true` marks variables, which must not be negative.
     numbers: Vec<(Reading, bool)>,
     cutoff: f64,
 }
 
-/// One wall now.
+/// One wall in this step.
 struct Now<'a> {
     face: &'a Face,
     at: f64,
@@ -176,14 +176,14 @@ impl Sealed {
 }
 
 impl Now<'_> {
-    /// Distance, force away from the wall and energy of a particle there.
+    /// Distance, force away from the wall and energy of a particle.
     #[inline]
     fn push(&self, x: [f64; 3], radius: f64) -> Option<(f64, [f64; 2])> {
         let r = self.face.depth(x, self.at);
         (r < self.law.cutoff).then(|| (r, self.law.at(r, radius)))
     }
 
-    /// Whether a particle there has come to the wall or gone through.
+    /// Whether a particle has reached the wall or gone through it.
     fn reached(&self, x: [f64; 3], radius: f64) -> bool {
         self.face.depth(x, self.at) <= self.law.least(radius)
     }
@@ -193,10 +193,10 @@ impl Now<'_> {
 struct Declared {
     id: String,
     group: GroupId,
-    /// The name of the law.
+    /// Name of the law.
     law: &'static str,
     walls: Vec<(Face, Words)>,
-    /// Of places along each direction.
+    /// Scale of positions along each direction.
     scale: [f64; 3],
     /// `fix_modify virial yes`.
     virial: bool,
@@ -222,12 +222,12 @@ impl Declared {
     }
 }
 
-/// The radius of a particle where the law asks for it, and 0 where it does not.
+/// The radius of a particle if the law needs it, else 0.
 fn radius(w: &World, i: usize, asked: bool) -> f64 {
     if asked { w.particles.radius[i] } else { 0.0 }
 }
 
-/// What one particle gets of all walls: energy, the forces on up to six walls, whether it is behind one.
+/// What one particle gets from all walls: energy, the forces on up to six walls, whether it is behind one.
 type Got = [f64; 8];
 
 fn push_all(walls: &[Now], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
@@ -243,7 +243,7 @@ fn push_all(walls: &[Now], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
     got
 }
 
-/// The virial that a particle gets of all walls: xx yy zz xy xz yz.
+/// Virial of a particle from all walls: xx yy zz xy xz yz.
 fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 6] {
     let mut virial = [0.0; 6];
     for (wall, (r, [push, _])) in walls.iter().filter_map(|wall| Some((wall, wall.push(x, radius)?))) {
@@ -252,7 +252,7 @@ fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 6] {
     virial
 }
 
-/// The refusal of a particle that has come to a wall or gone through.
+/// The error for a particle that has reached a wall or gone through it.
 fn reached(w: &World, chosen: &Chosen, (walls, sized): (&[Now], bool), t: &Tick, span: Span) -> Result<()> {
     let (p, now) = (&w.particles, chosen.now(w));
     let behind = |i: usize| walls.iter().find(|wall| wall.reached(p.x[i], radius(w, i, sized)));
@@ -355,7 +355,8 @@ mod tests {
         b
     }
 
-    // At 1 and 3 from the lower wall, which reaches 4, and at 1 from the upper one: pushes 36, 12 and 4, by hand.
+    // At 1 and 3 from the lower wall, which reaches to 4, and at 1 from the upper one: forces 36, 12 and 4,
+    // by hand.
     #[test]
     fn pushes_energies_and_forces_on_walls() {
         let mut b = scene();

@@ -1,16 +1,16 @@
-//! What smooth walls do to particles, by the distance from the wall: the laws of LAMMPS' fix wall and fix wall/region.
+//! Force laws of smooth walls by distance: the laws of LAMMPS' fix wall and fix wall/region.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// The words for them.
+/// Their words.
 pub const NAMES: [&str; 6] = ["lj93", "lj126", "lj1043", "colloid", "harmonic", "morse"];
 
-/// What the numbers of a law are called.
+/// Names of a law's parameters.
 pub fn numbers(name: &str) -> &'static [&'static str] {
     if name == "morse" { &["D0", "alpha", "r0"] } else { &["epsilon", "sigma"] }
 }
 
-/// A law's energy for its page.
+/// The formula of a law's energy for its page.
 pub fn formula(name: &str) -> &'static str {
     match name {
         "lj93" => "E = ε (2/15 (σ/r)⁹ − (σ/r)³), a half-space of points of a 12-6 law",
@@ -27,10 +27,10 @@ pub fn formula(name: &str) -> &'static str {
     }
 }
 
-/// A law E(r) with its numbers; r is the distance of the particle's centre from the wall [length].
+/// A law E(r) with its parameters; r is the distance of the particle's centre from the wall [length].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
-    /// ε (2/15 (σ/r)⁹ − (σ/r)³): a half-space of points of Lennard-Jones' 12-6 law.
+    /// ε (2/15 (σ/r)⁹ − (σ/r)³): a half-space of points with the Lennard-Jones 12-6 law.
     Lj93([f64; 2]),
     /// 4 ε ((σ/r)¹² − (σ/r)⁶).
     Lj126([f64; 2]),
@@ -45,20 +45,20 @@ pub enum Form {
     Morse([f64; 3]),
 }
 
-/// A law up to a cutoff.
+/// A law with a cutoff.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
     form: Form,
-    /// Where it ends [length].
+    /// Cutoff [length].
     pub cutoff: f64,
-    /// The energy there, where it is that of all particles.
+    /// Energy at the cutoff, where it is the same for all particles.
     end: Option<f64>,
-    /// Signs and shift of `colloid` as LAMMPS 22Jul2025 has them in fix wall/region.
+    /// Uses the signs and the shift of `colloid` in fix wall/region of LAMMPS 22Jul2025.
     inverted: bool,
 }
 
 impl Law {
-    /// The law of this name with its [`numbers`].
+    /// The law of this name with its parameters, see [`numbers`].
     pub fn new(name: &str, [a, b, c]: [f64; 3], cutoff: f64) -> Self {
         let form = match name {
             "lj93" => Form::Lj93([a, b]),
@@ -77,18 +77,18 @@ impl Law {
         Self { end, ..law }
     }
 
-    /// As fix wall/region of LAMMPS 22Jul2025 has it.
+    /// The variant of fix wall/region in LAMMPS 22Jul2025.
     #[must_use]
     pub fn inverted(self) -> Self {
         Self { inverted: self.needs_radii(), ..self }
     }
 
-    /// Whether it asks for the radii of particles.
+    /// Whether it needs particle radii.
     pub fn needs_radii(&self) -> bool {
         matches!(self.form, Form::Colloid(_))
     }
 
-    /// How near to the wall a particle of this radius may not come.
+    /// The smallest distance allowed for a particle of this radius.
     pub fn least(&self, radius: f64) -> f64 {
         if self.needs_radii() { radius } else { 0.0 }
     }
@@ -98,8 +98,8 @@ impl Law {
         let [force, energy] = self.plain(r, radius);
         match self.form {
             Form::Colloid([epsilon, sigma]) if self.inverted => {
-                // Its force attracts where it should repel, its attraction counts as an energy above zero, and its shift is that of a
-                // 9-3 law.
+                // Its force attracts where it should repel, its attraction counts as positive energy, and its
+                // shift is that of a 9-3 law.
                 let [core, _] = colloid_energy(epsilon, sigma, r, radius);
                 let c = self.cutoff;
                 let shift = epsilon * (sigma.powi(6) / 7560.0 / c.powi(9) - 1.0 / 6.0 / c.powi(3));
@@ -109,7 +109,7 @@ impl Law {
         }
     }
 
-    /// Force and energy without a shift.
+    /// Force and energy without the shift.
     fn plain(&self, r: f64, radius: f64) -> [f64; 2] {
         match self.form {
             Form::Lj93([epsilon, sigma]) => {
@@ -144,7 +144,7 @@ impl Law {
     }
 }
 
-/// The energies of repulsion and attraction of `colloid`.
+/// Repulsion and attraction energies of `colloid`.
 fn colloid_energy(epsilon: f64, sigma: f64, r: f64, radius: f64) -> [f64; 2] {
     let (near, far) = (r - radius, r + radius);
     let core = (6.0 * radius - near) / near.powi(7) + (near + 8.0 * radius) / far.powi(7);
@@ -174,7 +174,8 @@ mod tests {
         Form::Morse([1.3, 2.0, 1.2]),
     ];
 
-    // The slope of a central difference over 1e-5 is right to 1e-10 of third derivatives, and to 1e-11 of the energies over it.
+    // The central difference over 1e-5 is accurate to 1e-10 of third derivatives, and to 1e-11 of the
+    // energies over the step.
     #[test]
     fn forces_are_slopes_of_energies_that_end_at_the_cutoff() {
         for form in FORMS {

@@ -1,4 +1,4 @@
-//! fix wall/reflect: flat walls that throw particles back.
+//! fix wall/reflect: flat walls that reflect particles.
 
 use super::faces::{Face, Spot, check};
 use super::{Facts, Fix, FixStyle};
@@ -72,7 +72,7 @@ struct Declared {
     scale: [f64; 3],
 }
 
-/// Throws those of the group back that are beyond the face, which is at `at`.
+/// Reflects particles of the group that are beyond the face at `at`.
 fn reflect(w: &mut World, bit: u32, face: &Face, at: f64) {
     let d = face.axis;
     let (mut x, mut v) = (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.v));

@@ -1,4 +1,4 @@
-//! fix wall/region: the surface of a region that pushes and pulls particles without friction.
+//! fix wall/region: the surface of a region as a wall with normal forces and no friction.
 
 use super::wall_law::{Law, NAMES, formula, numbers};
 use super::{Facts, Fix, FixStyle, Minimizing};
@@ -35,7 +35,7 @@ impl Style for WallRegion {
     }
 }
 
-/// The text of the page.
+/// Text of the page.
 static TEXT: LazyLock<String> = LazyLock::new(|| {
     let laws: Vec<String> = NAMES.iter().map(|name| format!("- `{name}`: {}", formula(name))).collect();
     format!(
@@ -90,17 +90,17 @@ struct Declared {
     id: String,
     group: GroupId,
     region: String,
-    /// Where the region is named.
+    /// Span of the region's name.
     span: Span,
     law: Law,
     /// `fix_modify virial yes`.
     virial: bool,
 }
 
-/// What one particle gets: energy, the force on the wall, whether it has left.
+/// What one particle gets: energy, the force on the wall, whether it has left the region.
 type Got = [f64; 5];
 
-/// The wall at one moment.
+/// The wall in this step.
 struct Wall<'w> {
     region: &'w Region,
     law: &'w Law,
@@ -108,7 +108,8 @@ struct Wall<'w> {
 }
 
 impl Wall<'_> {
-    /// Shows each push on a particle: the place of the wall, the force away from it and the energy; whether the particle is where it may be.
+    /// Calls `see` for each contact of a particle: contact point, force away from the wall and energy.
+    /// Returns whether the particle's position is allowed.
     fn push(&self, x: Vec3, radius: f64, mut see: impl FnMut(&Near, f64, f64)) -> bool {
         let mut near = vec![];
         self.region.near(x, self.law.cutoff, &Look { before: None, lammps: self.lammps }, &mut near);
@@ -130,7 +131,7 @@ impl Declared {
         if self.law.needs_radii() { w.particles.radius[i] } else { 0.0 }
     }
 
-    /// What the wall does to a particle.
+    /// Force of the wall on a particle.
     fn act(&self, wall: &Wall, w: &World, i: usize, f: &mut Vec3) -> Got {
         let mut got = [0.0; 5];
         let well = wall.push(w.particles.x[i], self.radius(w, i), |place, force, energy| {
@@ -145,7 +146,7 @@ impl Declared {
         got
     }
 
-    /// The virial that a particle gets of the wall: xx yy zz xy xz yz.
+    /// Virial of a particle from the wall: xx yy zz xy xz yz.
     fn virial_of(&self, w: &World, key: Key<Region>, i: usize) -> [f64; 6] {
         let mut virial = [0.0; 6];
         let Some(region) = w.regions.get(key) else { return virial };
@@ -158,7 +159,7 @@ impl Declared {
         virial
     }
 
-    /// The refusal of a particle that has left the region or come to its surface.
+    /// The error for a particle that has left the region or reached its surface.
     fn left(&self, w: &World, key: Key<Region>, t: &Tick) -> Result<()> {
         let Some(region) = w.regions.get(key) else { return Ok(()) };
         let wall = Wall { region, law: &self.law, lammps: w.settings.lammps() };

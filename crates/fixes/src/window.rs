@@ -1,4 +1,4 @@
-//! Averages over time, as all `fix ave/…` make them: when samples are taken, and how averages follow one another.
+//! Time averages for all `fix ave/…`: when samples are taken, and how successive averages are combined.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_plan::When;
@@ -22,17 +22,17 @@ pub struct Samples {
 /// When samples are taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
-    /// Distance of two samples.
+    /// Steps between samples.
     pub every: i64,
     /// Samples per average.
     pub repeat: i64,
-    /// Distance of two averages.
+    /// Steps between averages.
     pub freq: i64,
     /// No sample before this step.
     pub start: i64,
 }
 
-/// What a step is to a schedule.
+/// What a schedule does at a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Due {
     /// The first sample of an average.
@@ -62,7 +62,7 @@ impl Schedule {
         Ok(Self { every, repeat, freq, start })
     }
 
-    /// When samples may be due.
+    /// Steps at which samples may be due.
     pub fn when(&self) -> When {
         match self.repeat {
             1 => When::Every(self.freq),
@@ -70,7 +70,7 @@ impl Schedule {
         }
     }
 
-    /// The first sample from a step on: averages whose first samples are past are left out.
+    /// The first sample at or after a step: averages that have begun earlier are skipped.
     fn next_from(&self, step: i64) -> i64 {
         let mut next = step.div_euclid(self.freq) * self.freq + self.freq;
         if next < self.start {
@@ -83,25 +83,25 @@ impl Schedule {
         if next < step { next + self.freq } else { next }
     }
 
-    /// Forgets all samples; the next is taken at the present step at the earliest.
+    /// Discards all samples; the next is taken at the current step at the earliest.
     pub fn declare(&self, w: &mut World, kept: &Kept) {
         forget(w, kept.key);
         let next = self.next_from(w.clock.step);
         w.memo.insert(kept.next, vec![next as f64, 0.0]);
     }
 
-    /// The last sample of an average whose first one is at this step.
+    /// The last sample of an average that begins at this step.
     pub fn last(&self, first: i64) -> i64 {
         first + (self.repeat - 1) * self.every
     }
 
-    /// Whether a sample is due at this step; then the schedule moves on.
+    /// Whether a sample is due at this step; advances the schedule.
     pub fn due(&self, w: &mut World, kept: &Kept, step: i64) -> Option<Due> {
         let (mut next, mut taken) = match w.memo.get(kept.next).map(Vec::as_slice) {
             Some(&[next, taken]) => (next as i64, taken as i64),
             _ => (self.next_from(step), 0),
         };
-        // `reset_timestep` may have led past the next sample, or far away from it.
+        // `reset_timestep` may have jumped past the next sample, or far away from it.
         if step > next || next - step > self.freq + self.start.max(0) {
             (next, taken) = (self.next_from(step), 0);
         }
@@ -120,16 +120,16 @@ impl Schedule {
     }
 }
 
-/// Forgets everything below a key.
+/// Deletes all state below a key.
 pub fn forget(w: &mut World, key: Numbers) {
     let below = format!("{key}/");
     w.memo.retain(|name| !name.text().starts_with(&below));
 }
 
-/// Where an average is kept in the world's memory.
+/// Keys of an average in the world's memory.
 #[derive(Clone, Copy)]
 pub struct Kept {
-    /// What is above all of it.
+    /// Common prefix.
     pub key: Numbers,
     /// The next sample, and how many have been taken.
     next: Numbers,
@@ -140,7 +140,7 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Below this key.
+    /// The keys below this one.
     pub fn below(key: Numbers) -> Self {
         let [next, sum, total, count, list] =
             ["/next", "/sum", "/total", "/count", "/list"].map(|what| key.with(what));
@@ -165,20 +165,20 @@ pub enum Ave {
     ),
 }
 
-/// Adds up samples and joins averages; its state lives in the world's memory.
+/// Sums samples and combines averages; its state is in the world's memory.
 pub struct Averager {
-    /// Where in the world's memory.
+    /// Keys of the state.
     pub kept: Kept,
-    /// Samples per average, by which a sum is divided; 1 leaves sums.
+    /// Samples per average: the divisor of the sum; 1 keeps sums.
     pub repeat: i64,
-    /// How averages follow one another.
+    /// How averages are combined.
     pub ave: Ave,
-    /// Which of each row of values are the latest ones instead of averages; as long as a row, or empty.
+    /// Which values of each row are the latest ones instead of averages; as long as a row, or empty.
     pub off: Vec<bool>,
 }
 
 impl Averager {
-    /// Adds a sample. After the last one of an average: sums over averages, and their number.
+    /// Adds a sample. After the last one of an average, returns the summed averages and their number.
     pub fn add(&self, w: &mut World, values: &[f64], due: Due) -> Option<(Vec<f64>, f64)> {
         let off = |i: usize| self.off.get(i % self.off.len().max(1)).copied().unwrap_or(false);
         let mut sum = w.memo.remove(self.kept.sum).unwrap_or_default();
@@ -206,7 +206,7 @@ impl Averager {
         Some((total, count))
     }
 
-    /// Joins an average with those before it.
+    /// Combines an average with the earlier ones.
     fn join(&self, w: &mut World, one: &[f64]) -> (Vec<f64>, f64) {
         let kept = &self.kept;
         let mut total = w.memo.remove(kept.total).unwrap_or_default();
@@ -248,7 +248,7 @@ mod tests {
         (from..40).filter(|&k| s.due(&mut w, &kept, k).is_some()).collect()
     }
 
-    // The first two from LAMMPS' manual of fix ave/time, scaled down.
+    // The first two are from LAMMPS' manual of fix ave/time, scaled down.
     #[test]
     fn samples_end_at_multiples() {
         let s = Schedule { every: 2, repeat: 3, freq: 10, start: 0 };

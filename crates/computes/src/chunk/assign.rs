@@ -1,4 +1,4 @@
-//! How many chunks there are, and which particle belongs to which.
+//! Counts chunks and assigns particles to them.
 
 use super::bins::{Layers, Shells};
 use super::words::{Discard, Ids, Spec, What};
@@ -8,7 +8,7 @@ use perigrain_styles::Reading;
 use perigrain_styles::common::orthogonal;
 use perigrain_world::{Domain, Key, Numbers, Region, Slot, World};
 
-/// What has been found out once and stays until chunks are counted anew.
+/// The layout of chunks, valid until they are counted again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// Number of chunks.
@@ -22,7 +22,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// As numbers, for the world to keep.
+    /// As numbers, for storage in the world.
     fn pack(&self) -> Vec<f64> {
         let mut out = vec![self.n as f64];
         out.extend(self.layers.iter().flat_map(|l| [l.lo, l.count as f64]));
@@ -31,7 +31,7 @@ impl Layout {
         out
     }
 
-    /// Shells where they were when chunks were counted.
+    /// The shells at their positions when chunks were counted.
     fn of(&self, s: &Shells) -> Shells {
         let [x, y, z, lo, hi] = self.shells;
         Shells { center: [x, y, z], lo, hi, ..*s }
@@ -45,27 +45,27 @@ impl Layout {
     }
 }
 
-/// The window in which a fix that averages chunks holds their number: its first step and its last, or none.
+/// The window in which an averaging fix locks the number of chunks: its first step and its last, if any.
 type Lock = Option<(i64, Option<i64>)>;
 
-/// What the world keeps for a `compute chunk/atom`, in its memory and in a column.
+/// Key of the state of a `compute chunk/atom`, in the world's memory and in a column.
 pub fn key(id: &str) -> Numbers {
     Key::new(&format!("compute {id} chunks"))
 }
 
-/// How the name of a window ends.
+/// Suffix of a window's name.
 const WINDOW: &str = " window";
 
-/// The window in which their number is held.
+/// Key of the window in which the number of chunks is locked.
 pub fn window(id: &str) -> Numbers {
     Key::new(&format!("compute {id}{WINDOW}"))
 }
 
-/// Holds the number of chunks of a `compute chunk/atom`, whose window this is, from a step on while an average is made, to its
-/// last step or for good.
+/// Locks the number of chunks of the `compute chunk/atom` with this window from a step on, to the last step
+/// of an average or for good.
 ///
 /// # Errors
-/// Another fix that holds it for other steps.
+/// Another fix has locked it for other steps.
 pub fn hold(w: &mut World, key: Numbers, step: i64, last: Option<i64>, span: Span) -> Result<()> {
     let mut window = vec![step as f64];
     window.extend(last.map(|last| last as f64));
@@ -88,7 +88,7 @@ pub fn hold(w: &mut World, key: Numbers, step: i64, last: Option<i64>, span: Spa
     Ok(())
 }
 
-/// Holds them no longer.
+/// Releases the lock.
 pub fn let_go(w: &mut World, key: Numbers) {
     w.memo.remove(key);
 }
@@ -101,20 +101,20 @@ fn lock(w: &World, key: Numbers, step: i64) -> Lock {
 
 /// One use of a compute chunk/atom.
 pub struct Task<'a> {
-    /// Its line.
+    /// Its declaration.
     pub spec: &'a Spec,
-    /// What the world keeps for it, and its window.
+    /// Keys of its state and of its window.
     pub keys: [Numbers; 2],
-    /// The region, if particles must be inside one.
+    /// The region that particles must be in, if any.
     pub region: Option<&'a Region>,
-    /// The values that number particles, if those do.
+    /// The value that numbers particles, if there is one.
     pub value: Option<&'a Reading>,
-    /// The line's place.
+    /// Span of the line.
     pub span: Span,
 }
 
 impl Task<'_> {
-    /// Numbers particles into `out`; what must stay is kept in the world.
+    /// Assigns chunk numbers to particles in `out`; stores persistent state in the world.
     pub fn run(&self, w: &mut World, step: i64, out: &mut Slot) -> Result<()> {
         let (spec, [key, window]) = (self.spec, self.keys);
         let old = w.memo.get(key).and_then(|a| Layout::unpack(a));
@@ -135,7 +135,7 @@ impl Task<'_> {
                 new
             }
         };
-        // Under bins a new layout may have come with this use.
+        // With bins, this use may have created a new layout.
         let raw = if self.binned() { self.raw(w, Some(&layout))? } else { raw };
         out.cols = 1;
         out.atom.clear();
@@ -150,7 +150,7 @@ impl Task<'_> {
         self.describe(w, &layout, out)
     }
 
-    /// Bins of a leaning box lean with it.
+    /// Refuses bins that do not fit a tilted box: they tilt with it.
     fn check_box(&self, d: &Domain) -> Result<()> {
         let text = match self.spec.what {
             What::Sphere(_) | What::Cylinder(..) if d.tilted() => {
@@ -168,7 +168,7 @@ impl Task<'_> {
         self.spec.what.binned()
     }
 
-    /// The number of each particle before compression, limit and discarding; NaN for those that have none.
+    /// The chunk number of each particle before compression, limit and discarding; NaN for none.
     fn raw(&self, w: &World, layout: Option<&Layout>) -> Result<Vec<f64>> {
         let d = w.domain()?;
         self.check_box(d)?;
@@ -197,7 +197,7 @@ impl Task<'_> {
         Ok((0..w.n()).map(one).collect())
     }
 
-    /// Bins of the present box.
+    /// Bins of the current box.
     fn bins(&self, d: &Domain) -> Result<Layout> {
         let mut layers = [Layers::default(); 3];
         let axes = match &self.spec.what {
@@ -219,10 +219,10 @@ impl Task<'_> {
         Ok(Layout { layers, shells, ..Layout::default() })
     }
 
-    /// The bin of a place, counted from 0.
+    /// The bin of a position, counted from 0.
     fn bin(&self, d: &Domain, layout: &Layout, x: [f64; 3], lammps: bool) -> Option<usize> {
         let inside = if d.tilted() { d.fractions(&x) } else { x };
-        // Who has crossed a face since the last rebuild is not wrapped yet.
+        // Particles that have crossed a face since the last rebuild are not wrapped yet.
         let wrapped = |k: usize| {
             let (lo, hi) = (d.lo[k], d.hi[k]);
             let mut a = x[k];
@@ -250,7 +250,7 @@ impl Task<'_> {
             What::Bins(axes) => {
                 let mut bin = 0usize;
                 for (a, l) in axes.iter().zip(layers) {
-                    // Of too many bins there is no number: `count` refuses them.
+                    // Saturates for too many bins, which `count` refuses.
                     bin = bin.saturating_mul(l.count).saturating_add(a.layer(
                         l,
                         along(a.dim),
@@ -270,7 +270,7 @@ impl Task<'_> {
         }
     }
 
-    /// The number of chunks, and with `compress` those in use.
+    /// The number of chunks, and with `compress` the original numbers in use.
     fn count(&self, w: &World, raw: &[f64]) -> Result<Layout> {
         let spec = self.spec;
         let d = w.domain()?;
@@ -308,7 +308,7 @@ impl Task<'_> {
         Ok(Layout { n, used, ..bins })
     }
 
-    /// What `limit` before `compress` leaves of a number.
+    /// A number after a `limit` that stands before `compress`.
     fn limited(&self, raw: f64) -> f64 {
         match self.spec.limit {
             Some(l) if l.first && raw > l.n as f64 => {
@@ -322,7 +322,7 @@ impl Task<'_> {
         }
     }
 
-    /// A particle's chunk from 1, 0 for none.
+    /// A particle's chunk from 1, or 0 for none.
     fn number(&self, raw: f64, layout: &Layout) -> f64 {
         if raw.is_nan() {
             return 0.0;
@@ -332,7 +332,7 @@ impl Task<'_> {
         let number = if self.spec.compress {
             match layout.used.binary_search_by(|u| u.total_cmp(&self.limited(raw))) {
                 Ok(k) => k as f64 + 1.0,
-                // A bin that was empty when the chunks were counted is no chunk, and no other one has it.
+                // A bin that was empty when chunks were counted is not a chunk.
                 Err(_) if self.binned() => return 0.0,
                 Err(_) => outside,
             }
@@ -396,16 +396,16 @@ impl Task<'_> {
     }
 }
 
-/// A value as the number of a chunk: rounded towards zero, no NaN, no negative zero.
+/// A value as a chunk number: rounded towards zero, no NaN, no negative zero.
 fn whole(a: f64) -> f64 {
     if a.is_nan() { 0.0 } else { a.trunc() + 0.0 }
 }
 
-/// Sums, means and rows of a chunk in what reads it.
+/// Bytes per chunk in the styles that use it: sums, means and output rows.
 const BYTES_PER_CHUNK: f64 = 100.0;
 
-/// Chunks beyond this have no numbers of their own as doubles.
+/// Above this number, doubles cannot distinguish chunks.
 const MOST_NUMBERS: f64 = 9e15;
 
-/// More chunks than this are a mistake (a particle id without `compress`, say).
+/// A larger number of chunks is refused (for example particle ids without `compress`).
 const MOST: usize = 100_000_000;

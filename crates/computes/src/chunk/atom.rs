@@ -1,4 +1,4 @@
-//! compute chunk/atom: numbers particles by bins of space, type or any value.
+//! compute chunk/atom: assigns particles to chunks by spatial bins, by type or by any value.
 
 use super::assign::{Task, key, window};
 use super::words::{Spec, What};
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(numbers("v_seven"), [7.0, 0.0, 40.0, 7.0]);
         assert_eq!(numbers("v_seven limit 10 max"), [7.0, 0.0, 0.0, 7.0]);
         assert_eq!(numbers("v_seven limit 10 max discard no"), [7.0, 10.0, 10.0, 7.0]);
-        // As LAMMPS 22Jul2025: compression makes a chunk of what is below 1, too.
+        // As in LAMMPS 22Jul2025, compression also makes chunks of values below 1.
         assert_eq!(numbers("v_seven compress yes"), [2.0, 1.0, 3.0, 2.0]);
         assert_eq!(numbers("v_seven limit 10 max compress yes discard no"), [2.0, 1.0, 3.0, 2.0]);
         assert_eq!(numbers("v_seven limit 10 max compress yes"), [2.0, 1.0, 0.0, 2.0]);

@@ -1,9 +1,9 @@
-//! Bins of space: layers along an axis, shells around a point or an axis.
+//! Spatial bins: layers along an axis, shells around a point or an axis.
 
 use super::words::Discard;
 use perigrain_world::Domain;
 
-/// Where layers begin.
+/// Origin of the layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin {
     /// The lower bound.
@@ -16,20 +16,20 @@ pub enum Origin {
     At(f64),
 }
 
-/// Layers along an axis, in the deck's units or in fractions of the box.
+/// Layers along an axis, in units of the deck or in fractions of the box.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     /// The axis.
     pub dim: usize,
-    /// Where layers begin.
+    /// Origin of the layers.
     pub origin: Origin,
     /// Their thickness.
     pub delta: f64,
-    /// What they cover, where that is not the whole box.
+    /// Bounds of the layers, if they do not fill the box.
     pub bound: [Option<f64>; 2],
 }
 
-/// Layers of the present box: where the first begins and how many there are.
+/// Layers of the current box.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Layers {
     /// Lower face of the first.
@@ -39,7 +39,7 @@ pub struct Layers {
 }
 
 impl Axis {
-    /// Turns lattice spacings into lengths.
+    /// Converts lattice spacings to lengths.
     pub fn scale(&mut self, by: [f64; 3], bound: [[Option<f64>; 2]; 3]) {
         let s = by[self.dim];
         self.delta *= s;
@@ -49,7 +49,7 @@ impl Axis {
         }
     }
 
-    /// The layers that cover the box, or the bounds. As LAMMPS counts them, which decides where rounding falls.
+    /// The layers that cover the box or the bounds, counted as in LAMMPS so that rounding is the same.
     pub fn layers(&self, d: &Domain, reduced: bool) -> Option<Layers> {
         let (box_lo, box_hi) = if reduced { (0.0, 1.0) } else { (d.lo[self.dim], d.hi[self.dim]) };
         let (low, high) = (self.bound[0].unwrap_or(box_lo), self.bound[1].unwrap_or(box_hi));
@@ -77,8 +77,8 @@ impl Axis {
         (lo <= hi && count < 1e9).then_some(Layers { lo, count: count as usize })
     }
 
-    /// The layer of a place, counted from 0; `None` for those that belong to none. LAMMPS 22Jul2025 drops what is above
-    /// the last layer under `mixed` also where that ends at the box.
+    /// The layer of a position, counted from 0; `None` if it is in no layer. LAMMPS 22Jul2025 with `mixed`
+    /// also drops positions above a last layer that ends at the box.
     pub fn layer(&self, l: &Layers, x: f64, discard: Discard, lammps: bool) -> Option<usize> {
         let inverse = 1.0 / self.delta;
         let mut k = ((x - l.lo) * inverse).trunc();
@@ -101,7 +101,7 @@ impl Axis {
 /// Shells around a point, or rings around an axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Shells {
-    /// The point; along a cylinder's axis it counts for nothing.
+    /// The point; its coordinate along a cylinder's axis is ignored.
     pub center: [f64; 3],
     /// Innermost radius.
     pub lo: f64,
@@ -116,14 +116,14 @@ pub struct Shells {
 }
 
 impl Shells {
-    /// Turns lattice spacings into lengths; radii go with the first direction across.
+    /// Converts lattice spacings to lengths; radii use the spacing of the first direction across.
     pub fn scale(&mut self, by: [f64; 3]) {
         (0..3).for_each(|d| self.center[d] *= by[d]);
         let s = by[self.dims[0]];
         (self.lo, self.hi) = (self.lo * s, self.hi * s);
     }
 
-    /// The shells in lengths, where they were given in fractions of the box.
+    /// The shells in lengths, if they were given in fractions of the box.
     pub fn in_box(&self, d: &Domain, reduced: bool) -> Self {
         if !reduced {
             return *self;
@@ -141,7 +141,7 @@ impl Shells {
         (self.hi - self.lo) / self.count as f64
     }
 
-    /// The shell of a place, counted from 0; `None` for those that belong to none.
+    /// The shell of a position, counted from 0; `None` if it is in no shell.
     pub fn shell(&self, d: &Domain, x: [f64; 3], pbc: bool, discard: Discard) -> Option<usize> {
         let mut r2 = 0.0;
         for &k in &self.dims[..if self.flat { 2 } else { 3 }] {

@@ -38,7 +38,7 @@ impl ComputeStyle for ComChunk {
     }
 }
 
-/// Means of a vector per particle, weighted with mass.
+/// Mass-weighted means of a vector per particle.
 #[derive(Clone)]
 pub(super) struct Means {
     pub(super) id: String,

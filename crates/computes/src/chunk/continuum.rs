@@ -1,4 +1,5 @@
-//! compute continuum/chunk: fields of density, velocity, stress … that a smooth kernel makes of particles and contacts.
+//! compute continuum/chunk: continuum fields (density, velocity, stress …) by coarse graining of particles
+//! and contacts.
 
 use super::fields::{Field, Fields, Needed, Scope};
 use super::grid::Grid;
@@ -151,7 +152,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// Reads fields and keywords; the place of the first `boundary/force`.
+    /// Reads fields and keywords; returns the span of the first `boundary/force`.
     fn read(&mut self, args: &mut Args, cx: &BuildCx, flat: bool) -> Result<Option<Span>> {
         let mut force = None;
         while let Some(word) = args.next() {
@@ -174,7 +175,7 @@ impl Declared {
         Ok(force)
     }
 
-    /// What walls tell of their contacts: of each seven columns.
+    /// Readings of the walls' contacts, seven columns per wall.
     fn walls(&self, cx: &mut dyn SealCx, stage: Stage, when: &When) -> Result<Vec<[Reading; 7]>> {
         if !self.walls {
             return Ok(vec![]);
@@ -203,7 +204,7 @@ impl Declared {
     }
 }
 
-/// How many lengths of the box the kernel may reach over.
+/// Largest reach of the kernel in box lengths.
 const MOST_IMAGES: f64 = 30.0;
 
 impl Compute for Declared {
@@ -318,7 +319,7 @@ mod tests {
         let points = bench(AtomStyle::default());
         assert_eq!(columns(&points, "cc 1 0.3 density velocity/grad/*"), 10);
         assert!(points.compute(&ContinuumChunk, "cc 1 0.3 stress/xx").is_err());
-        // Walls are looked for when a run begins.
+        // Walls are looked up when a run begins.
         let mut b = b;
         let c = b.compute(&ContinuumChunk, "cc 1 0.3 density boundary/fix").unwrap();
         assert!(b.evaluate(&*c).is_err());

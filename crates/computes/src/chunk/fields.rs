@@ -31,7 +31,7 @@ enum Quantity {
     Temperature,
 }
 
-/// Names, and how many indices they have.
+/// Names, and numbers of indices.
 const QUANTITIES: [(&str, usize, Quantity); 14] = [
     ("natoms", 0, Quantity::Count),
     ("density", 0, Quantity::Density),
@@ -60,10 +60,10 @@ pub struct Field {
 }
 
 impl Field {
-    /// The columns that a word stands for; `None` for no field.
+    /// The columns that a word stands for; `None` if it is not a field.
     ///
     /// # Errors
-    /// A field without or with wrong components.
+    /// A field with missing or wrong components.
     pub fn read(word: &Word, flat: bool) -> Result<Option<Vec<Self>>> {
         let dims = if flat { 2 } else { 3 };
         let mut bad = None;
@@ -99,7 +99,7 @@ impl Field {
         Err(Diagnostic::error(Code::BAD_VALUE, word.span, text).help(help).into())
     }
 
-    /// All words, for "did you mean".
+    /// All words, for suggestions in messages.
     pub fn words() -> Vec<&'static str> {
         QUANTITIES.iter().map(|q| q.0).chain(["boundary/atom", "boundary/fix"]).collect()
     }
@@ -109,13 +109,13 @@ impl Field {
         self.what == Quantity::BoundaryForce
     }
 
-    /// Whether it takes radii.
+    /// Whether it needs radii.
     pub fn needs_spheres(&self) -> bool {
         self.what == Quantity::Volume || Needed::of(&[*self]).pairs
     }
 }
 
-/// Which sums the columns are made of.
+/// The sums that the columns need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needed {
     motion: bool,
@@ -123,12 +123,12 @@ pub struct Needed {
     contacts: bool,
     fabric: bool,
     force: bool,
-    /// Pairs must be looked at.
+    /// Whether pairs must be evaluated.
     pub pairs: bool,
 }
 
 impl Needed {
-    /// Of these columns.
+    /// The sums for these columns.
     pub fn of(fields: &[Field]) -> Self {
         use Quantity::{BoundaryForce, Contacts, Fabric, Kinetic, Stress, Temperature};
         let any = |list: &[Quantity]| fields.iter().any(|f| list.contains(&f.what));
@@ -140,13 +140,13 @@ impl Needed {
     }
 }
 
-/// What counts, and where.
+/// The selection of particles, and the grid.
 pub struct Scope<'a> {
     /// The world.
     pub w: &'a World,
-    /// Whose particles count.
+    /// Group of the particles that count.
     pub group: GroupId,
-    /// Whose particles are a boundary.
+    /// Group of the boundary particles.
     pub boundary: Option<GroupId>,
     /// The chunks.
     pub chunks: &'a Chunks<'a>,
@@ -156,24 +156,24 @@ pub struct Scope<'a> {
     pub kernel: &'a Kernel,
 }
 
-/// A contact as the line from a particle's centre to the end that counts.
+/// A contact as the line from a particle's centre to its end.
 struct Branch {
-    /// The centre, along the axes of the bins.
+    /// The centre, in coordinates along the axes of the bins.
     start: Vec3,
-    /// From there to the other centre or the place of contact, likewise.
+    /// The vector from there to the other centre or to the contact point, likewise.
     along: Vec3,
     /// Force on the particle.
     force: Vec3,
-    /// The centre less the end.
+    /// Centre minus end.
     arm: Vec3,
-    /// Mean of the volumes of both; 0 with a boundary.
+    /// Mean of the two volumes; 0 for a boundary.
     volume: f64,
-    /// It ends at a boundary.
+    /// Whether it ends at a boundary.
     ends: bool,
 }
 
 impl Scope<'_> {
-    /// One over the product of the lengths of the box along which there are no bins.
+    /// One over the product of the box lengths along directions without bins.
     fn unbinned(&self) -> f64 {
         let Some(d) = &*self.w.domain else { return 1.0 };
         let (lengths, dims) = (d.lengths(), if self.w.settings.two_dimensional { 2 } else { 3 });
@@ -191,21 +191,21 @@ impl Scope<'_> {
         self.chunks.chunk(i).filter(|_| counts)
     }
 
-    /// Volume of a sphere, in two dimensions the area of its disc; 0 for points.
+    /// Volume of a sphere, in two dimensions the area of a disc; 0 for points.
     fn volume(&self, i: usize) -> f64 {
         let r = self.w.particles.radius.get(i).copied().unwrap_or(0.0);
         let area = PI * r * r;
         if self.w.settings.two_dimensional { area } else { 4.0 / 3.0 * area * r }
     }
 
-    /// The corners of what is within the cutoff of a line.
+    /// The corners of the region within the cutoff of a line.
     fn corners(&self, start: Vec3, along: Vec3) -> [Vec3; 2] {
         let (end, c) = (add(start, along), self.kernel.cutoff);
         let corner = |pick: fn(f64, f64) -> f64, c: f64| std::array::from_fn(|k| pick(start[k], end[k]) + c);
         [corner(f64::min, -c), corner(f64::max, c)]
     }
 
-    /// Σ term(i) W over the particles that count; the last of the sums is of 1 within the cutoff where `counting`.
+    /// Σ term(i) W over the selected particles; if `counting`, the last sum counts 1 within the cutoff.
     fn points<const N: usize>(
         &self,
         counting: bool,
@@ -229,7 +229,7 @@ impl Scope<'_> {
         )
     }
 
-    /// All contacts that count.
+    /// All contacts of the selected particles.
     fn branches(&self, pairs: &[Interaction], walls: &[[Reading; 7]]) -> Vec<Branch> {
         let p = &self.w.particles;
         let member = |i: u32| self.chunks.chunk(i as usize).is_some();
@@ -240,7 +240,7 @@ impl Scope<'_> {
         for q in pairs.iter().filter(counts) {
             let [i, j] = [q.i, q.j].map(|i| i as usize);
             let end = |i: usize, other: usize, sign: f64| {
-                // Half of the overlap lies on either side of the place of contact.
+                // The contact point is in the middle of the overlap.
                 let r = q.distance();
                 let from_centre = 0.5 * (r + p.radius[i] - p.radius[other]);
                 self.to_boundary(i, scale(sign, q.force), scale(sign * from_centre / r, q.d))
@@ -294,7 +294,7 @@ impl Scope<'_> {
         )
     }
 
-    /// −Σ F W at the places where contacts meet a boundary.
+    /// −Σ F W at the contact points with a boundary.
     fn ends(&self, branches: &[Branch]) -> Vec<[f64; 3]> {
         let ends: Vec<(Vec3, Vec3)> =
             branches.iter().filter(|b| b.ends).map(|b| (add(b.start, b.along), b.force)).collect();
@@ -330,18 +330,18 @@ pub struct Fields {
     contacts: Vec<[f64; 9]>,
     fabric: Vec<[f64; 9]>,
     force: Vec<[f64; 3]>,
-    /// From m v² and F d over volumes to pressure units, and from m v² to energies.
+    /// Factors from m v² and F d over volumes to pressure units, and from m v² to energies.
     units: [f64; 3],
 }
 
-/// Divides by the lengths of the box along which there are no bins.
+/// Divides by the box lengths along directions without bins.
 fn thin<const N: usize>(mut rows: Vec<[f64; N]>, first: usize, over: f64) -> Vec<[f64; N]> {
     rows.iter_mut().flat_map(|r| &mut r[..first]).for_each(|a| *a *= over);
     rows
 }
 
 impl Fields {
-    /// Of what is `needed`; other sums stay empty.
+    /// Computes the sums that are `needed`; the others stay empty.
     pub fn new(s: &Scope, needed: Needed, pairs: &[Interaction], walls: &[[Reading; 7]]) -> Self {
         let (p, masses, c) = (&s.w.particles, Masses::of(s.w), s.w.settings.units.constants());
         let over = s.unbinned();
@@ -388,7 +388,7 @@ impl Fields {
         all
     }
 
-    /// The columns, bin by bin.
+    /// The output columns, bin by bin.
     pub fn rows(&self, fields: &[Field], grid: &Grid) -> Vec<f64> {
         let bins = grid.bins();
         (0..bins).flat_map(|k| fields.iter().map(move |f| self.value(*f, k, grid))).collect()
@@ -422,7 +422,7 @@ impl Fields {
                 -0.5 * energy * (xx + yy + zz)
             }
         };
-        // No −0 where nothing is.
+        // Avoids −0 for empty bins.
         value + 0.0
     }
 }

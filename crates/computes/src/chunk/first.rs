@@ -1,4 +1,4 @@
-//! compute msd/chunk, vacf/chunk: what chunks are doing, beside what they did when the first run began.
+//! compute msd/chunk, vacf/chunk: state of chunks compared with their state at the first run.
 
 use super::moments::{mean, weighted};
 use super::{ChunkRef, Chunks};
@@ -85,14 +85,14 @@ struct SinceFirst {
     group: GroupId,
     style: &'static str,
     chunks: ChunkRef,
-    /// What of a particle.
+    /// The per-particle quantity.
     of: fn(&World, usize) -> Vec3,
-    /// What is shown of its mean now and then.
+    /// The output from its mean now and its initial mean.
     compare: fn(Vec3, Vec3) -> Vec3,
 }
 
 impl SinceFirst {
-    /// Under which name the world remembers the beginning.
+    /// Key of the initial state.
     fn key(&self) -> Numbers {
         Key::new(&format!("compute {} beginning", self.id))
     }

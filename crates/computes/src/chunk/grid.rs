@@ -1,4 +1,4 @@
-//! The centres of bins as a grid over the box: sums over what lies near each, and differences between neighbours.
+//! Bin centres as a grid over the box: sums over nearby items, and differences between neighbouring bins.
 
 use super::Chunks;
 use perigrain_base::math::vec3::Vec3;
@@ -7,24 +7,24 @@ use perigrain_styles::Bins;
 use perigrain_world::Domain;
 use std::sync::{Mutex, PoisonError};
 
-/// Bins along one of their axes; a direction without bins has one, in which every place is at distance 0.
+/// Bins along one of their axes; a direction without bins has a single one, at distance 0 from everything.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     dim: Option<usize>,
     count: usize,
-    /// How far apart neighbours stand in the list of chunks.
+    /// Distance of neighbours in the list of chunks.
     stride: usize,
     /// Centre of the first [length].
     first: f64,
-    /// From one centre to the next [length].
+    /// Distance between centres [length].
     step: f64,
     /// Length of the box where it is periodic.
     period: Option<f64>,
 }
 
 impl Row {
-    /// Calls `f(k, shift)` for each bin k between two coordinates and each periodic image of what lies there: a
-    /// coordinate of that image as seen from the centre is the coordinate plus `shift`.
+    /// Calls `f(k, shift)` for each bin k between two coordinates and for each periodic image of the item
+    /// there: a coordinate of the image relative to the centre is the coordinate plus `shift`.
     fn reach(&self, lo: f64, hi: f64, mut f: impl FnMut(usize, f64)) {
         if self.dim.is_none() {
             return f(0, 0.0);
@@ -47,7 +47,7 @@ impl Row {
         }
     }
 
-    /// From the last bin to the first through the periodic face, where they are neighbours [length].
+    /// Distance from the last bin to the first across the periodic face, if they are neighbours [length].
     fn gap(&self) -> Option<f64> {
         let gap = self.period? - (self.count - 1) as f64 * self.step;
         (self.count > 1 && gap < 1.5 * self.step).then_some(gap)
@@ -76,7 +76,7 @@ impl Grid {
                 Some(_) => chunks.coordinate(k, axis),
                 None => 0.0,
             };
-            // Along an axis all bins share a coordinate until its next layer begins.
+            // Along an axis the bins share a coordinate until the next layer begins.
             let first = place(0);
             let stride = match dim {
                 Some(_) => (1..within).find(|&k| place(k) != first).unwrap_or(within),
@@ -91,7 +91,7 @@ impl Grid {
         Some(Self { rows })
     }
 
-    /// How many bins there are.
+    /// The number of bins.
     pub fn bins(&self) -> usize {
         self.rows.iter().map(|r| r.count).product()
     }
@@ -106,16 +106,17 @@ impl Grid {
         self.rows.map(|r| r.dim.map_or(0.0, |d| x[d]))
     }
 
-    /// The shortest period of the box along an axis of the bins [length].
+    /// The shortest periodic length of the box along an axis of the bins [length].
     pub fn shortest_period(&self) -> Option<f64> {
         self.rows.iter().filter_map(|r| r.period).reduce(f64::min)
     }
 
-    /// Adds up `term(item, shift)` of `n` items for each bin whose centre lies between the item's two corners, which are
-    /// coordinates along the axes; the item is at its own coordinates plus `shift` from the centre.
+    /// Sums `term(item, shift)` of `n` items for each bin whose centre lies between the item's two corners,
+    /// given in coordinates along the axes; relative to the centre, the item is at its own coordinates plus
+    /// `shift`.
     ///
-    /// Slabs of bins across the first axis are added up side by side, each in the order of the items: the same bits for
-    /// any number of threads.
+    /// Slabs of bins normal to the first axis run in parallel, each summing in the order of the items: the
+    /// bits are the same for any number of threads.
     pub fn spread<const N: usize>(
         &self,
         n: usize,
@@ -147,8 +148,8 @@ impl Grid {
         sums.into_iter().flat_map(|s| s.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
     }
 
-    /// The derivative along a direction of what bins have: a centred difference, one-sided at the ends of a box that is
-    /// not periodic, 0 where no bin has a neighbour.
+    /// The derivative of bin values along a direction: a centred difference, one-sided at the ends of a box
+    /// that is not periodic, 0 for a bin without neighbours.
     pub fn derivative(&self, bin: usize, dim: usize, value: impl Fn(usize) -> f64) -> f64 {
         let Some(row) = self.rows.iter().find(|r| r.dim == Some(dim)) else { return 0.0 };
         let (k, end) = ((bin / row.stride) % row.count, (row.count - 1) * row.stride);
@@ -183,7 +184,7 @@ mod tests {
         };
         assert_eq!(near(None, -0.6, 0.6), [(0, -0.5)]);
         assert_eq!(near(Some(4.0), -0.6, 0.6), [(0, -0.5), (3, 0.5)]);
-        // Wider than the box: each bin sees an image or two.
+        // Wider than the box: each bin meets one or two images.
         assert_eq!(near(Some(4.0), -1.0, 5.0).len(), 6);
         assert!(near(Some(4.0), f64::NEG_INFINITY, f64::INFINITY).is_empty());
     }
@@ -198,7 +199,7 @@ mod tests {
         };
         assert_eq!(all(None), [1.0, 2.0, 4.0, 5.0]);
         assert_eq!(all(Some(4.0)), [-4.0, 2.0, 4.0, -2.0]);
-        // Bins that leave a part of the box out have no neighbours across its face.
+        // Bins that do not fill the box have no neighbours across its face.
         assert_eq!(all(Some(6.0)), all(None));
         let g = Grid { rows: [row(None), flat, flat] };
         assert_eq!(g.derivative(1, 2, value), 0.0);

@@ -1,4 +1,4 @@
-//! The kernel of coarse-graining: a Gaussian that is cut off at a distance, shifted to zero there and of unit integral.
+//! The coarse-graining kernel: a Gaussian with cutoff, shifted to zero there and normalized.
 
 use perigrain_base::math::vec3::{Vec3, dot};
 use std::f64::consts::PI;
@@ -37,10 +37,10 @@ fn integral(lo: f64, hi: f64, panel: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 impl Kernel {
-    /// The kernel over 1, 2 or 3 dimensions; `None` where its numbers do not fit double precision.
+    /// The kernel in 1, 2 or 3 dimensions; `None` if its numbers exceed double precision.
     ///
-    /// By parts, ∫ W = S/d ∫ r^d (−dW/dr) dr with the surface S of the unit sphere: a sum of positive terms, also where
-    /// the two exponentials of W nearly cancel.
+    /// By parts, ∫ W = S/d ∫ r^d (−dW/dr) dr with the surface S of the unit sphere: a sum of positive terms,
+    /// accurate even where the two exponentials of W nearly cancel.
     pub fn new(dimensions: usize, cutoff: f64, width: f64) -> Option<Self> {
         let d = dimensions as i32;
         let surface = [2.0, 2.0 * PI, 4.0 * PI][dimensions - 1];
@@ -50,7 +50,7 @@ impl Kernel {
         (scale.is_finite() && scale > 0.0).then_some(Self { cutoff, width, scale })
     }
 
-    /// W at the square of a distance.
+    /// W for a squared distance.
     pub fn at(&self, r2: f64) -> f64 {
         let c2 = self.cutoff * self.cutoff;
         if r2 >= c2 {
@@ -65,8 +65,8 @@ impl Kernel {
 
     /// ∫₀¹ W(|start + s along|) ds.
     ///
-    /// On panels of at most one width Gauss' rule of six points is off by less than
-    /// (6!)⁴/(13 (12!)³) max|d¹²/dx¹² exp(−x²/2)| = 2·10⁻¹² of W(0).
+    /// On panels of at most one width, the error of Gauss' six-point rule is below (6!)⁴/(13 (12!)³)
+    /// max|d¹²/dx¹² exp(−x²/2)| = 2·10⁻¹² of W(0).
     pub fn along(&self, start: Vec3, along: Vec3) -> f64 {
         let e2 = dot(along, along);
         let at = |s: f64| std::array::from_fn::<f64, 3, _>(|k| start[k] + s * along[k]);
@@ -109,14 +109,14 @@ mod tests {
 
     #[test]
     fn its_integral_is_one() {
-        // The sum's own error is that of the kink at the cutoff, h² times its slope there.
+        // The sum's own error comes from the kink at the cutoff: h² times the slope there.
         for (d, n, tolerance) in [(1, 2000, 1e-6), (2, 150, 1e-4), (3, 30, 2e-3)] {
             for (cutoff, width) in [(4.0, 2.0), (1.0, 0.3), (2.0, 1.0), (1.0, 1e4)] {
                 let sum = sum(d, cutoff, width, n);
                 assert!((sum - 1.0).abs() < tolerance, "{d} dimensions, {cutoff} {width}: {sum}");
             }
         }
-        // Without a cutoff it is a Gaussian's.
+        // Without a cutoff it is a plain Gaussian.
         let k = Kernel::new(1, 100.0, 1.0).unwrap();
         assert!((k.at(0.0) * (2.0 * PI).sqrt() - 1.0).abs() < 1e-12);
         assert!(Kernel::new(3, 1e-200, 1.0).is_none());
@@ -140,7 +140,7 @@ mod tests {
             ([0.1, 0.0, 0.0], [1e-14, 0.0, 0.0]),
         ] {
             let (got, wanted) = (k.along(start, along), fine(start, along));
-            // The fine sum's own error beside the kink is its step squared.
+            // Apart from the kink, the error of the fine sum is its step squared.
             assert!((got - wanted).abs() < 1e-9 * k.at(0.0), "{start:?}: {got} {wanted}");
         }
         assert_eq!(k.along([2.0, 0.0, 0.0], [0.0, 1.0, 0.0]), 0.0);

@@ -1,4 +1,5 @@
-//! Chunks: sets of particles that `compute chunk/atom` numbers, and what other styles read of them.
+//! Chunks: sets of particles numbered by `compute chunk/atom`, and the data that other styles read about
+//! them.
 
 pub mod angmom;
 mod assign;
@@ -30,23 +31,23 @@ use perigrain_plan::{Stage, When};
 use perigrain_styles::{BuildCx, Chunking, SealCx, Wants};
 use perigrain_world::{Numbers, Slot, SlotId, World};
 
-/// A `compute chunk/atom` that another style names.
+/// A `compute chunk/atom` that another style refers to.
 #[derive(Clone, Debug)]
 pub struct ChunkRef {
     /// Its ID.
     pub id: String,
-    /// What its chunks have.
+    /// The kind of its chunks.
     pub kind: Chunking,
-    /// Where the window is kept in which their number is held.
+    /// Key of the window in which their number is locked.
     pub window: Numbers,
     span: Span,
 }
 
 impl ChunkRef {
-    /// Takes the ID of a `compute chunk/atom`.
+    /// Parses the ID of a `compute chunk/atom`.
     ///
     /// # Errors
-    /// An unknown compute, or one that makes no chunks.
+    /// An unknown compute, or one of another style.
     pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the ID of a compute chunk/atom")?;
         let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
@@ -68,12 +69,12 @@ impl ChunkRef {
         Self { window: window(&id), id, kind, span }
     }
 
-    /// What holds the number of chunks, where it may change: for values with a row for each.
+    /// Key of the lock on the number of chunks, if that number can change: for values with a row per chunk.
     fn varying(&self) -> Option<Numbers> {
         (!self.kind.fixed).then_some(self.window)
     }
 
-    /// The slot with the chunks, fresh whenever `when` fires.
+    /// The slot with the chunks, updated whenever `when` fires.
     ///
     /// # Errors
     /// As `SealCx::value`.
@@ -84,10 +85,10 @@ impl ChunkRef {
     }
 }
 
-/// What stands before the coordinates of a chunk in the slot: its original number and its volume.
+/// Entries before the coordinates of a chunk in the slot: its original number and its volume.
 const HEAD: usize = 2;
 
-/// The chunks of the present step.
+/// The chunks of the current step.
 #[derive(Clone, Copy)]
 pub struct Chunks<'a> {
     slot: &'a Slot,
@@ -100,7 +101,7 @@ impl<'a> Chunks<'a> {
         Self { slot: w.slots.get(slot), stride: HEAD + kind.coordinates }
     }
 
-    /// How many chunks there are.
+    /// The number of chunks.
     pub fn count(&self) -> usize {
         self.slot.inner.len() / self.stride
     }
@@ -127,8 +128,8 @@ impl<'a> Chunks<'a> {
     }
 }
 
-/// Adds `term(i)` up by chunk over the particles of a group: rows of `N` numbers. In storage order, so that the sums
-/// are the same for any number of threads.
+/// Sums `term(i)` by chunk over the particles of a group: rows of `N` numbers. The sums run in storage order
+/// and are the same for any number of threads.
 pub fn sums<const N: usize>(
     w: &World,
     group: perigrain_world::GroupId,

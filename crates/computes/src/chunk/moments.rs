@@ -1,4 +1,4 @@
-//! What computes of chunks have in common: centres, inertia and momenta of each, and an array with a row for each.
+//! Shared by chunk computes: centres, inertia and momenta of chunks, and an array with a row per chunk.
 
 use super::{ChunkRef, Chunks, sums};
 use crate::Compute;
@@ -11,7 +11,7 @@ use perigrain_styles::{SealCx, Shape};
 use perigrain_world::field::{BOX, F, Fields, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
-/// Some particles in chunks.
+/// The particles of a group by chunk.
 pub struct Members<'w> {
     w: &'w World,
     group: GroupId,
@@ -19,7 +19,7 @@ pub struct Members<'w> {
     masses: Masses<'w>,
     /// Mass of each chunk [mass].
     pub mass: Vec<f64>,
-    /// Centre of mass of each, unwrapped; the origin where there is no mass [distance].
+    /// Centre of mass of each, unwrapped; the origin for zero mass [distance].
     pub centre: Vec<Vec3>,
 }
 
@@ -32,16 +32,17 @@ impl<'w> Members<'w> {
         Self { w, group, chunks, masses, mass, centre: rows.into_iter().map(mean).collect() }
     }
 
-    /// Adds `term(i, mass, x − centre)` up by chunk.
+    /// Sums `term(i, mass, x − centre)` by chunk.
     pub fn sums<const N: usize>(&self, term: impl Fn(usize, f64, Vec3) -> [f64; N]) -> Vec<[f64; N]> {
         sums(self.w, self.group, &self.chunks, |i| {
-            // Whoever is summed has a chunk.
+            // Every particle in the sum has a chunk.
             let centre = self.chunks.chunk(i).map_or([0.0; 3], |k| self.centre[k]);
             term(i, self.masses.get(i), sub(unwrapped(self.w, i), centre))
         })
     }
 
-    /// The inertia tensor of each chunk about its centre, xx yy zz xy yz xz [mass distance²]: of points, or of spheres that are `solid`.
+    /// The inertia tensor of each chunk about its centre, xx yy zz xy yz xz [mass distance²], of points or of
+    /// `solid` spheres.
     pub fn inertia(&self, solid: bool) -> Vec<[f64; 6]> {
         self.sums(|i, m, [x, y, z]| {
             let own = if solid { own_inertia(self.w, i, m) } else { 0.0 };
@@ -56,7 +57,8 @@ impl<'w> Members<'w> {
         })
     }
 
-    /// The angular momentum of each chunk about its centre [mass distance velocity]: of points, or of spheres that are `solid` and spin.
+    /// The angular momentum of each chunk about its centre [mass distance velocity], of points or of `solid`
+    /// spheres with their spin.
     pub fn angular_momentum(&self, solid: bool) -> Vec<Vec3> {
         self.sums(|i, m, d| {
             let way = cross(d, self.w.particles.v[i].map(|v| v * m));
@@ -82,23 +84,23 @@ pub fn weighted(
     })
 }
 
-/// The mean of such a sum, 0 without mass.
+/// The mean from such a sum, 0 for zero mass.
 pub fn mean([x, y, z, m]: [f64; 4]) -> Vec3 {
     [x, y, z].map(|a| if m > 0.0 { a / m } else { 0.0 })
 }
 
-/// A compute with a row of numbers for each chunk, a single number each if `columns` is 1.
+/// A compute with a row of numbers per chunk, or a single number each if `columns` is 1.
 #[derive(Clone)]
 pub struct Rows {
     /// Its ID.
     pub id: String,
-    /// Whose particles count.
+    /// Group of the particles that count.
     pub group: GroupId,
     /// The chunks.
     pub chunks: ChunkRef,
     /// Numbers per chunk.
     pub columns: usize,
-    /// The numbers, row by row.
+    /// Computes the numbers, row by row.
     pub of: fn(&World, &Members) -> Vec<f64>,
 }
 

@@ -41,7 +41,7 @@ impl ComputeStyle for OmegaChunk {
 
 fn omega(w: &World, m: &Members) -> Vec<f64> {
     let lammps = w.settings.lammps();
-    // LAMMPS has mended the other two alone.
+    // LAMMPS has fixed only the other two computes.
     let solid = solid(w) && !lammps;
     let turning = m.inertia(solid).into_iter().zip(m.angular_momentum(solid));
     let all = turning

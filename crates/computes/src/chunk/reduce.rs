@@ -1,4 +1,4 @@
-//! compute reduce/chunk: a sum or an extreme of values per particle for each chunk.
+//! compute reduce/chunk: sum or extreme of per-particle values for each chunk.
 
 use super::{ChunkRef, Chunks};
 use crate::{Compute, ComputeStyle};

@@ -1,4 +1,4 @@
-//! compute chunk/spread/atom: gives each particle what is known of its chunk.
+//! compute chunk/spread/atom: assigns to each particle a value of its chunk.
 
 use super::{ChunkRef, Chunks};
 use crate::{Compute, ComputeStyle};

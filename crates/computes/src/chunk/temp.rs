@@ -96,7 +96,7 @@ struct Declared {
 }
 
 impl Declared {
-    /// The values of each chunk, row by row; `v` is what is left of velocities without a bias.
+    /// The values of each chunk, row by row; `v` gives velocities without the bias.
     fn rows(&self, w: &World, chunks: &Chunks, v: &dyn Fn(usize) -> Vec3, centre: &[[f64; 4]]) -> Vec<f64> {
         let (masses, c) = (Masses::of(w), w.settings.units.constants());
         let inner = |i: usize| sub(v(i), chunks.chunk(i).map_or([0.0; 3], |k| mean(centre[k])));
@@ -149,7 +149,7 @@ impl Compute for Declared {
             let dof = n * me.adof + chunks.count() as f64 * me.cdof;
             offer(w, out, xx + yy + zz, [xx, yy, zz, xy, xz, yz], dof);
             if w.settings.lammps() {
-                // It tells nobody its degrees of freedom: energies and pressures that are made of them are without motion.
+                // It publishes no degrees of freedom: energies and pressures derived from it exclude motion.
                 out.inner = vec![0.0];
             }
             (out.array, out.array_cols) = (me.rows(w, &chunks, &v, &centre), me.values.len());

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_styles::{Bins, BuildCx, UseKind, Wants};
 use perigrain_world::{Face, GroupId, Key, Region};
 
-/// What decides the number of a particle's chunk.
+/// The property that determines a particle's chunk.
 #[derive(Clone, Debug)]
 pub enum What {
     /// Slabs, pencils or boxes.
@@ -25,24 +25,24 @@ pub enum What {
 }
 
 impl What {
-    /// Whether chunks are places.
+    /// Whether chunks are spatial bins.
     pub fn binned(&self) -> bool {
         !matches!(self, What::Type | What::Molecule | What::Value(_))
     }
 }
 
-/// What happens to particles outside all chunks.
+/// Treatment of particles outside all chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Discard {
     /// They belong to no chunk.
     Yes,
-    /// They go to the nearest, or to the last chunk.
+    /// They belong to the nearest or to the last chunk.
     No,
-    /// To the nearest where bins end at the box, else to none.
+    /// To the nearest if bins end at the box, else to none.
     Mixed,
 }
 
-/// When particles get their chunks.
+/// When particles are assigned to chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ids {
     /// At the first use.
@@ -69,7 +69,7 @@ pub enum Units {
 pub struct Limit {
     /// N.
     pub n: usize,
-    /// `exact`: also where there are fewer.
+    /// `exact`: pads with empty chunks if there are fewer.
     pub exact: bool,
     /// Given before `compress`.
     pub first: bool,
@@ -80,13 +80,13 @@ pub struct Limit {
 pub struct Spec {
     /// The compute's ID.
     pub id: String,
-    /// Whom it numbers.
+    /// Group that is numbered.
     pub group: GroupId,
-    /// By what.
+    /// The property that determines the chunk.
     pub what: What,
     /// Only inside this region.
     pub region: Option<Key<Region>>,
-    /// Whether the number of chunks is found only once.
+    /// Whether the number of chunks is determined only once.
     pub once: bool,
     /// See [`Limit`].
     pub limit: Option<Limit>,
@@ -98,7 +98,7 @@ pub struct Spec {
     pub discard: Discard,
     /// Minimum image distances from sphere and cylinder.
     pub pbc: bool,
-    /// Fractions of the box.
+    /// Whether lengths are fractions of the box.
     pub reduced: bool,
 }
 
@@ -106,7 +106,7 @@ const STYLES: &[&str] = &["bin/1d", "bin/2d", "bin/3d", "bin/sphere", "bin/cylin
 const KEYWORDS: &[&str] =
     &["region", "nchunk", "limit", "ids", "compress", "discard", "bound", "pbc", "units"];
 
-/// What the keywords say, before defaults.
+/// Values of the keywords, before defaults.
 struct Options {
     region: Option<Key<Region>>,
     once: Option<bool>,
@@ -174,7 +174,7 @@ impl Spec {
         })
     }
 
-    /// Whether LAMMPS 22Jul2025 drops what is above the last layer although layers end at the box.
+    /// Whether LAMMPS 22Jul2025 drops positions above the last layer although the layers end at the box.
     pub fn drops_above(&self) -> bool {
         let open = |a: &Axis| a.bound[1].is_none();
         self.discard == Discard::Mixed
@@ -331,7 +331,7 @@ impl Options {
                 _ => return Err(args.unknown(word, KEYWORDS)),
             }
         }
-        // What comes first is decided by the line's order, also where `limit` was read before `compress`.
+        // The order of the line decides, even if `limit` was read before `compress`.
         if let Some(l) = &mut o.limit {
             l.first &= o.compress;
         }

@@ -21,7 +21,7 @@ fn value(b: &mut Bench, words: &str) -> f64 {
 #[test]
 fn all_modes() {
     let mut b = scene();
-    // Of 1, -2.5, 4 by hand.
+    // From 1, -2.5, 4 by hand.
     let expected = [2.5, -2.5, 4.0, 2.5 / 3.0, 23.25, 23.25 / 3.0, 7.5, 2.5, 1.0, 4.0];
     for (mode, a) in MODES.iter().zip(expected) {
         assert_eq!(value(&mut b, &format!("{mode} x")), a, "{mode}");
@@ -58,7 +58,7 @@ fn several_inputs_make_a_vector() {
 #[test]
 fn replaced_by_what_stands_at_the_extreme() {
     let mut b = scene();
-    // The largest x (4) has z = 2; the largest z is that one, too.
+    // The largest x (4) has z = 2; it also has the largest z.
     let c = b.compute(&Reduce, "max z x y replace 1 2 replace 3 2").unwrap();
     assert_eq!(b.evaluate(&*c).unwrap().vector, [2.0, 4.0, 3.5]);
     let c = b.compute(&Reduce, "min z x replace 1 2").unwrap();

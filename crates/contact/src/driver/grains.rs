@@ -1,4 +1,4 @@
-//! The particles as contacts see them: who touches, where and how.
+//! Particles as the contact loop accesses them: contact tests and geometry.
 
 use super::rules::{Curvature, Rule, Rules};
 use crate::together::Met;
@@ -9,7 +9,7 @@ use perigrain_neigh::list::{Pair, difference};
 use perigrain_world::Travel;
 use perigrain_world::domain::Flow;
 
-/// The particles as contacts see them: columns of equal length.
+/// Particles as the contact loop accesses them: columns of equal length.
 #[derive(Clone, Copy)]
 pub struct Grains<'a> {
     /// Positions [length].
@@ -24,17 +24,17 @@ pub struct Grains<'a> {
     pub mass: &'a [f64],
     /// Types, from 1.
     pub kind: &'a [u16],
-    /// Identities.
+    /// Ids.
     pub tag: &'a [u32],
-    /// Edges of the box; zero where it does not repeat.
+    /// Edges of the box; zero along directions that are not periodic.
     pub period: Periods,
-    /// How the box grows, and groups by particle, where images move with it.
+    /// Velocity gradient of the box, and group masks, if images move with it.
     pub flow: Option<(Flow, &'a [u32])>,
-    /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
+    /// The solid of each particle, `NO_BODY` for grains; may be empty if no rule needs it.
     pub body: &'a [u32],
-    /// Particles that nothing moves, of infinite mass to others; may be empty.
+    /// Particles that are held in place, with infinite mass for others; may be empty.
     pub frozen: &'a [bool],
-    /// How far they may have gone.
+    /// How far they may have moved.
     pub travel: Travel,
 }
 
@@ -46,7 +46,7 @@ impl Grains<'_> {
         self.body.get(i as usize).copied().unwrap_or(NO_BODY)
     }
 
-    /// A name for the body of particle `i`, unlike all others: solids first, then grains.
+    /// A unique number for the body of particle `i`: solids first, then grains.
     pub(super) fn body_name(&self, i: u32) -> u64 {
         match self.body(i) {
             NO_BODY => (1 << 32) + u64::from(i),
@@ -59,7 +59,7 @@ impl Grains<'_> {
         Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
     }
 
-    /// The motion of the second particle's image, which a growing box carries along.
+    /// The motion of the second particle's image, which moves with a deforming box.
     #[inline]
     fn image_motion(&self, p: &Pair) -> Motion {
         let mut motion = self.motion(p.j);
@@ -71,14 +71,14 @@ impl Grains<'_> {
         motion
     }
 
-    /// Whether the two touch, or would still hold together if they had touched (`gaps`: some law lets them).
+    /// Whether the two touch, or would still stick together had they touched (`gaps`: some law allows this).
     #[inline]
     pub(super) fn meeting(&self, p: &Pair, rules: &Rules, gaps: bool) -> Meeting {
         let d = difference(self.x, &self.period, p);
         let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
         let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
         let deep = sum - DEEP * ri.min(rj);
-        // Without branches on what nobody can foretell.
+        // Without branches on unpredictable conditions.
         let [touches, deep] = [square < sum * sum, square < deep * deep];
         let meeting =
             [Meeting::Apart, Meeting::Touch, Meeting::Deep][usize::from(touches) + usize::from(deep)];
@@ -90,7 +90,7 @@ impl Grains<'_> {
         if square < far * far { Meeting::Near } else { Meeting::Apart }
     }
 
-    /// Where and how the two touch, or have touched and still hold, and how far apart their centres are.
+    /// Geometry of a contact that exists or still sticks, and the distance of the centres.
     #[inline]
     pub(super) fn geometry(&self, p: &Pair, rule: &Rule) -> (Geometry, f64) {
         let (i, j) = (p.i as usize, p.j as usize);
@@ -109,7 +109,7 @@ impl Grains<'_> {
             };
         }
         if rule.law.arm == Arm::Point {
-            // The laws take radii for arms, of slip and of torque.
+            // The laws use radii as lever arms of slip and torque.
             g.radii = match [p.i, p.j].map(|k| self.body(k) == NO_BODY) {
                 [true, false] => [distance, 0.0],
                 [false, true] => [0.0, distance],
@@ -130,17 +130,17 @@ impl Grains<'_> {
 pub(super) enum Meeting {
     #[default]
     Apart,
-    /// Beyond touch, but within what an existing contact spans.
+    /// Not touching, but within the reach of an existing contact.
     Near,
     Touch,
     /// Overlapping by more than `DEEP` of the smaller radius.
     Deep,
 }
 
-/// Overlap over the smaller radius beyond which laws of contact mean little.
+/// Overlap as a fraction of the smaller radius above which contact laws lose their meaning.
 pub const DEEP: f64 = 0.1;
 
-/// Pairs of grains that touch.
+/// The grains of touching pairs.
 pub(super) struct Ends<'a> {
     pub pairs: &'a [Pair],
     pub grains: &'a Grains<'a>,

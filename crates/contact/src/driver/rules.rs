@@ -1,12 +1,12 @@
-//! What contacts of each pair of types obey.
+//! Contact rules by pair of types.
 
 use crate::{Arm, Granular};
 
-/// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
+/// The number of simultaneous contacts among which a force is divided (Walayat et al., eq. 14 and 19, made
 /// momentum-conserving: every contact's force and its reaction are divided by the same N).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Average {
-    /// N = 1: forces add up.
+    /// N = 1: forces are added.
     #[default]
     None,
     /// N = the larger of the two particles' numbers of contacts.
@@ -21,16 +21,16 @@ pub enum Curvature {
     /// R_i R_j / (R_i + R_j).
     #[default]
     Both,
-    /// The grain's radius where it meets a peridynamic solid, whose surface counts as flat.
+    /// The grain's radius where it meets a peridynamic solid, whose surface is treated as flat.
     Impactor,
 }
 
-/// What contacts of one pair of types obey.
+/// The rule for contacts of one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     /// The law.
     pub law: Granular,
-    /// Sharing.
+    /// Averaging.
     pub average: Average,
     /// Effective radius.
     pub curvature: Curvature,
@@ -44,7 +44,7 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// No rules yet.
+    /// Without rules.
     pub fn new(types: usize) -> Self {
         Self { types, table: vec![None; types * types] }
     }
@@ -69,19 +69,19 @@ impl Rules {
         self.table[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
     }
 
-    /// How many numbers a contact remembers at most.
+    /// The largest history size.
     pub fn memory(&self) -> usize {
         self.table.iter().flatten().map(|r| r.law.memory()).max().unwrap_or(0)
     }
 
-    /// The rules by which contacts are looked at once more ([`Granular::again`]).
+    /// The rules for repeated evaluation of contacts ([`Granular::again`]).
     #[must_use]
     pub fn again(&self, setup: bool) -> Self {
         let again = |rule: &Rule| Rule { law: rule.law.again(setup), ..*rule };
         Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
     }
 
-    /// Whether some rule asks which particles belong to solids.
+    /// Whether some rule needs to know which particles belong to solids.
     pub fn ask_for_bodies(&self) -> bool {
         let asks = |r: &Rule| {
             r.average == Average::Body || r.curvature == Curvature::Impactor || r.law.arm == Arm::Point
@@ -89,7 +89,7 @@ impl Rules {
         self.any(asks)
     }
 
-    /// Whether some rule is of this kind.
+    /// Whether `is` holds for some rule.
     pub fn any(&self, is: impl Fn(&Rule) -> bool) -> bool {
         self.table.iter().flatten().any(is)
     }

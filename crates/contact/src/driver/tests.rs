@@ -1,4 +1,4 @@
-//! Sharing, curvature, momentum and thread counts of the loop over contacts.
+//! Averaging, curvature, momentum and thread counts of the contact loop.
 
 use super::*;
 use crate::{Damping, Friction, Granular, Model, Normal, Tangential, normal};
@@ -17,7 +17,7 @@ struct Scene {
     body: Vec<u32>,
 }
 
-/// A grain (type 2, radius 1) pressed into a flat solid of 5 × 5 small spheres (type 1) that it meets with many.
+/// A grain (type 2, radius 1) pressed into a flat solid of 5 × 5 small spheres (type 1), with many contacts.
 fn scene() -> Scene {
     let mut x: Vec<Vec3> = vec![];
     for k in 0..25 {
@@ -88,7 +88,7 @@ fn shared_forces_conserve_momentum() {
     for average in [Average::Particle, Average::Body] {
         let (f, torque, same) = evaluate(&s, average, Curvature::Both);
         assert_eq!(same, n);
-        // The grain has n contacts, each small particle one: N = n either way.
+        // The grain has n contacts, each small particle one: N = n in both modes.
         for d in 0..3 {
             assert!((f[25][d] * n as f64 - plain[25][d]).abs() < 1e-12 * plain[25][2].abs());
             assert!((torque[25][d] * n as f64 - plain_torque[25][d]).abs() < 1e-12 * plain[25][2].abs());
@@ -100,7 +100,7 @@ fn shared_forces_conserve_momentum() {
 
 #[test]
 fn bodies_share_apart() {
-    // Two solids under one grain: each shares among its own contacts.
+    // Two solids under one grain: each divides among its own contacts.
     let mut s = scene();
     let (plain, _, n) = evaluate(&s, Average::None, Curvature::Both);
     for k in 0..25 {
@@ -118,13 +118,13 @@ fn bodies_share_apart() {
 
 #[test]
 fn a_flat_solid_makes_contacts_stiffer() {
-    // Smooth and elastic at rest: F ∝ √R̄, R̄ = R against R r/(R + r) = R/11.
+    // Smooth and elastic at rest: F ∝ √R̄, with R̄ = R compared with R r/(R + r) = R/11.
     let mut s = scene();
     (s.v[25], s.omega[25]) = ([0.0; 3], [0.0; 3]);
     let (both, ..) = evaluate(&s, Average::None, Curvature::Both);
     let (flat, ..) = evaluate(&s, Average::None, Curvature::Impactor);
     assert!((flat[25][2] / both[25][2] / 11.0_f64.sqrt() - 1.0).abs() < 1e-12);
-    // Grain against grain: nothing is flat.
+    // Two grains: neither is flat.
     s.body.fill(NO_BODY);
     let (grains, ..) = evaluate(&s, Average::None, Curvature::Impactor);
     assert_eq!(grains, both);
@@ -140,7 +140,7 @@ fn the_same_bits_for_any_number_of_threads() {
     assert_eq!(one, two);
 }
 
-/// What contacts of a row of grains remember and do, evaluated several at a time or one by one.
+/// Histories and results of the contacts in a row of grains, evaluated several at a time or one by one.
 fn row(law: &Granular, flowing: bool, alone: bool) -> (Vec<f64>, Vec<Wrench>) {
     let n = 21;
     let vector = |k: u32| [0.618, 0.755, 0.329].map(|a| (f64::from(k) * a).fract() - 0.5);

@@ -1,11 +1,11 @@
-//! What contacts of grains tell the ledger of energy: what they do beside their elastic forces.
+//! Contributions of grain contacts to the energy ledger: work apart from their elastic forces.
 
 use super::{Grains, Rules, Sweep};
 use perigrain_base::math::vec3::{add, dot, scale, sub};
 use perigrain_world::contacts::{Contacts, PairDeeds};
 
 impl Sweep {
-    /// Adds what the contacts of the last evaluation did; `memory` is that of this evaluation.
+    /// Adds the contributions of the last evaluation; `memory` is from that evaluation.
     pub fn tell(&self, grains: &Grains, rules: &Rules, memory: &Contacts, all: &mut PairDeeds) {
         self.each(grains, rules, memory, |c| {
             let (i, j, n) = (c.pair.i as usize, c.pair.j as usize, c.geometry.normal);

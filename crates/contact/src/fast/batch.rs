@@ -1,4 +1,4 @@
-//! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
+//! Contacts that are evaluated together, stage by stage: collection, geometry, law, sums to memory.
 
 use super::Alike;
 use super::found::Found;
@@ -16,48 +16,48 @@ use std::ops::Range;
 mod rooms;
 mod sizes;
 
-/// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
-/// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
-/// waits for roots and quotients.
+/// Contacts that go through each stage of the evaluation before the next stage begins. A processor looks
+/// ahead over some five hundred instructions: stages are short enough to overlap several groups of contacts,
+/// which hides the latency of roots and divisions.
 pub(super) const BATCH: usize = 64;
-/// The most groups of a batch.
+/// The largest number of groups in a batch.
 const GROUPS: usize = BATCH / 4;
 
-/// Contacts that go from stage to stage together, perhaps of several lists; what is past the last one repeats it up to a full
-/// group.
+/// Contacts that pass through the stages together, possibly from several lists; the last one is repeated up
+/// to a full group.
 pub(super) struct Batch<V, const N: usize> {
-    /// How many wait to be evaluated.
+    /// Number of contacts waiting to be evaluated.
     waiting: usize,
-    /// What each remembers.
+    /// Pointers to their histories.
     past: [*mut f64; BATCH],
     i: [u32; BATCH],
     j: [u32; BATCH],
-    /// Which images the second ones are, with their places.
+    /// The second grains with their images.
     w: [u32; BATCH],
     /// x_i − x_j, coordinate by coordinate [length].
     apart: MaybeUninit<[[f64; BATCH + FILL]; 3]>,
     geometry: Room<Geometry<V>>,
-    /// Of two grains, where all have one radius.
+    /// Radii and derived sizes of two grains, if all grains have one radius.
     sizes: Option<Sizes<V>>,
-    /// The reduced mass, where all have one mass.
+    /// Reduced mass, if all grains have one mass.
     mass: Option<V>,
-    /// On i [force].
+    /// Force on i [force].
     force: Room<Outgoing<N>>,
-    /// On i and on j, each about its centre [force × length].
+    /// Torques on i and on j, each about its centre [force × length].
     torque: Room<[Outgoing<N>; 2]>,
-    /// Of the force on i, damping along the normal and what acts across it, where the ledger of energy asks [force].
+    /// Normal damping force and tangential force on i, for the energy ledger [force].
     deeds: Room<[Outgoing<N>; 2]>,
 }
 
 impl<V: Lanes<N>, const N: usize> Batch<V, N> {
-    /// Without contacts.
+    /// An empty batch.
     ///
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     #[allow(clippy::manual_map)] // closures are not compiled for AVX
     pub unsafe fn new(alike: Alike) -> Self {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         let (sizes, mass) = unsafe {
             let sizes = match alike.radius {
                 Some(radius) => Some(Sizes::of([V::all(radius); 2])),
@@ -85,18 +85,18 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Whether some wait to be evaluated.
+    /// Whether any contacts are waiting.
     pub fn waits(&self) -> bool {
         self.waiting > 0
     }
 
-    /// Whether there is no room for more.
+    /// Whether the batch is full.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
         self.waiting == BATCH
     }
 
-    /// Takes as many of these pairs of a short list as there is room for; how many.
+    /// Takes as many of these pairs of a short list as fit; returns their number.
     ///
     /// # Safety
     /// They must be pairs of the list, which must not change until they have been evaluated.
@@ -112,7 +112,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         let past = short.history.as_mut_ptr();
         for (at, k) in (self.waiting..).zip(&found.numbers()[which.clone()]) {
             let k = *k as usize;
-            // SAFETY: passed on; there is room for all of them.
+            // SAFETY: the caller's guarantee; there is room for all of them.
             unsafe {
                 *self.i.get_unchecked_mut(at) = *short.i.as_ptr().add(k);
                 let w = *short.w.as_ptr().add(k);
@@ -122,11 +122,11 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             }
         }
         for d in 0..3 {
-            // SAFETY: behind both there is room for some lanes.
+            // SAFETY: both have spare lanes at their end.
             unsafe {
                 let (from, to) = (found.apart(d).add(which.start), self.apart(d).add(self.waiting));
                 for at in (0..taken).step_by(N) {
-                    // What stands behind the last one is copied as well, whatever it is.
+                    // Lanes beyond the last pair are copied too; their values do not matter.
                     let lanes = from.add(at).cast::<[MaybeUninit<f64>; N]>().read();
                     to.add(at).cast::<[MaybeUninit<f64>; N]>().write(lanes);
                 }
@@ -136,7 +136,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         taken
     }
 
-    /// Where x_i − x_j begins along an axis.
+    /// Start of the column of x_i − x_j along an axis.
     #[inline(always)]
     fn apart(&mut self, d: usize) -> *mut f64 {
         debug_assert!(d < 3);
@@ -144,14 +144,15 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         unsafe { self.apart.as_mut_ptr().cast::<f64>().add(d * (BATCH + FILL)) }
     }
 
-    /// Evaluates the law for those that wait, at least one. What they are in sum is told to the list of the last ones.
+    /// Evaluates the law for all waiting contacts, at least one. Sums over them are added to the list of the
+    /// last ones.
     ///
     /// # Safety
     /// Entries of their lists must be grains.
     #[inline(always)]
     pub unsafe fn run<const W: usize>(&mut self, cx: &Cx, law: &Granular, list: &mut List) {
         let count = std::mem::take(&mut self.waiting);
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             self.fill_up(count);
             for group in 0..count.div_ceil(N) {
@@ -188,7 +189,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     #[inline(always)]
     unsafe fn fill_up(&mut self, count: usize) {
         for at in count..count.next_multiple_of(N) {
-            // SAFETY: passed on; the batch has room for whole groups.
+            // SAFETY: the caller's guarantee; the batch has room for whole groups.
             unsafe {
                 *self.i.get_unchecked_mut(at) = *self.i.get_unchecked(count - 1);
                 *self.j.get_unchecked_mut(at) = *self.j.get_unchecked(count - 1);
@@ -201,11 +202,12 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// First stage: where and how grains touch. Whether some overlap too far. Where grains are many, what later stages read of the second
-    /// ones comes from afar, from tiles beside: each stage asks for what the next one will want.
+    /// First stage: geometry of the contacts; returns whether some overlap too deeply. With many grains, the
+    /// second grains lie in distant memory, in neighbouring tiles: each stage prefetches what the next one
+    /// needs.
     #[inline(always)]
     unsafe fn meet(&mut self, cx: &Cx, group: usize) -> bool {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let (i, j) = (self.i.as_ptr().add(N * group), self.j.as_ptr().add(N * group));
             if cx.are_many {
@@ -235,10 +237,10 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Second stage: forces, torques and what is remembered.
+    /// Second stage: forces, torques and histories.
     #[inline(always)]
     unsafe fn act<const W: usize>(&mut self, cx: &Cx, law: &Granular, memory: usize, group: usize) {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let at = N * group;
             let (i, j) = (self.i.as_ptr().add(at), self.j.as_ptr().add(at));
@@ -276,7 +278,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             self.force.put(group, Outgoing::of(wrench.force));
             self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
             if cx.deeds.is_some() {
-                // The force of the law once more, from what it remembers now.
+                // Evaluates the law's force again from the updated history.
                 let (mut now, n) = (history, g.normal);
                 let central = dot(wrench.force, n);
                 let damping = scale(central - law.push(g, &mut now[..memory]), n);
@@ -289,7 +291,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             history[W - 1] = V::all(cx.now + 1.0);
             for part in (0..W).step_by(4) {
                 let four = [history[part], history[part + 1], history[part + 2], history[part + 3]];
-                // Lanes without a contact repeat the last one, in whose place they would write the same.
+                // Lanes without a contact repeat the last one and would write identical values.
                 store_rows(past, part, four);
             }
         }
@@ -299,7 +301,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     #[inline(always)]
     unsafe fn add(&self, cx: &Cx, group: usize, lane: usize) {
         let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let at = N * group + lane;
             let (i, j) = (*self.i.get_unchecked(at), *self.j.get_unchecked(at));
@@ -310,13 +312,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Adds what the first contacts did to the sums of the ledger of energy.
+    /// Adds the work of the first contacts to the sums of the energy ledger.
     #[inline(always)]
     unsafe fn tell(&self, deeds: &[par::Shared<Vec3>; 3], count: usize) {
         let (damping, across): (*mut f64, *mut f64) = (deeds[0].as_ptr().cast(), deeds[1].as_ptr().cast());
         for at in 0..count {
             let (group, lane) = (at / N, at % N);
-            // SAFETY: passed on; all of them have acted.
+            // SAFETY: the caller's guarantee; all of them have been evaluated.
             unsafe {
                 let (i, j) = (*self.i.get_unchecked(at), *self.j.get_unchecked(at));
                 let [along, beside] = self.deeds.at(group);
@@ -326,11 +328,11 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Adds Σ d ⊗ F of the first contacts, which must have gone through all stages.
+    /// Adds Σ d ⊗ F of the first contacts, which must have passed all stages.
     unsafe fn add_virial(&mut self, count: usize, sum: &mut [f64; 6]) {
         for at in 0..count {
             let (group, lane) = (at / N, at % N);
-            // SAFETY: the caller's promise.
+            // SAFETY: the caller's guarantee.
             let d = unsafe { [0, 1, 2].map(|k| *self.apart(k).add(at)) };
             // SAFETY: as above.
             let force = unsafe { self.force.at(group) };
@@ -343,13 +345,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 }
 
 impl<V: Lanes<N>, const N: usize> Batch<V, N> {
-    /// How one of the contacts touches that have been met.
+    /// Geometry of a contact that has passed the first stage.
     ///
     /// # Safety
     /// There must be such a contact.
     #[inline]
     unsafe fn geometry_of(&self, at: usize) -> Geometry {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let (g, lane) = (self.geometry.at(at / N), at % N);
             Geometry {
@@ -362,8 +364,8 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Adds the elastic forces of a law that flows, and what its contacts hold, of the first ones, which must have acted: in plain
-    /// numbers and out of line, as with heat.
+    /// Adds the elastic forces and the stored energy of a dissipative law, for the first contacts, which must
+    /// have been evaluated: scalar code and not inlined, as for heat.
     #[inline(never)]
     unsafe fn tell_flow<const W: usize>(
         &self,
@@ -375,12 +377,12 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     ) {
         let none = [0.0; W];
         for at in 0..count {
-            // SAFETY: the caller's promise: each contact has a row of memory and two grains of its own, which no other thread touches
-            // now.
+            // SAFETY: the caller's guarantee: each contact has its own history row and two grains, which no
+            // other thread accesses now.
             unsafe {
                 let g = self.geometry_of(at);
                 let row = std::slice::from_raw_parts(self.past[at], W);
-                // Where nothing was stored the row may be that of an earlier contact.
+                // Where nothing was stored, the row may be that of an earlier contact.
                 let lasts = row[W - 1] > cx.now - 0.5;
                 let history = if lasts { &row[..law.memory()] } else { &none[..law.memory()] };
                 let [push, held] = law.pressing(&g, history);
@@ -394,13 +396,13 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
         }
     }
 
-    /// Adds the heat through the first contacts, which must have been met: in plain numbers and out of line, so that scenes
-    /// without heat do not carry it.
+    /// Adds the heat flow through the first contacts, which must have passed the first stage: scalar code and
+    /// not inlined, so that systems without heat do not pay for it.
     #[inline(never)]
     unsafe fn add_heat(&self, cx: &Cx, law: &Granular, count: usize) {
         let Some((temperature, flow)) = &cx.heat else { return };
         for at in 0..count {
-            // SAFETY: the caller's promise; entries are grains, and the caller keeps other threads away.
+            // SAFETY: the caller's guarantee; entries are grains, and the caller keeps other threads away.
             unsafe {
                 let geometry = self.geometry_of(at);
                 let (i, j) = (self.i[at] as usize, self.j[at] as usize);
@@ -412,11 +414,11 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     }
 }
 
-/// Has the memory at this address brought near, where the processor can do that; nothing is read.
+/// Prefetches the memory at this address, where the processor supports it; nothing is read.
 #[inline(always)]
 fn fetch<T>(at: *const T) {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: no address is wrong: nothing is read from it.
+    // SAFETY: any address is allowed, because nothing is read.
     unsafe {
         std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(at.cast());
     }
@@ -424,13 +426,13 @@ fn fetch<T>(at: *const T) {
     let _ = at;
 }
 
-/// One of the numbers in lanes, where lanes are not compiled for the processor.
+/// One number of a lane vector, for code that is not compiled for the lanes' instruction set.
 ///
 /// # Safety
 /// There must be such a lane.
 #[inline]
 unsafe fn number<V: Lanes<N>, const N: usize>(lanes: &V, lane: usize) -> f64 {
     const { assert!(size_of::<V>() == N * size_of::<f64>()) };
-    // SAFETY: lanes are so many numbers, one behind the other.
+    // SAFETY: lanes are this many consecutive numbers.
     unsafe { *(&raw const *lanes).cast::<f64>().add(lane) }
 }

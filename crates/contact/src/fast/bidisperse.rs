@@ -1,5 +1,6 @@
-//! Grains of very different sizes: pairs with large ones are found size by size and have lists of their own, slab by slab, in
-//! slabs as thick as they reach. They come after the pairs of small grains, whose tiles are small and many.
+//! Grains of very different sizes: pairs with large grains are found size by size and stored in their own
+//! lists, one per slab as thick as they reach. They come after the pairs of small grains, whose tiles are
+//! small and many.
 
 use super::lists::List;
 use super::{Fast, NONE};
@@ -10,7 +11,7 @@ use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs_of_large};
 use perigrain_neigh::tiles::{HERE, Tiles};
 
 impl Fast {
-    /// Pairs with large grains, from these positions and radii in a box of these periods, with surfaces nearer than `skin`.
+    /// Pairs with large grains at these positions, with gaps below `skin`.
     pub(super) fn find_large(
         &self,
         grains: &Grains,
@@ -28,8 +29,8 @@ impl Fast {
         pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep)
     }
 
-    /// Adds long lists of these pairs, one for each slab that they reach across at most once. A pair belongs to the slab of one of its
-    /// grains from where the other is in the same or the next one.
+    /// Adds long lists of these pairs, one per slab. A pair belongs to the slab of one of its grains such
+    /// that the other is in the same slab or the next.
     pub(super) fn add_large(&mut self, found: &[Pair], tiles: &Tiles) {
         let (slabs, slab_of_places) = (tiles.slabs(), tiles.slab_of_places());
         let (count, n) = (slabs.count(), tiles.order.len());
@@ -57,7 +58,7 @@ impl Fast {
     }
 }
 
-/// The list of these pairs: places of both grains, and the image of the second one.
+/// A list of these entries: indices of both grains, and the image of the second one.
 fn list_of(mut entries: Vec<[u32; 3]>, tiles: &Tiles) -> List {
     entries.sort_unstable();
     let grain = |place: u32| tiles.order[place as usize];
@@ -68,7 +69,7 @@ fn list_of(mut entries: Vec<[u32; 3]>, tiles: &Tiles) -> List {
         entries.iter().flat_map(|[i, j, image]| [[HERE, *i], [*image, *j]]).collect();
     seen.sort_unstable();
     seen.dedup();
-    // They reach across many layers, which are watched as one.
+    // They extend over many layers, which are watched as one.
     seen.into_iter().for_each(|[image, place]| list.watched.push(0, image, &[grain(place)]));
     list
 }

@@ -1,4 +1,4 @@
-//! Grains that overlap so far that contact laws mean little.
+//! Grains that overlap too deeply for contact laws.
 
 use super::lists::List;
 use super::near::Places;
@@ -7,7 +7,8 @@ use crate::driver::{DEEP, Grains};
 use perigrain_base::math::lanes::{PLACE_BITS, place};
 
 impl Fast {
-    /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, in these lists, and by which part.
+    /// The pair of smallest ids in these lists that overlaps by more than [`DEEP`] of the smaller radius,
+    /// with the overlap as a fraction of that radius.
     pub(super) fn find_deep(&self, grains: &Grains, lists: &[List]) -> Option<([u32; 2], f64)> {
         let at = Places::new(grains, &self.shifts);
         let of = |i: u32, w: u32| {
@@ -24,7 +25,7 @@ impl Fast {
             Some(([p.min(q), p.max(q)], (sum - square.sqrt()) / least))
         };
         let pairs = lists.iter().flat_map(|l| l.short.i.iter().zip(&l.short.w));
-        // What fills lists up is at places that need not be known.
+        // Padding entries of the lists have no valid indices.
         let pairs = pairs.filter(|(_, w)| **w >> PLACE_BITS != NOWHERE);
         pairs.filter_map(|(&i, &w)| of(i, w)).min_by_key(|(ids, _)| *ids)
     }

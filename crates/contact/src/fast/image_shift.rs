@@ -1,4 +1,4 @@
-//! Lists that go on after grains have been moved around the box.
+//! Lists that stay valid after grains have been wrapped around the box.
 
 use super::lists::List;
 use super::{FAR, Fast, NOWHERE};
@@ -8,7 +8,7 @@ use perigrain_base::par;
 use perigrain_neigh::tiles::shift_of;
 
 impl Fast {
-    /// Images of a box that repeats after these periods, in which lists were made.
+    /// Records the periodic images of the box for which the lists were made.
     pub(super) fn see_images(&mut self, period: Periods) {
         self.period = period;
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
@@ -18,7 +18,7 @@ impl Fast {
         self.shifts[NOWHERE as usize][0] = FAR;
     }
 
-    /// The box has changed since: images stand elsewhere, and who was far from one may be near.
+    /// Updates the images after a change of the box: grains far from an image may now be near it.
     pub(super) fn follow(&mut self, period: &Periods) {
         if *period != self.period {
             self.validity.follow(&self.period, period);
@@ -26,8 +26,8 @@ impl Fast {
         }
     }
 
-    /// Lists see grains where they are after as many `turns` of each since the lists were made, that is after they were moved by
-    /// so many edges of the box; empty where nobody was.
+    /// Adapts the lists to grains that have been wrapped: `turns` counts the edges of the box that each has
+    /// moved since the lists were made; empty if none has.
     pub fn turn(&mut self, turns: &[[i8; 3]], period: &Periods) {
         self.follow(period);
         if turns == self.turns {
@@ -38,7 +38,7 @@ impl Fast {
         let more: Vec<[i16; 3]> = (0..self.tag.len())
             .map(|i| std::array::from_fn(|d| of(turns, i)[d] - of(&self.turns, i)[d]))
             .collect();
-        // The code of an image is a sum over axes: what its grains are moved by adds to it.
+        // The code of an image is a sum over axes: each wrap of a grain adds to it.
         let codes: Vec<i32> = more.iter().map(code).collect();
         let follow = |i: &u32, w: &mut u32| {
             let image = *w >> PLACE_BITS;

@@ -1,11 +1,11 @@
-//! Which contact law holds between which types, as the fast loop looks it up.
+//! The table of contact laws by types, for the fast loop.
 
 use super::lists::Pairs;
 use super::{AMPLE, NONE};
 use crate::Granular;
 use perigrain_base::math::lanes::place;
 
-/// Which law holds between which types.
+/// The table of laws.
 #[derive(Clone, Debug)]
 pub struct Laws {
     pub(super) distinct: Vec<Granular>,
@@ -14,7 +14,7 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// A table from `law(a, b)` for types from 1, symmetric; `None` where there are too many different laws.
+    /// The table from `law(a, b)` for types from 1, symmetric; `None` if there are too many different laws.
     pub fn new(types: usize, law: impl Fn(u16, u16) -> Option<Granular>) -> Option<Self> {
         let mut t = Self { distinct: vec![], types, which: vec![] };
         for a in 1..=types as u16 {
@@ -38,9 +38,9 @@ impl Laws {
         &self.distinct
     }
 
-    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    /// The largest gap at which grains of up to this radius can stick together [length].
     pub fn span(&self, largest: f64) -> f64 {
-        // Spans grow with the effective radius, which is at most half of the larger one.
+        // Gaps grow with the effective radius, which is at most half of the larger one.
         let gaps = self.distinct.iter().map(|law| law.gap(0.5 * largest));
         AMPLE * gaps.fold(0.0, f64::max)
     }
@@ -50,8 +50,8 @@ impl Laws {
         self.which[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
     }
 
-    /// Puts pairs of one law behind each other, each law's in their order: contacts of one law are evaluated together, and a list of which
-    /// some pairs are left out has the others in the same order.
+    /// Groups pairs by law and keeps the order within each law: contacts of one law are evaluated together,
+    /// and removing pairs from a list does not change the order of the others.
     pub(super) fn sort(&self, kind: &[u16], pairs: &mut Pairs) {
         if self.distinct.len() < 2 {
             return;
@@ -68,7 +68,7 @@ impl Laws {
         }
     }
 
-    /// How many numbers a contact remembers at most.
+    /// The largest history size.
     pub fn memory(&self) -> usize {
         self.distinct.iter().map(Granular::memory).max().unwrap_or(0)
     }

@@ -1,7 +1,7 @@
-//! How long short lists stay valid: how far grains have gone since, list by list, and only relative to each other.
+//! How long short lists stay valid: displacements since they were made, per list and relative to each other.
 //!
-//! Two grains come closer by what their ways differ. In a flow all grains of a tile and of those beside it go nearly the same way, and
-//! lists outlast many steps in which all go far.
+//! Two grains approach by the difference of their displacements. In a flow, the grains of a tile and of its
+//! neighbours move nearly alike, and lists stay valid for many steps in which all of them move far.
 
 use super::has_avx2;
 use super::lists::List;
@@ -15,36 +15,37 @@ use perigrain_base::par;
 use perigrain_neigh::tiles::{HERE, shift_of};
 use perigrain_world::Seen;
 
-/// The part of the thin skin that grains of a list may use up before it is made anew, at the next look.
+/// Fraction of the thin skin that the grains of a list may use up before the list is remade at the next
+/// check.
 const WORN: f64 = 0.5;
 
-/// So few grains are looked at before another thread has seen that there is work.
+/// Below this number of grains, a loop ends before other threads could start.
 const FEW: usize = 1024;
 
-/// Positions and radii where a list was made.
+/// Position and radius when a list was made.
 type Place = [f64; 4];
 
-/// Where grains were when the short lists that they are in were made.
+/// The state of grains at the time their short lists were made.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ListValidity {
-    /// Those of each list, row by row.
+    /// Places of each list, row by row.
     then: Vec<Vec<Place>>,
-    /// The box in which each list was made.
+    /// The box when each list was made.
     listed: Vec<Periods>,
-    /// The box at the last look, and whether it has changed since lists were made.
+    /// The box at the last check, and whether it has changed since lists were made.
     looked: Periods,
     changed: bool,
-    /// Rows of lists whose grains have been moved around the box, and by how many periods since lists were made.
+    /// Rows of lists whose grains have been wrapped, and by how many periods since the lists were made.
     turned: Vec<([usize; 2], [f64; 3])>,
-    /// How far, at the last look, grains of a list had strayed from each other at most.
+    /// The largest relative displacement in any list at the last check.
     since: Seen,
-    /// How often all grains were looked at.
+    /// Number of times that all grains were checked.
     pub looks: usize,
-    /// How much closer grains of each list can have come.
+    /// Largest possible approach of two grains, per list.
     nearer: Vec<f64>,
 }
 
-/// Bounds of ways [length], and of what radii have grown.
+/// Bounds of displacements [length], and of the growth of radii.
 #[derive(Clone, Copy, Debug)]
 struct Ways {
     least: [f64; 3],
@@ -65,25 +66,25 @@ impl Ways {
         all
     }
 
-    /// Those of images that have moved by so much.
+    /// The bounds for images that have moved by `moved`.
     fn seen_from(self, moved: Vec3) -> Self {
         Self { least: add(self.least, moved), most: add(self.most, moved), ..self }
     }
 
-    /// By how much two surfaces can have come closer at most [length].
+    /// The largest possible approach of two surfaces [length].
     fn closer(self) -> f64 {
         let square: f64 = (0..3).map(|d| (self.most[d] - self.least[d]).max(0.0).powi(2)).sum();
         square.sqrt() + 2.0 * self.grown
     }
 }
 
-/// How far an image has moved between two times.
+/// Displacement of an image between two times.
 fn moved(image: u32, now: &Periods, then: &Periods) -> Vec3 {
     let by = shift_of(image);
     sub(now.shift(by), then.shift(by))
 }
 
-/// How far images have moved between two times, at most [length].
+/// The largest displacement of any image between two times [length].
 fn farthest(now: &Periods, then: &Periods) -> f64 {
     if now == then {
         return 0.0;
@@ -91,21 +92,21 @@ fn farthest(now: &Periods, then: &Periods) -> f64 {
     (0..27).map(|image| length(moved(image, now, then))).fold(0.0, f64::max)
 }
 
-/// [`Ways`] as they are gathered, vector by vector.
+/// [`Ways`] while they are collected, vector by vector.
 struct Span<F> {
     least: F,
     most: F,
-    /// Zero, but where a way was no number: that is neither the least nor the most.
+    /// Zero, unless a displacement was NaN, which minimum and maximum would miss.
     bad: F,
     grown: f64,
 }
 
 impl<F: Four> Span<F> {
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     unsafe fn new() -> Self {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let (least, most) = (F::splat(f64::INFINITY), F::splat(f64::NEG_INFINITY));
             Self { least, most, bad: F::splat(0.0), grown: 0.0 }
@@ -114,7 +115,7 @@ impl<F: Four> Span<F> {
 
     #[inline(always)]
     fn take(&mut self, now: F, radius: f64, seen: &Place) {
-        // SAFETY: an array of four numbers. The radius in the last lane is not looked at.
+        // SAFETY: an array of four numbers. The radius in the last lane is ignored.
         let way = now - unsafe { F::load(seen.as_ptr()) };
         (self.least, self.most) = (way.least(self.least), way.most(self.most));
         self.bad = self.bad + way * 0.0;
@@ -131,19 +132,20 @@ impl<F: Four> Span<F> {
 }
 
 impl ListValidity {
-    /// Forgets all grains.
+    /// Discards all grains.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes up so many new lists, all of which have to be made.
+    /// Begins with this many new lists, all of which must be made.
     pub fn begin(&mut self, lists: usize) {
         let mut then = std::mem::take(&mut self.then);
         then.resize(lists, vec![]);
         *self = Self { then, listed: vec![Periods::default(); lists], ..Self::default() };
     }
 
-    /// Grains have been moved by so many periods since lists were made, by `more` of them now: that is not a way.
+    /// Records that grains have been wrapped by `turns` periods since lists were made, of which `more` are
+    /// new: this is not a displacement.
     pub fn turn(&mut self, lists: &[List], turns: &[[i8; 3]], more: &[[i16; 3]], period: &Periods) {
         self.turned.clear();
         for (k, (list, then)) in lists.iter().zip(&mut self.then).enumerate() {
@@ -159,7 +161,7 @@ impl ListValidity {
         }
     }
 
-    /// The box has changed: grains that have been moved around it would be elsewhere.
+    /// Records a change of the box: grains that have been wrapped are elsewhere in it.
     pub fn follow(&mut self, before: &Periods, now: &Periods) {
         self.changed = true;
         for ([list, at], turns) in &self.turned {
@@ -167,20 +169,21 @@ impl ListValidity {
         }
     }
 
-    /// The lists whose grains may have come closer by `thin`, or `all`, and some that are near that; they are taken to be made from the
-    /// present positions.
+    /// The lists whose grains may have approached by `thin`, or `all`, and lists close to that; they count as
+    /// remade from the current positions.
     pub fn strayed(&mut self, lists: &[List], grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
         if lists.is_empty() {
             return vec![];
         }
         if thin == f64::INFINITY {
-            // Nothing gets out of lists that are the long ones.
+            // Lists that are identical to the long ones lose no pairs.
             return if all { (0..lists.len()).collect() } else { vec![] };
         }
-        // Whatever way two grains have gone since, they came closer by twice that at most, and by what images have moved.
+        // In any motion, two grains approach by at most twice the displacement, plus the displacement of
+        // images.
         let moved = if self.changed { farthest(&grains.period, &self.looked) } else { 0.0 };
         if !all && self.since.within(grains.travel, 0.5 * (thin - moved)) {
-            // The box around all ways may be longer than the two longest of them.
+            // The bounding box of all displacements may be longer than the two longest of them.
             let limit = 3.0_f64.sqrt() * thin;
             debug_assert!(
                 self.closer(lists, grains).iter().all(|c| *c < limit),
@@ -203,21 +206,21 @@ impl ListValidity {
         worn
     }
 
-    /// Takes the short lists of these numbers to be made from the present positions.
+    /// Marks these short lists as remade from the current positions.
     pub fn renew(&mut self, lists: &[List], grains: &Grains, which: &[usize]) {
         let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
         which.iter().for_each(|&k| self.listed[k] = grains.period);
         let then = par::Shared::new(&mut self.then);
         par::for_rows_if(grains.x.len() > FEW, which.len(), |at| {
             let k = which[at];
-            // SAFETY: each part writes the places of its own list.
+            // SAFETY: each part writes the data of its own list.
             let then = unsafe { &mut then.get(k..k + 1)[0] };
             then.clear();
             then.extend(lists[k].watched.grains.iter().map(|i| place(*i as usize)));
         });
     }
 
-    /// How much closer two grains of each list can have come [length].
+    /// The largest possible approach of two grains, per list [length].
     fn closer(&mut self, lists: &[List], grains: &Grains) -> &[f64] {
         let mut nearer = std::mem::take(&mut self.nearer);
         nearer.clear();
@@ -231,7 +234,7 @@ impl ListValidity {
         &self.nearer
     }
 
-    /// How much closer two grains of list `k` can have come: those of pairs lie in one layer or in two that follow each other.
+    /// The largest possible approach in list `k`: pairs lie in one layer or in two successive ones.
     fn closer_in(&self, watched: &Watched, k: usize, grains: &Grains) -> f64 {
         let (now, then) = (&grains.period, &self.listed[k]);
         let mut from = 0;
@@ -239,7 +242,7 @@ impl ListValidity {
             let of = from..part.end as usize;
             from = of.end;
             let ways = ways(grains, &watched.grains[of.clone()], &self.then[k][of]);
-            // Images move where the box does.
+            // Images move with the box.
             let still = part.image == HERE || now == then;
             if still { ways } else { ways.seen_from(moved(part.image, now, then)) }
         };
@@ -262,10 +265,10 @@ fn shift(place: &mut Place, by: Vec3) {
     (0..3).for_each(|d| place[d] += by[d]);
 }
 
-/// The ways of these grains since they were at these places.
+/// Displacements of these grains since they were at these places.
 fn ways(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
     assert_eq!(rows.len(), then.len());
-    // SAFETY: the processor was asked; rows are grains.
+    // SAFETY: the processor's support was checked; rows are grains.
     unsafe {
         #[cfg(target_arch = "x86_64")]
         if has_avx2() {
@@ -278,13 +281,13 @@ fn ways(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 unsafe fn ways_avx2(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe { ways_in::<perigrain_base::math::four::Avx2>(grains, rows, then) }
 }
 
 #[inline(always)]
 unsafe fn ways_in<F: Four>(grains: &Grains, rows: &[u32], then: &[Place]) -> Ways {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         let mut span = Span::<F>::new();
         for (i, then) in rows.iter().zip(then) {

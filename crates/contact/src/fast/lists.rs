@@ -1,4 +1,4 @@
-//! The two lists of each tile: pairs within the skin, and of those the pairs within the thin skin.
+//! The two lists of each tile: pairs within the skin, and among them the pairs within the thin skin.
 
 use super::near::{self, Places};
 use super::search::{FEW, Watched};
@@ -8,26 +8,26 @@ use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::par;
 use std::sync::{Mutex, PoisonError};
 
-/// Lists are filled up to multiples of the most pairs that are looked at at a time.
+/// Lists are padded to a multiple of the largest number of pairs tested at a time.
 pub const FILL: usize = 8;
 
-/// Pairs of grains and images. Filled up to a multiple of [`FILL`] with pairs that are nowhere near.
+/// Pairs of grains and images, padded to a multiple of [`FILL`] with pairs at infinite distance.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs {
-    /// The grain that lies in the tile.
+    /// The grain in the tile.
     pub i: Vec<u32>,
-    /// The other and the image it is seen in.
+    /// The other grain, with the image in which it is seen.
     pub w: Vec<u32>,
 }
 
 impl Pairs {
-    /// Forgets them.
+    /// Removes all pairs.
     pub(super) fn clear(&mut self) {
         self.i.clear();
         self.w.clear();
     }
 
-    /// Fills up; far too much room is given back.
+    /// Pads the list; releases excessive capacity.
     pub(super) fn fill_up(&mut self) {
         while !self.i.len().is_multiple_of(FILL) {
             self.i.push(0);
@@ -45,17 +45,17 @@ pub struct Short {
     pub i: Vec<u32>,
     /// See [`Pairs`].
     pub w: Vec<u32>,
-    /// Which pair of the long list.
+    /// Index of the pair in the long list.
     pub t: Vec<u32>,
-    /// Per pair: the square of the distance within which they touch, or can hold together; empty where all radii are the same
-    /// [length²].
+    /// Per pair: the square of the distance within which the grains touch or can stick together; empty if all
+    /// radii are equal [length²].
     pub reach: Vec<f64>,
-    /// Per pair: what its contact remembers, and the number of the step it last touched.
+    /// Per pair: the contact's history, and the number of the step in which it last touched.
     pub history: Vec<f64>,
 }
 
 impl Short {
-    /// Forgets the pairs. What stands in `history` stays there until it is written over.
+    /// Removes all pairs. The contents of `history` stay until they are overwritten.
     pub(super) fn clear(&mut self) {
         self.i.clear();
         self.w.clear();
@@ -67,34 +67,34 @@ impl Short {
 /// A list of pairs of one tile.
 #[derive(Clone, Debug, Default)]
 pub struct List {
-    /// The grains of its pairs, and some beside them.
+    /// The grains of its pairs, and some others.
     pub watched: Watched,
     /// Pairs within the skin.
     pub long: Pairs,
     /// Pairs within the thin skin.
     pub short: Short,
-    /// Σ d ⊗ F of the last evaluation, where it was asked for.
+    /// Σ d ⊗ F of the last evaluation, if requested.
     pub virial: [f64; 6],
-    /// Whether some grains overlapped too far in the last evaluation.
+    /// Whether some grains overlapped too deeply in the last evaluation.
     pub deep: bool,
-    /// How many contacts there were in the last evaluation.
+    /// Number of contacts in the last evaluation.
     pub touching: usize,
-    /// What overlaps of laws that flow hold, where the ledger of energy asks [energy].
+    /// Energy stored in contacts of dissipative laws, if the energy ledger needs it [energy].
     pub held: f64,
 }
 
 impl List {
-    /// What an evaluation has found so far.
+    /// Adds the results of a part of an evaluation.
     pub(super) fn found(&mut self, virial: [f64; 6], deep: bool, touching: usize) {
         (self.virial, self.deep, self.touching) = (virial, deep, touching);
         self.held = 0.0;
     }
 }
 
-/// How long it takes to evaluate a contact, in units of what it takes to find out that a listed pair does not touch.
+/// Cost of evaluating a contact, relative to testing a listed pair that does not touch.
 pub(super) const CONTACT: usize = 8;
 
-/// Contacts of so little work are evaluated before another thread has seen that there is some: some microseconds, in these units.
+/// Below this amount of work (some microseconds), a loop ends before other threads could start.
 const LITTLE: usize = 1024;
 
 /// Whether the contacts of these lists are little work.
@@ -103,7 +103,7 @@ pub fn are_little(lists: &[List]) -> bool {
 }
 
 impl Fast {
-    /// Short lists of these numbers from the present positions; contacts keep what they remember.
+    /// Makes these short lists from the current positions; histories are kept.
     pub(super) fn make_short(&mut self, grains: &Grains, which: &[usize]) {
         if which.is_empty() {
             return;
@@ -120,7 +120,7 @@ impl Fast {
             let list = unsafe { &mut shared.get(which[k]..which[k] + 1)[0] };
             let mut room = open().pop().unwrap_or_default();
             room.clear();
-            // SAFETY: the processor has what its form needs; list entries are grains.
+            // SAFETY: the processor supports its form; list entries are grains.
             let long = [&list.long.i[..], &list.long.w];
             unsafe { near::near(this.form, grains, &this.shifts, long, this.thin + this.span, &mut room.t) };
             this.fill_short(list, book.as_ref(), &mut room);
@@ -132,7 +132,7 @@ impl Fast {
         self.lists = lists;
     }
 
-    /// Fills in how far each pair of a short list reaches.
+    /// Computes the reach of each pair in a short list.
     pub(super) fn measure(&self, grains: &Grains, short: &mut Short) {
         short.reach.clear();
         if self.alike.radius.is_none() {
@@ -143,7 +143,7 @@ impl Fast {
         }
     }
 
-    /// Fills in pairs and memory of a new short list that knows its pairs of the long list.
+    /// Fills in pairs and histories of a new short list whose indices into the long list are known.
     fn fill_short(&self, list: &List, book: Option<&super::Book>, new: &mut Short) {
         let (old, long, width) = (&list.short, &list.long, self.width);
         let near = new.t.len().next_multiple_of(FILL);
@@ -170,8 +170,8 @@ impl Fast {
     }
 }
 
-/// Carries what contacts remember from one short list to the next one; both are in the order of the long list. (No branch asks
-/// whether a pair has been a contact: about half of them have.)
+/// Copies histories from one short list to the next; both are in the order of the long list. (There is no
+/// branch on whether a pair was in contact: about half of them were.)
 fn carry<const W: usize>(old: &Short, now: f64, new: &mut Short) {
     let (rows, row_of) = (old.history.as_chunks::<W>().0, new.history.as_chunks_mut::<W>().0);
     if rows.is_empty() {
@@ -186,13 +186,13 @@ fn carry<const W: usize>(old: &Short, now: f64, new: &mut Short) {
         let before = &rows[at.min(rows.len() - 1)];
         let lasts = usize::from(old.t.get(at) == Some(t)) & usize::from(before[W - 1] == now);
         *row = *before;
-        // Looked up: as a choice it becomes a branch, which is guessed wrong for every other pair.
+        // A table lookup: a conditional would become a branch that is mispredicted for every other pair.
         row[W - 1] = [-1.0, now][lasts];
     }
 }
 
-/// Room for `len` entries and some more; far too much is given back. What is in between stays: lists come and go in every
-/// few steps, and memory that is cut to size each time falls to pieces.
+/// Room for `len` entries and some more; releases excessive capacity. Intermediate capacities are kept: lists
+/// are remade every few steps, and exact allocations would fragment memory.
 fn fit<T>(list: &mut Vec<T>, len: usize) {
     let ample = len + len / 8;
     if list.capacity() < len {

@@ -1,4 +1,4 @@
-//! What contacts remember, carried from list to list and to and from the world.
+//! Contact histories, carried from list to list and exchanged with the world.
 
 use super::Fast;
 use super::lists::Short;
@@ -6,7 +6,7 @@ use perigrain_base::math::lanes::place;
 use perigrain_world::contacts::{Contacts, mirror};
 use std::ops::Range;
 
-/// Contacts by the index of the grain with the smaller tag, seen from that grain.
+/// Histories by the index of the grain with the smaller tag, seen from that grain.
 #[derive(Clone, Debug)]
 pub struct Book {
     start: Vec<u32>,
@@ -16,7 +16,7 @@ pub struct Book {
 }
 
 impl Book {
-    /// What the contact of two grains remembers, the one of the smaller tag first.
+    /// The history of the contact of two grains, the one with the smaller tag first.
     #[inline]
     pub fn get(&self, first: u32, second: u32) -> Option<&[f64]> {
         let of: Range<usize> = self.start[first as usize] as usize..self.start[first as usize + 1] as usize;
@@ -27,17 +27,17 @@ impl Book {
 
 /// A contact of the last evaluation.
 struct Live<'a> {
-    /// Where the grain of the smaller tag stands now, and the other one.
+    /// Current index of the grain with the smaller tag, and of the other one.
     first: u32,
     second: u32,
-    /// Whether it is remembered as the other one sees it.
+    /// Whether the history is stored as seen from the other grain.
     turned: bool,
     history: &'a [f64],
 }
 
-/// Where each tag stands.
+/// Index of each tag.
 pub(super) enum Places {
-    /// By tag; `u32::MAX` where there is none.
+    /// By tag; `u32::MAX` for missing tags.
     Table(Vec<u32>),
     /// Tag and index, sorted.
     List(Vec<[u32; 2]>),
@@ -65,7 +65,7 @@ impl Places {
 }
 
 impl Fast {
-    /// The contacts of the last evaluation and the known ones, for grains that stand in this order now.
+    /// The contacts of the last evaluation and the known ones, for grains in this new order.
     pub(super) fn remember(&self, tag: &[u32], known: Option<&Contacts>) -> Book {
         let places = Places::new(tag);
         let width = self.width - 1;
@@ -84,7 +84,7 @@ impl Fast {
             *s = sum;
         }
         let (mut partner, mut history) = (vec![0; sum as usize], vec![0.0; sum as usize * width]);
-        // Filled from behind: each start ends up at its first contact.
+        // Filled from the end: each start ends up at its first contact.
         let mut put = |p: u32, q: u32, h: &[f64], turned: bool| {
             start[p as usize] -= 1;
             let k = start[p as usize] as usize;
@@ -109,7 +109,8 @@ impl Fast {
         Book { start, partner, width, history }
     }
 
-    /// The contacts of the last evaluation between grains that are still there, by where `both` of two tags stand now.
+    /// The contacts of the last evaluation between grains that still exist; `both` maps two tags to their
+    /// current indices.
     fn live(&self, both: impl Fn(u32, u32) -> Option<(u32, u32)>) -> Vec<Live<'_>> {
         let (width, mut live) = (self.width, vec![]);
         for short in self.lists.iter().map(|list| &list.short) {
@@ -128,7 +129,7 @@ impl Fast {
         live
     }
 
-    /// Writes what the book holds of a pair of grains into the row of a short list: what is remembered and the step.
+    /// Writes the history of a pair of grains into the row of a short list, with the number of the step.
     pub(super) fn look_up(&self, book: &Book, i: u32, w: u32, row: &mut [f64]) {
         let j = place(w) as u32;
         let memory = self.width - 1;
@@ -145,14 +146,15 @@ impl Fast {
         }
     }
 
-    /// The contacts of the last evaluation that remembered, as the world keeps them; on several ranks those of whole lists.
+    /// The contacts with a history from the last evaluation, in the form of the world; on ranks only those of
+    /// whole lists.
     pub fn contacts(&self) -> Contacts {
         let (memory, width) = (self.laws.memory(), self.width);
         let is_live = |s: &Short, k: usize| s.history[(k + 1) * width - 1] == self.now;
         let live = |s: &Short| (0..s.i.len()).filter(|&k| is_live(s, k)).count();
         let own = || self.whole_lists().map(|(_, list)| &list.short);
         let count = own().map(live).sum();
-        // Keys with the number of the pair, counted through all lists.
+        // Keys with the number of the pair, counted across all lists.
         let mut entries = Vec::with_capacity(count);
         let mut first = vec![0];
         let lists: Vec<&Short> = own().collect();
@@ -181,12 +183,12 @@ impl Fast {
         Contacts { keys, width: memory, history }
     }
 
-    /// The identities of a pair of a short list.
+    /// The tags of a pair of a short list.
     fn tags(&self, short: &Short, k: usize) -> (u32, u32) {
         (self.tag[short.i[k] as usize], self.tag[place(short.w[k])])
     }
 
-    /// Gives everything back but what contacts remember, which [`Fast::contacts`] can still tell.
+    /// Releases everything except contact histories, which [`Fast::contacts`] still returns.
     pub fn keep_contacts(&mut self) {
         self.lists.iter_mut().for_each(|l| (l.long, l.watched) = Default::default());
         self.spare = vec![];

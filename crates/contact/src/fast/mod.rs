@@ -1,11 +1,13 @@
-//! Contacts of many grains: spatial order, short lists, several contacts at a time; the same numbers as the plain driver.
+//! Contacts of many grains: spatial order, short lists, vectorized evaluation; the same numbers as the plain
+//! driver.
 //!
-//! Grains are sorted into tiles, blocks of cells ([`Tiles`]); the world does well to stand in that order. Each tile has a list of the
-//! pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
-//! Where sizes differ much, pairs with large grains have lists of their own.
-//! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
-//! stage (`batch`). Tiles have colours, no two beside each other the same one, and of two whose pairs share grains the one of the lower
-//! colour comes first: the order of additions is the same for any number of threads.
+//! Grains are sorted into tiles, which are blocks of cells ([`Tiles`]); memory access is best if the world is
+//! in the same order. Each tile has a list of the pairs within the skin, and a shorter list of the pairs
+//! within a thin second skin, which holds the contact histories. If sizes differ much, pairs with large
+//! grains have their own lists. A step tests the distances of the short list and evaluates the law for four
+//! or eight pairs at a time ([`form`]), stage by stage (`batch`). Tiles have colours such that neighbours
+//! differ, and of two tiles whose pairs share grains the one of the lower colour comes first: the order of
+//! additions is the same for any number of threads.
 
 mod batch;
 mod bidisperse;
@@ -43,60 +45,61 @@ pub use ranks::{Dealt, Own};
 use std::ops::Range;
 use upkeep::Upkeep;
 
-/// Lists of so many grains keep their room when they are made anew.
+/// Lists for up to this many grains keep their buffers when they are remade.
 const SMALL: usize = 1 << 15;
-/// How many grains at most: a place and an image share 32 bits.
+/// The largest number of grains: index and image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
-/// The second skin in units of the first.
+/// The second skin relative to the first.
 const THIN: f64 = 0.15;
-/// The image of what fills lists up, and how far it is away: so far that squares are infinite.
+/// The image of padding entries: so far away that squared distances are infinite.
 const NOWHERE: u32 = 31;
 const FAR: f64 = 1e200;
-/// Room that radii growing under a list leave for what contacts of them span.
+/// Margin for the growth of radii under a list, in the gaps that contacts can span.
 const AMPLE: f64 = 1.25;
 /// No law.
 const NONE: u8 = u8::MAX;
 
-/// The box as lists see it.
+/// The box for which lists are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Lower corner [length].
     pub lo: [f64; 3],
-    /// Edges; zero where the box does not repeat, and there they do not lean.
+    /// Edges; zero along directions that are not periodic, where the box is not tilted.
     pub period: Periods,
-    /// How far beyond touching the lists reach [length].
+    /// Reach of the lists beyond touching [length].
     pub reach: f64,
-    /// How far beyond touching lists reach that are made at every rebuild [length].
+    /// Reach beyond touching of lists that are remade at every rebuild [length].
     pub skin: f64,
 }
 
-/// What contacts add to, a row for each grain.
+/// The columns that contacts add to, one row per grain.
 pub struct Sums<'a> {
     /// Forces.
     pub force: &'a mut [Vec3],
     /// Torques about the centres.
     pub torque: &'a mut [Vec3],
-    /// Temperatures and, to be added to, the heat that flows into each grain [energy/time].
+    /// Temperatures, and the heat flow into each grain to add to [energy/time].
     pub heat: Option<(&'a [f64], &'a mut [f64])>,
-    /// For the ledger of energy: damping along the normals, what acts across them, and the elastic forces of laws that flow.
+    /// For the energy ledger: normal damping forces, tangential forces, and elastic forces of dissipative
+    /// laws.
     pub deeds: Option<[&'a mut [Vec3]; 3]>,
 }
 
-/// What all grains have in common: it is not looked up for each of them.
+/// Properties that are equal for all grains, so that they are not looked up per grain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Alike {
     radius: Option<f64>,
-    /// Where some are frozen, the mass without its sign.
+    /// If some are frozen, the mass without its sign.
     mass: Option<f64>,
 }
 
-/// The number that all of a list are, if they are the same.
+/// The value of all elements, if they are equal.
 fn one_of_all(list: &[f64]) -> Option<f64> {
     let (first, rest) = list.split_first()?;
     rest.iter().all(|a| a == first).then_some(*first)
 }
 
-/// Whether two lists hold the same numbers: eight at a time, as it is asked in each step where radii may change.
+/// Whether two lists are equal: eight at a time, because it runs in every step in which radii may change.
 fn same(a: &[f64], b: &[f64]) -> bool {
     let ((eights_a, rest_a), (eights_b, rest_b)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let differ = |a: &[f64; 8], b: &[f64; 8]| a.iter().zip(b).fold(false, |differ, (a, b)| differ | (a != b));
@@ -108,59 +111,60 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 pub struct Fast {
     laws: Laws,
     form: Form,
-    /// Identities of the grains when the lists were made.
+    /// Tags of the grains when the lists were made.
     tag: Vec<u32>,
-    /// Which grains have strayed from where short lists were made.
+    /// Displacements since the short lists were made.
     validity: ListValidity,
-    /// Masses with a minus sign where frozen, if some are.
+    /// Masses, negative for frozen grains, if there are any.
     signed: Vec<f64>,
-    /// What all grains have in common.
+    /// Properties that are equal for all grains.
     alike: Alike,
-    /// Radii that short lists tell the reach of pairs by.
+    /// Radii used for the reach of pairs in short lists.
     measured: Vec<f64>,
-    /// How many periods grains have been moved since lists were made.
+    /// Number of periods by which grains have been wrapped since lists were made.
     turns: Vec<[i8; 3]>,
-    /// Those of tiles, then those of pairs with large grains, slab by slab.
+    /// Lists of tiles, then lists of pairs with large grains, slab by slab.
     lists: Vec<List>,
-    /// On several ranks: what this one lists.
+    /// On several ranks: which pairs this rank lists.
     own: Option<Own>,
-    /// Lists in the order of one thread.
+    /// Lists in the order of a single thread.
     order: Vec<usize>,
-    /// The tiles beside each one, and which of them come first.
+    /// The neighbours of each tile, and which of them come first.
     beside: Vec<Vec<u32>>,
     precedence: Precedence,
-    /// The places of each tile, and whether each grain stands at its place.
+    /// The grains of each tile, and whether all grains are in tile order.
     members: Vec<Range<usize>>,
     in_order: bool,
-    /// Whether the time is kept that tiles take.
+    /// Whether the time of each tile is measured.
     timed: bool,
-    /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
+    /// Displacement of each image, and a 0; very far for padding.
     shifts: [[f64; 4]; 32],
-    /// The periods of these.
+    /// The periods of these images.
     period: Periods,
-    /// The second skin [length]; infinite where short lists are the long ones.
+    /// The second skin [length]; infinite if short lists equal the long ones.
     thin: f64,
-    /// What the second skin costs.
+    /// Cost of the second skin.
     upkeep: Upkeep,
-    /// How far apart surfaces of grains that stick together can be [length].
+    /// Largest gap between grains that stick together [length].
     span: f64,
-    /// Whether long lists are younger than short ones.
+    /// Whether long lists are newer than short ones.
     stale: bool,
-    /// Whether short lists are known to be empty, and to have found nothing.
+    /// Whether short lists are known to be empty and without results.
     idle: bool,
-    /// Number of the present step among those that remember; contacts of the last one carry it.
+    /// Number of the current step with histories; contacts of the last one carry it.
     now: f64,
-    /// Numbers per pair in the short list: what is remembered and the step it was.
+    /// Numbers per pair in the short list: the history and the number of its step.
     width: usize,
-    /// Lists whose long ones have gained pairs.
+    /// Lists whose long lists have gained pairs.
     due: Vec<usize>,
-    /// What contacts remembered before the lists were made anew.
+    /// Histories from before the lists were remade.
     book: Option<Book>,
-    /// Of the pairs that were the first to overlap too far, the one of smallest ids, and by which part of its radius.
+    /// Of the first pairs that overlapped too deeply, the one with the smallest ids, and its overlap relative
+    /// to the radius.
     pub deep: Option<([u32; 2], f64)>,
-    /// Room for new short lists.
+    /// Buffers for new short lists.
     spare: Vec<Short>,
-    /// Room for the next evaluation tile by tile.
+    /// Buffers for the next evaluation tile by tile.
     waiting: per_tile::Waiting,
 }
 
@@ -203,33 +207,35 @@ impl Fast {
         }
     }
 
-    /// Computes in lanes of this form, one of this processor's, from now on: all give the same bits.
+    /// Evaluates in lanes of this form, which the processor must support, from now on: all forms give the
+    /// same bits.
     pub fn compute_as(&mut self, form: Form) {
         self.form = form;
     }
 
-    /// Looks up mass and radius of each grain until [`Fast::weigh`], even where all have the same: the bits are the same.
+    /// Looks up mass and radius of each grain until [`Fast::weigh`], even if all are equal: the bits are the
+    /// same.
     pub fn one_by_one(&mut self) {
         self.alike = Alike::default();
     }
 
-    /// Forgets grains and contacts.
+    /// Removes all grains and contacts.
     pub fn clear(&mut self) {
         *self = Self { timed: self.timed, ..Self::new(self.laws.clone()) };
     }
 
-    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    /// The largest gap at which grains of up to this radius can stick together [length].
     pub fn span(&self, largest: f64) -> f64 {
         self.laws.span(largest)
     }
 
-    /// All grains that stand in some list, ascending.
+    /// All grains that are in some list, ascending.
     pub fn listed(&self) -> Vec<u32> {
         let is_listed = self.are_listed();
         (0..self.len() as u32).filter(|row| is_listed[*row as usize]).collect()
     }
 
-    /// Whether each grain stands in some list.
+    /// Whether each grain is in some list.
     fn are_listed(&self) -> Vec<bool> {
         let mut is_listed = vec![false; self.len()];
         for long in self.lists.iter().map(|list| &list.long) {
@@ -246,15 +252,16 @@ impl Fast {
         self.tag.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no grains.
     pub fn is_empty(&self) -> bool {
         self.tag.is_empty()
     }
 
-    /// Makes all lists anew from these positions (wrapped into the box; [`Fast::turn`] follows those that are elsewhere by now), pairs for
-    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; those of `known(self, own)` are taken in addition. An
-    /// evaluation must follow. Where grains are dealt to ranks, lists are what this one needs for the forces on its own
-    /// ([`Fast::is_part`]), which `own` says; not where pairs with large grains have lists of their own.
+    /// Remakes all lists from these positions (wrapped into the box; [`Fast::turn`] adapts to grains wrapped
+    /// since), with pairs for which `keep(i, j)`. Histories of the last evaluation are kept; those of
+    /// `known(self, own)` are added. An evaluation must follow. If grains are distributed over ranks, `own`
+    /// selects the lists that this rank needs for the forces on its own grains ([`Fast::is_part`]); this
+    /// excludes separate lists for large grains.
     pub fn rebuild(
         &mut self,
         grains: &Grains,
@@ -272,7 +279,7 @@ impl Fast {
             tiles.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
             tiles
         };
-        // Work of one thread each.
+        // Work for one thread each.
         let n = grains.x.len();
         let large =
             || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
@@ -291,7 +298,7 @@ impl Fast {
             }
         };
         let whole = self.upkeep.takes_whole(self.pairs());
-        // The book has what they knew: room for what is made now.
+        // The book holds their histories: frees memory for the new lists.
         if grains.x.len() > SMALL {
             self.lists.iter_mut().for_each(|l| l.short = Short::default());
             self.spare = vec![];
@@ -326,14 +333,15 @@ impl Fast {
         self.stale = true;
     }
 
-    /// Whether there has been an evaluation since the last [`Fast::rebuild`], as [`Fast::admit`] needs it.
+    /// Whether there has been an evaluation since the last [`Fast::rebuild`], as [`Fast::admit`] requires.
     pub fn can_admit(&self) -> bool {
         !self.stale && self.book.is_none()
     }
 
-    /// Takes pairs into the lists that `keep` has only now let in, told by their grains; `grains` and `frame` are those of the last
-    /// [`Fast::rebuild`]. The lists are those that a rebuild would make. `false`, and nothing is done, where only a rebuild will do:
-    /// before an evaluation, beside large grains, and where grains or images have been moved since.
+    /// Adds pairs of the given grains that `keep` has only now begun to accept; `grains` and `frame` are
+    /// those of the last [`Fast::rebuild`]. The lists are the same as after a rebuild. Returns `false`
+    /// without any change if a rebuild is required: before an evaluation, with large grains, and if grains or
+    /// images have been wrapped since.
     pub fn admit(
         &mut self,
         grains: &Grains,
@@ -362,9 +370,9 @@ impl Fast {
         true
     }
 
-    /// Evaluates all contacts for the grains' present state and adds forces and torques to `f` and `torque`. With `store`
-    /// contacts remember, else nothing is changed but forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz. Heat goes where
-    /// `heat` is given.
+    /// Evaluates all contacts for the current state of the grains and adds forces and torques to `f` and
+    /// `torque`. With `store`, histories are updated, otherwise only forces change. With `virial`, returns Σ
+    /// d ⊗ F: xx yy zz xy xz yz. Heat flow is added to `heat`, if given.
     pub fn run(&mut self, grains: &Grains, sums: Sums, step: Advance, store: bool, virial: bool) -> [f64; 6] {
         self.begin(grains);
         if !self.idle {
@@ -385,7 +393,7 @@ impl Fast {
         total
     }
 
-    /// Makes short lists where they are due.
+    /// Makes short lists if they are due.
     pub(super) fn begin(&mut self, grains: &Grains) {
         self.follow(&grains.period);
         let stale = std::mem::take(&mut self.stale);
@@ -411,14 +419,14 @@ impl Fast {
         self.order.len() - self.tiles()
     }
 
-    /// Calls `f` for the lists of tiles, and then for those of large grains: a list may write to its tile and to those beside it, or to its
-    /// slab and the next one.
+    /// Calls `f` for the lists of tiles, then for those of large grains: a list may write to its tile and the
+    /// neighbouring ones, or to its slab and the next one.
     fn each_list(&self, f: impl Fn(usize) + Sync) {
         self.precedence.run(&f);
         par::two_colours(self.large(), |k| f(self.tiles() + k));
     }
 
-    /// Finds out which lists come before which, and puts them in the order in which one thread follows that.
+    /// Determines which lists come before which, and a single-thread order that satisfies this.
     fn put_in_order(&mut self, tiles: &Tiles) {
         let colours: Vec<u8> = (0..tiles.count()).map(|tile| tiles.colour(tile)).collect();
         self.beside = (0..tiles.count()).map(|tile| tiles.beside(tile)).collect();
@@ -430,21 +438,21 @@ impl Fast {
         self.order.extend(par::in_turn(large).map(|k| tiles.count() + k));
     }
 
-    /// From now on the time is kept that each tile takes, from each [`Fast::rebuild`] on.
+    /// Measures the time of each tile from now on, starting again at each [`Fast::rebuild`].
     pub fn time_tiles(&mut self) {
         self.timed = true;
         self.precedence.keep_times(true);
     }
 
-    /// Tiles, grains of the largest one, and by how much some threads can be faster at most, from the times of tiles alone; nothing where
-    /// no time has been kept.
+    /// Number of tiles, size of the largest, and the largest possible speedup with several threads by the
+    /// times of tiles; `None` if no times were measured.
     pub fn describe_tiles(&self) -> Option<String> {
         let most = self.members.iter().map(Range::len).max().unwrap_or(0);
         self.precedence.described(&format!("{most} grains"))
     }
 
-    /// Takes up which grains are frozen and which are alike: after a [`Fast::rebuild`], and when masses, radii or what is frozen may have
-    /// changed.
+    /// Updates which grains are frozen and which properties are equal: after a [`Fast::rebuild`], and when
+    /// masses, radii or frozen groups may have changed.
     pub fn weigh(&mut self, grains: &Grains) {
         self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
         if !same(&self.measured, grains.radius) {
@@ -469,12 +477,12 @@ impl Fast {
         }
     }
 
-    /// What overlaps of laws that flow held in the last evaluation, if contacts were to tell [energy].
+    /// Energy stored by contacts of dissipative laws in the last evaluation, if recorded [energy].
     pub fn held(&self) -> f64 {
         self.lists.iter().map(|list| list.held).sum()
     }
 
-    /// Pairs in long lists and in short ones.
+    /// Number of pairs in long lists and in short ones.
     pub fn pairs(&self) -> [usize; 2] {
         let sum = |f: fn(&List) -> usize| self.lists.iter().map(f).sum();
         [sum(|s| s.long.i.len()), sum(|s| s.short.i.len())]

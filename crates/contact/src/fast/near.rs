@@ -1,4 +1,4 @@
-//! Which pairs of a list are near each other, several at a time.
+//! Selects nearby pairs of a list, several at a time.
 
 use super::lists::FILL;
 use super::search::Watched;
@@ -8,10 +8,10 @@ use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use std::ops::Range;
 
-/// Adds the numbers of those pairs of a list, filled up, to `out` whose surfaces are nearer than `reach`, in order.
+/// Appends the numbers of the pairs of a padded list with gaps below `reach` to `out`, in order.
 ///
 /// # Safety
-/// List entries must be grains; the processor must have what the form needs.
+/// List entries must be grains; the processor must support the form.
 pub unsafe fn near(
     form: Form,
     grains: &Grains,
@@ -21,7 +21,7 @@ pub unsafe fn near(
     out: &mut Vec<u32>,
 ) {
     let at = Places::new(grains, shifts);
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe { form.run(Near { at, list, reach, out }) }
 }
 
@@ -43,8 +43,8 @@ impl InLanes for Near<'_> {
             if out.capacity() - out.len() < N {
                 out.reserve(N);
             }
-            // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind
-            // the end.
+            // SAFETY: lists are padded; entries are grains. There is room for all lanes; those without a hit
+            // are beyond the end.
             unsafe {
                 let hits = at.closer::<N, V>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
                 let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
@@ -54,16 +54,16 @@ impl InLanes for Near<'_> {
     }
 }
 
-/// Grains one behind the other, coordinate by coordinate.
+/// Grains in consecutive order, coordinate by coordinate.
 pub(super) struct InOrder {
     x: [Vec<f64>; 3],
     radius: Vec<f64>,
 }
 
 impl InOrder {
-    /// Copies these grains, as they are seen in their images.
+    /// Copies these grains at the positions of their images.
     pub fn new(grains: &Grains, watched: &Watched, shifts: &[[f64; 4]; 32]) -> Self {
-        // Whole lanes can be read from any of them: what is read beyond the end is not used.
+        // Whole lanes can be read from any of them; values beyond the end are not used.
         let room = || Vec::with_capacity(watched.grains.len() + FILL);
         let mut copy = Self { x: [room(), room(), room()], radius: room() };
         for (image, which) in watched.by_image() {
@@ -77,10 +77,10 @@ impl InOrder {
         copy
     }
 
-    /// Calls `hit` with those of some others, one behind the other, whose surfaces are nearer than `skin` to that of grain `i`, in order.
+    /// Calls `hit` for each grain of the range `others` whose gap to grain `i` is below `skin`, in order.
     ///
     /// # Safety
-    /// There must be these; the processor must have what the form needs.
+    /// The grains must exist; the processor must support the form.
     #[inline(always)]
     pub unsafe fn near<const N: usize, V: Lanes<N>>(
         &self,
@@ -91,11 +91,11 @@ impl InOrder {
     ) {
         let [x, y, z] = self.x.each_ref().map(Vec::as_ptr);
         let r = self.radius.as_ptr();
-        // SAFETY: there is this grain.
+        // SAFETY: this grain exists.
         let own = unsafe { [V::all(*x.add(i)), V::all(*y.add(i)), V::all(*z.add(i)), V::all(*r.add(i))] };
         let mut hits = [0; FILL];
         for from in others.clone().step_by(N) {
-            // SAFETY: behind the last one there is room for whole lanes, and in `hits` for all of them.
+            // SAFETY: there is room for whole lanes behind the last one, and for all of them in `hits`.
             let count = unsafe {
                 let dx = own[0] - V::of(x.add(from).cast::<[f64; N]>().read());
                 let dy = own[1] - V::of(y.add(from).cast::<[f64; N]>().read());
@@ -105,7 +105,7 @@ impl InOrder {
                 V::put(near, from as u32, hits.as_mut_ptr())
             };
             for k in &hits[..count] {
-                // Behind the last one others stand.
+                // Lanes behind the last one hold other grains.
                 if *k as usize >= others.end {
                     break;
                 }
@@ -115,29 +115,29 @@ impl InOrder {
     }
 }
 
-/// Where grains are.
+/// Positions of grains.
 #[derive(Clone, Copy)]
 pub(super) struct Places<'a> {
     /// Positions.
     pub x: &'a [Vec3],
     /// Radii.
     pub radius: &'a [f64],
-    /// The radius of all, if it is the same.
+    /// The radius of all grains, if equal.
     pub alike: Option<f64>,
-    /// How far each image is shifted.
+    /// Displacement of each image.
     pub shifts: &'a [[f64; 4]; 32],
 }
 
 impl<'a> Places<'a> {
-    /// Those of these grains.
+    /// For these grains.
     pub fn new(grains: &Grains<'a>, shifts: &'a [[f64; 4]; 32]) -> Self {
         Self { x: grains.x, radius: grains.radius, alike: None, shifts }
     }
 
-    /// Which of some pairs have surfaces nearer than `extra`.
+    /// Which of some pairs have gaps below `extra`.
     ///
     /// # Safety
-    /// As many entries as there are lanes must be grains; the processor must have what the form needs.
+    /// One entry per lane, each of which must be a grain; the processor must support the form.
     #[inline(always)]
     pub unsafe fn closer<const N: usize, V: Lanes<N>>(
         &self,
@@ -145,7 +145,7 @@ impl<'a> Places<'a> {
         w: *const u32,
         extra: f64,
     ) -> V::Mask {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let [x, y, z] = V::apart(self.x.as_ptr(), i, w, self.shifts);
             let r = self.radius.as_ptr();
@@ -158,15 +158,14 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The square of how far apart the centres of a pair are whose surfaces are this far apart, with the bits of
-    /// [`Places::closer`].
+    /// The squared distance of the centres of a pair with this gap, with the same bits as [`Places::closer`].
     #[inline(always)]
     pub fn reach(&self, i: u32, w: u32, extra: f64) -> f64 {
         let reach = self.radius[i as usize] + self.radius[place(w)] + extra;
         reach * reach
     }
 
-    /// x_i − x_j of one pair [length], with the bits of [`Lanes::apart`].
+    /// x_i − x_j of one pair [length], with the same bits as [`Lanes::apart`].
     #[inline(always)]
     pub fn between(&self, i: usize, w: u32) -> Vec3 {
         let (a, b, s) = (self.x[i], self.x[place(w)], self.shifts[(w >> PLACE_BITS) as usize]);

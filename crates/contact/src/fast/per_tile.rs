@@ -1,7 +1,8 @@
-//! Contacts tile by tile on one thread: grains that no later list touches can be moved while they are in fast memory.
+//! Contacts tile by tile on one thread: grains whose contacts are complete can be moved while they are in
+//! cache.
 //!
-//! Columns of 32,000 grains do not fit the second cache. If all are moved after all contacts they are brought from the third one
-//! twice in a step, and a pass over the columns takes twice as long from there.
+//! Columns of 32,000 grains exceed the second-level cache. If all grains are moved after all contacts, they
+//! are loaded from the third level twice in a step, where a pass over the columns takes twice as long.
 
 use super::{Fast, Sums};
 use crate::Advance;
@@ -10,36 +11,36 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use std::ops::Range;
 
-/// Tiles of so many grains are evaluated together: what is set up for each evaluation, and contacts too few for a whole group at its end,
-/// are then few beside it, and all of it stays in the second cache.
+/// Tiles with about this many grains are evaluated together: the overhead per evaluation and its incomplete
+/// last groups are then small, and everything fits the second-level cache.
 const TOGETHER: usize = 512;
 
-/// An evaluation of all contacts that is under way.
+/// An evaluation of all contacts in progress.
 pub struct PerTile {
-    /// How many tiles have had their turn.
+    /// Number of tiles done.
     done: usize,
     step: Advance,
     store: bool,
     deep: Option<([u32; 2], f64)>,
 }
 
-/// Room for the next evaluation tile by tile.
+/// Buffers for the next evaluation tile by tile.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Waiting {
-    /// How many tiles that add something to each, itself among them, are still to come.
+    /// Per tile, the number of pending tiles that add to it, itself included.
     to_come: Vec<u32>,
-    /// The tiles that wait for none since the last step.
+    /// Tiles that became complete in the last part.
     ready: Vec<usize>,
 }
 
 impl Fast {
-    /// Whether an evaluation can go tile by tile: not where several threads share the tiles, or grains of a tile do not stand beside
-    /// each other. Those of a chunk are moved together anyway, and contacts of several lists go faster together.
+    /// Whether an evaluation can run tile by tile: not with several threads, nor if the grains of a tile are
+    /// not contiguous. For few grains there is no gain, and contacts of several lists are faster together.
     pub fn is_per_tile(&self) -> bool {
         par::threads() == 1 && self.len() > par::CHUNK && self.in_order && self.large() == 0 && !self.timed
     }
 
-    /// Begins an evaluation as [`Fast::run`] does it without the virial, and with the same bits, for [`Fast::go_on`].
+    /// Begins an evaluation like [`Fast::run`] without virial, with the same bits, for [`Fast::go_on`].
     pub fn begin_per_tile(&mut self, grains: &Grains, step: Advance, store: bool) -> PerTile {
         self.begin(grains);
         let to_come = &mut self.waiting.to_come;
@@ -48,8 +49,8 @@ impl Fast {
         PerTile { done: 0, step, store, deep: None }
     }
 
-    /// Adds forces and torques of some tiles' contacts more to `f` and `torque`: whether there were any. [`Fast::ready`] then says which
-    /// grains have all of theirs now.
+    /// Adds forces and torques of the contacts of some more tiles to `f` and `torque`; returns whether there
+    /// were any. [`Fast::ready`] then gives the grains whose sums are complete.
     pub fn go_on(&mut self, p: &mut PerTile, grains: &Grains, wrench: [&mut [Vec3]; 2]) -> bool {
         let some = self.some_from(p.done);
         if some.is_empty() {
@@ -62,7 +63,7 @@ impl Fast {
         let sums = Sums { force, torque, heat: None, deeds: None };
         self.sweep(grains, sums, p.step, (p.store, false), Some(some.clone()));
         let tiles = &self.order[some];
-        // Contacts of several lists are evaluated together: a list may say of another's that they are too deep.
+        // Contacts of several lists are evaluated together: a list may report overlaps of another one.
         if self.deep.is_none() && tiles.iter().any(|tile| self.lists[*tile].deep) {
             let found = tiles.iter().filter_map(|tile| self.find_deep(grains, &self.lists[*tile..tile + 1]));
             p.deep = p.deep.into_iter().chain(found).min_by_key(|(ids, _)| *ids);
@@ -80,7 +81,7 @@ impl Fast {
         true
     }
 
-    /// The tiles that come next, by where they stand in the order of one thread.
+    /// The next tiles, as a range in the order of a single thread.
     fn some_from(&self, done: usize) -> Range<usize> {
         let (mut end, mut grains) = (done, 0);
         while let Some(tile) = self.order.get(end).filter(|_| grains < TOGETHER) {
@@ -90,7 +91,7 @@ impl Fast {
         done..end
     }
 
-    /// Which grains have all forces and torques since the last [`Fast::go_on`], in this part of its tiles.
+    /// The grains of this part whose sums have become complete since the last [`Fast::go_on`].
     pub fn ready(&self, part: usize) -> Option<Range<usize>> {
         self.waiting.ready.get(part).map(|tile| self.members[*tile].clone())
     }

@@ -1,8 +1,9 @@
-//! Lists on several ranks: each rank has the whole lists of its own tiles, and of those beside them the pairs that touch its grains.
+//! Lists on several ranks: each rank has the whole lists of its own tiles, and of neighbouring tiles the
+//! pairs with its grains.
 //!
-//! A pair that crosses the border of two ranks is evaluated by both, from the same numbers. What a rank lists of a tile of another one is
-//! a part of its list in the same order, so that forces on its own grains are added in the order of one process, and have its bits. No
-//! forces are handed over.
+//! A pair across the border of two ranks is evaluated by both, from the same numbers. A rank's part of
+//! another rank's list is in the same order, so that forces on its own grains are summed as on one process,
+//! with the same bits. No forces are exchanged.
 
 use super::Fast;
 use super::lists::{CONTACT, List};
@@ -11,40 +12,40 @@ use perigrain_neigh::tiles::Tiles;
 use perigrain_world::contacts::{Contacts, mirror};
 use std::ops::Range;
 
-/// What of its list a rank has of a tile.
+/// The part of a tile's list that a rank has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
-    /// All.
+    /// All pairs.
     Whole,
-    /// The pairs that touch its grains.
+    /// The pairs with its grains.
     Touching,
-    /// Nothing.
+    /// None.
     Nothing,
 }
 
-/// Which pairs a rank lists.
+/// The pairs that a rank lists.
 #[derive(Clone, Debug)]
 pub struct Own {
-    /// Whether each grain is its own.
+    /// Whether each grain belongs to it.
     grains: Vec<bool>,
-    /// What it has of each tile.
+    /// The part it lists of each tile.
     parts: Vec<Part>,
-    /// The rank of each grain, and the one that has the whole list of its tile.
+    /// The rank of each grain, and the rank that has the whole list of its tile.
     ranks: Vec<[u16; 2]>,
 }
 
-/// How grains are shared out to ranks.
+/// The distribution of grains over ranks.
 #[derive(Clone, Copy, Debug)]
 pub struct Dealt<'a> {
-    /// The rows of each rank, one behind the other.
+    /// The rows of each rank, in order.
     pub rows: &'a [Range<usize>],
     /// This rank.
     pub me: usize,
 }
 
 impl Own {
-    /// What this rank lists. A tile is that of the rank that has its first grain: tiles may be others than those that were dealt, where
-    /// contacts reach beyond touch.
+    /// The pairs that this rank lists. A tile belongs to the rank of its first grain: tiles may differ from
+    /// those that were distributed if contacts reach beyond touching.
     pub(super) fn new(dealt: Dealt, tiles: &Tiles) -> Self {
         let owner = |row: u32| dealt.rows.partition_point(|rows| rows.end <= row as usize) as u16;
         let mut ranks = vec![[0; 2]; tiles.order.len()];
@@ -71,24 +72,24 @@ impl Own {
         Self { grains, parts, ranks }
     }
 
-    /// Whether it lists anything of a tile.
+    /// Whether it lists any pairs of a tile.
     pub(super) fn lists(&self, tile: usize) -> bool {
         self.parts[tile] != Part::Nothing
     }
 
-    /// Whether it lists this pair of a tile of which it lists something.
+    /// Whether it lists this pair of a tile that it lists in part.
     pub(super) fn has(&self, tile: usize, i: usize, j: usize) -> bool {
         self.parts[tile] == Part::Whole || self.grains[i] || self.grains[j]
     }
 }
 
 impl Fast {
-    /// Whether lists are those of one of several ranks.
+    /// Whether the lists are those of one of several ranks.
     pub fn is_part(&self) -> bool {
         self.own.is_some()
     }
 
-    /// Grains that no list names are not watched on several ranks: where they are is not known.
+    /// On several ranks, grains in no list are not watched, because their positions are unknown.
     pub(super) fn watch_listed(&mut self) {
         if self.is_part() {
             let is_listed = self.are_listed();
@@ -96,14 +97,15 @@ impl Fast {
         }
     }
 
-    /// The lists that this rank has as a whole, with their numbers.
+    /// The whole lists of this rank, with their numbers.
     pub(super) fn whole_lists(&self) -> impl Iterator<Item = (usize, &List)> {
         let is_whole = |k: usize| self.own.as_ref().is_none_or(|own| own.parts.get(k) == Some(&Part::Whole));
         self.lists.iter().enumerate().filter(move |(k, _)| is_whole(*k))
     }
 
-    /// What each other rank is to remember of the contacts of this one, where grains of these ids stand in this order now, are dealt so, and
-    /// are listed so: each contact goes to the ranks of both its grains, and to those that have the whole lists of their tiles.
+    /// The histories that each other rank needs of this rank's contacts, if grains with these tags are in
+    /// this order now, with this distribution and these lists: each contact goes to the ranks of both its
+    /// grains, and to those that have the whole lists of their tiles.
     pub fn handed_over(&self, tag: &[u32], dealt: Dealt, own: &Own) -> Vec<Contacts> {
         let (places, width) = (super::memory::Places::new(tag), self.width);
         let mut out = vec![Contacts { width: self.laws.memory(), ..Contacts::default() }; dealt.rows.len()];
@@ -135,14 +137,15 @@ impl Fast {
         out
     }
 
-    /// How much work the last evaluation was, of the lists that this rank has as a whole, and its grains are: in units of the test of a pair.
+    /// Work of the last evaluation in the whole lists of this rank and for its grains, in units of a pair
+    /// test.
     pub fn work(&self, grains: usize) -> f64 {
         let lists: usize =
             self.whole_lists().map(|(_, list)| list.short.i.len() + CONTACT * list.touching).sum();
         (lists + CONTACT * grains) as f64
     }
 
-    /// Σ d ⊗ F of the last evaluation: of each list that this rank has as a whole, with its number [energy].
+    /// Σ d ⊗ F of the last evaluation for each whole list of this rank, with its number [energy].
     pub fn virials(&self) -> impl Iterator<Item = (u32, [f64; 6])> {
         self.whole_lists().map(|(k, list)| (k as u32, list.virial))
     }

@@ -1,4 +1,4 @@
-//! The pairs of each tile, found by cells, and the grains that must be watched for it.
+//! Finds the pairs of each tile by cells, and the grains to watch for it.
 
 use super::lists::{List, Pairs};
 use super::near::InOrder;
@@ -9,34 +9,34 @@ use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::par;
 use perigrain_neigh::tiles::{Around, Neighbourhood, Tiles};
 
-/// The lists of so few grains are made before another thread has seen that there is work.
+/// Below this number of grains, a loop ends before other threads could start.
 pub(super) const FEW: usize = 64;
 
-/// The grains of a list, in an order in which it can be told how much closer some can have come.
+/// The grains of a list, ordered so that the largest possible approach can be bounded.
 #[derive(Clone, Debug, Default)]
 pub struct Watched {
     pub grains: Vec<u32>,
-    /// Parts of them of one layer and image, layer by layer.
+    /// Ranges of equal layer and image, layer by layer.
     pub parts: Vec<Part>,
 }
 
-/// Grains of one layer that are seen in the same image.
+/// Grains of one layer and one image.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     pub layer: usize,
     pub image: u32,
-    /// Where they end.
+    /// End of the range.
     pub end: u32,
 }
 
 impl Watched {
-    /// Forgets them.
+    /// Removes all grains.
     pub(super) fn clear(&mut self) {
         self.grains.clear();
         self.parts.clear();
     }
 
-    /// Forgets all but those that `stays`.
+    /// Removes all grains except those for which `stays`.
     pub(super) fn retain(&mut self, stays: impl Fn(u32) -> bool) {
         let (grains, parts) = (std::mem::take(&mut self.grains), std::mem::take(&mut self.parts));
         let mut from = 0;
@@ -50,7 +50,7 @@ impl Watched {
         }
     }
 
-    /// Takes more, of the last layer so far or a later one.
+    /// Adds grains of the last layer or a later one.
     pub(super) fn push(&mut self, layer: usize, image: u32, grains: &[u32]) {
         self.grains.extend_from_slice(grains);
         let end = self.grains.len() as u32;
@@ -60,7 +60,7 @@ impl Watched {
         }
     }
 
-    /// The grains, some of one image after the other, and the images.
+    /// The grains grouped by image, with the images.
     pub(super) fn by_image(&self) -> impl Iterator<Item = (u32, &[u32])> {
         let mut from = 0;
         self.parts.iter().map(move |part| {
@@ -70,7 +70,7 @@ impl Watched {
         })
     }
 
-    /// The grains with the images they are seen in.
+    /// The grains with their images.
     fn entries(&self) -> Vec<u32> {
         let mut entries = Vec::with_capacity(self.grains.len());
         for (image, which) in self.by_image() {
@@ -81,7 +81,8 @@ impl Watched {
 }
 
 impl Fast {
-    /// Long lists from these positions and radii, of the tiles that `lists` names, and of the pairs for which `keep(tile, i, j)`.
+    /// Makes long lists from these positions and radii, for the tiles that `lists` selects and the pairs for
+    /// which `keep(tile, i, j)`.
     pub(super) fn make_long(
         &mut self,
         grains: &Grains,
@@ -108,7 +109,7 @@ impl Fast {
         self.lists = all;
     }
 
-    /// The long list of tile `k`, and the grains that must be watched for it.
+    /// The long list of tile `k`, and the grains to watch for it.
     fn search(
         &self,
         grains: &Grains,
@@ -127,7 +128,7 @@ impl Fast {
         let around = tiles.around(k, |layer, image, places| watched.push(layer, image, &tiles.order[places]));
         let (copy, entries) = (InOrder::new(grains, watched, &self.shifts), watched.entries());
         let search = Search { around: &around, grains: &copy, entries: &entries, skin, keep, out };
-        // SAFETY: the processor has what its form needs.
+        // SAFETY: the processor supports its form.
         unsafe { self.form.run(search) }
         if out.i.is_empty() {
             watched.clear();
@@ -135,8 +136,8 @@ impl Fast {
         self.laws.sort(grains.kind, out);
     }
 
-    /// Long lists of the tiles in which these grains lie and that `lists` names, made anew from the positions of all of them, of the pairs
-    /// for which `keep(tile, i, j)`; what their contacts remember stays. Which lists.
+    /// Remakes the long lists of the selected tiles that contain these grains, from all positions and with
+    /// the pairs for which `keep(tile, i, j)`; histories are kept. Returns the numbers of these lists.
     pub(super) fn extend_long(
         &mut self,
         grains: &Grains,
@@ -163,7 +164,7 @@ impl Fast {
     }
 }
 
-/// Where the pairs of a list stand in a longer one that has them all in the same order.
+/// The new indices of the pairs of a list in a longer one that contains them in the same order.
 fn moved(old: &Pairs, new: &Pairs) -> Vec<u32> {
     let mut at = 0;
     let mut places = vec![];
@@ -180,9 +181,9 @@ fn moved(old: &Pairs, new: &Pairs) -> Vec<u32> {
 /// The search of the pairs of a tile.
 struct Search<'a, K> {
     around: &'a Around,
-    /// The grains around it, in images.
+    /// The grains around it, in their images.
     grains: &'a InOrder,
-    /// Which these are.
+    /// Their entries.
     entries: &'a [u32],
     skin: f64,
     keep: K,
@@ -208,7 +209,7 @@ impl<K: Fn(u32, u32) -> bool> InLanes for Search<'_, K> {
                             out.w.push(entries[k]);
                         }
                     };
-                    // SAFETY: passed on.
+                    // SAFETY: the caller's guarantee.
                     unsafe { grains.near::<N, V>(i, others.clone(), skin, hit) };
                 }
             }

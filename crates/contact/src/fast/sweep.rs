@@ -1,4 +1,4 @@
-//! The inner loop of a step: which pairs of short lists touch, and their contacts, batch by batch.
+//! The inner loop of a step: tests the pairs of short lists, and evaluates contacts batch by batch.
 
 use super::batch::Batch;
 use super::found::{Found, ROOM};
@@ -16,10 +16,10 @@ use perigrain_base::par;
 use perigrain_neigh::tiles::shift_of;
 use std::ops::Range;
 
-/// More grains than these, with their pairs, do not fit a second cache of 1 MB.
+/// Above this number, grains and pairs exceed a second-level cache of 1 MB.
 const MANY: usize = 8192;
 
-/// What the loops read and where they write.
+/// Inputs and outputs of the loops.
 pub(super) struct Cx<'a> {
     pub laws: &'a Laws,
     pub x: &'a [Vec3],
@@ -27,59 +27,60 @@ pub(super) struct Cx<'a> {
     pub omega: &'a [Vec3],
     pub radius: &'a [f64],
     pub mass: &'a [f64],
-    /// What all have in common.
+    /// Properties that are equal for all grains.
     pub alike: Alike,
     pub kind: &'a [u16],
     pub shifts: &'a [[f64; 4]; 32],
     pub force: par::Shared<'a, Vec3>,
     pub torque: par::Shared<'a, Vec3>,
-    /// Temperatures and heat into the grains.
+    /// Temperatures, and heat flow into the grains.
     pub heat: Option<(&'a [f64], par::Shared<'a, f64>)>,
     pub step: Advance,
     pub now: f64,
     pub store: bool,
     pub virial: bool,
-    /// Where contacts tell what they do: damping, what acts across, and the elastic forces of laws that flow.
+    /// Outputs for the energy ledger: damping forces, tangential forces, and elastic forces of dissipative
+    /// laws.
     pub deeds: Option<[par::Shared<'a, Vec3>; 3]>,
     /// Whether some grains are frozen.
     pub frozen: bool,
-    /// How far apart surfaces of grains that stick together can be [length].
+    /// Largest gap between grains that stick together [length].
     pub span: f64,
-    /// How images move, where they do.
+    /// Velocities of images, if they move.
     pub drift: Option<&'a Drift<'a>>,
-    /// Whether grains are so many that the second cache does not hold what is known of them.
+    /// Whether the data of the grains exceeds the second-level cache.
     pub are_many: bool,
 }
 
-/// Images that a growing box carries along.
+/// Images that move with a deforming box.
 pub(super) struct Drift<'a> {
-    /// How much faster each image is than its grain [length/time].
+    /// Velocity of each image relative to its grain [length/time].
     by: [Vec3; 27],
-    /// Ids of the grains.
+    /// Tags of the grains.
     tag: &'a [u32],
-    /// Their groups, and the bit of the one whose images move.
+    /// Group masks, and the bit of the group whose images move.
     mask: &'a [u32],
     group: u32,
 }
 
 impl<'a> Drift<'a> {
-    /// That of these grains, where there is one.
+    /// For these grains, if images move.
     fn of(grains: &Grains<'a>) -> Option<Self> {
         let (flow, mask) = grains.flow?;
         let by = std::array::from_fn(|image| flow.velocity(shift_of(image as u32)));
         Some(Self { by, tag: grains.tag, mask, group: flow.group.bit() })
     }
 
-    /// What is added to the velocities of these as `i` see them, coordinate by coordinate: out of line, so that boxes at rest do
-    /// not carry it. Of two grains the one of larger id is the image, as in the plain loop.
+    /// Velocities to add for second grains as seen by `i`, coordinate by coordinate; not inlined, so that
+    /// boxes at rest do not pay for it. As in the plain loop, the grain with the larger tag is the image.
     ///
     /// # Safety
-    /// There must be `N` pairs of grains, the second ones in images.
+    /// There must be `N` pairs of grains, the second ones with images.
     #[inline(never)]
     pub unsafe fn added<const N: usize>(&self, i: *const u32, w: *const u32) -> [[f64; N]; 3] {
         let mut added = [[0.0; N]; 3];
         for lane in 0..N {
-            // SAFETY: the caller's promise.
+            // SAFETY: the caller's guarantee.
             let (i, w) = unsafe { (*i.add(lane) as usize, *w.add(lane)) };
             let j = place(w);
             let image = if self.tag[i] < self.tag[j] { j } else { i };
@@ -93,19 +94,20 @@ impl<'a> Drift<'a> {
 }
 
 impl Cx<'_> {
-    /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in the same order.
+    /// Whether contacts of several lists are evaluated together. Forces have the same bits: they are added in
+    /// the same order.
     fn joins(&self) -> bool {
-        // What contacts that flow hold is a sum by list.
+        // The stored energy of dissipative laws is summed per list.
         let by_list = self.virial || (self.deeds.is_some() && self.laws.distinct.iter().any(Granular::flows));
         self.laws.distinct.len() == 1 && !by_list
     }
 
-    /// Where grains are.
+    /// Positions of the grains.
     pub fn places(&self) -> Places<'_> {
         Places { x: self.x, radius: self.radius, alike: self.alike.radius, shifts: self.shifts }
     }
 
-    /// Whether a pair touches, or has touched in the last step and still holds together.
+    /// Whether a pair touches, or touched in the last step and still sticks together.
     fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
         let (i, w) = (short.i[k] as usize, short.w[k]);
         let (j, d) = (place(w), self.places().between(i, w));
@@ -125,7 +127,7 @@ impl Cx<'_> {
 }
 
 impl Fast {
-    /// Adds up the forces of all contacts, or of those of some lists that follow each other in the order of one thread.
+    /// Sums the forces of all contacts, or of those in some successive lists in the order of a single thread.
     pub(super) fn sweep(
         &mut self,
         grains: &Grains,
@@ -136,7 +138,7 @@ impl Fast {
     ) {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
-        // One thread takes lists as they come.
+        // A single thread takes the lists in order.
         let shares = only.is_none() && (self.timed || (par::threads() > 1 && !are_little(&lists)));
         let shared = par::Shared::new(&mut lists);
         let drift = Drift::of(grains);
@@ -164,8 +166,9 @@ impl Fast {
             are_many: grains.x.len() > MANY,
         };
         let contacts = |which: &[usize]| {
-            // SAFETY: each part writes its own lists, and forces of grains in their tiles and those beside them, which `each_list` keeps
-            // apart; list entries are grains; AVX only where there is AVX.
+            // SAFETY: each part writes its own lists, and forces of grains in their tiles and neighbouring
+            // ones, which `each_list` keeps separate; list entries are grains; AVX is used only where it is
+            // supported.
             unsafe {
                 match width {
                     4 => form.run(Contacts::<4> { cx: &cx, lists: &shared, which }),
@@ -183,7 +186,7 @@ impl Fast {
     }
 }
 
-/// All contacts of some lists, one list after the other, which remember `W` − 1 numbers at most.
+/// All contacts of some lists, one list after the other, with at most `W` − 1 history entries.
 struct Contacts<'a, 'b, const W: usize> {
     cx: &'a Cx<'b>,
     lists: &'a par::Shared<'a, List>,
@@ -198,16 +201,16 @@ impl<const W: usize> InLanes for Contacts<'_, '_, W> {
         let Self { cx, lists, which } = self;
         let (mut batch, mut found) = (None, Found::new());
         for (at, &k) in which.iter().enumerate() {
-            // SAFETY: the caller's promise: no other thread has these lists.
+            // SAFETY: the caller's guarantee: no other thread has these lists.
             let list = unsafe { &mut lists.get(k..k + 1)[0] };
             let ends = at + 1 == which.len() || !cx.joins();
-            // SAFETY: passed on.
+            // SAFETY: the caller's guarantee.
             unsafe { of_list::<N, V, W>(cx, list, &mut found, &mut batch, ends) };
         }
     }
 }
 
-/// The contacts of a list, which may wait for those of the next one; where it `ends`, nobody waits.
+/// The contacts of a list, which may wait in the batch for those of the next one, unless it `ends`.
 #[inline(always)]
 unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
     cx: &Cx,
@@ -223,7 +226,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
     loop {
         while k < end && found.len() + FILL <= ROOM {
             let sure = (end - k).min((ROOM - found.len()) / FILL * FILL);
-            // SAFETY: lists are filled up; entries are grains. There is room for so many.
+            // SAFETY: lists are padded; entries are grains. There is room for this many.
             unsafe {
                 match at.alike {
                     Some(_) => found.test::<N, V, true>(&list.short, &at, cx.span, k..k + sure),
@@ -232,7 +235,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
             }
             k += sure;
         }
-        // What holds is moved to the front.
+        // Pairs that still stick are moved to the front.
         let holding = match cx.span > 0.0 {
             true => found.sift(|k| cx.holds::<W>(&list.short, k as usize)),
             false => found.len(),
@@ -240,12 +243,13 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
         list.touching += holding;
         let ends = ends && k == end;
         if holding > 0 || (ends && batch.as_ref().is_some_and(Batch::waits)) {
-            // SAFETY: passed on. Not before something touches: in loose scenes most lists have no contact.
+            // SAFETY: the caller's guarantee. Created at the first contact: in loose systems most lists have
+            // none.
             let batch = match &mut *batch {
                 Some(batch) => batch,
                 none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
             };
-            // SAFETY: passed on.
+            // SAFETY: the caller's guarantee.
             unsafe { evaluate::<N, V, W>(cx, list, batch, (found, holding), ends) };
         }
         if k == end {
@@ -255,7 +259,7 @@ unsafe fn of_list<const N: usize, V: Lanes<N>, const W: usize>(
     }
 }
 
-/// The contacts of the first so many that were found; where it `ends`, nobody waits for others any more.
+/// Evaluates the first `holding` contacts found; if it `ends`, none is left waiting.
 #[inline(always)]
 unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
     cx: &Cx,
@@ -264,12 +268,12 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
     (found, ready): (&Found, usize),
     ends: bool,
 ) {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
             return of_law::<N, V, W>(cx, law, list, batch, (found, 0..ready), ends);
         }
-        // Lists have the pairs of one law behind each other.
+        // The pairs of one law are consecutive in a list.
         let mut from = 0;
         while from < ready {
             let number = law_of(cx, list, found, from);
@@ -282,7 +286,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, const W: usize>(
     }
 }
 
-/// The number of the law for one of the contacts that were found.
+/// The law number of one of the contacts found.
 #[inline(always)]
 fn law_of(cx: &Cx, list: &List, found: &Found, at: usize) -> u8 {
     let k = found.numbers()[at] as usize;
@@ -292,7 +296,7 @@ fn law_of(cx: &Cx, list: &List, found: &Found, at: usize) -> u8 {
 /// Contacts of one law.
 ///
 /// # Safety
-/// They must be pairs of the list, and its entries grains.
+/// They must be pairs of the list, whose entries must be grains.
 #[inline(always)]
 unsafe fn of_law<const N: usize, V: Lanes<N>, const W: usize>(
     cx: &Cx,
@@ -312,7 +316,7 @@ struct Many<'a, 'b, const N: usize, V, const W: usize> {
     list: &'a mut List,
     batch: &'a mut Batch<V, N>,
     found: &'a Found,
-    /// Which of these.
+    /// The contacts of this law among those found.
     some: Range<usize>,
     ends: bool,
 }
@@ -322,7 +326,8 @@ impl<const N: usize, V: Lanes<N>, const W: usize> Loop for Many<'_, '_, N, V, W>
     fn run(self, law: &Granular) {
         let Self { cx, list, batch, found, some: Range { start: mut taken, end }, ends } = self;
         loop {
-            // SAFETY: they are pairs of the list, and its entries grains; lists stay while contacts are evaluated.
+            // SAFETY: they are pairs of the list, and its entries are grains; lists do not change while
+            // contacts are evaluated.
             unsafe {
                 taken += batch.take::<W>(&mut list.short, found, taken..end);
                 if !(batch.is_full() || (ends && batch.waits())) {

@@ -1,4 +1,4 @@
-//! Which list a pair stands in.
+//! The list that a pair belongs to.
 
 use super::*;
 use crate::{Damping, Friction, Model, Normal, Tangential, normal};

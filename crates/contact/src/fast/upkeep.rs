@@ -1,34 +1,36 @@
-//! Whether short lists pay: where grains pass each other fast, to make them again and again takes longer than to test all pairs
-//! of the long lists. Results do not hang on it: only pairs that touch are evaluated, in the order of the long list.
+//! Decides whether short lists pay off: if grains pass each other fast, remaking them costs more than testing
+//! all pairs of the long lists. Results do not depend on this: only touching pairs are evaluated, in the
+//! order of the long list.
 
-/// To look at a pair of a long list when a short one is made, in units of the test of a listed pair in a step.
+/// Cost per pair of a long list when a short one is made, in units of one pair test.
 const TO_MAKE: usize = 4;
-/// To look how far a grain has strayed, in these units.
+/// Cost of checking a grain's displacement, in the same units.
 const TO_LOOK: usize = 3;
-/// So many times long lists are taken whole before short ones are tried again.
+/// Number of times that long lists are used whole before short ones are tried again.
 const RESTS: u32 = 16;
 
-/// What short lists have cost since long ones were made.
+/// Cost of short lists since the long ones were made.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Upkeep {
     steps: usize,
-    /// Pairs of long lists that short ones were made from.
+    /// Pairs of long lists from which short ones were made.
     made: usize,
-    /// Grains that were looked at.
+    /// Grains checked.
     looked: usize,
-    /// How many more times long lists are taken whole.
+    /// Remaining number of times that long lists are used whole.
     whole: u32,
 }
 
 impl Upkeep {
-    /// A step was made in which short lists were made from so many pairs of long ones, and so many grains were looked at.
+    /// Records a step: the pairs of long lists from which short ones were made, and the grains checked.
     pub fn step(&mut self, made: usize, looked: usize) {
         self.steps += 1;
         self.made += made;
         self.looked += looked;
     }
 
-    /// New long lists come after these, with so many pairs in long and in short lists: whether they are taken whole.
+    /// Called when long lists are remade, with the current numbers of long and short pairs; returns whether
+    /// the next ones are used whole.
     pub fn takes_whole(&mut self, [long, short]: [usize; 2]) -> bool {
         self.whole = match self.whole {
             0 => {

@@ -1,20 +1,21 @@
-//! Surfaces that stick while a contact unloads: Johnson, Kendall & Roberts by the method of dimensionality reduction.
+//! Adhesion during unloading: Johnson, Kendall & Roberts by the method of dimensionality reduction.
 
 use super::Material;
 use super::side::Ellipse;
 use perigrain_base::math::real::Real;
 use std::f64::consts::PI;
 
-/// Surfaces stick at most inside this part of the largest radius: at the rim of the ellipse springs are upright. LAMMPS
-/// takes this part of the present radius, so that a contact that unloads by less than a hundredth of its radius in each
-/// step sticks only near its end.
+/// Surfaces stick at most within this fraction of the largest radius: at the rim of the ellipse the profile
+/// is vertical. LAMMPS applies the fraction to the current radius, so that a contact that unloads by less
+/// than a hundredth of its radius per step sticks only near its end.
 const STUCK: f64 = 0.99;
 
-/// LAMMPS' iteration for the radius inside which surfaces stick ends when its springs fit within this length.
+/// LAMMPS' iteration for the adhesive radius ends when its springs fit within this length.
 const COARSE: f64 = 1e-10;
 
-/// Force on a plane at elastic depth `d`, and the radius of contact for damping. Where the contact `unloads`, springs inside the
-/// radius `stuck` are glued to the plane until they are longer than √(2π a γ/E_c). `coarse`: with LAMMPS' iteration.
+/// Force on a plane at elastic depth `d`, and the contact radius for damping. If the contact `unloads`,
+/// springs within the radius `stuck` are glued to the plane until they are longer than √(2π a γ/E_c).
+/// `coarse`: with LAMMPS' iteration.
 #[inline(always)]
 pub fn force<R: Real>(
     m: &Material,
@@ -55,8 +56,9 @@ pub fn force<R: Real>(
     (R::choose(glued, pulled, pushed), R::choose(glued, a, before))
 }
 
-/// Energy of the springs at elastic depth `d`, of which those inside the radius `stuck` are glued to the plane:
-/// U(d_a) + F(d_a) (d − d_a) + E_c a (d − d_a)² where the plane has gone back from d_a, the depth of the rim.
+/// Energy of the springs at elastic depth `d`, of which those within the radius `stuck` are glued to the
+/// plane: U(d_a) + F(d_a) (d − d_a) + E_c a (d − d_a)² if the plane has retracted from d_a, the depth of the
+/// rim.
 #[inline(always)]
 pub fn energy<R: Real>(m: &Material, shape: &Ellipse<R>, d: R, stuck: R) -> R {
     let plane = m.plane();
@@ -70,13 +72,13 @@ pub fn energy<R: Real>(m: &Material, shape: &Ellipse<R>, d: R, stuck: R) -> R {
     R::choose(stuck.above(shape.radius(d)), glued, free)
 }
 
-/// By how much the springs at radius `a` are shorter than they can be; `energy`: 2π γ/E_c.
+/// How much shorter the springs at radius `a` are than their largest length; `energy`: 2π γ/E_c.
 #[inline(always)]
 fn misfit<R: Real>(shape: &Ellipse<R>, depth: R, energy: f64, a: R) -> R {
     depth - shape.depth(a) + (a * energy).sqrt()
 }
 
-/// The springs of a contact that unloads.
+/// The springs of an unloading contact.
 struct Springs<'a> {
     shape: &'a Ellipse,
     /// Depth of the plane.
@@ -96,13 +98,14 @@ impl Springs<'_> {
         0.5 * (self.energy / a).sqrt() - height / width * a / rise
     }
 
-    /// The largest radius whose springs hold, from a larger one on; `None` where none holds.
+    /// The largest radius whose springs still stick, searched from a larger one down; `None` if none does.
     fn last(&self, from: f64, coarse: bool) -> Option<f64> {
         let most = least_radius(self.shape, self.energy);
         if self.misfit(most) < 0.0 {
             return None;
         }
-        // Between the summit of the misfit and `from` it falls ever faster: Newton's steps cannot jump over the root.
+        // Between the maximum of the misfit and `from` it falls ever faster: Newton's steps cannot jump over
+        // the root.
         let enough = if coarse { COARSE } else { 1e-14 * (self.depth.abs() + self.shape.depth(from).abs()) };
         let mut a = from;
         for _ in 0..100 {
@@ -120,12 +123,12 @@ impl Springs<'_> {
     }
 }
 
-/// The radius at which a contact tears: where the misfit of springs is largest, √(2πγ/(E_c a))/2 = (A/B) a/√(B²/4 − a²), with
-/// `energy` 2πγ/E_c.
+/// The radius at which a contact tears: the maximum of the springs' misfit, √(2πγ/(E_c a))/2 = (A/B) a/√(B²/4
+/// − a²), with `energy` 2πγ/E_c.
 pub fn least_radius(shape: &Ellipse, energy: f64) -> f64 {
     let Ellipse { a: height, b: width } = *shape;
-    // 4 A² a³ + e B² (a² − B²/4) = 0. The left side grows ever faster: from above Newton's steps come down to the root; neither of
-    // its terms alone lets it be larger than where they begin.
+    // 4 A² a³ + e B² (a² − B²/4) = 0. The left side grows ever faster: from above, Newton's steps descend to
+    // the root. Each of its terms alone bounds the root by the starting value.
     let (cubic, square) = (4.0 * height * height, energy * width * width);
     let rim = 0.25 * width * width;
     let mut a = (square * rim / cubic).cbrt().min(0.5 * width);

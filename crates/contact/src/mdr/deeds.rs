@@ -1,4 +1,4 @@
-//! What contacts mean for their grains.
+//! Effects of contacts on their grains.
 
 use super::state::Grain;
 use super::{Manner, Material, Side, State};
@@ -6,30 +6,30 @@ use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{SIX, Vec3};
 use std::f64::consts::PI;
 
-/// What one side of a contact means for its grain.
+/// The effect of one side of a contact on its grain.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct Deed<R = f64> {
-    /// Added to the mean volumetric strain.
+    /// Contribution to the mean volumetric strain.
     pub strain: R,
-    /// Volume that the plane cuts off.
+    /// Volume cut off by the plane.
     pub cap: R,
-    /// Area of contact.
+    /// Contact area.
     pub area: R,
-    /// What the plane changes of the surface.
+    /// Change of the surface area by the plane.
     pub surface: R,
-    /// Volume that flow displaces, negative.
+    /// Volume displaced by plastic flow, negative.
     pub displaced: R,
-    /// What the plane takes off the surface that rises.
+    /// Surface that the plane covers, and that therefore does not rise.
     pub covered: R,
-    /// −F b/V, b the distance of the plane from the centre.
+    /// −F b/V, b being the distance of the plane from the centre.
     pub stress: R,
-    /// What the plane gets back if it goes, where somebody keeps a ledger [energy].
+    /// Energy returned to the plane on unloading, if an energy ledger is kept [energy].
     pub energy: R,
 }
 
 impl<R: Copy> Deed<R> {
-    /// Its numbers, as they stand in memory.
+    /// Its numbers, in memory order.
     #[inline(always)]
     pub fn numbers(&self) -> [R; 8] {
         let Self { strain, cap, area, surface, displaced, covered, stress, energy } = *self;
@@ -37,17 +37,17 @@ impl<R: Copy> Deed<R> {
     }
 }
 
-/// What all contacts of a grain mean for it.
+/// The effect of all contacts of a grain.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sum {
-    /// Of all that is the same in every direction; its `stress` is not used.
+    /// The isotropic parts; its `stress` is not used.
     deed: Deed,
     /// xx yy zz xy xz yz of −F b/V.
     stress: [f64; 6],
 }
 
 impl Sum {
-    /// Adds what one contact with this normal means.
+    /// Adds the effect of one contact with this normal.
     pub fn add(&mut self, deed: &Deed, n: Vec3) {
         let own = &mut self.deed;
         own.strain += deed.strain;
@@ -61,7 +61,7 @@ impl Sum {
         }
     }
 
-    /// Adds it to grain `k`.
+    /// Adds the sum to grain `k`.
     pub fn give(&self, s: &mut State, k: usize) {
         s.strain[k] += self.deed.strain;
         s.caps[k] += self.deed.cap;
@@ -73,8 +73,9 @@ impl Sum {
     }
 }
 
-/// Presses one side of grain `g` with a plane at depth `depth`, of which other grains leave the part `open`: the force
-/// with the bulk's part, the radius of contact for damping, what it means for the grain.
+/// Presses one side of grain `g` with a plane at depth `depth`; `open` is the fraction that other grains do
+/// not shield. Returns the force including the bulk's part, the contact radius for damping, and the effect on
+/// the grain.
 #[inline(always)]
 pub fn side<R: Real>(
     m: &Material,
@@ -109,7 +110,8 @@ pub fn side<R: Real>(
         energy: zero,
     };
     if manner.booked {
-        // The bulk answers to all planes of the grain: of its force as much as a spring of its own would hold.
+        // The bulk responds to all planes of the grain together: of its force, as much counts as a spring of
+        // its own would store.
         deed.energy = open * (side.energy(m, radius) + bulk * 0.5 * side.squeezing);
     }
     (force, pressed.radius, deed)

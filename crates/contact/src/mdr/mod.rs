@@ -1,8 +1,9 @@
-//! Plastic, adhesive grains that are pressed together far beyond small overlaps (normal model `mdr`).
+//! Plastic, adhesive grains that are compressed far beyond small overlaps (normal model `mdr`).
 //!
-//! The law of Zunker & Kamrin (2024), doi 10.1016/j.jmps.2023.105492 and 10.1016/j.jmps.2023.105493, as LAMMPS
-//! 22Jul2025 has it: each grain is pressed by a rigid plane in the middle of the contact ([`Side`]), grows by what is
-//! displaced plastically, and answers with its bulk modulus where little of its surface is free ([`State`]).
+//! The law of Zunker & Kamrin (2024), doi 10.1016/j.jmps.2023.105492 and 10.1016/j.jmps.2023.105493, as in
+//! LAMMPS 22Jul2025: each grain is pressed by a rigid plane in the middle of the contact ([`Side`]), grows by
+//! the volume displaced plastically, and responds with its bulk modulus when little of its surface is free
+//! ([`State`]).
 
 mod adhesion;
 mod deeds;
@@ -22,7 +23,7 @@ pub use walls::{far_pushed, gather, press};
 use perigrain_base::math::elementary::exp;
 use perigrain_base::math::real::Real;
 
-/// What grains of such a powder are made of.
+/// Material of the grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Young's modulus E [pressure].
@@ -33,12 +34,12 @@ pub struct Material {
     pub yield_stress: f64,
     /// Surface energy γ [energy/area].
     pub cohesion: f64,
-    /// ψ_b: the free part of the surface below which the bulk answers.
+    /// ψ_b: the free fraction of the surface below which the bulk responds.
     pub confinement: f64,
 }
 
 impl Material {
-    /// E_c = E/(1 − ν²), of a grain against a rigid plane.
+    /// E_c = E/(1 − ν²), for a grain against a rigid plane.
     pub fn plane(&self) -> f64 {
         self.young / (1.0 - self.poisson * self.poisson)
     }
@@ -53,7 +54,7 @@ impl Material {
         self.young / (3.0 * (1.0 - 2.0 * self.poisson))
     }
 
-    /// p_Y, the mean pressure under which a grain of radius R flows at depth δ.
+    /// p_Y, the mean pressure at which a grain of radius R yields at depth δ.
     #[inline(always)]
     pub fn hardness<R: Real>(&self, depth: R, radius: R) -> R {
         (exp(depth * -4.4 / radius) * 1.75 + 1.0) * self.yield_stress
@@ -63,33 +64,34 @@ impl Material {
 /// How contacts are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Manner {
-    /// With LAMMPS' iteration of adhesion; in setup no contact yields.
+    /// With LAMMPS' iteration of adhesion; no contact yields in the setup.
     pub lammps: bool,
     /// In the setup of a run.
     pub setup: bool,
-    /// Somebody keeps a ledger of energy.
+    /// Whether an energy ledger is kept.
     pub booked: bool,
 }
 
 impl Manner {
-    /// Whether damping sees the stiffness of the step before, none in a new contact, as in LAMMPS' setup.
+    /// Whether damping uses the stiffness of the previous step, which is zero for a new contact, as in
+    /// LAMMPS' setup.
     fn takes_before(self) -> bool {
         self.lammps && self.setup
     }
 }
 
-/// How many numbers a contact of two grains remembers: both sides, then the largest overlap.
+/// History size of a contact of two grains: both sides, then the largest overlap.
 pub const PAIR: usize = 2 * side::WIDTH + 1;
 
-/// How many numbers a contact with a wall remembers.
+/// History size of a contact with a wall.
 pub const WALL: usize = side::WIDTH;
 
-/// What a contact does along its normal, for the rest of the law: force, stiffness that damping sees, area, energy that it can give back
-/// where somebody keeps a ledger. These numbers stand at the end of what the contact remembers.
+/// Normal results of a contact for the rest of the law: force, stiffness for damping, area, and returnable
+/// energy (if an energy ledger is kept). These numbers are at the end of the history.
 pub const TOLD: usize = 4;
 
-/// After a setup, in which forces are only evaluated: `rows` of `width` numbers are `before` again; but LAMMPS keeps the
-/// largest depths it has seen.
+/// After a setup, which only evaluates forces: restores `rows` of `width` numbers to `before`; LAMMPS keeps
+/// the largest depths it has seen.
 pub fn undo(before: &[f64], rows: &mut [f64], width: usize, lammps: bool) {
     for (old, new) in before.chunks_exact(width).zip(rows.chunks_exact_mut(width)) {
         for (k, (old, new)) in old.iter().zip(new).enumerate() {

@@ -1,4 +1,4 @@
-//! Contacts among the grains of a powder: depths on both sides, forces, what they mean for the grains.
+//! Contacts among plastic grains: depths on both sides, forces, effects on the grains.
 
 use super::deeds::{Deed, Sum};
 use super::press::{Contact, Press};
@@ -27,8 +27,8 @@ pub struct Meetings {
 }
 
 impl Meetings {
-    /// Brings `memory` to the contacts `keys` of `pairs`, which touch like this, their centres so far apart; gathers how much nearer
-    /// their planes come.
+    /// Prepares `memory` for the contacts `keys` of `pairs` with this geometry and these distances of
+    /// centres; collects the approach of their planes.
     pub fn meet(
         &mut self,
         (pairs, keys): (&[Pair], &[[u32; 2]]),
@@ -46,7 +46,7 @@ impl Meetings {
             let (i, j) = (pair.i as usize, pair.j as usize);
             let (ends, Geometry { normal, overlap, .. }) = ([pair.i, pair.j], *g);
             self.lines.push(screen::Line { ends, normal, length: *length });
-            // LAMMPS forgets contacts that only this step's growth has kept.
+            // LAMMPS drops contacts that only this step's growth has preserved.
             if lammps && overlap <= s.grown[i] + s.grown[j] {
                 history.fill(0.0);
             }
@@ -63,8 +63,8 @@ impl Meetings {
         self.seen.iter_mut().zip(&self.open).for_each(|(c, open)| c.open = *open);
     }
 
-    /// Presses all contacts; `told` gets what the rest of the law must know, [`TOLD`] numbers at the end of each of its
-    /// rows of `width`.
+    /// Evaluates all contacts; `told` receives the results that the rest of the law needs: [`TOLD`] numbers
+    /// at the end of each row of `width`.
     pub fn press(
         &mut self,
         m: &Material,
@@ -74,7 +74,7 @@ impl Meetings {
         told: (&mut [f64], usize),
         manner: Manner,
     ) {
-        // All of them are written.
+        // Every element is written.
         self.deeds.resize(self.seen.len(), Default::default());
         let (rows, width) = told;
         self.grains.clear();
@@ -88,7 +88,7 @@ impl Meetings {
         );
         par::each(columns, |_, (deeds, memory, told, seen)| {
             let press = Press { m, manner, grains, seen, memory: memory.data, told, deeds };
-            // SAFETY: the form is one of this processor, and the columns are as long as `Press` wants.
+            // SAFETY: the processor supports this form, and the columns are as long as `Press` requires.
             unsafe { form.run(press) };
         });
         self.sums.clear();
@@ -101,15 +101,16 @@ impl Meetings {
     }
 }
 
-/// The depths of the plane through the circle in which the spheres cut each other.
+/// Depths of the plane through the circle in which the spheres intersect.
 #[inline(always)]
 pub(super) fn cut<R: Real>(overlap: R, radii: [R; 2]) -> [R; 2] {
     let one = overlap * (radii[1] * 2.0 - overlap) / ((radii[0] + radii[1] - overlap) * 2.0);
     [one, overlap - one]
 }
 
-/// The depth of the plane on each side: through the circle in which the spheres cut each other while the overlap grows beyond the
-/// `largest` one; on the way back each side gives in proportion to what is elastic of it.
+/// Depth of the plane on each side. While the overlap exceeds the `largest` one so far, the plane goes
+/// through the circle in which the spheres intersect; during unloading each side recedes in proportion to its
+/// elastic part.
 #[inline(always)]
 fn split<R: Real>(overlap: R, radii: [R; 2], largest: R, plastic: [R; 2]) -> [R; 2] {
     let (unloads, most) = (largest.above(overlap), cut(largest.most(overlap), radii));

@@ -1,4 +1,4 @@
-//! The loop that presses contacts among grains, several at a time.
+//! The loop over contacts among plastic grains, several at a time.
 
 use super::deeds::{Deed, side};
 use super::pairs::cut;
@@ -19,15 +19,15 @@ pub(super) struct Contact {
     pub ends: [u32; 2],
     /// Unit vector from the second to the first.
     pub normal: Vec3,
-    /// How far the spheres overlap [length].
+    /// Overlap of the spheres [length].
     pub overlap: f64,
-    /// How deep the plane between them lies in each [length].
+    /// Depth of the plane between them in each sphere [length].
     pub depths: [f64; 2],
-    /// The part of the force that other grains in between leave.
+    /// The fraction of the force that grains in between do not shield.
     pub open: f64,
 }
 
-/// Contacts and what is read and written for them: as many rows of each column.
+/// Contacts with their inputs and outputs: one row per contact in each column.
 pub(super) struct Press<'a> {
     pub m: &'a Material,
     pub manner: Manner,
@@ -36,12 +36,12 @@ pub(super) struct Press<'a> {
     pub seen: &'a [Contact],
     /// [`PAIR`] numbers of each contact.
     pub memory: &'a mut [f64],
-    /// What the law is told, [`TOLD`] numbers at the end of each row.
+    /// Results for the rest of the law: [`TOLD`] numbers at the end of each row.
     pub told: par::Rows<'a, f64>,
     pub deeds: &'a mut [[Deed; 2]],
 }
 
-/// Where what is known of the sides of some contacts stands.
+/// Pointers to the data of the sides of some contacts.
 struct Places<const N: usize> {
     grains: [[*mut f64; N]; 2],
     memory: [*mut f64; N],
@@ -52,7 +52,7 @@ struct Places<const N: usize> {
 impl InLanes for Press<'_> {
     type Out = ();
 
-    /// The columns must have as many rows as contacts are seen.
+    /// The columns must have one row per contact.
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let Self { m, manner, grains, seen, memory, told, deeds } = self;
@@ -65,7 +65,7 @@ impl InLanes for Press<'_> {
             let mut places =
                 Places::<N> { grains: [[null; N]; 2], memory: [null; N], told: [null; N], deeds: [null; N] };
             for lane in 0..N {
-                // Past the last one it is repeated, and written as often, always the same.
+                // Lanes beyond the last contact repeat it and write identical values.
                 let k = (first + lane).min(seen.len() - 1);
                 at[lane] = k;
                 for side in 0..2 {
@@ -73,7 +73,7 @@ impl InLanes for Press<'_> {
                     let grain = &raw const grains[seen[k].ends[side] as usize];
                     places.grains[side][lane] = grain.cast_mut().cast();
                 }
-                // SAFETY: rows of column k, which there are, as was asked above.
+                // SAFETY: these rows of column k exist, as checked above.
                 unsafe {
                     places.memory[lane] = memory.add(k * PAIR);
                     places.told[lane] = told.add((k + 1) * width - TOLD);
@@ -87,7 +87,7 @@ impl InLanes for Press<'_> {
                 [numbers[0][lane], numbers[1][lane]] = [a, b];
                 [numbers[2][lane], numbers[3][lane]] = [seen.overlap, seen.open];
             }
-            // SAFETY: the caller's promise; the places are those of contacts and of their grains.
+            // SAFETY: the caller's guarantee; the pointers are those of contacts and of their grains.
             unsafe {
                 let [a, b, overlap, open] = numbers;
                 press::<N, V>(m, manner, &places, [V::of(a), V::of(b)], V::of(overlap), V::of(open));
@@ -96,11 +96,11 @@ impl InLanes for Press<'_> {
     }
 }
 
-/// Presses some contacts.
+/// Evaluates some contacts.
 ///
 /// # Safety
-/// The processor must have what the lanes need; the places must be those of grains and of rows of contacts, which nobody else
-/// touches.
+/// The processor must support the lanes; the pointers must be those of grains and of rows of contacts, which
+/// nothing else accesses.
 #[inline(always)]
 unsafe fn press<const N: usize, V: Lanes<N>>(
     m: &Material,
@@ -110,12 +110,12 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
     overlap: V,
     open: V,
 ) {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
-        // Both sides in turns: the results of one alone wait for each other.
+        // Both sides interleaved: the operations of one side alone depend on each other and would stall.
         let grains = Grain::of(twice([&grain::<N, V>(&at.grains[0]), &grain::<N, V>(&at.grains[1])]));
-        // The last number of the second side's rows is the largest overlap; that of the first side's the second's depth, which it
-        // gets itself.
+        // The last number of the second side's rows is the largest overlap; the last number of the first
+        // side's rows is the depth of the second, which is computed here.
         let rows = [numbers::<N, V>(&at.memory, 0), numbers::<N, V>(&at.memory, WIDTH)];
         let largest = rows[1][WIDTH].most(overlap);
         let mut sides = Side::of(twice([&rows[0], &rows[1]]));
@@ -145,13 +145,13 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
     }
 }
 
-/// What a side remembers, from `part` on, and what stands behind it.
+/// The history of a side from `part` on, and the numbers behind it.
 ///
 /// # Safety
-/// There must be such rows.
+/// These rows must exist.
 #[inline(always)]
 unsafe fn numbers<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize) -> [V; WIDTH + 1] {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         let [a, b, c, d] = load_rows::<V, N>(rows, part);
         let [e, f, g, h] = load_rows::<V, N>(rows, part + 4);
@@ -160,7 +160,7 @@ unsafe fn numbers<const N: usize, V: Lanes<N>>(rows: &[*mut f64; N], part: usize
     }
 }
 
-/// The first numbers of both sides side by side.
+/// The first numbers of both sides, interleaved.
 #[inline(always)]
 fn twice<V: Copy, const K: usize, const M: usize>(of: [&[V; K]; 2]) -> [Twice<V>; M] {
     let mut both = [Twice([of[0][0], of[1][0]]); M];
@@ -180,18 +180,19 @@ fn of_side<V: Copy, const K: usize>(both: &[Twice<V>; K], k: usize) -> [V; K] {
     own
 }
 
-/// The numbers of the grains at these places.
+/// The data of the grains at these pointers.
 ///
 /// # Safety
-/// There must be grains.
+/// They must point to grains.
 #[inline(always)]
 unsafe fn grain<const N: usize, V: Lanes<N>>(at: &[*mut f64; N]) -> [V; 6] {
-    // SAFETY: passed on; a grain is six numbers.
+    // SAFETY: the caller's guarantee; a grain is six numbers.
     let ([a, b, c, d], [_, _, e, f]) = unsafe { (load_rows::<V, N>(at, 0), load_rows::<V, N>(at, 2)) };
     [a, b, c, d, e, f]
 }
 
-/// The work of the mean force of both sides on the way on which they unload, where each goes its part of the overlap.
+/// The work of the mean force of both sides during unloading, where each side recedes by its part of the
+/// overlap.
 #[inline(always)]
 fn given_back<R: Real>(radii: [R; 2], largest: R, plastic: [R; 2], energies: [R; 2]) -> R {
     let (most, way) = (cut(largest, radii), largest - plastic[0] - plastic[1]);

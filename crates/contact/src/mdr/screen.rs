@@ -1,4 +1,4 @@
-//! Grains between grains: contacts that reach through a third grain push less.
+//! Grains between grains: a contact that reaches through a third grain has a reduced force.
 
 use perigrain_base::math::elementary::{asin, exp};
 use perigrain_base::math::form::{Form, InLanes};
@@ -7,10 +7,10 @@ use perigrain_base::math::vec3::{Vec3, dot, scale};
 use perigrain_base::par;
 use std::f64::consts::PI;
 
-/// How sharply a contact closes about a right angle at the grain in between.
+/// How sharply a contact is shielded around a right angle at the grain in between.
 const SHARPNESS: f64 = 50.0;
 
-/// A contact as this rule sees it.
+/// A contact for this rule.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Line {
     /// Indices of both grains.
@@ -21,12 +21,12 @@ pub struct Line {
     pub length: f64,
 }
 
-/// A contact as one of its grains sees it.
+/// A contact as seen from one of its grains.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spoke {
     /// The other grain.
     to: u32,
-    /// Which line it is.
+    /// Index of the line.
     line: u32,
 }
 
@@ -38,20 +38,21 @@ impl Spoke {
     }
 }
 
-/// So many grains between others are gathered before what they close is evaluated.
+/// Number of grains in between that are collected before their shielding is evaluated.
 const MANY: usize = 64;
 
 /// Grains between the ends of contacts.
 struct Between {
-    /// −cos θ of the angle under which each sees them, then what it closes.
+    /// −cos θ of the angle at which each sees them, then its shielding.
     cosines: [f64; MANY],
-    /// Whose ends.
+    /// Index of the contact.
     lines: [u32; MANY],
     count: usize,
 }
 
 impl Between {
-    /// One that sees the ends of contact `line`; room for it is made where all is taken.
+    /// Adds one that sees the ends of contact `line`; evaluates the collected ones first if the buffer is
+    /// full.
     fn add(&mut self, cosine: f64, line: usize, out: &mut [f64]) {
         if self.count == MANY {
             self.close(out);
@@ -60,9 +61,10 @@ impl Between {
         self.count += 1;
     }
 
-    /// Adds what each closes to its contact, in the order in which they were found, and forgets them.
+    /// Adds the shielding of each to its contact, in the order in which they were found, and empties the
+    /// buffer.
     fn close(&mut self, out: &mut [f64]) {
-        // SAFETY: the form is one of this processor.
+        // SAFETY: the processor supports this form.
         unsafe { Form::here().run(Close(&mut self.cosines)) };
         let found = self.lines.iter().zip(&self.cosines).take(self.count);
         found.for_each(|(line, closes)| out[*line as usize] += closes);
@@ -81,7 +83,7 @@ impl InLanes for Close<'_> {
         for some in self.0.chunks_exact_mut(N) {
             let mut cosines = [0.0; N];
             cosines.copy_from_slice(some);
-            // SAFETY: passed on.
+            // SAFETY: the caller's guarantee.
             let x = unsafe { V::of(cosines) };
             let one = x.like(1.0);
             let x = one.least((-one).most(x));
@@ -90,13 +92,14 @@ impl InLanes for Close<'_> {
     }
 }
 
-/// The contacts of each grain; keeps its room from step to step.
+/// The contacts of each grain; keeps its buffers from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Screen {
-    /// Where the contacts of a grain begin, and behind the last grain.
+    /// Start of the contacts of each grain, and the end of the last.
     start: Vec<u32>,
     spokes: Vec<Spoke>,
-    /// By grain: a bit for each that it touches ([`bit`]); grains that share a bit are told apart by looking.
+    /// Per grain, a bit for each grain that it touches ([`bit`]); grains that share a bit are distinguished
+    /// by a search.
     touched: Vec<u64>,
 }
 
@@ -106,11 +109,11 @@ fn bit(k: u32) -> u64 {
 }
 
 impl Screen {
-    /// The open part of every contact: 1 less 1/(1 + exp(−50 (θ/π − 1/2))) for every grain that touches both ends, is
-    /// nearer to both than they are to each other, and sees them under the angle θ.
+    /// The open fraction of every contact: 1 minus 1/(1 + exp(−50 (θ/π − 1/2))) for every grain that touches
+    /// both ends, is nearer to both than they are to each other, and sees them at the angle θ.
     pub fn open(&mut self, lines: &[Line], grains: usize, out: &mut Vec<f64>) {
         self.sort(lines, grains);
-        // All of them are written.
+        // Every element is written.
         out.resize(lines.len(), 0.0);
         par::each(&mut out[..], |first, out| {
             let mut between = Between { cosines: [0.0; MANY], lines: [0; MANY], count: 0 };
@@ -123,7 +126,7 @@ impl Screen {
         });
     }
 
-    /// Grains between the ends of this contact: −cos θ of the angle under which each sees them.
+    /// Finds the grains between the ends of this contact: −cos θ of the angle at which each sees them.
     fn look(&self, line: &Line, lines: &[Line], mut found: impl FnMut(f64)) {
         let [i, j] = line.ends;
         let touched = self.touched[j as usize];
@@ -136,17 +139,17 @@ impl Screen {
         }
     }
 
-    /// The contacts of grain `k`, in the order of the lines.
+    /// The contacts of grain `k`, in line order.
     fn of(&self, k: u32) -> &[Spoke] {
         let k = k as usize;
         &self.spokes[self.start[k] as usize..self.start[k + 1] as usize]
     }
 
-    /// Puts every line under both of its grains.
+    /// Sorts the lines by both of their grains.
     fn sort(&mut self, lines: &[Line], grains: usize) {
         self.start.clear();
         self.start.resize(grains + 2, 0);
-        // Two places further than where a grain's contacts begin: filling them moves each entry on to where they end.
+        // Two places beyond the start of a grain's contacts: filling advances each entry to their end.
         lines.iter().flat_map(|l| l.ends).for_each(|k| self.start[k as usize + 2] += 1);
         let mut sum = 0;
         for count in &mut self.start {

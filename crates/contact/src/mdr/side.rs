@@ -5,27 +5,27 @@ use perigrain_base::math::elementary::polynomial;
 use perigrain_base::math::real::Real;
 use std::f64::consts::PI;
 
-/// How many numbers a side remembers.
+/// History size of a side.
 pub const WIDTH: usize = 11;
 
-/// Where `depth` stands among the numbers.
+/// Index of `depth`.
 pub const DEPTH: usize = 0;
 
-/// Where `area` stands among the numbers.
+/// Index of `area`.
 pub const AREA: usize = 8;
 
-/// Where `deepest` stands among the numbers.
+/// Index of `deepest`.
 pub const DEEPEST: usize = 4;
 
-/// Where `plastic` stands among the numbers.
+/// Index of `plastic`.
 pub const PLASTIC: usize = 10;
 
-/// What one grain remembers of a contact.
+/// The history of one side of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Side<R = f64> {
     /// Depth δ of the plane below the surface of radius R [length].
     pub depth: R,
-    /// Depth below the surface the grain had at first.
+    /// Depth below the original surface.
     pub first_depth: R,
     /// The part of δ that shears the contact.
     pub shearing: R,
@@ -35,31 +35,31 @@ pub struct Side<R = f64> {
     pub deepest: R,
     /// 1 once it has yielded, 0 before.
     pub yielded: R,
-    /// c_A = π(δ_Y² − δ_Y R), by which the plastic area differs from that of a cap.
+    /// c_A = π(δ_Y² − δ_Y R), the difference between the plastic area and that of a cap.
     pub offset: R,
-    /// Radius inside which the surfaces stick.
+    /// Radius within which the surfaces stick.
     pub stuck: R,
     /// Area of contact.
     pub area: R,
-    /// Part in the grain's mean volumetric strain.
+    /// Contribution to the grain's mean volumetric strain.
     pub strain: R,
-    /// Depth that would be left without load.
+    /// Residual depth without load.
     pub plastic: R,
 }
 
-/// What the plane feels.
+/// Reaction on the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pressed<R = f64> {
-    /// Force of the contact itself, without the bulk's.
+    /// Force of the contact itself, without the bulk's part.
     pub force: R,
-    /// Radius of contact for damping.
+    /// Contact radius for damping.
     pub radius: R,
-    /// 1 where plastic flow goes on, else 0.
+    /// 1 during plastic flow, else 0.
     pub flows: R,
 }
 
-/// The ellipse of the method of dimensionality reduction: a plane pressed into springs of this profile has the force of
-/// the contact. Height A/2, width B.
+/// The ellipse of the method of dimensionality reduction: a plane pressed into springs of this profile has
+/// the force of the contact. Height A/2, width B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse<R = f64> {
     /// A [length].
@@ -88,20 +88,20 @@ impl<R: Real> Ellipse<R> {
         self.a * (0.25 * plane) * self.a * self.b * bowl(self.part(d))
     }
 
-    /// Force at the depth A/2, where all springs are pressed: π/8 E_c A B.
+    /// Force at depth A/2, where all springs are compressed: π/8 E_c A B.
     #[inline(always)]
     fn whole_force(&self, plane: f64) -> R {
         self.a * (0.125 * PI * plane) * self.b
     }
 
-    /// Radius of contact at depth `d`.
+    /// Contact radius at depth `d`.
     #[inline(always)]
     pub fn radius(&self, d: R) -> R {
         let x = self.part(d);
         self.b * 0.5 * x.like(0.0).most(x * 4.0 - x * 4.0 * x).sqrt()
     }
 
-    /// Depth at which the radius of contact is `r`.
+    /// Depth at contact radius `r`.
     #[inline(always)]
     pub fn depth(&self, r: R) -> R {
         let (a, b) = (self.a, self.b);
@@ -127,7 +127,8 @@ fn bowl<R: Real>(x: R) -> R {
     R::choose(half, (x - 0.5) * PI + near, near)
 }
 
-/// [`segment`] over x^(3/2) for x up to a half: interpolates Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k within 8e-17 of it.
+/// [`segment`] over x^(3/2) for x up to one half: interpolates Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k within
+/// 8e-17.
 const SEGMENT: [f64; 18] = [
     5.333333333333333,
     -1.6000000000000307,
@@ -149,7 +150,7 @@ const SEGMENT: [f64; 18] = [
     -0.23747588555199495,
 ];
 
-/// [`bowl`] over x^(5/2) for x up to a half, where each term is divided by k + 5/2, likewise.
+/// The same for [`bowl`] over x^(5/2), where each term is divided by k + 5/2.
 const BOWL: [f64; 16] = [
     2.1333333333333333,
     -0.4571428571429041,
@@ -170,14 +171,14 @@ const BOWL: [f64; 16] = [
 ];
 
 impl Side {
-    /// From what a contact remembers.
+    /// Reads it from a contact history.
     pub fn read(m: &[f64]) -> Self {
         let mut numbers = [0.0; WIDTH];
         numbers.iter_mut().zip(m).for_each(|(a, b)| *a = *b);
         Self::of(numbers)
     }
 
-    /// Into what a contact remembers.
+    /// Writes it to a contact history.
     pub fn write(&self, m: &mut [f64]) {
         m.iter_mut().zip(self.numbers()).for_each(|(a, b)| *a = b);
     }
@@ -223,8 +224,9 @@ impl<R: Real> Side<R> {
         [depth, first_depth, shearing, squeezing, deepest, yielded, offset, stuck, area, strain, plastic]
     }
 
-    /// Moves the plane to depth `depth` below the surface of radius `radius`, what was squeezed staying so; `mean`: by how much the grain's planes
-    /// came nearer in this step, on average over their areas, where the bulk answers, else 0.
+    /// Moves the plane to depth `depth` below the surface of radius `radius`, and keeps the squeezed part.
+    /// `mean`: the area-weighted mean approach of the grain's planes in this step if the bulk responds, else
+    /// 0.
     #[inline(always)]
     pub fn go(&mut self, depth: R, radius: R, first: R, mean: R) {
         self.squeezing = depth.like(0.0).most(self.squeezing + mean);
@@ -243,7 +245,7 @@ impl<R: Real> Side<R> {
         let unloads = deepest.above(self.shearing);
         let flows = R::choose(unloads, zero, one);
         if !(manner.lammps && manner.setup) {
-            // Mean pressure of Hertz' contact.
+            // Mean pressure of a Hertz contact.
             let mean = deepest.sqrt() * (4.0 * plane) / (radius.sqrt() * (3.0 * PI));
             let yields = R::both(R::both(flows.above(zero), mean.above(hardness)), one.above(self.yielded));
             self.offset = R::choose(yields, (deepest * deepest - deepest * radius) * PI, self.offset);
@@ -264,8 +266,8 @@ impl<R: Real> Side<R> {
         Pressed { force: R::choose(pressed, force, zero), radius: R::choose(pressed, contact, zero), flows }
     }
 
-    /// What the plane gets back if it goes as it does when it unloads: the energy of the springs, spread over the way by which the rim rises
-    /// [energy].
+    /// Energy returned to the plane during unloading: the energy of the springs, distributed over the height
+    /// by which the rim rises [energy].
     #[inline(always)]
     pub fn energy(&self, m: &Material, radius: R) -> R {
         let zero = radius.like(0.0);
@@ -275,25 +277,25 @@ impl<R: Real> Side<R> {
         R::choose(most.above(zero), (lift / most + 1.0) * springs, zero)
     }
 
-    /// Where it has yielded.
+    /// Whether it has yielded.
     #[inline(always)]
     pub fn has_yielded(&self) -> R::Mask {
         self.yielded.above(self.yielded.like(0.0))
     }
 
-    /// The elastic depth at the largest depth.
+    /// The elastic depth at the largest depth so far.
     #[inline(always)]
     fn most(&self, shape: &Ellipse<R>) -> R {
         R::choose(self.has_yielded(), shape.a * 0.5, self.deepest)
     }
 
-    /// The elastic depth now.
+    /// The current elastic depth.
     #[inline(always)]
     fn elastic(&self, most: R, lift: R) -> R {
         (self.shearing - self.deepest + most + lift) / (lift / most + 1.0)
     }
 
-    /// The ellipse, and δ_R, by which the rim of the contact lies lower while it is loaded.
+    /// The ellipse, and δ_R, the lowering of the contact's rim under load.
     #[inline(always)]
     fn shape(&self, m: &Material, radius: R, hardness: R) -> (Ellipse<R>, R) {
         let zero = radius.like(0.0);

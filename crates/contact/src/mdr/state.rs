@@ -1,4 +1,4 @@
-//! What grains of a powder know of themselves: their first and present size, free surface, strain, mean stress.
+//! State of plastic grains: original and current size, free surface, strain, mean stress.
 
 use super::Material;
 use perigrain_world::columns::{Columns, PLASTIC_BEGUN};
@@ -9,45 +9,45 @@ macro_rules! columns {
     ($($name:ident)*) => { [$(Constant::new(concat!("property/atom/mdr/d_", stringify!($name)))),*] };
 }
 
-/// The columns, named as LAMMPS' decks call them.
+/// The columns, named as in LAMMPS' decks.
 static COLUMNS: [Constant<Vec<f64>>; 21] = columns![
     Ro dRavg Vgeo Velas Vcaps eps_bar dRnumerator dRdenominator Acon0 Acon1 Atot Atot_sum ddelta_bar psi
     sigmaxx sigmayy sigmazz sigmaxy sigmaxz sigmayz grown
 ];
 
-/// How slowly growth follows: each step's growth is mixed with the mean of those before.
+/// Smoothing of the growth: weight of each step's growth against the mean of earlier ones.
 const FRESH: f64 = 0.1;
 
 /// The columns of all grains.
 #[derive(Clone, Debug, Default)]
 pub struct State {
-    /// First radius [length]; 0 of grains that nobody has looked at.
+    /// Original radius [length]; 0 for new grains.
     pub first: Vec<f64>,
     /// Mean growth of recent steps.
     pub growth: Vec<f64>,
-    /// Volume without what planes cut off.
+    /// Volume without the caps cut off by planes.
     pub left_volume: Vec<f64>,
     /// Volume under the mean stress.
     pub volume: Vec<f64>,
-    /// Volume that planes cut off.
+    /// Volume of the caps cut off by planes.
     pub caps: Vec<f64>,
     /// Mean volumetric strain.
     pub strain: Vec<f64>,
-    /// Volume that flow displaces in this step, negative.
+    /// Volume displaced by plastic flow in this step, negative.
     pub displaced: Vec<f64>,
-    /// By how much that takes off the surface over which it is spread.
+    /// Reduction of the surface over which it is distributed.
     pub covered: Vec<f64>,
-    /// Area of contact in the step before.
+    /// Contact area in the previous step.
     pub area_before: Vec<f64>,
-    /// Area of contact.
+    /// Contact area.
     pub area: Vec<f64>,
-    /// All of the surface.
+    /// Total surface area.
     pub surface: Vec<f64>,
-    /// What planes change of it.
+    /// Change of the surface area by planes.
     pub surface_change: Vec<f64>,
-    /// By how much planes came nearer in this step, on average over their areas.
+    /// Area-weighted mean approach of the planes in this step.
     pub mean: Vec<f64>,
-    /// ψ: the free part of the surface.
+    /// ψ: the free fraction of the surface.
     pub free: Vec<f64>,
     /// Mean stress: xx yy zz xy xz yz.
     pub stress: [Vec<f64>; 6],
@@ -55,26 +55,26 @@ pub struct State {
     pub grown: Vec<f64>,
 }
 
-/// What contacts ask about a grain: see [`State`].
+/// Data of a grain that contacts need: see [`State`].
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct Grain<R = f64> {
-    /// First radius.
+    /// Original radius.
     pub first: R,
     /// Volume under the mean stress.
     pub volume: R,
-    /// Volume without what planes cut off.
+    /// Volume without the caps cut off by planes.
     pub left_volume: R,
-    /// Area of contact in the step before.
+    /// Contact area in the previous step.
     pub area_before: R,
-    /// How the bulk answers: the mean approach of its planes where too little of its surface is free, else 0.
+    /// The bulk's response: the mean approach of its planes if too little of its surface is free, else 0.
     pub mean: R,
     /// Radius.
     pub radius: R,
 }
 
 impl<R> Grain<R> {
-    /// From its numbers, as they stand in memory.
+    /// From its numbers, in memory order.
     #[inline(always)]
     pub fn of([first, volume, left_volume, area_before, mean, radius]: [R; 6]) -> Self {
         Self { first, volume, left_volume, area_before, mean, radius }
@@ -109,7 +109,7 @@ impl State {
         ]
     }
 
-    /// Takes the columns out of the world; they are made where they are missing.
+    /// Takes the columns out of the world; creates missing ones.
     pub fn take(columns: &mut Columns, n: usize) -> Self {
         let mut state = Self::default();
         for (key, column) in COLUMNS.iter().zip(state.all()) {
@@ -118,7 +118,7 @@ impl State {
         state
     }
 
-    /// Makes the columns.
+    /// Creates the columns.
     pub fn declare(w: &mut World) {
         let n = w.n();
         for key in COLUMNS.iter() {
@@ -126,7 +126,7 @@ impl State {
         }
     }
 
-    /// Puts them back.
+    /// Puts the columns back.
     pub fn put(mut self, columns: &mut Columns) {
         for (key, column) in COLUMNS.iter().zip(self.all()) {
             let n = column.len();
@@ -134,7 +134,7 @@ impl State {
         }
     }
 
-    /// Measures grains that are new.
+    /// Initializes new grains.
     pub fn welcome(&mut self, radius: &[f64]) {
         for (k, &r) in radius.iter().enumerate() {
             if self.first[k] != 0.0 {
@@ -148,8 +148,8 @@ impl State {
         }
     }
 
-    /// Begins a step: surface and volume after the contacts of the step before, growth by what they displaced. Sums over
-    /// contacts begin anew.
+    /// Begins a step: surface and volume after the contacts of the previous step, and growth by the volume
+    /// they displaced. Resets the sums over contacts.
     pub fn begin(&mut self, m: &Material, radius: &mut [f64]) {
         for (k, r) in radius.iter_mut().enumerate() {
             self.surface[k] = 4.0 * PI * *r * *r + self.surface_change[k];
@@ -159,7 +159,7 @@ impl State {
             self.volume[k] = whole * (1.0 + self.strain[k]);
             self.left_volume[k] = (4.0 / 3.0 * PI * *r * *r * *r - self.caps[k]).min(whole);
             self.free[k] = (self.surface[k] - self.area[k]) / self.surface[k];
-            // The surface rises everywhere by what is displaced over the part of it that no plane covers.
+            // The surface rises uniformly where no plane covers it, by the displaced volume.
             let rise = self.displaced[k] / (self.covered[k] - 4.0 * PI * *r * *r);
             if rise > 0.0 && self.covered[k] != 0.0 && self.free[k] >= m.confinement {
                 self.growth[k] = (1.0 - FRESH) * self.growth[k] + FRESH * rise;
@@ -180,7 +180,7 @@ impl State {
         sums.into_iter().chain(&mut self.stress).for_each(|c| c.fill(0.0));
     }
 
-    /// What contacts ask about grain `k` of this radius.
+    /// The data of grain `k` of this radius for contacts.
     pub fn grain(&self, m: &Material, k: usize, radius: f64) -> Grain {
         Grain {
             first: self.first[k],
@@ -193,12 +193,13 @@ impl State {
     }
 }
 
-/// Whether somebody has begun this step (`at` as for [`begin`]).
+/// Whether this step has been begun (`at` as for [`begin`]).
 pub fn begun(w: &World, at: (i64, bool)) -> bool {
     !at.1 && w.memo.get(*PLASTIC_BEGUN).is_some_and(|s| s[..] == [at.0 as f64])
 }
 
-/// Begins step `at.0` for all grains, unless somebody has done so in this step; in setup (`at.1`) grains are only measured.
+/// Begins step `at.0` for all grains, unless that has been done in this step; in the setup (`at.1`) grains
+/// are only measured.
 pub fn begin(w: &mut World, at: (i64, bool), m: &Material) -> State {
     let (step, setup) = (at.0 as f64, at.1);
     let n = w.n();

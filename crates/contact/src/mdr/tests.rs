@@ -1,4 +1,4 @@
-//! Plastic grains against closed forms.
+//! Plastic grains compared with closed forms.
 
 use super::deeds::Deed;
 use super::press::{Contact, Press};
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 const SOFT: Material =
     Material { young: 1e6, poisson: 0.3, yield_stress: 1e4, cohesion: 0.0, confinement: 0.0 };
 
-/// The forces while a plane goes through these depths of a sphere of radius 1.
+/// The forces while a plane moves through these depths of a sphere of radius 1.
 fn forces(m: &Material, depths: impl Iterator<Item = f64>) -> Vec<(Side, Pressed)> {
     let mut side = Side::default();
     let press = |d: f64| {
@@ -44,7 +44,7 @@ fn first_loading_beyond_yield_is_hardness_times_area() {
         let d = side.depth;
         let area = PI * (2.0 * d - d * d) + side.offset;
         let expected = SOFT.hardness(d, 1.0) * area;
-        // The ellipse is pressed flat: acos(-1) and a root of 0, some ulp.
+        // The ellipse is pressed flat: acos(-1) and a root of 0, accurate to some ulp.
         assert!(side.yielded == 1.0 && (p.force / expected - 1.0).abs() < 1e-13, "{} {expected}", p.force);
         assert!((side.area / area - 1.0).abs() < 1e-14);
     }
@@ -61,7 +61,7 @@ fn no_cycle_gains_energy() {
             before = (side.depth, p.force);
         }
         let most = path.iter().map(|(_, p)| p.force).fold(0.0, f64::max);
-        // It flows: of the work, about half of largest force times depth, most is lost.
+        // It yields: most of the work, about half of largest force times depth, is dissipated.
         assert!(spent > 0.3 * most * 0.05, "{cohesion}: {spent}");
         let gain = path.windows(2).skip(400).any(|w| w[1].1.force > w[0].1.force && w[0].1.force > 0.0);
         assert!(!gain, "a force grows while its plane goes back");
@@ -81,14 +81,14 @@ fn unloading_and_loading_again_go_the_same_way() {
 #[test]
 fn adhesion_of_elastic_grains_is_that_of_johnson_kendall_and_roberts() {
     let m = Material { yield_stress: 1e12, cohesion: 1.0, ..SOFT };
-    // Loading to 0.02 and back by small steps.
+    // Loading to 0.02 and back in small steps.
     let path = forces(&m, there_and_back(0.02));
     for (side, p) in path.iter().skip(640).filter(|(s, p)| s.stuck > 0.0 && p.force != 0.0) {
-        // JKR: F = 4 E a³/(3R) − √(8π γ E a³), δ = a²/R − √(2π γ a/E); small a beside R.
+        // JKR: F = 4 E a³/(3R) − √(8π γ E a³), δ = a²/R − √(2π γ a/E), for a small compared with R.
         let (a, e) = (side.stuck, m.plane());
         let force = 4.0 / 3.0 * e * a * a * a - (8.0 * PI * m.cohesion * e).sqrt() * a.powf(1.5);
         let depth = a * a - (2.0 * PI * m.cohesion * a / e).sqrt();
-        // Parabola against ellipse: relative errors of order (a/R)².
+        // Parabola compared with ellipse: relative errors of order (a/R)².
         let scale = 4.0 / 3.0 * e * a * a * a;
         assert!((p.force - force).abs() < a * a * scale, "{} {force}", p.force);
         assert!((side.depth - depth).abs() < a * a * a * a, "{} {depth}", side.depth);
@@ -101,17 +101,17 @@ fn force_and_energy_of_the_ellipse_are_what_the_formulas_say() {
     for k in 1..2000 {
         let x = f64::from(k) / 2000.0;
         let (theta, sine) = ((1.0 - 2.0 * x).acos(), (4.0 * x - 4.0 * x * x).sqrt());
-        // Forces and energies of springs over a whole depth: A B/4 and A² B/8 times these.
+        // Forces and energies of springs over the whole depth: A B/4 and A² B/8 times these.
         let force = 2.0 * (theta - (1.0 - 2.0 * x) * sine);
         let energy = 4.0 * (sine - theta * (1.0 - 2.0 * x) - sine.powi(3) / 3.0);
-        // The formulas' terms, up to 4 π, are rounded, and cancel each other but for x^(3/2) and x^(5/2).
+        // The terms of the formulas, up to 4 π, are rounded, and cancel down to x^(3/2) and x^(5/2).
         let (own, held) = (shape.force(1.0, 4.0 * x), shape.energy(1.0, 4.0 * x));
         assert!(
             (own - force).abs() < 1e-14 && (held - energy).abs() < 1e-14,
             "{x}: {own} {force} {held} {energy}"
         );
     }
-    // Where the plane only touches, 16/3 x^(3/2) (1 − 3x/10) and 32/15 x^(5/2) (1 − 3x/14).
+    // At first touch, 16/3 x^(3/2) (1 − 3x/10) and 32/15 x^(5/2) (1 − 3x/14).
     for x in [1e-12, 1e-8, 1e-6] {
         let force = 2.0 * 16.0 / 3.0 * x * x.sqrt() * (1.0 - 0.3 * x);
         let energy = 8.0 * 32.0 / 15.0 * x * x * x.sqrt() * (1.0 - 3.0 / 14.0 * x);
@@ -156,7 +156,8 @@ fn open_one_by_one(lines: &[screen::Line], k: usize) -> f64 {
 
 #[test]
 fn grains_between_grains_close_their_contacts() {
-    // A heap of places that come again and again in the same order: some 10 neighbours each, more grains than bits of a word.
+    // A heap from a repeating sequence of positions: some 10 neighbours each, more grains than bits in a
+    // word.
     let place = |k: u32| [0.618, 0.755, 0.329].map(|a| 5.0 * (f64::from(k) * a).fract());
     let mut lines = vec![];
     for i in 0..200 {
@@ -172,7 +173,7 @@ fn grains_between_grains_close_their_contacts() {
     screen::Screen::default().open(&lines, 200, &mut open);
     assert!(lines.len() > 1000 && open.iter().filter(|o| **o < 0.5).count() > 100);
     for (k, open) in open.iter().enumerate() {
-        // The same terms in another order, a dozen at most.
+        // The same terms in a different order, a dozen at most.
         assert!((open - open_one_by_one(&lines, k)).abs() < 1e-14, "{k}");
     }
 }
@@ -184,7 +185,7 @@ fn the_radius_at_which_a_contact_tears_solves_its_equation() {
     {
         let r = adhesion::least_radius(&Ellipse { a, b }, energy);
         let (grows, falls) = (4.0 * a * a * r * r * r, energy * b * b * (0.25 * b * b - r * r));
-        // Where the radius is all but B/2 the right side is a difference of like numbers.
+        // If the radius is close to B/2, the right side is a difference of nearly equal numbers.
         assert!(
             r > 0.0 && r <= 0.5 * b && (grows - falls).abs() <= 1e-14 * (grows + energy * b.powi(4)),
             "{a} {b} {energy}: {r}"
@@ -194,8 +195,8 @@ fn the_radius_at_which_a_contact_tears_solves_its_equation() {
 
 #[test]
 fn a_side_gives_back_what_it_holds() {
-    // The work of the plane on its way back, by the trapezoidal rule, against the difference of energies: elastic, yielded, and with
-    // surfaces that stick but do not tear yet.
+    // The work of the plane during unloading, by the trapezoidal rule, compared with the difference of
+    // energies: elastic, yielded, and with surfaces that stick but do not tear yet.
     let held = |m: &Material, side: &Side| side.energy(m, 1.0);
     for (m, last) in
         [(Material { yield_stress: 1e12, ..SOFT }, 0), (SOFT, 0), (Material { cohesion: 1.0, ..SOFT }, 394)]
@@ -207,7 +208,8 @@ fn a_side_gives_back_what_it_holds() {
             work += 0.5 * (a.1.force + b.1.force) * (b.0.depth - a.0.depth);
         }
         let left = held(&m, &path[799 - last.max(1)].0);
-        // Steps of 1/400 of the way: the rule leaves about their square, more at the root-like end of the force.
+        // Steps of 1/400 of the path: the error is about their square, more at the end, where the force
+        // varies like a root.
         assert!(((most - left) / work - 1.0).abs() < 1e-3, "{m:?} {work} {most} {left}");
         assert!(most > 0.0);
     }
@@ -226,14 +228,14 @@ fn flow_and_torn_surfaces_take_energy() {
             fell = fell.max(taken - lost);
             taken = f64::max(taken, lost);
         }
-        // What flow has taken never comes back, but for the rule's errors and the 6 % of Hertz' energy by which the ellipse of a
-        // contact that just yields holds more.
+        // Energy dissipated by flow is never returned, apart from the error of the rule and the 6 % of Hertz'
+        // energy that the ellipse of a contact that just yields stores in excess.
         assert!(taken > 0.0 && fell < 2e-3 * taken, "{cohesion}: {taken} {fell}");
     }
 }
 
-/// What eleven contacts that load, unload, tear and load again remember, tell and do for their grains in the end, some of them
-/// hemmed in, in this form or one by one.
+/// Histories, results and effects on grains of eleven contacts that load, unload, tear and load again, some
+/// of them shielded, in this form or one by one.
 fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
     const CONTACTS: usize = 11;
     let grain = |k: usize| {
@@ -265,7 +267,7 @@ fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
         {
             let told = perigrain_base::par::Rows { data: told, width: TOLD + 1 };
             let press = Press { m, manner, grains: &grains, seen, memory, told, deeds };
-            // SAFETY: a form of this processor.
+            // SAFETY: the processor supports this form.
             unsafe { form.unwrap_or(Form::Plain).run(press) };
         }
     }
@@ -282,7 +284,7 @@ fn all_forms_press_to_the_same_bits() {
         let m = Material { cohesion, ..SOFT };
         for setup in [false, true] {
             let alone = pressed(&m, None, setup);
-            // Contacts have yielded, and energies are told.
+            // Contacts have yielded, and energies are recorded.
             let yielded = |row: &[f64]| Side::read(row).yielded == 1.0;
             assert!(alone[0].chunks(PAIR).all(yielded) && alone[1].iter().any(|a| *a > 0.0));
             for form in Form::all() {
@@ -307,7 +309,7 @@ fn a_contact_of_like_grains_is_pressed_as_by_a_wall() {
         let (grains, memory) = (&[grain; 2], &mut memory[..]);
         let row = perigrain_base::par::Rows { data: &mut told[..], width: TOLD };
         let press = Press { m: &m, manner, grains, seen: &seen, memory, told: row, deeds: &mut deeds };
-        // SAFETY: a form of this processor.
+        // SAFETY: the processor supports this form.
         unsafe { Form::here().run(press) };
         assert_eq!(told[..2], [force, 2.0 * m.plane() * (2.0 * contact)], "{depth}");
         assert_eq!(Side::read(&memory[..]), one);

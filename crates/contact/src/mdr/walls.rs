@@ -1,4 +1,4 @@
-//! Contacts of a powder's grains with walls.
+//! Contacts of plastic grains with walls.
 
 use super::deeds::{Deed, side};
 use super::side::{Side, WIDTH};
@@ -6,13 +6,13 @@ use super::{Manner, Material, State, TOLD};
 use perigrain_base::math::elementary::exp;
 use perigrain_world::contacts::Contacts;
 
-/// By which factor a wall pushes more, far beyond what contact laws hold for, so that no grain is pressed through it:
-/// 1 + exp(10.7 δ/R − 10) with the depth below the first surface, as LAMMPS has it.
+/// Factor on a wall's force far beyond the validity of contact laws, so that no grain is pressed through it:
+/// 1 + exp(10.7 δ/R − 10) with the depth below the original surface, as in LAMMPS.
 pub fn far_pushed(depth: f64, first: f64) -> f64 {
     1.0 + exp(10.7 * depth / first - 10.0)
 }
 
-/// Gathers how much nearer the wall comes to each grain: grains and depths of the contacts `memory` is about.
+/// Collects the approach of the wall to each grain: indices and depths for the contacts in `memory`.
 pub fn gather(
     s: &mut State,
     memory: &Contacts,
@@ -27,7 +27,7 @@ pub fn gather(
     }
 }
 
-/// Presses grain `k` with the wall; `told` gets what the rest of the law must know.
+/// Presses grain `k` with the wall; `told` receives the results that the rest of the law needs.
 pub fn press(
     m: &Material,
     s: &State,

@@ -4,7 +4,7 @@ use super::hertz::Hertz;
 use super::{Geometry, NormalLaw, Number, Push, Real, Style};
 use std::f64::consts::PI;
 
-/// The word.
+/// The style.
 pub const DMT: Style = Style {
     name: "dmt",
     numbers: &[Number::YOUNG, Number::ETA, Number::POISSON, Number::GAMMA],

@@ -12,18 +12,20 @@
 //! adhesive              −f_0 − k_adh δ^χ             where −k_adh δ^χ ≥ k_2 (δ^n − δ_p^n)
 //! ```
 //!
-//! Adhesion grows with what the contact has borne: the last two branches meet where the pull is that of the surface energy
-//! over the rim of the plastic contact, (3/2) π γ a_p, a_p = √(R̄ δ_p) (Morrissey), so that k_adh = (3/2) π γ a_p/δ_min^χ with
-//! δ_min^n = δ_p^n − (3/2) π γ a_p/k_2. No pull is larger than that of δ_min = δ_p/2: small contacts could not bear it. On the
-//! adhesive branch the contact comes apart along it for good: δ_max falls such that reloading starts from there with k_2, until
+//! Adhesion grows with the load the contact has carried: the last two branches meet where the pull equals
+//! that of the surface energy over the rim of the plastic contact, (3/2) π γ a_p, a_p = √(R̄ δ_p)
+//! (Morrissey), so that k_adh = (3/2) π γ a_p/δ_min^χ with δ_min^n = δ_p^n − (3/2) π γ a_p/k_2. The pull is
+//! limited to that of δ_min = δ_p/2: small contacts could not carry more. On the adhesive branch the contact
+//! separates irreversibly: δ_max decreases such that reloading starts from there with k_2, until the contact
+//! loads with k_1 again; k_adh is that of the last loading.
 //! it loads anew with k_1; k_adh is that of the last loading.
 //!
-//! A contact remembers δ_max^n and k_adh.
+//! The history of a contact is δ_max^n and k_adh.
 
 use super::{Bound, Geometry, NormalLaw, Number, Push, Real, Role, Style};
 use std::f64::consts::PI;
 
-/// The word.
+/// The style.
 pub const EEPA: Style = Style {
     name: "eepa",
     numbers: &[
@@ -71,7 +73,7 @@ pub const EEPA: Style = Style {
     ..Style::PUSHES
 };
 
-/// An exponent: loads that grow slower than δ would be infinitely stiff at first touch.
+/// An exponent: forces that grow slower than δ would be infinitely stiff at first touch.
 const EXPONENT: Number = Number {
     word: "n",
     name: "",
@@ -83,7 +85,7 @@ const EXPONENT: Number = Number {
     role: Role::Same,
 };
 
-/// How much of the plastic overlap the adhesive branch begins at, at least.
+/// The fraction of the plastic overlap at which the adhesive branch begins, at least.
 const LEAST: f64 = 0.5;
 
 /// Loading, unloading and adhesive branches.
@@ -103,7 +105,7 @@ pub struct Eepa {
     adhesive: f64,
 }
 
-/// x^n of x ≥ 0; the usual powers without a call.
+/// x^n for x ≥ 0; the usual powers without a call.
 #[inline(always)]
 fn power<R: Real>(x: R, n: f64) -> R {
     match n {
@@ -183,7 +185,7 @@ impl NormalLaw for Eepa {
         }
     }
 
-    /// What the unloading branch gives back from δ to δ_p, and the constant pull takes from δ on.
+    /// The energy of the unloading branch from δ to δ_p, minus the work of the constant pull from δ on.
     fn energy(&self, g: &Geometry, memory: &[f64]) -> f64 {
         let n = self.exponent;
         let depth = g.overlap.max(0.0);
@@ -194,7 +196,7 @@ impl NormalLaw for Eepa {
         k * bent - self.pull * depth
     }
 
-    /// Of the unloading branch, k_2 n δ^(n−1).
+    /// The slope of the unloading branch, k_2 n δ^(n−1).
     fn tangent(&self, g: &Geometry) -> f64 {
         let depth = g.overlap.max(0.0);
         let k = self.unloading(self.loading(g.curvature));

@@ -2,7 +2,7 @@
 
 use super::{Geometry, NormalLaw, Number, Push, Real, Role, Style};
 
-/// The word with a stiffness.
+/// The style with a stiffness.
 pub const HERTZ: Style = Style {
     name: "hertz",
     numbers: &[Number::own("kn", "the stiffness kn", Role::Own), Number::ETA],
@@ -11,7 +11,7 @@ pub const HERTZ: Style = Style {
     ..Style::PUSHES
 };
 
-/// The word with a material.
+/// The style with a material.
 pub const HERTZ_MATERIAL: Style = Style {
     name: "hertz/material",
     numbers: &[Number::YOUNG, Number::ETA, Number::POISSON],

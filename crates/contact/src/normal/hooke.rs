@@ -2,7 +2,7 @@
 
 use super::{Geometry, NormalLaw, Number, Push, Real, Role, Style};
 
-/// The word.
+/// The style.
 pub const HOOKE: Style = Style {
     name: "hooke",
     numbers: &[Number::own("kn", "the stiffness kn", Role::Own), Number::ETA],
@@ -38,7 +38,7 @@ impl NormalLaw for Hooke {
         if small == 0.0 {
             return self.stiffness;
         }
-        // As of any law: the last digit of compute dt/critical.
+        // Central difference as for every law, to keep the last digit of compute dt/critical.
         (self.stiffness * (g.overlap + small) - self.stiffness * (g.overlap - small)) / (2.0 * small)
     }
 

@@ -1,10 +1,11 @@
-//! `jkr E eta nu gamma` (Johnson, Kendall & Roberts 1971): lasts until it is pulled off at −3π γ R̄, beyond touch.
+//! `jkr E eta nu gamma` (Johnson, Kendall & Roberts 1971): sticks until it is pulled off at −3π γ R̄, beyond
+//! touching.
 
 use super::hertz::Hertz;
 use super::{Geometry, NormalLaw, Number, Push, Real, Style};
 use std::f64::consts::PI;
 
-/// The word.
+/// The style.
 pub const JKR: Style = Style {
     name: "jkr",
     numbers: &[Number::YOUNG, Number::ETA, Number::POISSON, Number::GAMMA],
@@ -55,7 +56,7 @@ impl NormalLaw for Jkr {
         let first = (depth * 2.0 + part).most(zero).sqrt();
         let last = square * (6.0 * 6.0_f64.sqrt() * gamma * PI / e) / first;
         let a = (first + (depth * 4.0 - part + last).most(zero).sqrt()) / 6.0_f64.sqrt();
-        // Without attraction the quotients are 0/0 at first touch.
+        // Without adhesion the quotients are 0/0 at first touch.
         R::choose(cube.above(zero), a, depth.most(zero).sqrt())
     }
 
@@ -68,7 +69,7 @@ impl NormalLaw for Jkr {
     }
 
     fn energy(&self, g: &Geometry, _memory: &[f64]) -> f64 {
-        // Simpson's rule; the force is smooth in δ but at the tear, where the slope is infinite.
+        // Simpson's rule; the force is smooth in δ except at the tear, where the slope is infinite.
         const PANELS: usize = 64;
         let at = |k: usize| {
             let overlap = g.overlap * k as f64 / PANELS as f64;
@@ -80,7 +81,7 @@ impl NormalLaw for Jkr {
         sum * g.overlap / (3 * PANELS) as f64
     }
 
-    /// −δ where the contact tears under a given force, a³ = 9π γ R̄²/(4 E*).
+    /// −δ at which the contact tears under a given force, a³ = 9π γ R̄²/(4 E*).
     fn gap(&self, curvature: f64) -> f64 {
         if self.cohesion == 0.0 {
             return 0.0;

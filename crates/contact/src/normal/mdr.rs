@@ -1,11 +1,11 @@
-//! `mdr E nu Y gamma psi_b e` (Zunker & Kamrin 2024): plastic grains, whose contacts remember what [`super::super::powder`]
-//! has found for them.
+//! `mdr E nu Y gamma psi_b e` (Zunker & Kamrin 2024): plastic grains; the contact histories hold the results
+//! of [`super::super::powder`].
 
 use super::hertz::Hertz;
 use super::{Bound, Geometry, Normal, NormalLaw, Number, Push, Real, Role, Style};
 use crate::mdr::{Material, TOLD};
 
-/// The word.
+/// The style.
 pub const MDR: Style = Style {
     name: "mdr",
     numbers: &[
@@ -53,22 +53,22 @@ pub const MDR: Style = Style {
     ..Style::PUSHES
 };
 
-/// What plastic grains are made of; `None` of other models.
+/// The material of plastic grains; `None` for other models.
 pub fn material(normal: &Normal) -> Option<Material> {
     let [young, poisson, yield_stress, cohesion, confinement, ..] = *normal.numbers();
     normal.in_grains().then_some(Material { young, poisson, yield_stress, cohesion, confinement })
 }
 
-/// The numbers of plastic grains that are the grain's alone: E, ν, Y, ψ_b and restitution.
+/// The parameters that belong to the grain alone: E, ν, Y, ψ_b and restitution.
 pub fn grain(normal: &Normal) -> Option<[f64; 5]> {
     let m = material(normal)?;
     Some([m.young, m.poisson, m.yield_stress, m.confinement, normal.eta()])
 }
 
-/// The force that a contact was told.
+/// The force stored in the history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mdr {
-    /// What an elastic grain of this overlap is like, for time steps.
+    /// An elastic grain with this overlap, for the time step.
     elastic: Hertz,
 }
 
@@ -83,12 +83,12 @@ impl NormalLaw for Mdr {
         Push { force: memory[0], secant: memory[1], hold: zero }
     }
 
-    /// What both sides were told to give back if they unload now; told where somebody keeps a ledger of energy.
+    /// Energy that both sides return if they unload now; available if an energy ledger is kept.
     fn energy(&self, _g: &Geometry, memory: &[f64]) -> f64 {
         memory[TOLD - 1]
     }
 
-    /// As stiff as elastic grains of this overlap.
+    /// The stiffness of elastic grains with this overlap.
     fn tangent(&self, g: &Geometry) -> f64 {
         self.elastic.tangent(g)
     }

@@ -1,8 +1,8 @@
-//! Forces along the normal: one file for each law, one table of the words that decks use.
+//! Normal forces: one file per law, one table of the words in decks.
 //!
-//! A law is a type with [`NormalLaw`], written once for single contacts and for lanes of them; a [`Style`] is the word, the
-//! numbers behind it and how the law of two types comes of those of each. Everything else (reading decks, mixing, help
-//! pages, pairs, walls, memory) goes by the table at the end of this file.
+//! A law is a type with [`NormalLaw`], written once for single contacts and for lanes of them; a [`Style`] is
+//! the word, its parameters, and the construction of the law for two types. Everything else (reading decks,
+//! mixing, help pages, pairs, walls, histories) uses the table at the end of this file.
 
 mod dmt;
 mod eepa;
@@ -21,44 +21,45 @@ pub use style::{
 use super::{Geometry, Real};
 use std::fmt::Debug;
 
-/// The force of one contact along the normal.
+/// The normal force of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push<R> {
-    /// Elastic and cohesive force on i, positive apart.
+    /// Elastic and cohesive force on i, positive for repulsion.
     pub force: R,
-    /// The stiffness that damping models see, F/δ of loading [force/length].
+    /// The stiffness that damping models use, F/δ of loading [force/length].
     pub secant: R,
-    /// What counts for friction besides the force, of laws that stick (else nobody asks): friction of grains that stick
-    /// together counts from where they would let go (Thornton 1991).
+    /// Addition to the normal load for friction, for cohesive laws (unused otherwise): the friction of
+    /// cohesive grains counts from the pull-off force (Thornton 1991).
     pub hold: R,
 }
 
-/// The force along the normal between grains of two types.
+/// The normal force between grains of two types.
 pub trait NormalLaw: Copy + Debug + PartialEq {
-    /// Whether [`NormalLaw::push`] asks for the radius of the contact.
+    /// Whether [`NormalLaw::push`] needs the contact radius.
     const BY_RADIUS: bool = true;
-    /// Whether friction counts from the force and [`Push::hold`], not from the damped force.
+    /// Whether the normal load for friction is the force plus [`Push::hold`] instead of the damped force.
     const STICKS: bool = false;
-    /// Whether contacts remember the force that somebody has told them.
+    /// Whether the force is computed elsewhere and read from the history.
     const IS_TOLD: bool = false;
-    /// Whether what the force takes besides [`NormalLaw::energy`] is flow and torn surfaces, which the ledger books as such.
+    /// Whether the work of the force apart from [`NormalLaw::energy`] is plastic flow and new surface, which
+    /// the energy ledger records as such.
     const FLOWS: bool = false;
-    /// How many numbers a contact remembers for it; they begin as zeros and are the same seen from j.
+    /// Size of its history; it begins with zeros and is the same seen from j.
     const MEMORY: usize = 0;
 
-    /// The radius of the area of contact, √(R̄ δ).
+    /// The contact radius, √(R̄ δ).
     #[inline(always)]
     fn radius<R: Real>(&self, g: &Geometry<R>) -> R {
         (g.curvature * g.overlap).sqrt()
     }
 
-    /// The force of a contact of radius `a`; what it remembers moves on.
+    /// The force of a contact of radius `a`; updates its history.
     fn push<R: Real>(&self, g: &Geometry<R>, a: R, memory: &mut [R]) -> Push<R>;
 
-    /// What the contact can give back, ∫ F dδ from touch on where the force is one of δ alone [energy].
+    /// Energy that the contact can return: ∫ F dδ from first touch if the force depends on δ alone [energy].
     fn energy(&self, g: &Geometry, memory: &[f64]) -> f64;
 
-    /// dF/dδ [force/length]; of laws with several branches that of the steepest.
+    /// dF/dδ [force/length]; for laws with several branches that of the steepest.
     fn tangent(&self, g: &Geometry) -> f64 {
         let small = 1e-6 * g.overlap.abs();
         if small == 0.0 {
@@ -72,19 +73,19 @@ pub trait NormalLaw: Copy + Debug + PartialEq {
         (at(g.overlap + small) - at(g.overlap - small)) / (2.0 * small)
     }
 
-    /// How far the surfaces of an existing contact come apart before it breaks [length].
+    /// The gap at which an existing contact breaks [length].
     fn gap(&self, _curvature: f64) -> f64 {
         0.0
     }
 
-    /// k and n of a force that grows about as k δⁿ, the stiffest there is, from which the time step is judged; `None`
-    /// without a force.
+    /// k and n of an upper bound k δⁿ of the force, from which the time step is estimated; `None` without a
+    /// force.
     fn power_law(&self, curvature: f64) -> Option<[f64; 2]>;
 }
 
 macro_rules! normal_laws {
     ($($module:ident::$Law:ident: $($STYLE:ident),+;)*) => {
-        /// The law along the normal of one pair of types: one of the table.
+        /// The normal law of one pair of types: one of the table.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Force {
             $(#[doc = concat!("See `", stringify!($module), ".rs`.")] $Law($module::$Law),)*
@@ -98,7 +99,7 @@ macro_rules! normal_laws {
 
         $(pub use $module::{$($STYLE),+};)*
 
-        /// All words that decks use, in the order of the help page.
+        /// All words, in the order of the help page.
         pub const STYLES: &[&Style] = &[$($(&$module::$STYLE),+),*];
 
         impl Force {

@@ -1,8 +1,8 @@
-//! `none`: no force along the normal.
+//! `none`: no normal force.
 
 use super::{Geometry, NormalLaw, Push, Real, Style};
 
-/// The word.
+/// The style.
 pub const NONE: Style = Style { name: "none", formula: "no force", ..Style::PUSHES };
 
 /// No force.

@@ -1,56 +1,56 @@
-//! What a deck says of a normal model: a word with its numbers, and how those of two types mix.
+//! A normal model in a deck: a word with its parameters, and mixing of two types.
 
 use super::{Force, STYLES};
 
-/// The most numbers behind a word.
+/// The largest number of parameters.
 pub const MOST: usize = 8;
 
-/// The numbers behind a word; the rest are zeros.
+/// The parameters of a word, padded with zeros.
 pub type Numbers = [f64; MOST];
 
-/// What may stand for a number.
+/// The allowed values of a parameter.
 #[derive(Clone, Copy, Debug)]
 pub enum Bound {
     /// Greater than zero.
     Positive,
     /// Not below zero.
     NonNegative,
-    /// Where `ok` says so.
+    /// As `ok` decides.
     Where {
-        /// Whether a number is good.
+        /// Whether a value is allowed.
         ok: fn(f64) -> bool,
-        /// What to say of one that is not, which stands for `{}`.
+        /// Message for a refused value, which replaces `{}`.
         wrong: &'static str,
-        /// What to write instead, or why.
+        /// What to write instead, or the reason.
         help: Option<&'static str>,
     },
 }
 
-/// What a number is to the rest of the model.
+/// Role of a parameter in the rest of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Young's modulus [pressure].
     Young,
     /// Poisson's ratio.
     Poisson,
-    /// Damping coefficient or, for damping models that ask for it, coefficient of restitution.
+    /// Damping coefficient or, for damping models that use it, coefficient of restitution.
     Eta,
-    /// The law's own; of two types the geometric mean.
+    /// A parameter of the law; for two types the geometric mean.
     Own,
-    /// The law's own, the same for types that are mixed.
+    /// A parameter of the law that must be equal for types that are mixed.
     Same,
 }
 
-/// One number behind a word.
+/// One parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
-    /// How the help page's line calls it.
+    /// Its name in the syntax line.
     pub word: &'static str,
-    /// How messages call it.
+    /// Its name in messages.
     pub name: &'static str,
-    /// What may stand for it.
+    /// Allowed values.
     pub bound: Bound,
-    /// What it is to the rest.
+    /// Role in the model.
     pub role: Role,
 }
 
@@ -74,46 +74,46 @@ impl Number {
     /// Surface energy γ [energy/area].
     pub const GAMMA: Number = Number::own("gamma", "the surface energy gamma", Role::Own);
 
-    /// A number that is not negative.
+    /// A non-negative parameter.
     pub const fn own(word: &'static str, name: &'static str, role: Role) -> Self {
         Number { word, name, bound: Bound::NonNegative, role }
     }
 }
 
-/// The numbers of a pair of types: √(a b) of each, and E* of the materials.
+/// The parameters of a pair of types: √(a b) of each, and E* of the materials.
 #[derive(Clone, Copy, Debug)]
 pub struct Mixed {
     /// In the order of [`Style::numbers`].
     pub numbers: Numbers,
-    /// E* [pressure]; NaN of models without a material.
+    /// E* [pressure]; NaN for models without a material.
     pub young: f64,
 }
 
-/// A normal model as decks name it.
+/// A normal model.
 #[derive(Debug)]
 pub struct Style {
-    /// The word decks use.
+    /// The word in decks.
     pub name: &'static str,
-    /// The numbers behind it.
+    /// Its parameters.
     pub numbers: &'static [Number],
-    /// Its formula, for the list on the help page.
+    /// Its formula, for the help page.
     pub formula: &'static str,
-    /// A paragraph of its own on the help page; may be empty.
+    /// An extra paragraph on the help page; may be empty.
     pub text: &'static str,
-    /// n of a force that grows as δⁿ.
+    /// n for a force that grows like δⁿ.
     pub exponent: fn(&Numbers) -> f64,
-    /// Whether the force can pull: then it is not cut off at zero.
+    /// Whether the force can be attractive: then it is not cut off at zero.
     pub pulls: fn(&Numbers) -> bool,
-    /// Whether damping may be made from a coefficient of restitution.
+    /// Whether damping may be derived from a coefficient of restitution.
     pub restitution: bool,
-    /// Whether the grains themselves remember: then all of them have the same numbers.
+    /// Whether the state belongs to the grains: then all of them must have the same parameters.
     pub in_grains: bool,
     /// The law of two types.
     pub force: fn(&Mixed) -> Force,
 }
 
 impl Style {
-    /// What most laws have: a force that grows as δ^(3/2) and only pushes.
+    /// Defaults for most laws: a repulsive force that grows like δ^(3/2).
     pub const PUSHES: Style = Style {
         name: "",
         numbers: &[],
@@ -127,7 +127,7 @@ impl Style {
     };
 }
 
-/// A normal model with the coefficients a deck gives it.
+/// A normal model with its parameters from a deck.
 #[derive(Clone, Copy)]
 pub struct Normal {
     style: &'static Style,
@@ -147,24 +147,24 @@ impl std::fmt::Debug for Normal {
 }
 
 impl Normal {
-    /// A model of the table with the first of its numbers.
+    /// A model of the table with the first of its parameters.
     pub fn new(style: &'static Style, numbers: &[f64]) -> Self {
         let mut all = [0.0; MOST];
         all.iter_mut().zip(numbers).for_each(|(to, from)| *to = *from);
         Self { style, numbers: all }
     }
 
-    /// The model that decks name so.
+    /// The model of this name.
     pub fn style(name: &str) -> Option<&'static Style> {
         STYLES.iter().copied().find(|style| style.name == name)
     }
 
-    /// The word decks use.
+    /// The word in decks.
     pub fn name(&self) -> &'static str {
         self.style.name
     }
 
-    /// The numbers behind it.
+    /// The parameters.
     pub fn numbers(&self) -> &Numbers {
         &self.numbers
     }
@@ -174,17 +174,17 @@ impl Normal {
         Some(self.numbers[at])
     }
 
-    /// Damping coefficient or restitution; 0 of models without one.
+    /// Damping coefficient or restitution; 0 for models without one.
     pub fn eta(&self) -> f64 {
         self.in_role(Role::Eta).unwrap_or(0.0)
     }
 
-    /// Young's modulus and Poisson's ratio, where the model has them.
+    /// Young's modulus and Poisson's ratio, if the model has them.
     pub fn material(&self) -> Option<(f64, f64)> {
         self.in_role(Role::Young).zip(self.in_role(Role::Poisson))
     }
 
-    /// The same model of another material; `None` where it has none, or where all grains are of one.
+    /// The same model with another material; `None` if it has none, or if all grains must share one.
     #[must_use]
     pub fn with_material(&self, young: f64, poisson: f64) -> Option<Self> {
         self.material().filter(|_| !self.style.in_grains)?;
@@ -199,34 +199,35 @@ impl Normal {
         Some(other)
     }
 
-    /// Whether the force can pull.
+    /// Whether the force can be attractive.
     pub fn pulls(&self) -> bool {
         (self.style.pulls)(&self.numbers)
     }
 
-    /// Whether damping may be made from a coefficient of restitution.
+    /// Whether damping may be derived from a coefficient of restitution.
     pub fn takes_restitution(&self) -> bool {
         self.style.restitution
     }
 
-    /// Whether the grains themselves remember, not the contacts.
+    /// Whether the state belongs to the grains instead of the contacts.
     pub fn in_grains(&self) -> bool {
         self.style.in_grains
     }
 
-    /// n of a force that grows as δⁿ.
+    /// n for a force that grows like δⁿ.
     pub fn exponent(&self) -> f64 {
         (self.style.exponent)(&self.numbers)
     }
 
-    /// The number that both must have alike to be mixed, and have not: how decks call it.
+    /// The name of the first parameter that must be equal for mixing and is not.
     pub fn unlike(&self, other: &Normal) -> Option<&'static str> {
         let numbers = self.numbers.iter().zip(&other.numbers).zip(self.style.numbers);
         let unlike = |((a, b), number): &((&f64, &f64), &Number)| number.role == Role::Same && a != b;
         numbers.into_iter().find(unlike).map(|(_, number)| number.name)
     }
 
-    /// The law between two grains with these models of one kind: numbers mix geometrically, materials as E*.
+    /// The law between two grains with models of one kind: parameters are mixed geometrically, materials as
+    /// E*.
     pub fn force(&self, other: &Normal) -> Force {
         let mut numbers = self.numbers;
         numbers.iter_mut().zip(&other.numbers).for_each(|(a, b)| *a = geometric(*a, *b));

@@ -1,14 +1,14 @@
-//! Head-on and gliding impacts against Hertz' closed form, restitution tables and rigid-sphere sliding.
+//! Head-on and oblique impacts compared with Hertz' closed form, restitution tables and rigid-sphere sliding.
 
 use super::*;
 
-/// A wall at x < 0 for a sphere that comes from the right: radius 0, so heavy that it stays.
+/// A wall at x < 0 for a sphere from the right: radius 0, and so heavy that it does not move.
 fn wall() -> Ball {
     Ball { mass: 1e30, ..Ball::new([0.0; 3], [0.0; 3], [0.0; 3], 0.0, 0.0) }
 }
 
-/// A sphere of radius R that just touches the plane x = 0, between plane and sphere (`curvature` = R).
-/// The plane is a point of radius 0 kept under the sphere: legal as long as the contact normal is x.
+/// A sphere of radius R that just touches the plane x = 0, with sphere-plane curvature (`curvature` = R). The
+/// plane is a point of radius 0 kept under the sphere: valid as long as the contact normal is x.
 fn against_wall(velocity: Vec3, law: Granular, radius: f64, mass: f64, dt: f64) -> Duel {
     let ball = Ball { mass, ..Ball::new([radius, 0.0, 0.0], velocity, [0.0; 3], radius, 1.0) };
     let mut duel = Duel::new([ball, wall()], law, dt);
@@ -54,10 +54,11 @@ fn hertz_impact_on_a_half_space() {
 fn the_largest_overlap_converges_with_the_square_of_the_step() {
     let law = model(material(206e9, 0.0, 0.28), Damping::Velocity, mindlin(0.0, 0.0)).law(Compat::Perigrain);
     let (r, m) = STEEL;
-    // δ_max = (5 m v² / 4 k)^(2/5), k = (4/3) E* √R; energy error of Verlet at the turning point.
+    // δ_max = (5 m v² / 4 k)^(2/5), k = (4/3) E* √R; error of Verlet at the turning point.
     let exact = (5.0 * m / (4.0 * law.normal.power_law(r).unwrap()[0])).powf(0.4);
     let errors = [4e-7, 1e-7].map(|dt| {
-        // Overlap at the turning point from energy: 2/5 k δ^(5/2) = ½ m v² there, so read δ where v changes sign.
+        // Overlap at the turning point from energy: 2/5 k δ^(5/2) = ½ m v², so δ is read where v changes
+        // sign.
         let mut duel = against_wall([-1.0, 0.0, 0.0], law, r, m, dt);
         let mut last = (duel.overlap(), -1.0);
         loop {
@@ -78,10 +79,10 @@ fn the_largest_overlap_converges_with_the_square_of_the_step() {
     assert!((1.8..2.3).contains(&order), "order {order}, errors {errors:?}");
 }
 
-/// Restitution of two equal spheres that meet head-on at relative velocity 2 v.
+/// Restitution of two equal spheres in head-on impact at relative velocity 2 v.
 fn restitution(law: Granular, v: f64) -> f64 {
     let ball = |x: f64, v: f64| Ball::new([x, 0.0, 0.0], [v, 0.0, 0.0], [0.0; 3], 0.005, 2500.0);
-    // 0.1 µm apart; the step is about 1/2000 of the contact time at 1 m/s, E = 50 MPa.
+    // Gap 0.1 µm; the step is about 1/2000 of the contact time at 1 m/s, E = 50 MPa.
     let dt = 2e-7 / v.powf(0.2);
     let mut duel = Duel::new([ball(-0.005_000_05, v), ball(0.005_000_05, -v)], law, dt);
     let mut touched = false;
@@ -96,7 +97,7 @@ fn restitution(law: Granular, v: f64) -> f64 {
 
 #[test]
 fn restitution_is_what_was_asked_for() {
-    // physics.md 4.3: asked for, got; LAMMPS' tsuji lacks a √2; limit_damping raises e.
+    // physics.md 4.3: requested and actual e; LAMMPS' tsuji lacks a √2; limit_damping raises e.
     let cases = [
         (
             Damping::CoeffRestitution,
@@ -133,8 +134,8 @@ fn restitution_is_what_was_asked_for() {
 
 #[test]
 fn gross_sliding_of_an_oblique_impact() {
-    // physics.md 4.4, Walayat 4.2: R = 5 mm, E* = 6.2952e10, κ = 0.8587; gross sliding beyond 28.2° for
-    // μ = 0.092, at 3.9 m/s and 45°, e = 1: v_t' = v_t − μ (1+e) v_n = 2.2503 m/s, ω' = 253.71 rad/s.
+    // physics.md 4.4, Walayat 4.2: R = 5 mm, E* = 6.2952e10, κ = 0.8587; gross sliding beyond 28.2° for μ =
+    // 0.092, at 3.9 m/s and 45°, e = 1: v_t' = v_t − μ (1+e) v_n = 2.2503 m/s, ω' = 253.71 rad/s.
     let (mu, r, v) = (0.092, 0.005_f64, 3.9 * std::f64::consts::FRAC_1_SQRT_2);
     let (e_star, g_star) = (6.2952e10, 1.35147e10);
     // Moduli of a like pair with these E* and G*: κ = 4 G*/E* = 2 (1−ν)/(2−ν).

@@ -1,4 +1,4 @@
-//! Oblique collisions: LAMMPS' numbers, mixing of types, conservation, exact action and reaction.
+//! Oblique collisions: comparison with LAMMPS, mixing of types, conservation, exact action and reaction.
 
 use super::*;
 use perigrain_base::math::vec3::dot;
@@ -34,7 +34,7 @@ fn column(name: &str, [a, b]: &[Ball; 2]) -> f64 {
     }
 }
 
-/// The golden table of a reference deck, and how far a duel under this law strays from it.
+/// The golden table of a reference deck, and the largest deviation of a duel with this law.
 fn agrees(golden: &str, law: Granular) {
     let mut duel = Duel::new(spheres(), law, 1e-6);
     let mut lines = golden.lines().filter(|l| !l.starts_with('#'));
@@ -55,7 +55,7 @@ fn agrees(golden: &str, law: Granular) {
     }
     for c in 3..names.len() {
         let largest = rows.iter().map(|r| r[c].abs()).fold(0.0, f64::max);
-        // tolerances.json asks for 1e-10 of the column's largest value; the decks' noise is below 6e-13.
+        // tolerances.json requires 1e-10 of the column's largest value; the decks' noise is below 6e-13.
         let part = worst[c] / largest;
         assert!(worst[c] < 2e-12 * largest, "{:?}: {} deviates by {part:e}", law.spring.kind, names[c]);
     }
@@ -73,7 +73,7 @@ fn rolls(stiffness: f64, damping: f64, mu: f64) -> Rolling {
     Rolling::Sds(Sds { stiffness, damping, mu })
 }
 
-/// Every model of the reference decks gr2_g_*, with the coefficients these decks give.
+/// Every model of the reference decks gr2_g_*, with the parameters of these decks.
 #[test]
 fn every_granular_model_agrees_with_lammps() {
     let spring = |kind, k, x_gamma, mu| Tangential::new(kind, k, x_gamma, mu);
@@ -159,14 +159,15 @@ fn unlike_types_mix_as_the_manual_says_and_with_compat_as_lammps_does() {
     let slip = [0.0, 0.25, 0.0];
     let ours = first_step(a.mixed(&b, Compat::Perigrain).unwrap(), slip);
     let lammps = first_step(a.mixed(&b, Compat::Lammps2025).unwrap(), slip);
-    // LAMMPS 22Jul2025, thermo of step 0: v_fx1 −0.289225823866833. The overlap carries 1e-13 of round-off.
+    // LAMMPS 22Jul2025, thermo of step 0: v_fx1 −0.289225823866833. The overlap has a rounding error of
+    // 1e-13.
     assert!((ours[0] + 0.289225823866833).abs() < 1e-12 && ours[0] == lammps[0]);
     // LAMMPS' tz1 / (R − δ/2) of step 1 = 1.26262723937792e-8 / 0.00499.
     assert!((lammps[1] + 2.530315108973788e-6).abs() < 1e-16);
     // 8 G* a v dt with G* = 1.068090788e7 Pa from the manual's rule.
     assert!((ours[1] + 4.503466182705602e-6).abs() < 1e-16);
 
-    // Damping and explicit stiffnesses mix geometrically: LAMMPS' v_fx1 of step 0 at v_n = 1 m/s.
+    // Damping and explicit stiffnesses are mixed geometrically: LAMMPS' v_fx1 of step 0 at v_n = 1 m/s.
     let a = model(material(5.0e7, 1.0e5, 0.3), Damping::Viscoelastic, mindlin(0.5, 4e3));
     let b = model(material(8.0e8, 4.0e6, 0.1), Damping::Viscoelastic, mindlin(0.25, 4e3));
     let f = first_step(a.mixed(&b, Compat::Lammps2025).unwrap(), [1.0, 0.0, 0.0]);
@@ -182,13 +183,13 @@ fn momentum_and_angular_momentum_stay() {
         let law = model(material(5.0e7, 0.6, 0.3), damping, mindlin(0.5, 0.4)).law(Compat::Perigrain);
         let mut duel = Duel::new(spheres(), law, 1e-6);
         let (p, l) = (duel.momentum(), duel.angular_momentum());
-        // Largest parts of the sums, before cancellation: m v and m v x.
+        // The largest terms of the sums, before cancellation: m v and m v x.
         let m = duel.balls[0].mass;
         for _ in 0..3000 {
             duel.step();
         }
         assert!(duel.overlap() < 0.0);
-        // 3000 additions of round-off 1e-16 relative, as a random walk: 1e-14.
+        // 3000 additions with relative rounding errors of 1e-16, as a random walk: 1e-14.
         let drift = |a: Vec3, b: Vec3| length(sub(a, b));
         assert!(drift(duel.momentum(), p) < 1e-14 * m * 1.5);
         assert!(drift(duel.angular_momentum(), l) < 1e-13 * m * 1.5 * 0.005);
@@ -224,8 +225,9 @@ fn nothing_moves_on_in_the_setup_of_a_run() {
     assert_eq!(h, [0.0, 1e-9, 0.0]);
 }
 
-/// The spin that an impact leaves on the first of two equal spheres, 10 µm apart at first: fault B4, 1 m/s against
-/// 0.7 m/s, so that they slide while the contact is young and its dashpot resists more than friction may.
+/// The spin that an impact leaves on the first of two equal spheres, initially 10 µm apart: fault B4, 1 m/s
+/// against 0.7 m/s, so that they slide while the contact is young and its dashpot resists more than the
+/// friction limit.
 fn spin_of_a_glancing_impact(law: Granular, dt: f64) -> f64 {
     let along = scale(0.01001, [-0.91655, -0.39992, 0.0]);
     let balls = [
@@ -256,13 +258,15 @@ fn short_steps_through_a_young_contact_end_where_long_ones_do() {
             let m = model(material(1.0e8, eta, NU), damping, friction);
             let [long, middle, short] =
                 [5e-7, 1e-7, 1e-8].map(|dt| spin_of_a_glancing_impact(m.law(Compat::Perigrain), dt));
-            // First order in time, most with tsuji: 1.03e-3 and 1.8e-4, as under `limit_damping` to the last bit. Half of that where
-            // friction went on while the dashpot pulled, as in LAMMPS. Less with the others.
+            // First order in time, most with tsuji: 1.03e-3 and 1.8e-4, as with `limit_damping` to the last
+            // bit. Half of that where friction acts while damping is attractive, as in LAMMPS. Less with the
+            // others.
             let off = [long, middle].map(|spin| (spin / short - 1.0).abs());
             assert!(off[0] < 1.1e-3 && off[1] < 2e-4, "{damping:?} {kind:?}: {off:?}");
         }
     }
-    // LAMMPS' rule is worth the test: 2.5 % to 5 % with e from Tsuji or as asked for, a factor of five here.
+    // LAMMPS' rule makes the test meaningful: 2.5 % to 5 % with e from Tsuji or as requested, a factor of
+    // five here.
     let friction = Tangential::new(Friction::Mindlin, Some(2.5e8), 1.0, 0.3);
     let m = model(material(1.0e8, 10.0, NU), Damping::Velocity, friction).law(Compat::Lammps2025);
     assert!(spin_of_a_glancing_impact(m, 5e-7) > 5.0 * spin_of_a_glancing_impact(m, 1e-8));

@@ -1,4 +1,5 @@
-//! The Edinburgh elasto-plastic adhesion model against its branches in closed form: pairs, walls, energy, action and reaction.
+//! The Edinburgh elasto-plastic adhesion model compared with its branches in closed form: pairs, walls,
+//! energy, action and reaction.
 
 use super::*;
 use crate::walls::{Meeting, Planes, Spheres, WallSweep};
@@ -30,7 +31,7 @@ fn smooth(numbers: Numbers) -> Granular {
     model(eepa(numbers, 0.0), Damping::None, Tangential::SMOOTH).law(Compat::Perigrain)
 }
 
-/// The branches as the papers write them, by δ_max and δ_p.
+/// The branches as in the papers, from δ_max and δ_p.
 struct Branches {
     numbers: Numbers,
     curvature: f64,
@@ -50,7 +51,7 @@ impl Branches {
         [k1, k1 / (1.0 - plasticity)]
     }
 
-    /// The largest pull beyond f_0 and where it is, for a plastic overlap.
+    /// The largest pull beyond f_0 and its overlap, for a plastic overlap.
     fn pull(&self, plastic: f64) -> [f64; 2] {
         let [_, _, gamma, n, _] = self.numbers;
         let k2 = self.stiffness()[1];
@@ -82,14 +83,15 @@ impl Branches {
     }
 }
 
-/// Overlaps over radius: there, back a little, deeper, out over the adhesive branch, in again from there, deeper, out.
+/// Overlaps over radius: in, back a little, deeper, out along the adhesive branch, in again from there,
+/// deeper, out.
 fn path() -> Vec<f64> {
     let legs = [0.0, 0.02, 0.015, 0.03, 0.012, 0.025, 0.05, 0.004, 0.06, 0.0];
     let mut path = vec![];
     for leg in legs.windows(2) {
         path.extend((1..=40).map(|k| leg[0] + (leg[1] - leg[0]) * f64::from(k) / 40.0));
     }
-    // Touch itself is no contact.
+    // First touch itself is not a contact.
     path.into_iter().filter(|d| *d > 1e-9).collect()
 }
 
@@ -97,7 +99,8 @@ const RADII: [f64; 2] = [0.005, 0.004];
 const STILL: Motion = Motion { velocity: [0.0; 3], spin: [0.0; 3] };
 const STEP: Advance = Advance { dt: 1e-6, history: true };
 
-/// By which part of the largest force so far two forces may differ: the branches are differences of powers, in another order.
+/// Relative difference allowed between two forces, as a fraction of the largest so far: the branches are
+/// differences of powers, computed in a different order.
 const ROUNDING: f64 = 1e-12;
 
 #[test]
@@ -120,7 +123,7 @@ fn two_spheres_follow_the_branches() {
                 w.force[0]
             );
             assert_eq!([w.force[1], w.force[2]], [0.0; 2]);
-            // The memory is that of the formula: δ_max^n.
+            // The history is that of the formula: δ_max^n.
             let deepest = exact.deepest.powf(numbers[3]);
             assert!((history[3] - deepest).abs() <= 1e-11 * deepest, "{numbers:?} {part}");
         }
@@ -132,7 +135,7 @@ fn two_spheres_follow_the_branches() {
 fn spheres_on_a_wall_follow_the_branches_one_by_one_and_together() {
     for numbers in CASES {
         let law = smooth(numbers);
-        // Seven grains side by side come as a group, those of the first as two at a time.
+        // Seven grains side by side are evaluated as a group, two of the first at a time.
         for count in [2, 7] {
             let radius = vec![RADII[0]; count];
             let (still, tag) = (vec![[0.0; 3]; count], (1..=count as u32).collect::<Vec<_>>());
@@ -174,7 +177,7 @@ fn a_cycle_takes_the_area_between_the_branches() {
     let exact = Branches::new(numbers, curvature);
     let ([k1, k2], plastic) = (exact.stiffness(), numbers[0].powf(1.0 / n) * deepest);
     let [pull, least] = exact.pull(plastic);
-    // In along k_1; out along k_2 to δ_min; then along the adhesive branch. What f_0 gives in the one it takes in the other.
+    // In along k_1; out along k_2 to δ_min; then along the adhesive branch. The work of f_0 cancels.
     let inward = k1 * deepest.powf(n + 1.0) / (n + 1.0);
     let power = |d: f64| d.powf(n + 1.0) / (n + 1.0);
     let outward = k2 * (power(deepest) - power(least) - plastic.powf(n) * (deepest - least));
@@ -188,7 +191,7 @@ fn a_cycle_takes_the_area_between_the_branches() {
         curvature,
         mass: 1.0,
     };
-    // Work by the trapezoidal rule, whose error is that of the square of a step, and near touch of its power 2.5.
+    // Work by the trapezoidal rule, whose error is the square of a step, and near first touch its power 2.5.
     let ends = (-f0, -f0);
     let mut before = ends.0;
     for k in 1..=2 * steps {
@@ -204,7 +207,7 @@ fn a_cycle_takes_the_area_between_the_branches() {
         before = force;
     }
     assert!((work / lost - 1.0).abs() < 1e-9, "{work} {lost}");
-    // What the contact holds at its deepest is what unloading to δ_p gives, and f_0 takes.
+    // The stored energy at the deepest point is the work of unloading to δ_p, minus that of f_0.
     let g = geometry(deepest);
     let mut history = vec![0.0; law.memory()];
     law.contact(&g, &STILL, &STILL, &mut history, STEP);
@@ -230,7 +233,7 @@ fn without_plasticity_it_is_hertz() {
     }
 }
 
-/// Two spinning spheres that meet and part, or stay together; with all that a contact can have.
+/// Two spinning spheres that meet and separate, or stay together; with every part that a contact can have.
 fn impact(numbers: Numbers, damping: Damping, eta: f64) -> Duel {
     let sds = |stiffness, mu| Sds { stiffness, damping: 0.0, mu };
     let m = Model {
@@ -263,12 +266,12 @@ fn action_is_reaction_and_energy_only_falls_from_impact_to_impact() {
             duel.step();
         }
         let [p2, l2] = [duel.momentum(), duel.angular_momentum()];
-        // Rounding of 5000 steps.
+        // Rounding errors of 5000 steps.
         assert!(length(sub(p2, p)) < 1e-12 * duel.balls[0].mass, "{numbers:?}");
         assert!(length(sub(l2, l)) < 1e-11 * length(l), "{numbers:?}");
         assert!(energy(&duel) < first, "{numbers:?}");
     }
-    // Seen from the other side a contact has the opposite force, to the bit, and its memory is mirrored.
+    // Seen from the other side, a contact has the opposite force, to the bit, and its history is mirrored.
     let law = impact(CASES[0], Damping::Viscoelastic, 10.0).law;
     let d = [0.0088, 0.0003, -0.0002];
     let g = Geometry::of_spheres(d, RADII, [1.0, 2.0], 0.0).unwrap();
@@ -284,7 +287,8 @@ fn action_is_reaction_and_energy_only_falls_from_impact_to_impact() {
 
 #[test]
 fn friction_is_limited_by_force_and_adhesion_together() {
-    // Pulled to the adhesive branch no friction is left; halfway down the unloading branch it is μ (F + f_0 + k_adh δ^χ).
+    // At the end of the adhesive branch no friction is left; halfway down the unloading branch it is μ (F +
+    // f_0 + k_adh δ^χ).
     let numbers @ [_, f0, ..] = CASES[0];
     let law = model(eepa(numbers, 0.0), Damping::None, mindlin(0.0, 0.4)).law(Compat::Perigrain);
     let mut exact = Branches::new(numbers, RADII[0]);
@@ -321,7 +325,7 @@ fn restitution_is_that_of_the_elastic_grains_and_falls_with_plasticity() {
         }
         duel.balls[1].motion.velocity[0] / 0.5
     };
-    // α = √(2 (n + 1)) β: exact for every power; the steps add a few 1e-4.
+    // α = √(2 (n + 1)) β: exact for every power; the time step adds a few 1e-4.
     for n in [1.0, 1.25, 1.5, 2.0] {
         assert!((e(0.0, n) - 0.7).abs() < 2e-3, "{n}: {}", e(0.0, n));
     }

@@ -1,40 +1,40 @@
-//! Walls that formulas describe: planes across an axis, an endless cylinder.
+//! Walls given by formulas: planes normal to an axis, an infinite cylinder.
 
 use super::{Near, Wall};
 use perigrain_base::math::vec3::{Vec3, add, scale};
 
-/// Planes across one axis, facing each other: part 0 the lower, part 1 the upper one.
+/// Planes normal to one axis, facing each other: part 0 the lower, part 1 the upper one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planes {
     /// The axis, 0 to 2.
     pub axis: usize,
-    /// Where they are.
+    /// Position of the lower plane.
     pub lo: Option<f64>,
-    /// Where they are.
+    /// Position of the upper plane.
     pub hi: Option<f64>,
-    /// How each of them moves.
+    /// Velocity of each plane.
     pub velocity: [Vec3; 2],
-    /// Of two planes only the nearer one acts, as LAMMPS has it.
+    /// Of two planes only the nearer one acts, as in LAMMPS.
     pub nearer: bool,
 }
 
 impl Planes {
-    /// Whether `x` is nearer than `reach` to one of them [length].
+    /// Whether `x` is within `reach` of a plane [length].
     #[inline]
     fn reached(&self, x: Vec3, reach: f64) -> bool {
-        // A plane that is not there is reached by nobody.
+        // A missing plane is infinitely far away.
         let [lo, hi] = [self.lo, self.hi].map(|plane| plane.unwrap_or(f64::INFINITY));
         (x[self.axis] - lo).abs() < reach || (x[self.axis] - hi).abs() < reach
     }
 
-    /// Where one of them is reached.
+    /// The contact points on the planes.
     fn met(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
         let x = x[self.axis];
         let mut meet = |part: u32, height: f64, sign: f64| {
             let distance = height.abs();
             if distance < reach {
                 let mut normal = [0.0; 3];
-                // What is beyond the plane is pushed on, as from its other side (LAMMPS).
+                // A particle beyond the plane is pushed further, as from its other side (LAMMPS).
                 normal[self.axis] = if height < 0.0 { -sign } else { sign };
                 out.push(Near {
                     part,
@@ -80,16 +80,16 @@ impl Wall for Planes {
     }
 }
 
-/// An endless cylinder about the z axis, felt from both sides.
+/// An infinite cylinder about the z axis, which acts on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tube {
     /// Its radius.
     pub radius: f64,
-    /// How it moves as a whole.
+    /// Its velocity as a whole.
     pub velocity: Vec3,
-    /// Speed of its surface about the axis: clockwise seen from above where positive.
+    /// Speed of its surface about the axis: positive for clockwise rotation seen from above.
     pub spin: f64,
-    /// Sticky spheres hold on from outside only, as LAMMPS has it.
+    /// Cohesive spheres stick on the outside only, as in LAMMPS.
     pub lammps: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Walls: who is listed, who touches, what springs remember, what the wall feels.
+//! Walls: lists, contacts, histories of springs, and loads on walls.
 
 use super::*;
 use crate::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential, normal};
@@ -10,7 +10,7 @@ fn law(mu: f64) -> Granular {
     Model::new(normal, Damping::Velocity, friction).law(Compat::Perigrain)
 }
 
-/// Balls of radius 1 and mass 1 at these places, at these velocities.
+/// Balls of radius 1 and mass 1 with these positions and velocities.
 struct Scene {
     x: Vec<Vec3>,
     v: Vec<Vec3>,
@@ -49,7 +49,7 @@ fn floor() -> Planes {
     Planes { axis: 2, lo: Some(0.0), hi: None, velocity: [[0.0; 3]; 2], nearer: false }
 }
 
-/// All of them that are of the group.
+/// All of them that belong to the group.
 fn meeting(mask: &[u32], group: u32) -> Meeting<'_> {
     Meeting { mask, group, rows: std::slice::from_ref(&EVERY) }
 }
@@ -71,7 +71,7 @@ fn only_what_is_near_is_listed_and_springs_last_while_they_touch() {
     s.x[0][2] = 1.01;
     sweep.run(&floor(), &s.grains(), &law(0.5), &mut memory, STEP);
     assert!(memory.is_empty());
-    // Of another group nobody.
+    // There is none of another group.
     sweep.list(&floor(), &s.grains(), &meeting(&[1, 1, 1], 2), &law(0.5), 0.2);
     assert_eq!(sweep.listed(), 0);
 }
@@ -88,7 +88,7 @@ fn the_wall_feels_what_the_grain_does_not() {
     let push = 4.0 / 3.0 * (1e6 / 1.875) * 0.01f64.powf(1.5);
     assert!((f[0][2] - push).abs() < 1e-9 * push);
     assert!((0..3).all(|d| felt[d] == -f[0][d]));
-    // Angular momentum: what grain and wall get about the origin adds up to nothing.
+    // Angular momentum: the torques of grain and wall about the origin cancel.
     let total = add(add(torque[0], cross(s.x[0], f[0])), [felt[3], felt[4], felt[5]]);
     assert!(length(total) < 1e-12 * push, "{total:?}");
 }
@@ -123,7 +123,7 @@ fn a_tube_is_hollow_inside_and_turns() {
     out.clear();
     tube.near([0.0, -5.5, 7.0], 1.0, &mut out);
     assert_eq!((out[0].normal[1], out[0].radius), (-1.0, 10.0));
-    // A grain too large for the tube counts as on a flat wall.
+    // For a grain too large for the tube the wall counts as flat.
     assert_eq!(effective(3.0, -2.0), 3.0);
     assert!((effective(1.0, -2.0) - 2.0).abs() < 1e-15);
 }
@@ -131,7 +131,7 @@ fn a_tube_is_hollow_inside_and_turns() {
 #[test]
 fn contacts_several_at_a_time_are_contacts_one_by_one() {
     let tube = Tube { radius: 6.0, velocity: [0.3, 0.0, 2.0], spin: 3.0, lammps: false };
-    // Round the tube, deeper and deeper, spinning; a full group of eight, and some more.
+    // Around the tube, deeper and deeper, spinning; a full group of eight, and some more.
     let at = |k: usize| (0.5 * k as f64).sin_cos();
     let places: Vec<Vec3> = (0..13).map(|k| [at(k).0 * 5.05, at(k).1 * 5.05, 0.1 * k as f64]).collect();
     let mut s = Scene::new(&places, [0.2, -0.7, 0.1]);

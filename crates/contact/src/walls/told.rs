@@ -1,4 +1,5 @@
-//! What walls tell of their contacts: springs, for the time step, and what each holds and does, for the ledger of energy.
+//! Data of wall contacts for other parts of the program: springs for the time step; stored energy and work
+//! for the energy ledger.
 
 use super::{Spheres, Touch, WallSweep, geometry};
 use crate::Granular;
@@ -17,7 +18,7 @@ impl WallSweep {
         self.touching.iter().zip(rows(memory)).map(spring).collect()
     }
 
-    /// The contacts of the last evaluation with what they hold and do; `memory` is that of this evaluation.
+    /// The contacts of the last evaluation with stored energy and work; `memory` is from that evaluation.
     pub fn touches(&self, grains: &Spheres, law: &Granular, memory: &Contacts) -> Vec<WallTouch> {
         let touch = |((t, wrench), history): ((&Touch, &crate::Wrench), &[f64])| {
             let i = t.grain as usize;
@@ -37,7 +38,7 @@ impl WallSweep {
     }
 }
 
-/// What each contact remembers.
+/// The history of each contact.
 fn rows(memory: &Contacts) -> impl Iterator<Item = &[f64]> {
     (0..).map(|k| memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]))
 }

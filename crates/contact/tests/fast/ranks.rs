@@ -1,11 +1,11 @@
-//! Lists of several ranks against those of one process.
+//! Lists of several ranks compared with those of one process.
 
 use super::*;
 use perigrain_contact::fast::{Dealt, Own};
 use perigrain_neigh::tiles::{Tiles, edges};
 use std::ops::Range;
 
-/// The scene in the order of its tiles, and the rows of three ranks, whose share of them changes.
+/// The system in tile order, and the rows of three ranks, whose shares change.
 fn lined_up(s: &Scene, law: Table, turn: usize) -> (Scene, Vec<Range<usize>>) {
     let largest = s.radius.iter().copied().fold(0.0, f64::max);
     let span = Laws::new(2, |a, b| Some(law(a, b))).unwrap().span(largest);
@@ -14,7 +14,7 @@ fn lined_up(s: &Scene, law: Table, turn: usize) -> (Scene, Vec<Range<usize>>) {
     let order = || tiles.order.iter().map(|i| *i as usize);
     let of = |column: &Vec<Vec3>| order().map(|i| column[i]).collect();
     let numbers = |column: &Vec<f64>| order().map(|i| column[i]).collect();
-    // Not always at the end of a tile.
+    // Not always at a tile boundary.
     let end = |k: usize| tiles.members(k * tiles.count() / 6).start + 3 * (turn % 3);
     let (first, second) = (end(1 + turn % 2), end(3 + turn % 3));
     let scene = Scene {
@@ -32,7 +32,8 @@ fn lined_up(s: &Scene, law: Table, turn: usize) -> (Scene, Vec<Range<usize>>) {
     (scene, vec![0..first, first..second, second..s.x.len()])
 }
 
-/// Three ranks, each with the lists that the forces on its own grains need; which grains those are changes whenever lists are made anew.
+/// Three ranks, each with the lists for the forces on its own grains; the distribution changes whenever lists
+/// are remade.
 #[test]
 fn lists_of_ranks_give_the_bits_of_one_process() {
     let mindlin: Table = |_, _| between(1, 1);
@@ -50,7 +51,7 @@ fn lists_of_ranks_give_the_bits_of_one_process() {
                 let before: Vec<Fast> = ranks.iter().map(|part| part.fast.clone()).collect();
                 for (me, part) in ranks.iter_mut().enumerate() {
                     let handed = |from: usize| {
-                        // What the other one lists from now on says to which ranks its contacts go.
+                        // The new lists of the other ranks determine where contacts are sent.
                         let (mut other, mut out) = (before[from].clone(), vec![]);
                         let note = |fast: &Fast, own: Option<&Own>| {
                             out = fast.handed_over(&s.tag, dealt(from), own.unwrap());
@@ -71,7 +72,7 @@ fn lists_of_ranks_give_the_bits_of_one_process() {
             let whole = alone.step(&s, k);
             let (mut virials, mut contacts) = (vec![], vec![]);
             for (part, own) in ranks.iter_mut().zip(&rows) {
-                // Of grains in no list nothing is known.
+                // Grains in no list have unknown state.
                 let mut seen = s.clone();
                 let listed = part.fast.listed();
                 (0..s.x.len()).filter(|row| listed.binary_search(&(*row as u32)).is_err()).for_each(|row| {

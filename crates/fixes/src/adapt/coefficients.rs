@@ -17,7 +17,7 @@ pub struct Follows {
     style: Word,
 }
 
-/// Reads the words behind `pair` or `bond`.
+/// Reads the words after `pair` or `bond`.
 pub fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
     let what = if bond { "bond" } else { "pair" };
     let style = args.expect(&format!("a {what} style"))?;
@@ -56,7 +56,7 @@ pub fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
 }
 
 impl Follows {
-    /// The op that gives the coefficients their present values.
+    /// The op that sets the coefficients to their current values.
     pub fn op(
         &self,
         id: &str,
@@ -87,7 +87,7 @@ impl Follows {
     }
 }
 
-/// Gives the coefficients their present values, and the old ones back at the end.
+/// Sets the coefficients to their current values, and restores the original ones at the end.
 struct Change {
     name: String,
     follows: Follows,
@@ -98,17 +98,17 @@ struct Change {
     before: Vec<Before>,
 }
 
-/// A coefficient as it was when the run began.
+/// A coefficient before the run.
 struct Before {
     value: f64,
-    /// A fix had made it.
+    /// Whether a fix had set it.
     adapted: bool,
-    /// Where its value now is, and where this one is kept.
+    /// Keys of its current value and of this saved one.
     keys: [Numbers; 2],
 }
 
 impl Before {
-    /// That of a run that a restart file interrupted, or what is in force.
+    /// The saved value of a run that a restart file interrupted, or the current one.
     fn of(w: &World, id: &str, of: &Coefficient, said: f64) -> Self {
         let keys @ [key, kept] = [of.key(), of.kept_by(id)];
         match (w.memo.get(kept).map(Vec::as_slice), w.adapted(key)) {
@@ -132,7 +132,7 @@ impl Op for Change {
         let value = self.value.get(w);
         for (of, before) in self.follows.coefficients.iter().zip(&self.before) {
             let new = if self.scale { before.value * value } else { value };
-            // What a coefficient cannot be is a matter of its style; these no coefficient can.
+            // Each style checks its own limits; these values are invalid for every coefficient.
             if !new.is_finite() || (new < 0.0 && !of.bond) {
                 let (text, variable) = (format!("{new} at step {}", t.step), &self.follows.variable);
                 let text = format!("`{variable}` makes `{}` of {} {text}", of.name, of.style);

@@ -1,4 +1,4 @@
-//! Which pairs of particles fix bond/create joins.
+//! Selects the pairs of particles that fix bond/create bonds.
 
 use super::{Molecules, Rule};
 use perigrain_base::math::rng::Marsaglia;
@@ -10,7 +10,7 @@ use perigrain_world::{Allowed, Partners, World};
 pub struct Count(pub Vec<usize>);
 
 impl Count {
-    /// As they are now.
+    /// The current counts.
     pub fn of(w: &World, kind: u16) -> Self {
         let (mut count, index) = (vec![0; w.n()], Index::new(&w.particles.tag));
         for bond in w.bonds.list.iter().filter(|b| b.kind == i32::from(kind)) {
@@ -22,13 +22,13 @@ impl Count {
     }
 }
 
-/// Two particles that may be joined: their places, the lower ID first, and the square of their distance.
+/// Two particles that may be bonded: their indices, the lower ID first, and the square of their distance.
 struct Candidate {
     ends: [usize; 2],
     square: f64,
 }
 
-/// The pairs to join, each particle in one at most, in the order of their IDs.
+/// The pairs to bond, each particle in at most one, in the order of their IDs.
 pub fn chosen(
     w: &World,
     rule: &Rule,
@@ -39,7 +39,7 @@ pub fn chosen(
     if list.is_empty() {
         return vec![];
     }
-    // For each particle the nearest of its partners, by its place in the list.
+    // For each particle, the index of its nearest candidate.
     let mut nearest = vec![usize::MAX; w.n()];
     for (k, pair) in list.iter().enumerate() {
         for i in pair.ends {
@@ -55,7 +55,7 @@ pub fn chosen(
     eligible.filter(|[lower, _]| drawn[*lower] < *p).collect()
 }
 
-/// A random number for each particle that has a partner, in the order of their IDs.
+/// A random number for each particle that has a candidate, in the order of their IDs.
 fn draw(w: &World, nearest: &[usize], stream: &mut Marsaglia) -> Vec<f64> {
     let mut order: Vec<usize> = (0..w.n()).filter(|i| nearest[*i] != usize::MAX).collect();
     order.sort_unstable_by_key(|i| w.particles.tag[*i]);
@@ -64,14 +64,15 @@ fn draw(w: &World, nearest: &[usize], stream: &mut Marsaglia) -> Vec<f64> {
     drawn
 }
 
-/// Pairs that are near enough, of the right types, that have room for another bond and have none to each other, by their IDs.
+/// Pairs close enough, of the right types, with room for another bond and not bonded to each other, by their
+/// IDs.
 fn candidates(w: &World, rule: &Rule, count: &Count) -> Vec<Candidate> {
     let p = &w.particles;
     let [a, b] = rule.types;
     let allowed = Allowed::excluded(w);
     let room = |i: usize, k: usize| rule.limits[k].most == 0 || count.0[i] < rule.limits[k].most;
     let keep = |i: usize, j: usize| {
-        // As LAMMPS has it, the first particle is asked for itype first.
+        // As in LAMMPS, the first particle is tested against itype first.
         let sides = if (p.kind[i], p.kind[j]) == (a, b) { [0, 1] } else { [1, 0] };
         let members = p.mask[i] & p.mask[j] & rule.group.bit() != 0;
         members && room(i, sides[0]) && room(j, sides[1]) && suits(w, rule, [i, j]) && allowed.pair(i, j)
@@ -82,7 +83,7 @@ fn candidates(w: &World, rule: &Rule, count: &Count) -> Vec<Candidate> {
     list
 }
 
-/// Whether molecules let them be joined.
+/// Whether their molecules allow the bond.
 fn suits(w: &World, rule: &Rule, [i, j]: [usize; 2]) -> bool {
     let of = |i: usize| w.particles.molecule.get(i).copied().unwrap_or_default();
     match rule.molecules {
@@ -92,7 +93,7 @@ fn suits(w: &World, rule: &Rule, [i, j]: [usize; 2]) -> bool {
     }
 }
 
-/// Takes out pairs that are bonded, and those two or three bonds apart that weights keep out of neighbour lists.
+/// Removes bonded pairs, and pairs two or three bonds apart that special weights keep out of neighbour lists.
 fn leave_bonded(w: &World, list: &mut Vec<Candidate>) {
     if list.is_empty() || w.bonds.special.is_empty() {
         return;

@@ -31,15 +31,15 @@ fn made(b: &mut Bench, words: &str) -> Vec<usize> {
 #[test]
 fn each_particle_gets_its_nearest_partner() {
     assert_eq!(made(&mut row(), "1 1 1 1.25 1"), [1, 3, 4, 4]);
-    // With the weights 0 0 0 those two bonds apart are left out as well; there are none nearer than 1.25 here but neighbours.
+    // The weights 0 0 0 exclude second neighbours as well; nothing but neighbours is nearer than 1.25 here.
     let mut b = row();
     b.world.bonds.weights.lj = [0.0; 3];
     assert_eq!(made(&mut b, "1 1 1 3.5 1"), [1, 3, 4, 4]);
-    // With 0 1 1 they are not: after the chain is closed those two places apart are joined.
+    // With 0 1 1 they are not excluded: once the chain is closed, second neighbours are bonded.
     assert!(made(&mut row(), "1 1 1 3.5 1")[3] > 4);
 }
 
-// With at most one bond each: 2 with 3, then none has a free neighbour within reach but 4 and 5.
+// With at most one bond each: 2 with 3, then only 4 and 5 have a free neighbour within reach.
 #[test]
 fn limits_hold() {
     assert_eq!(made(&mut row(), "1 1 1 1.25 1 iparam 1 1 jparam 1 1"), [1, 2, 2, 2]);

@@ -1,4 +1,4 @@
-//! The tilts of a deforming box: how they go through a run, and when the box is flipped into another one of the same lattice.
+//! Tilts of a deforming box: their course through a run, and flips to an equivalent box of the same lattice.
 
 use super::pressure::{Aim, Pressed, Steering};
 use super::{Declared, variable};
@@ -10,18 +10,18 @@ use perigrain_world::World;
 use perigrain_world::domain::{Domain, Flip};
 use std::f64::consts::TAU;
 
-/// The tilts by their words.
+/// The words for the tilts.
 pub const NAMES: [&str; 3] = ["xy", "xz", "yz"];
 
-/// Along which axis each tilt leads: an edge there is a flip.
+/// Axis along which each tilt shifts the edge: one edge length along it is a flip.
 const ALONG: [usize; 3] = [0, 0, 1];
 
-/// By which edge it leans.
+/// The edge that each tilt shifts.
 pub const ACROSS: [usize; 3] = [1, 2, 2];
 
 const STYLES: [&str; 7] = ["final", "delta", "vel", "erate", "trate", "wiggle", "variable"];
 
-/// What a tilt does.
+/// Motion of a tilt.
 #[derive(Clone, Debug)]
 pub enum Motion {
     Final(f64),
@@ -34,10 +34,10 @@ pub enum Motion {
     Pressed(Pressed),
 }
 
-/// Takes the style of a tilt and its numbers.
+/// Parses the motion of a tilt.
 ///
 /// # Errors
-/// Other styles, what is no number.
+/// Other words, and invalid numbers.
 pub fn motion(args: &mut Args, cx: &BuildCx, steered: bool) -> Result<Motion> {
     let styles = [&STYLES[..], if steered { &["pressure"] } else { &[] }].concat();
     Ok(match args.choice("style of a tilt", &styles)? {
@@ -58,7 +58,7 @@ pub fn motion(args: &mut Args, cx: &BuildCx, steered: bool) -> Result<Motion> {
     })
 }
 
-/// The way of one tilt through a run.
+/// The course of one tilt through a run.
 #[derive(Clone, Debug)]
 pub struct Lean {
     start: f64,
@@ -67,31 +67,31 @@ pub struct Lean {
 
 #[derive(Clone, Debug)]
 enum Way {
-    /// Not moved here.
+    /// Not changed by this fix.
     Still,
-    /// Linear to this tilt at the end.
+    /// Linear to this final tilt.
     Linear(f64),
-    /// As exp(rate · t).
+    /// Grows as exp(rate · t).
     Exponential(f64),
-    /// Swings.
+    /// Oscillates.
     Wiggle(f64, f64),
     /// Change of the tilt, and its rate.
     Variable(Reading, Reading),
-    /// A pressure steers it.
+    /// Controlled by a pressure.
     Steered(Steering),
 }
 
 impl Lean {
-    /// Whether this tilt is moved at all.
+    /// Whether this tilt changes.
     pub fn moves(&self) -> bool {
         !matches!(self.way, Way::Still)
     }
 }
 
-/// The ways of a run that begins now, from these tilts and lengths of the box.
+/// The motions of a run that begins now, from the current tilts and lengths of the box.
 ///
 /// # Errors
-/// Variables that are gone, and a tilt yz that would flip while xy changes.
+/// Missing variables, and a tilt yz that would flip while xy changes.
 pub fn leans(
     fix: &Declared,
     cx: &mut dyn SealCx,
@@ -124,7 +124,8 @@ pub fn leans(
     Ok(leans)
 }
 
-/// Refuses a yz that will be flipped while xy changes: the flip turns xz by a xy that is not the same any more.
+/// Refuses a yz that will flip while xy changes: the flip would change xz by an xy that is no longer the
+/// same.
 fn one_at_a_time([xy, _, yz]: &[Lean; 3], time: f64, length: f64, span: Span) -> Result<()> {
     if !xy.moves() || !yz.moves() {
         return Ok(());
@@ -144,11 +145,11 @@ fn one_at_a_time([xy, _, yz]: &[Lean; 3], time: f64, length: f64, span: Span) ->
     Err(d.help("let yz stay within half of ly, or say `flip no`").into())
 }
 
-/// The tilts at a step, in a box that has these lengths then, and how fast they grow. Of all that are whole edges apart it is the
-/// one nearest to the present tilt.
+/// The tilts at a step, in a box with these lengths, and their rates. Of all equivalent tilts it returns the
+/// one nearest to the current tilt.
 ///
 /// # Errors
-/// Tilts beyond all numbers.
+/// Tilts that overflow.
 pub fn tilts(leans: &[Lean; 3], w: &World, t: &Tick, lengths: [f64; 3]) -> Result<([f64; 3], [f64; 3])> {
     let (clock, domain) = (&w.clock, w.domain()?);
     let (elapsed, all) = ((t.step - clock.start) as f64, (clock.stop - clock.start) as f64);
@@ -190,11 +191,12 @@ pub fn tilts(leans: &[Lean; 3], w: &World, t: &Tick, lengths: [f64; 3]) -> Resul
     Ok((tilts, rates))
 }
 
-/// Of more edges than this nobody counts one by one.
+/// Above this number of edges, counting one by one is too slow.
 const FAR: f64 = 1000.0;
 
-/// The tilt whole edges from `target` that is nearest to a box which leans by so many of them now, in LAMMPS' arithmetic: edges are
-/// taken away and added one by one. In its rounding corners move, and by these lists are made.
+/// The tilt equivalent to `target` that is nearest to a box which currently leans by `leans` edges, in
+/// LAMMPS' arithmetic: edges are subtracted and added one by one. Its rounding moves the corners, and
+/// neighbour lists depend on these.
 fn one_by_one(mut target: f64, edge: f64, leans: f64) -> f64 {
     while target / edge - leans > 0.0 {
         target -= edge;
@@ -206,13 +208,13 @@ fn one_by_one(mut target: f64, edge: f64, leans: f64) -> f64 {
     if before { target - edge } else { target }
 }
 
-/// How fast tilts grow, as compute temp/deform asks for it: see [`super::track::streaming`].
+/// Rates of the tilts for compute temp/deform: see [`super::track::streaming`].
 pub fn streaming(leans: &[Lean; 3], w: &World, rates: [f64; 3], first: bool) -> [f64; 3] {
     let unknown = |k: usize| first && w.settings.lammps() && !matches!(leans[k].way, Way::Linear(_));
     std::array::from_fn(|k| if unknown(k) { 0.0 } else { rates[k] })
 }
 
-/// The box of the same lattice that leans by half an edge at most, where this one leans farther across faces that repeat.
+/// The equivalent box that leans by half an edge at most, if this one leans farther across periodic faces.
 pub fn flip(domain: &Domain) -> Option<Flip> {
     let ([lx, ly, _], [xy, xz, yz]) = (domain.lengths(), domain.tilt?);
     let mut flip = Flip { tilt: [xy, xz, yz], turns: [0; 3] };
@@ -221,7 +223,7 @@ pub fn flip(domain: &Domain) -> Option<Flip> {
         r if r > 0.5 => -1,
         _ => 0,
     };
-    // First yz, which changes xz.
+    // First yz, because it changes xz.
     if domain.boundary.periodic(1) {
         flip.turns[2] = turn(yz, ly);
         flip.tilt[2] += f64::from(flip.turns[2]) * ly;
@@ -246,7 +248,7 @@ mod tests {
         for (target, leans, nearest) in
             [(0.7, 0.2, 0.7), (9.1, 0.2, 1.1), (-9.1, 0.2, 0.9), (2.2, 0.1, 0.2), (0.2, 0.1, 0.2)]
         {
-            // Some additions of numbers below ten.
+            // A few additions of numbers below ten.
             assert!((one_by_one(target, 2.0, leans) - nearest).abs() < 1e-14, "{target}");
         }
     }
@@ -257,7 +259,7 @@ mod tests {
         let domain = |tilt| Domain { tilt: Some(tilt), ..Domain::new([0.0; 3], [4.0, 3.0, 2.0], boundary) };
         assert_eq!(flip(&domain([2.0, -2.0, 1.5])), None);
         assert_eq!(flip(&domain([2.5, 0.0, 0.0])), Some(Flip { tilt: [-1.5, 0.0, 0.0], turns: [-1, 0, 0] }));
-        // The edge c less b is -1.5 - 1 in xz, which is an edge a too far.
+        // Edge c less b is -1.5 - 1 in xz, one edge a too far.
         let both = flip(&domain([1.0, -1.5, 2.0])).unwrap();
         assert_eq!(both, Flip { tilt: [1.0, 1.5, -1.0], turns: [0, 1, -1] });
         let open = Boundary([[Face::Fixed; 2], [Face::Periodic; 2], [Face::Periodic; 2]]);

@@ -1,4 +1,4 @@
-//! The op of fix deform: the box at each step, and the particles that go with it.
+//! The op of fix deform: sets the box at each step and moves the particles with it.
 
 use super::Remap;
 use super::lean::{self, Lean};
@@ -17,9 +17,9 @@ pub struct Shape {
     lo: [f64; 3],
     hi: [f64; 3],
     tilt: [f64; 3],
-    /// How fast lengths grow.
+    /// Rates of the lengths.
     rate: [f64; 3],
-    /// How fast tilts do.
+    /// Rates of the tilts.
     turning: [f64; 3],
 }
 
@@ -30,7 +30,8 @@ impl Shape {
         Ok(Self { lo, hi, tilt, rate, turning })
     }
 
-    /// How fast images are that particles see or become. LAMMPS takes what compute temp/deform takes.
+    /// Velocity gradient for periodic images and for particles that cross faces. LAMMPS uses the rates of
+    /// compute temp/deform.
     pub fn flow(
         &self,
         tracks: &[Track; 3],
@@ -45,7 +46,7 @@ impl Shape {
         Flow { rate: self.rate, tilt: self.turning, group }
     }
 
-    /// How fast lengths grow, lower faces move and tilts grow, as compute temp/deform asks for it.
+    /// Rates of lengths, lower faces and tilts for compute temp/deform.
     pub fn streaming(&self, tracks: &[Track; 3], leans: &[Lean; 3], w: &World, first: bool) -> [[f64; 3]; 3] {
         let lengths = [0, 1, 2].map(|d| self.hi[d] - self.lo[d]);
         let [rate, low] = track::streaming(tracks, w, (self.rate, lengths), first);
@@ -53,7 +54,7 @@ impl Shape {
     }
 }
 
-/// Lets the world remember how fast lengths grow, lower faces move and tilts grow.
+/// Stores the rates of lengths, lower faces and tilts in the world.
 pub fn tell(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], remap: Remap) {
     let remapped = f64::from(u8::from(remap == Remap::Positions));
     let row = w.memo.get_or(key, Vec::new);
@@ -63,33 +64,33 @@ pub fn tell(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], re
 
 /// Moves the faces.
 pub struct Move {
-    /// The op's name.
+    /// Name of the op.
     pub name: String,
-    /// Where the world remembers the rates.
+    /// Key of the stored rates.
     pub stretch: Numbers,
-    /// Where the faces go.
+    /// Motion of the faces.
     pub tracks: [Track; 3],
-    /// Where the tilts go.
+    /// Motion of the tilts.
     pub leans: [Lean; 3],
-    /// Whether a box that leans too far is flipped.
+    /// Whether a box that tilts too far is flipped.
     pub flips: bool,
-    /// What goes with the box.
+    /// What moves with the box.
     pub remap: Remap,
-    /// The particles that go with it.
+    /// The particles that move with it.
     pub group: GroupId,
-    /// When faces move.
+    /// Steps at which the faces move.
     pub when: When,
-    /// Peridynamic bonds cross faces whose edges change.
+    /// Whether peridynamic bonds cross faces whose edges change.
     pub crossed: bool,
 }
 
 impl Move {
-    /// Whether images move otherwise than particles, along edges that lean more and more.
+    /// Whether images move otherwise than particles, along edges whose tilt changes.
     fn turns_images(&self) -> bool {
         self.remap == Remap::Velocities && self.leans.iter().any(Lean::moves)
     }
 
-    /// Which edges are changed.
+    /// Which edges change.
     fn changes(&self) -> [bool; 3] {
         let mut changes = self.tracks.each_ref().map(Track::moves);
         for (k, _) in self.leans.iter().enumerate().filter(|(_, lean)| lean.moves()) {
@@ -98,10 +99,10 @@ impl Move {
         changes
     }
 
-    /// In the setup of a run: which bonds go through the faces, and whether they may.
+    /// In the setup of a run: finds the bonds through the faces, and checks that they are allowed.
     fn begin(&mut self, w: &mut World) -> Result<()> {
         if self.turns_images() && !w.bonds.is_empty() {
-            // Whose image a bond leads to, and how fast that one is, its damping does not know.
+            // The damping of a bond has no access to the image it leads to, nor to its velocity.
             let text = "bonds do not go with tilts that change with `remap v`";
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text).help("`remap x` will do").into());
         }
@@ -115,7 +116,7 @@ impl Move {
         Ok(())
     }
 
-    /// Takes particles along with the box from what it was `before`; those of a `flat` scene within their plane.
+    /// Moves particles affinely from the box `before` to the new one; in a `flat` scene within their plane.
     fn carry(&self, w: &mut World, [before, domain]: [&Domain; 2], flat: bool) {
         let (mut places, bit) = (std::mem::take(&mut w.particles.x), self.group.bit());
         let tilted = before.tilted() || domain.tilted();
@@ -129,7 +130,7 @@ impl Move {
                 }
                 return;
             }
-            // Where in the box, then there in the new one: dimensions that stay keep their bits.
+            // Fractional coordinates, then positions in the new box: unchanged dimensions keep their bits.
             for d in (0..if flat { 2 } else { 3 }).filter(|&d| self.tracks[d].moves()) {
                 x[d] = (x[d] - from[d]) / length[d] * to[d] + domain.lo[d];
             }
@@ -195,7 +196,7 @@ impl Op for Move {
     }
 
     fn span(&mut self, _: &mut World, t: &Tick) -> Span {
-        // All bonds are looked at for those that lead through faces.
+        // The setup inspects all bonds to find those through the faces.
         if t.setup { Span::All } else { Span::Own }
     }
 

@@ -1,4 +1,4 @@
-//! fix deform/pressure: a deforming box of which pressures steer lengths and tilts.
+//! fix deform/pressure: a deforming box whose lengths and tilts are controlled by pressures.
 
 use super::{Declared, Fix, FixStyle, Motion, WORDS, lean, read};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -35,7 +35,7 @@ impl Style for DeformPressure {
     }
 }
 
-/// The styles that are here besides those of fix deform.
+/// Motions in addition to those of fix deform.
 pub const STYLES: [&str; 2] = ["pressure", "pressure/mean"];
 
 impl FixStyle for DeformPressure {
@@ -44,10 +44,10 @@ impl FixStyle for DeformPressure {
     }
 }
 
-/// What a length or tilt follows.
+/// Pressure control of a length or tilt.
 #[derive(Clone, Debug)]
 pub struct Pressed {
-    /// The pressure wanted.
+    /// Target pressure.
     target: Param,
     gain: f64,
     mean: bool,
@@ -55,10 +55,10 @@ pub struct Pressed {
 }
 
 impl Pressed {
-    /// Reads pressure and gain.
+    /// Reads target pressure and gain.
     ///
     /// # Errors
-    /// What is no number nor an equal-style variable.
+    /// Arguments that are neither numbers nor equal-style variables.
     pub fn read(args: &mut Args, cx: &BuildCx, mean: bool) -> Result<Self> {
         let span = args.here();
         let target = variable_param(args, "the pressure")?;
@@ -67,28 +67,28 @@ impl Pressed {
     }
 }
 
-/// How pressures steer.
+/// Settings of the pressure control.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
-    /// Which lengths go together.
+    /// Which lengths are coupled.
     together: [bool; 3],
     most: Option<f64>,
     normalized: bool,
-    /// Another compute than the one it brings.
+    /// A pressure compute other than the fix's own.
     press: Option<ValueRef>,
 }
 
 impl Controls {
-    /// The axes whose lengths go together: without z in a flat scene.
+    /// The axes of coupled lengths: without z in a flat scene.
     fn axes(&self, w: &World) -> Vec<usize> {
         let flat = w.settings.two_dimensional;
         (0..3).filter(|d| self.together[*d] && !(flat && *d == 2)).collect()
     }
 
-    /// Reads what stands behind a keyword of its own.
+    /// Reads the arguments of one of its keywords.
     ///
     /// # Errors
-    /// Every mistake in it, other words, what LAMMPS has and perigrain does not.
+    /// Mistakes in the arguments, other words, and LAMMPS' options that perigrain does not have.
     pub fn keyword(&mut self, word: &Word, args: &mut Args) -> Result<()> {
         match word.text.as_str() {
             "couple" => {
@@ -115,7 +115,7 @@ impl Controls {
     /// `fix_modify ID press C`.
     ///
     /// # Errors
-    /// What is no compute of a pressure, other options.
+    /// A value that is not a pressure compute, other options.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         if let Some(word) = args.peek().filter(|w| w.text == "temp") {
             let text = "fix deform/pressure takes its temperature from its compute of the pressure";
@@ -146,7 +146,7 @@ fn component(id: &str, k: usize, span: Span) -> ValueRef {
     ValueRef { kind: RefKind::Compute, name: id.into(), index: vec![k], span }
 }
 
-/// What is steered: the length along an axis, or a tilt.
+/// The controlled quantity: the length along an axis, or a tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
     /// x, y or z.
@@ -156,7 +156,7 @@ pub enum Aim {
 }
 
 impl Declared {
-    /// The computes that it brings along.
+    /// The computes that the fix creates.
     pub(super) fn pressures(&self) -> Vec<(String, &'static str, String)> {
         let steered = self.motions.iter().flatten().any(|m| matches!(m, Motion::Pressed(_)))
             || self.leans.iter().flatten().any(|m| matches!(m, lean::Motion::Pressed(_)));
@@ -167,10 +167,10 @@ impl Declared {
         vec![(temp.clone(), "temp", String::new()), (press, "pressure", temp)]
     }
 
-    /// Gives lengths that go together the style of the one that has one.
+    /// Gives coupled lengths the motion of the one that has one.
     ///
     /// # Errors
-    /// Two that are steered in different ways, and none that is steered.
+    /// Two with different motions, or none with a motion.
     pub(super) fn couple(&mut self, cx: &BuildCx) -> Result<()> {
         let Some(controls) = self.controls.as_ref().filter(|c| c.together != [false; 3]) else {
             return Ok(());
@@ -200,10 +200,10 @@ impl Declared {
         Ok(())
     }
 
-    /// How a pressure steers a length or tilt in a run that begins.
+    /// The pressure control of a length or tilt in a run that begins.
     ///
     /// # Errors
-    /// Computes and variables that are gone.
+    /// Missing computes and variables.
     pub(super) fn steering(
         &self,
         pressed: &Pressed,
@@ -237,25 +237,25 @@ impl Declared {
     }
 }
 
-/// A pressure that steers something through a run.
+/// Pressure control of one quantity during a run.
 #[derive(Clone, Debug)]
 pub struct Steering {
-    /// Components, of which the mean counts.
+    /// Pressure components; their mean counts.
     now: Vec<Reading>,
     target: Reading,
     gain: f64,
     most: Option<f64>,
     normalized: bool,
-    /// Steps for which a change is.
+    /// Steps between updates.
     every: i64,
     span: Span,
 }
 
 impl Steering {
-    /// The rate of strain: K (p − P); none before the first step, where no pressure is known.
+    /// Strain rate K (p − P); 0 before the first step, when no pressure is known.
     ///
     /// # Errors
-    /// A share of a pressure of 0, without a largest rate.
+    /// A relative deviation from a target pressure of 0, without a maximum rate.
     pub fn rate(&self, w: &World, t: &Tick) -> Result<f64> {
         if t.setup {
             return Ok(0.0);
@@ -271,12 +271,12 @@ impl Steering {
             }
             rate /= target.abs();
         }
-        // 0/0: at a pressure of 0 that is 0 nothing moves.
+        // 0/0: a target of 0 at a pressure of 0 needs no change.
         let rate = if rate.is_nan() && target == 0.0 && now == 0.0 { 0.0 } else { rate };
         Ok(self.most.map_or(rate, |most| rate.clamp(-most, most)))
     }
 
-    /// The time that a change is for [time].
+    /// The time interval of a change [time].
     pub fn span(&self, w: &World, t: &Tick) -> f64 {
         if t.setup { 0.0 } else { self.every as f64 * w.clock.dt }
     }

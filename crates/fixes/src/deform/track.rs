@@ -1,4 +1,4 @@
-//! Where the faces of a deforming box are at a step, and how fast its lengths grow.
+//! Positions of the faces of a deforming box at a step, and the rates of its lengths.
 
 use super::pressure::{Aim, Steering};
 use super::{Declared, Motion};
@@ -8,7 +8,7 @@ use perigrain_styles::{Reading, SealCx};
 use perigrain_world::World;
 use std::f64::consts::TAU;
 
-/// The way of one dimension through a run.
+/// The motion of one dimension through a run.
 #[derive(Clone, Debug)]
 pub struct Track {
     /// Faces at the start.
@@ -18,24 +18,24 @@ pub struct Track {
 
 #[derive(Clone, Debug)]
 enum Way {
-    /// Not moved here.
+    /// Not changed by this fix.
     Still,
-    /// Linear to these faces at the end.
+    /// Linear to these final faces.
     Linear([f64; 2]),
     /// The length grows as exp(rate · t).
     Exponential(f64),
-    /// The length swings.
+    /// The length oscillates.
     Wiggle(f64, f64),
     /// Change of length, and its rate.
     Variable(Reading, Reading),
-    /// A pressure steers it.
+    /// Controlled by a pressure.
     Steered(Steering),
-    /// The volume stays. `shared`: two dimensions follow one.
+    /// Keeps the volume constant. `shared`: two dimensions follow one.
     Volume { shared: bool },
 }
 
 impl Track {
-    /// Whether this dimension is moved at all.
+    /// Whether this dimension changes.
     pub fn moves(&self) -> bool {
         !matches!(self.way, Way::Still)
     }
@@ -44,14 +44,14 @@ impl Track {
         self.start[1] - self.start[0]
     }
 
-    /// Faces that are `length` apart around the middle of the start.
+    /// Faces at distance `length`, centred at the middle of the initial faces.
     fn around(&self, length: f64) -> [f64; 2] {
         let middle = 0.5 * (self.start[0] + self.start[1]);
         [middle - 0.5 * length, middle + 0.5 * length]
     }
 }
 
-/// Of runs that share a ramp, the start is where the line was given: lower faces, upper faces, tilts.
+/// For runs that share a ramp, the state when the line was read: lower faces, upper faces, tilts.
 fn said<'a>(fix: &Declared, w: &'a World) -> Option<&'a Vec<f64>> {
     w.memo.get(fix.key()).filter(|m| w.clock.first != w.clock.start && m.len() >= 6)
 }
@@ -68,10 +68,10 @@ pub fn start(fix: &Declared, w: &World) -> Result<([f64; 3], [f64; 3])> {
     Ok(([0, 1, 2].map(|k| at(k + 6, tilt[k])), [0, 1, 2].map(length)))
 }
 
-/// The ways of a run that begins now.
+/// The motions of a run that begins now.
 ///
 /// # Errors
-/// Variables that are gone.
+/// Missing variables.
 pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track; 3]> {
     let w = cx.world();
     let (clock, domain) = (w.clock.clone(), w.domain()?.clone());
@@ -108,8 +108,9 @@ pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track
     Ok(start.map(|start| Track { start, way: ways.next().unwrap_or(Way::Still) }))
 }
 
-/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps/2025` a length that keeps
-/// the volume counts with its rate over itself, under all of LAMMPS before the first change of a run (`first`) those alone do that
+/// Rates of the lengths and lower faces for compute temp/deform. Under `compat lammps/2025` a length that
+/// keeps the volume counts with its rate over itself; under any `compat lammps`, before the first change of a
+/// run (`first`), only lengths that grow linearly count.
 /// grow evenly.
 pub fn streaming(
     tracks: &[Track; 3],
@@ -124,7 +125,7 @@ pub fn streaming(
     });
     let clock = &w.clock;
     let time = (clock.stop - clock.start) as f64 * clock.dt;
-    // Of all ways but those to given faces the middle stays.
+    // All motions except those to given faces keep the middle fixed.
     let low = std::array::from_fn(|d| match &tracks[d].way {
         Way::Linear([lo, _]) if time > 0.0 => (lo - tracks[d].start[0]) / time,
         _ => -0.5 * rate[d],
@@ -139,7 +140,7 @@ pub fn streaming(
 /// Lower faces, upper faces and rates of the lengths at a step.
 ///
 /// # Errors
-/// A box without room.
+/// A box without volume.
 pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64; 3], [f64; 3])> {
     let (clock, domain) = (&w.clock, w.domain()?);
     let (elapsed, all) = ((t.step - clock.start) as f64, (clock.stop - clock.start) as f64);
@@ -172,7 +173,7 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
                 let [lo, hi] = at[d];
                 let grows = steering.rate(w, t)?;
                 let half = 0.5 * (hi - lo) * grows * steering.span(w, t);
-                // LAMMPS takes the rate of strain for that of the length, until 2026.
+                // Until 2026, LAMMPS takes the strain rate for the rate of the length.
                 let over = if w.settings.lammps_of_2025() { 1.0 } else { hi - lo };
                 (at[d], rate[d]) = ([lo - half, hi + half], over * grows);
             }
@@ -180,7 +181,7 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
     }
     follow(tracks, &mut at, &mut rate);
     for (d, track) in tracks.iter().enumerate().filter(|_| w.settings.lammps()) {
-        // LAMMPS takes the length that the box still has for the one that it gets.
+        // LAMMPS uses the old length of the box instead of the new one.
         if let Way::Exponential(r) = track.way {
             rate[d] = r * (domain.hi[d] - domain.lo[d]);
         }
@@ -198,7 +199,7 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
     Ok((at.map(|f| f[0]), at.map(|f| f[1]), rate))
 }
 
-/// The dimensions that keep the volume.
+/// Sets the dimensions that keep the volume.
 fn follow(tracks: &[Track; 3], at: &mut [[f64; 2]; 3], rate: &mut [f64; 3]) {
     let volume: f64 = tracks.iter().map(Track::length).product();
     let led = (*at, *rate);
@@ -206,7 +207,7 @@ fn follow(tracks: &[Track; 3], at: &mut [[f64; 2]; 3], rate: &mut [f64; 3]) {
         let Way::Volume { shared } = track.way else { continue };
         let others = [(d + 1) % 3, (d + 2) % 3];
         let follows = |k: usize| matches!(tracks[k].way, Way::Volume { .. });
-        // A dimension that nobody moves counts as it was at the start.
+        // A dimension that does not move counts with its initial length.
         let length =
             |k: usize| if tracks[k].moves() { led.0[k][1] - led.0[k][0] } else { tracks[k].length() };
         let relative = |k: usize| if tracks[k].moves() { led.1[k] / length(k) } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Places and velocities by hand.
+//! Positions and velocities by hand.
 
 use super::*;
 use perigrain_styles::testing::Bench;
@@ -17,7 +17,7 @@ fn scene() -> Bench {
     b
 }
 
-/// Where the particle of step 1 is and how it moves.
+/// Position and velocity of the particle inserted in step 1.
 fn first(b: &mut Bench, words: &str) -> Option<([f64; 3], [f64; 3])> {
     b.world.clock.step = 0;
     let fix = b.fix(&Deposit, words).unwrap();
@@ -38,12 +38,12 @@ fn heights_and_directions() {
     b.world.clock.dt = 0.5;
     let (x, v) = first(&mut b, "5 1 10 44 region slab units box vz -2 -2").unwrap();
     assert!(x[2] > 4.0 && x[2] < 9.0 && v == [0.0, 0.0, -2.0]);
-    // The top is at 1: of all, and of those beside it only within 20 of it.
+    // The top is at 1, both of all particles and of those within a lateral distance of 20.
     let (x, _) = first(&mut b, "5 1 10 44 region slab units box global 2 2").unwrap();
     assert_eq!(x[2], 3.0);
     let (x, _) = first(&mut b, "5 1 10 44 region slab units box local 2 2 20").unwrap();
     assert_eq!(x[2], 3.0);
-    // Nobody is that near: above the bottom of the box.
+    // No particle is that near: above the bottom of the box.
     let (x, _) = first(&mut b, "5 1 10 44 region slab units box local 2 2 0").unwrap();
     assert_eq!(x[2], -8.0);
     // Ten steps of 0.5 to the next insertion.
@@ -55,7 +55,7 @@ fn heights_and_directions() {
     assert!((speed - 4.0).abs() < 1e-14 && (v[0] / v[2] - x[0] / (x[2] - 4.0)).abs() < 1e-13);
     let (x, _) = first(&mut b, "5 1 10 44 region slab units box gaussian 1 2 8 0").unwrap();
     assert_eq!(x, [1.0, 2.0, 8.0]);
-    // The bench's test takes places with positive x only.
+    // The bench's test accepts only positions with positive x.
     let (x, _) = first(&mut b, "5 1 10 44 region slab units box var e set x e attempt 50").unwrap();
     assert!(x[0] > 0.0);
     assert!(b.world.parts.notes.is_empty());

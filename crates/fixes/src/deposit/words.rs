@@ -14,10 +14,10 @@ const KEYWORDS: [&str; 20] = [
     "target", "units", "mol", "molfrac", "rigid", "shake", "orient",
 ];
 
-/// A region and the corners of the box around it.
+/// A region and the corners of its bounding box.
 type Bounded = (Region, ([f64; 3], [f64; 3]));
 
-/// What the keywords said, in the units of the line.
+/// Values of the keywords, in the units of the line.
 struct Said {
     region: Option<Bounded>,
     variable: Option<ValueRef>,
@@ -107,7 +107,7 @@ fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, fix: &mut Depositing, sai
     Ok(())
 }
 
-/// The type, 0 too as an offset for molecules, and where it stands.
+/// The type (0 is allowed as an offset for molecules) and its span.
 fn one_type(args: &mut Args, cx: &BuildCx) -> Result<(u16, Span)> {
     let span = args.here();
     let kind = args.integer("the type")?;
@@ -117,7 +117,7 @@ fn one_type(args: &mut Args, cx: &BuildCx) -> Result<(u16, Span)> {
     }
 }
 
-/// Two numbers, in any order, as LAMMPS takes them.
+/// Two numbers, in any order, as in LAMMPS.
 fn pair(args: &mut Args, what: &str) -> Result<[f64; 2]> {
     Ok([args.number(&format!("the smallest {what}"))?, args.number(&format!("the largest {what}"))?])
 }
@@ -131,7 +131,7 @@ fn region(word: &Word, cx: &BuildCx) -> Result<Bounded> {
             .into());
     };
     let domain = domain(cx)?;
-    // Of a leaning box, the upright one around it: beyond faces that repeat, places are those of images.
+    // For a tilted box, its bounding box: positions beyond periodic faces are those of images.
     let faces = domain.bounds();
     if !cx.checking && (0..3).any(|d| lo[d] < faces[d][0] || hi[d] > faces[d][1]) {
         let text = format!(
@@ -153,7 +153,7 @@ fn variable(args: &mut Args, cx: &BuildCx, decides: bool) -> Result<ValueRef> {
     Ok(r)
 }
 
-/// From the line's units to the box's.
+/// Converts from the units of the line to box units.
 fn scale(fix: &mut Depositing, by: [f64; 3], flat: bool) {
     let up = if flat { by[1] } else { by[2] };
     match &mut fix.height {

@@ -1,4 +1,4 @@
-//! The shapes of indenters: as the deck gives them, as they are at one moment, and how they push.
+//! Shapes of indenters: as declared, at one moment, and the forces they exert.
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_styles::Reading;
@@ -6,7 +6,7 @@ use perigrain_styles::common::orthogonal;
 use perigrain_world::region::across;
 use perigrain_world::{Domain, World};
 
-/// The indenter as the deck gives it; `T` is a parameter there and a reading during a run.
+/// The indenter as declared; `T` is a parameter in the deck and a reading during a run.
 #[derive(Clone, Copy)]
 pub enum Form<T> {
     /// Around a point.
@@ -20,7 +20,7 @@ pub enum Form<T> {
 }
 
 impl<T> Form<T> {
-    /// The same shape of other numbers; `change` is told in whose lattice spacing a number is meant.
+    /// The same shape with other numbers; the second argument of `change` is the axis of the lattice spacing.
     pub fn map<U>(&self, mut change: impl FnMut(&T, usize) -> Result<U>) -> Result<Form<U>> {
         Ok(match self {
             Form::Sphere { center: [x, y, z], radius } => Form::Sphere {
@@ -54,16 +54,16 @@ impl<T> Form<T> {
 /// The indenter at one moment.
 #[derive(Clone, Copy)]
 pub enum Body {
-    /// Distances count along the axes with factor 1.
+    /// Sphere or cylinder: distances count along the axes with factor 1.
     Round { center: [f64; 3], along: [f64; 3], radius: f64 },
-    /// Around the midpoint of its axis, which reaches `half` to either side.
+    /// Cone around the midpoint of its axis, which reaches `half` to either side.
     Tapered { middle: [f64; 3], axis: usize, half: f64, radii: [f64; 2] },
     /// A half-space.
     Flat { axis: usize, place: f64, high: bool },
 }
 
 impl Form<Reading> {
-    /// Where the indenter is now, wrapped into a periodic box.
+    /// The indenter in this step, wrapped into a periodic box.
     pub fn now(&self, w: &World) -> Result<Body> {
         let wrapped = |mut x: [f64; 3]| {
             if let Some(d) = &*w.domain {
@@ -79,7 +79,7 @@ impl Form<Reading> {
         };
         let tapered = matches!(self, Form::Cylinder { .. } | Form::Cone { .. });
         if tapered && w.tilted() {
-            // Its axis runs through the box, and from one image to the next it would lie elsewhere.
+            // Its axis spans the box, and would be displaced from one image to the next.
             return Err(orthogonal("a cylinder or cone of fix indent"));
         }
         Ok(match self {
@@ -107,10 +107,10 @@ impl Form<Reading> {
     }
 }
 
-/// Ends of a cone in their order.
+/// Checks that the ends of a cone are in order.
 ///
 /// # Errors
-/// The other order.
+/// Ends in the wrong order.
 pub fn check_ends(lo: f64, hi: f64) -> Result<()> {
     if lo < hi {
         return Ok(());
@@ -118,7 +118,7 @@ pub fn check_ends(lo: f64, hi: f64) -> Result<()> {
     fail(Code::BAD_VALUE, None, format!("the cone must end behind its beginning: {hi} is not beyond {lo}"))
 }
 
-/// The point of the line from `a` to `b` that is nearest to `p`.
+/// The point of the segment from `a` to `b` that is nearest to `p`.
 fn nearest(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
@@ -127,7 +127,8 @@ fn nearest(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + share * d[0], a[1] + share * d[1]]
 }
 
-/// The way from `p` (distance from the axis, place on it from the middle) to the nearest point of a cone's surface.
+/// The vector from `p` (distance from the axis, position along it from the middle) to the nearest point of a
+/// cone's surface.
 fn way_out(p: [f64; 2], half: f64, radii: [f64; 2]) -> [f64; 2] {
     let [low, high] = [[radii[0], -half], [radii[1], half]];
     let sides = [nearest(p, low, high), nearest(p, [0.0, -half], low), nearest(p, [0.0, half], high)];
@@ -136,12 +137,13 @@ fn way_out(p: [f64; 2], half: f64, radii: [f64; 2]) -> [f64; 2] {
     ways.into_iter().min_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default()
 }
 
-/// Where the square of a distance is by this factor more than that of a length, the distance is longer, whatever was rounded.
+/// If the square of a distance exceeds that of a length by this factor, the distance is longer despite
+/// rounding.
 const BEYOND: f64 = 1.0 + 1e-9;
 
 impl Body {
-    /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r − R|³. The nearest image in
-    /// `repeats` counts, the box if it is periodic anywhere.
+    /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r −
+    /// R|³. The nearest image in `repeats` counts, which is the box if it is periodic in any direction.
     #[inline]
     pub fn push(
         &self,
@@ -166,7 +168,7 @@ impl Body {
             Body::Round { center, along, radius } => {
                 let d: [f64; 3] = image(std::array::from_fn(|d| along[d] * (x[d] - center[d])));
                 let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                // Most are so far away that no root is needed to see it.
+                // Most particles are so far away that the square alone decides.
                 if !inside && square > BEYOND * radius * radius {
                     return None;
                 }
@@ -176,7 +178,7 @@ impl Body {
                     return None;
                 }
                 let size = if inside { -k * depth * depth } else { k * depth * depth };
-                // Exactly at the centre no direction is away from it.
+                // Exactly at the centre the direction is undefined.
                 let force = if r > 0.0 { d.map(|d| d * size / r) } else { [0.0; 3] };
                 Some((force, -(k / 3.0 * depth * depth * depth)))
             }
@@ -188,7 +190,7 @@ impl Body {
     }
 }
 
-/// The way to a cone's surface from a place seen from its middle; `None` where the cone does not act.
+/// The vector to a cone's surface from a position relative to its middle; `None` where the cone does not act.
 fn tapered(d: [f64; 3], axis: usize, half: f64, radii: [f64; 2], inside: bool) -> Option<[f64; 3]> {
     let [a, b] = across(axis);
     let (rho, z) = (d[a].hypot(d[b]), d[axis]);
@@ -200,14 +202,14 @@ fn tapered(d: [f64; 3], axis: usize, half: f64, radii: [f64; 2], inside: bool) -
     let [out, along] = way_out([rho, z], half, radii);
     let mut way = [0.0; 3];
     way[axis] = along;
-    // Exactly on the axis no direction is away from it.
+    // Exactly on the axis the direction is undefined.
     let share = if rho > 0.0 { out / rho } else { 0.0 };
     (way[a], way[b]) = (share * d[a], share * d[b]);
     Some(way)
 }
 
-/// Force and energy for a particle at `d` from a cone's middle that has this way to the surface. LAMMPS' forces point to the
-/// middle or away from it, and its energies are negative.
+/// Force and energy for a particle at `d` from a cone's middle with the vector `way` to the surface. In
+/// LAMMPS the forces point towards or away from the middle, and the energies are negative.
 fn pushed(d: [f64; 3], way: [f64; 3], k: f64, inside: bool, lammps: bool) -> ([f64; 3], f64) {
     let size = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     let depth = size(way);
@@ -226,7 +228,7 @@ mod tests {
 
     #[test]
     fn the_nearest_face_of_a_cone() {
-        // From radius 1 at z = -2 to radius 4 at z = 2: the side climbs 4 over 3.
+        // From radius 1 at z = -2 to radius 4 at z = 2: the side has slope 3/4.
         let way = |d: [f64; 3], inside: bool| tapered(d, 2, 2.0, [1.0, 4.0], inside);
         assert_eq!(way([0.0, 0.5, -1.75], false), Some([0.0, 0.0, -0.25]));
         assert_eq!(way([0.5, 0.0, 1.5], false), Some([0.0, 0.0, 0.5]));
@@ -239,7 +241,7 @@ mod tests {
         assert_eq!((way([0.0, 0.0, 5.0], false), way([0.0, 1.0, 1.0], true)), (None, None));
     }
 
-    /// The force is the slope of the energy, as it is not in LAMMPS.
+    /// The force is the gradient of the energy, unlike in LAMMPS.
     #[test]
     fn a_cone_conserves_energy() {
         let energy = |d: [f64; 3]| {

@@ -1,4 +1,4 @@
-//! One pass over particles: kicks, drifts and what stands beside them, four particles at a time.
+//! One pass over particles: kicks, drifts and the fused forces, four particles at a time.
 
 use super::super::enforce2d::{flatten, flatten_turning};
 use super::super::freeze::hold;
@@ -17,64 +17,65 @@ use std::ops::Range;
 mod chunk;
 mod kicks;
 
-/// What a pass makes of a step.
+/// The part of a step that a pass computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Part {
-    /// First half kick and drift: v += Δt/2 · f/m, x += Δt · v; spins as velocities.
+    /// First half kick and drift: v += Δt/2 · f/m, x += Δt · v; spins like velocities.
     First,
     /// Second half kick.
     Second,
-    /// The second half kick of a step, and first half kick and drift of the next one under the same forces.
+    /// The second half kick of a step, and the first half kick and drift of the next one with the same
+    /// forces.
     Both,
 }
 
-/// What is the same for all particles.
+/// Constants for all particles.
 #[derive(Clone, Copy)]
 pub(super) struct Kick {
     /// Δt/2 in units that turn force/mass into velocity.
     pub half: f64,
-    /// The same over I / (m R²).
+    /// The same divided by I / (m R²).
     pub spin: f64,
     pub dt: f64,
     pub bit: u32,
-    /// Orientations follow spins.
+    /// Whether orientations are integrated.
     pub oriented: bool,
 }
 
-/// What comes of a chunk.
+/// Results of a chunk.
 #[derive(Default)]
 struct Came {
-    /// Σ −m a·x of those that were pulled, before they drifted.
+    /// Σ −m a·x over the particles that were pulled, before they drifted.
     energy: f64,
-    /// What was taken from those held.
+    /// Sum of the forces removed from held particles.
     held: [f64; 3],
     /// The largest v² after a drift.
     most: f64,
 }
 
-/// What comes of fours, lane by lane.
+/// Results of groups of four, lane by lane.
 struct Sums<F> {
     /// The largest v².
     fastest: F,
-    /// Zero, but where a v² was no number.
+    /// Zero, unless some v² is not a number.
     wrong: F,
     energy: F,
 }
 
 impl<F: Threes> Sums<F> {
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     unsafe fn new() -> Self {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         let zero = unsafe { F::splat(0.0) };
         Self { fastest: zero, wrong: zero, energy: zero }
     }
 }
 
 impl Kick {
-    /// A block, with what stands beside the motion: what came of a pull, of a hold and of the motion, with the bits that
-    /// they have alone.
+    /// A block with the fused forces: results of the pull, the hold and the motion, with the same bits as
+    /// when each runs alone.
     pub fn together(
         &self,
         s: &mut ParticleBlock,
@@ -104,7 +105,7 @@ impl Kick {
         ]
     }
 
-    /// Some particles of a block, and the largest v² among them after a drift.
+    /// Some particles of a block; returns the largest v² after a drift.
     pub fn part_of(
         &self,
         s: &mut ParticleBlock,
@@ -152,7 +153,8 @@ impl Kick {
         }
     }
 
-    /// A chunk; `masses(k)` are those of four particles from `4 k` on, whatever they are beyond the end.
+    /// A chunk; `masses(k)` are the masses of four particles from `4 k` on, with arbitrary values beyond the
+    /// end.
     fn chunk(
         &self,
         c: Chunk,
@@ -171,7 +173,7 @@ impl Kick {
         }
     }
 
-    /// As wide as this processor can; the bits are the same.
+    /// Uses the widest form of this processor; the bits are the same.
     fn here<const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
         &self,
         c: Chunk,
@@ -183,7 +185,7 @@ impl Kick {
             // SAFETY: the processor has AVX2.
             return unsafe { self.avx2::<KICKS, DRIFT, SPIN>(c, beside, masses) };
         }
-        // SAFETY: this form needs nothing.
+        // SAFETY: the portable form has no requirements.
         unsafe { self.four::<Plain, KICKS, DRIFT, SPIN>(c, beside, masses) }
     }
 
@@ -199,10 +201,10 @@ impl Kick {
         unsafe { self.four::<perigrain_base::math::four::Avx2, KICKS, DRIFT, SPIN>(c, beside, masses) }
     }
 
-    /// Four particles at a time, and those one by one of whom not the same is true.
+    /// Four particles at a time; groups of four with different states one by one.
     ///
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     unsafe fn four<F: Threes, const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
         &self,
@@ -229,7 +231,7 @@ impl Kick {
         };
         let mut fours =
             Fours { x: x4, v: v4, f: f4, omega: omega4, torque: torque4, radius: radius4, quat: quat4 };
-        // SAFETY (all below): the caller's promise.
+        // SAFETY (all below): the caller's guarantee.
         let mut sums = unsafe { Sums::<F>::new() };
         if same(mask4.as_flattened()) {
             unsafe {
@@ -251,10 +253,10 @@ impl Kick {
         came
     }
 
-    /// Particles of which the same is true, four at a time: these fours of a chunk.
+    /// Particles in the same state, four at a time: these groups of four of a chunk.
     ///
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     unsafe fn all<F: Threes, const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
         &self,
@@ -265,7 +267,7 @@ impl Kick {
         sums: &mut Sums<F>,
     ) {
         let first = own.start;
-        // Cut to one length, so that it is looked at once.
+        // Cut to one length, so that bounds are checked once.
         let (x, v, f) = (&mut c.x[own.clone()], &mut c.v[own.clone()], &mut c.f[own.clone()]);
         let n = x.len();
         let (v, f) = (&mut v[..n], &mut f[..n]);
@@ -275,7 +277,7 @@ impl Kick {
         let torque = if c.torque.is_empty() { &mut [][..] } else { &mut c.torque[own] };
         let clears_torque = beside.clears && torque.len() == n;
         let (pulls, a) = beside.pull.map_or((false, [0.0; 3]), |pull| (true, pull.a));
-        // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
+        // SAFETY (all below): the caller's guarantee; arrays of twelve and of four numbers.
         unsafe {
             let (zero, along) = (F::splat(0.0), threes::repeated::<F>(a));
             let [level, about]: [Parts<F>; 2] = match beside.flat {
@@ -312,7 +314,7 @@ impl Kick {
                     if DRIFT && let Some(four) = quat.get_mut(k) {
                         let spin = F::parted(spin);
                         let turns = (spin[0].abs() + spin[1].abs() + spin[2].abs()).above(zero);
-                        // Roots and quotients are most of this pass: where nobody turns there are none.
+                        // Roots and divisions dominate this pass: they are skipped where nothing rotates.
                         if F::any(turns) {
                             let rows = four.as_flattened_mut().as_mut_ptr();
                             let q = F::transpose([0, 4, 8, 12].map(|at| F::load(rows.add(at))));
@@ -332,7 +334,7 @@ impl Kick {
                     let [x, y, z] = F::parted([v[0] * v[0], v[1] * v[1], v[2] * v[2]]);
                     let square = x + y + z;
                     fastest = fastest.most(square);
-                    // Zero times what is infinite or no number is no number, and stays so in a sum.
+                    // Zero times infinity or NaN is NaN, and stays NaN in a sum.
                     wrong = wrong + square * 0.0;
                 }
             }

@@ -1,4 +1,4 @@
-//! fix pour: spheres that rain into the scene.
+//! fix pour: pours spheres into the scene.
 
 mod rain;
 mod sizes;
@@ -98,7 +98,7 @@ impl FixStyle for Pour {
     }
 }
 
-/// Reads the keywords; whether there was a region.
+/// Reads the keywords; returns whether there was a region.
 fn keywords(p: &mut Pouring, args: &mut Args, cx: &BuildCx, kind: Span) -> Result<bool> {
     let (mut region, mut molecules) = (false, molecules::Words::default());
     while let Some(word) = args.next() {
@@ -183,9 +183,9 @@ struct Pouring {
     volume: Volume,
     sizes: Sizes,
     density: [f64; 2],
-    /// Share of the volume to fill.
+    /// Volume fraction of a batch.
     fraction: f64,
-    /// Attempts for each sphere.
+    /// Attempts per sphere.
     tries: u64,
     /// Bounds of the horizontal velocities.
     drift: [[f64; 2]; 2],
@@ -194,7 +194,7 @@ struct Pouring {
     /// Vertical velocity of the region.
     rate: f64,
     ids: Ids,
-    /// Molecules in the place of spheres.
+    /// Molecules inserted instead of spheres.
     molecules: Option<Molecules>,
 }
 
@@ -203,7 +203,7 @@ impl Pouring {
         Key::new(&format!("pour/{}", self.id))
     }
 
-    /// The acceleration downwards, times LAMMPS' factor from force/mass to acceleration.
+    /// The downward acceleration, times LAMMPS' factor from force/mass to acceleration.
     fn gravity(&self, cx: &mut dyn SealCx, span: Span) -> Result<f64> {
         let flat = cx.world().settings.two_dimensional;
         let down = if flat { 1 } else { 2 };

@@ -1,4 +1,4 @@
-//! The op of fix pour: batches of spheres in a falling stream.
+//! The op of fix pour: inserts batches of spheres in a falling stream.
 
 use super::{Pouring, Sizes};
 use crate::crowd::Crowd;
@@ -12,25 +12,25 @@ use perigrain_world::Fields;
 use perigrain_world::field::{RADIUS, X};
 use perigrain_world::{Numbers, SlotId, World, memory};
 
-/// Pours.
+/// The op.
 pub struct Rain {
     name: String,
-    /// Where the world keeps its account.
+    /// Key of its account in the world.
     key: Numbers,
     fix: Pouring,
     span: Span,
     slot: SlotId,
-    /// The acceleration downwards.
+    /// Downward acceleration.
     gravity: f64,
-    /// Spheres of a whole batch.
+    /// Spheres in a full batch.
     batch: u64,
-    /// Steps between two batches.
+    /// Steps between batches.
     every: i64,
-    /// Spheres of this run's batches that found no place, and the first step at which that was so.
+    /// Spheres of this run's batches that found no free position, and the first step at which this happened.
     failed: Option<(u64, i64)>,
 }
 
-/// Newcomers of one step: spheres or molecules.
+/// The insertions of one step: spheres or molecules.
 #[derive(Default)]
 struct Batch {
     spheres: Vec<Newcomer>,
@@ -44,7 +44,7 @@ impl Batch {
 }
 
 impl Rain {
-    /// Reckons batches and says so.
+    /// Computes size and interval of the batches and prints them.
     pub fn new(
         fix: &Pouring,
         w: &mut World,
@@ -82,7 +82,7 @@ impl Rain {
         account.next = (account.done < fix.count).then_some(first);
         account.store(w, key);
         if let Some(left) = fix.count.checked_sub(account.done).filter(|n| *n > 0) {
-            // A batch of minute spheres may be more than any memory holds.
+            // A batch of tiny spheres may exceed any memory.
             memory::forecast(w, batch.min(left) as f64).map_err(|e| e.at(span))?;
             let last = first + ((left - 1) / batch) as i64 * every;
             log.line(&format!("Particle insertion: {batch} every {every} steps, {left} by step {last}"))?;
@@ -92,7 +92,7 @@ impl Rain {
         Ok(Self { name, key, fix: fix.clone(), span, slot, gravity, batch, every, failed: None })
     }
 
-    /// What one batch consists of.
+    /// The spheres or molecules of one batch.
     fn batch(&self, w: &World, t: &Tick, account: &mut Account) -> Result<Batch> {
         let (fix, domain) = (&self.fix, w.domain()?);
         let flat = w.settings.two_dimensional;
@@ -124,7 +124,7 @@ impl Rain {
                 }
             }
             let Some((x, copy)) = place else { break };
-            // v = vz + g t and z = top + vz t + g t²/2 without t.
+            // v = vz + g t and z = top + vz t + g t²/2 with t eliminated.
             let fallen = -(fix.fall * fix.fall - 2.0 * self.gravity * (x[down] - hi[down])).sqrt();
             let mut v = [between(fix.drift[0], stream.uniform()), fallen, 0.0];
             if !flat {
@@ -140,7 +140,7 @@ impl Rain {
         Ok(made)
     }
 
-    /// Who is near the region already.
+    /// The particles already near the region.
     fn crowd<'a>(
         &self,
         w: &World,
@@ -203,7 +203,7 @@ impl Op for Rain {
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
         let left = Account::load(w, self.key).map_or(0, |a| self.fix.count.saturating_sub(a.done));
-        // Those that later batches have made up for are in.
+        // Those that later batches have made up for are counted as inserted.
         let failed = self.failed.take().map(|(count, step)| (count.min(left), step));
         if let Some((count, step)) = failed.filter(|(count, _)| *count > 0) {
             let text =

@@ -1,4 +1,4 @@
-//! Diameters of poured spheres: all the same, from a range, or a few in given shares.
+//! Diameters of poured spheres: one value, a range, or several with given fractions.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
@@ -8,11 +8,11 @@ use std::f64::consts::PI;
 /// A distribution of radii.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sizes {
-    /// All the same.
+    /// One radius.
     One(f64),
-    /// Uniform between two.
+    /// Uniform between two radii.
     Range(f64, f64),
-    /// Radii and their shares of the number of spheres.
+    /// Radii and their number fractions.
     Poly(Vec<[f64; 2]>),
 }
 
@@ -20,7 +20,7 @@ impl Sizes {
     /// Reads `one D`, `range Dlo Dhi` or `poly N D1 P1 …`.
     ///
     /// # Errors
-    /// Diameters that are not positive, shares that do not sum to 1.
+    /// Diameters that are not positive, fractions that do not sum to 1.
     pub fn read(args: &mut Args) -> Result<Self> {
         Ok(match args.choice("distribution of diameters", &["one", "range", "poly"])? {
             "one" => Self::One(0.5 * args.positive("the diameter")?),
@@ -55,8 +55,8 @@ impl Sizes {
         }
     }
 
-    /// What a sphere takes of the volume (in a flat scene of the area), as LAMMPS reckons it: of a range the largest, of
-    /// shares the mean.
+    /// The volume of a sphere (in a flat scene the area) by which LAMMPS counts: that of the largest radius
+    /// of a range, the mean for fractions.
     pub fn space(&self, flat: bool) -> f64 {
         let one = |r: f64| if flat { PI * r * r } else { 4.0 / 3.0 * PI * r * r * r };
         match self {

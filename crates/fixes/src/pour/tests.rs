@@ -1,4 +1,4 @@
-//! Batches by hand and by LAMMPS.
+//! Batches compared with hand calculations and with LAMMPS.
 
 use super::*;
 use perigrain_plan::Stage;
@@ -30,7 +30,8 @@ fn batches_come_when_the_last_one_has_fallen_out() {
     let fix = b.fix(&Pour, "100 1 4711 region slab vol 0.2 50 vel 0 0 0 0 -2 diam one 1").unwrap();
     fix.declare(&mut b.world).unwrap();
     let mut ops = b.seal(&*fix).unwrap();
-    // 0.2 · 500/(π/6) = 190 spheres would fit: all 100 come at once. −2 + √(4 + 10) = 1.7417 time units.
+    // 0.2 · 500/(π/6) = 190 spheres would fit: all 100 are inserted at once. −2 + √(4 + 10) = 1.7417 time
+    // units.
     b.world.clock.step = 1;
     b.stage(&mut ops, Stage::Exchange).unwrap();
     assert_eq!(b.world.n(), 100);

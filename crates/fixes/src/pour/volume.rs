@@ -1,4 +1,4 @@
-//! Where poured spheres appear: a box or an upright cylinder that may rise.
+//! Insertion volume of poured spheres: a box or an upright cylinder, which may rise.
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::rng::ParkMiller;
@@ -21,7 +21,7 @@ impl Volume {
     /// The volume of a region.
     ///
     /// # Errors
-    /// Regions of other shapes, that move, are outsides, or leave the box.
+    /// Regions of other shapes, moving regions, outsides, and regions that leave the box.
     pub fn of(word: &Word, cx: &BuildCx) -> Result<Self> {
         let domain = common::domain(cx)?;
         let flat = cx.world.settings.two_dimensional;
@@ -66,7 +66,7 @@ impl Volume {
         Ok(volume)
     }
 
-    /// Opposite corners of the box around it.
+    /// Opposite corners of its bounding box.
     pub fn corners(&self) -> ([f64; 3], [f64; 3]) {
         match *self {
             Self::Block(lo, hi) => (lo, hi),
@@ -83,7 +83,7 @@ impl Volume {
         }
     }
 
-    /// The next place at this height.
+    /// Draws the next position at this height.
     pub fn place(&self, height: f64, flat: bool, stream: &mut ParkMiller) -> [f64; 3] {
         match *self {
             Self::Block(lo, hi) => {

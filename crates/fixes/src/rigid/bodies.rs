@@ -1,4 +1,4 @@
-//! Rigid bodies as state: which particles they are made of, what they weigh, where they are.
+//! The state of rigid bodies: their particles, masses, positions and motion.
 
 use super::Declared;
 use super::mold::Mold;
@@ -14,33 +14,34 @@ use std::collections::BTreeMap;
 /// I / (m R²) of a solid sphere.
 const SPHERE: f64 = 0.4;
 
-/// What makes particles one body.
+/// What assigns particles to bodies.
 #[derive(Clone)]
 pub enum Split {
     /// The group.
     Single,
     /// The molecule ID.
     Molecule,
-    /// A column of whole numbers.
+    /// A column of integers.
     Custom(Numbers),
     /// One of these groups.
     Groups(Vec<GroupId>),
 }
 
 impl Declared {
-    /// The bodies as the world keeps them.
+    /// Loads the bodies from the world.
     pub fn load(&self, w: &World) -> Vec<Body> {
         bodies(w, self.keys.bodies)
     }
 
-    /// Puts the bodies back.
+    /// Stores the bodies in the world.
     pub fn store(&self, w: &mut World, bodies: &[Body]) {
         let rows = w.memo.get_or(self.keys.bodies, Vec::new);
         rows.resize(WIDTH * bodies.len(), 0.0);
         rows.chunks_exact_mut(WIDTH).zip(bodies).for_each(|(row, body)| body.write(row));
     }
 
-    /// What particle `i` has in common with its body; nothing for one that belongs to none.
+    /// The group number, molecule ID or column value that identifies the body of particle `i`; `None` if it
+    /// belongs to no body.
     fn name_of(&self, w: &World, i: usize) -> std::result::Result<Option<f64>, u32> {
         let p = &w.particles;
         let is = |g: GroupId| p.mask[i] & g.bit() != 0;
@@ -62,13 +63,13 @@ impl Declared {
         Ok(is(self.group).then_some(value))
     }
 
-    /// Particles without a body so far, by what they have in common, ascending.
+    /// Particles without a body, by body identifier in ascending order.
     fn loose(&self, w: &World, body: &[f64], span: Span) -> Result<Vec<(f64, Vec<usize>)>> {
         let mut found: BTreeMap<i64, (f64, Vec<usize>)> = BTreeMap::new();
         for i in (0..w.n()).filter(|&i| body.get(i).copied().unwrap_or(0.0) == 0.0) {
             match self.name_of(w, i) {
                 Ok(None) => {}
-                // Names are whole numbers.
+                // Identifiers are integers.
                 Ok(Some(name)) => found.entry(name as i64).or_insert((name, vec![])).1.push(i),
                 Err(tag) => {
                     return fail(Code::CONFLICT, span, format!("particle {tag} belongs to two rigid bodies"));
@@ -90,7 +91,7 @@ impl Declared {
         Ok(list)
     }
 
-    /// Makes all bodies anew from their particles.
+    /// Rebuilds all bodies from their particles.
     pub fn set_up(&self, w: &mut World, span: Span) -> Result<()> {
         let n = w.n();
         let before = (self.load(w), w.columns.get_scalar(self.keys.body).unwrap_or_default().to_vec());
@@ -116,7 +117,7 @@ impl Declared {
         let all: Vec<usize> = (0..n).collect();
         self.weigh(w, &all, 0.0);
         self.store(w, &[]);
-        // LAMMPS knows the template of what comes during a run alone.
+        // LAMMPS uses the template only for particles inserted during a run.
         let mold = self.mold.as_ref().filter(|mold| mold.gives() && !w.settings.lammps());
         self.enter(w, &list, mold, |i| {
             let number = before.1.get(i).copied().unwrap_or(0.0) as usize;
@@ -125,7 +126,7 @@ impl Declared {
         Ok(())
     }
 
-    /// Makes bodies of particles that have come since.
+    /// Makes bodies of particles inserted since.
     pub fn adopt(&self, w: &mut World, span: Span) -> Result<()> {
         if matches!(self.split, Split::Single | Split::Groups(_)) {
             self.hold_members(w);
@@ -140,7 +141,8 @@ impl Declared {
         Ok(())
     }
 
-    /// Keeps the orientation of members that have none yet: those of restart files that store no orientations of members.
+    /// Stores the orientation of members that have none yet: those of restart files without member
+    /// orientations.
     fn hold_members(&self, w: &mut World) {
         if !w.particles.style.turns() {
             return;
@@ -153,7 +155,7 @@ impl Declared {
         new.into_iter().for_each(|(i, q)| self.keys.turn.take(w, i, q));
     }
 
-    /// Makes bodies; `before` tells how the body was turned that a particle belonged to.
+    /// Makes bodies; `before` gives the previous orientation of a particle's body.
     fn enter(
         &self,
         w: &mut World,
@@ -176,14 +178,14 @@ impl Declared {
         self.store(w, &bodies);
     }
 
-    /// In contacts these particles have the mass of a body.
+    /// Stores the body's mass for these particles; contact laws use it.
     pub fn weigh(&self, w: &mut World, members: &[usize], mass: f64) {
         let n = w.n();
         let column = w.columns.scalar(self.keys.mass, n);
         members.iter().for_each(|&i| column[i] = mass);
     }
 
-    /// Keeps where particles are as seen from the body, and how they lie.
+    /// Stores the positions and orientations of particles in the body's frame.
     pub fn place(&self, w: &mut World, body: &Body, members: &[usize]) {
         let (n, axes) = (w.n(), axes(body.q));
         for &i in members {
@@ -195,7 +197,7 @@ impl Declared {
         }
     }
 
-    /// Counts anew in which image of the box the centres are.
+    /// Updates the image counts of the centres.
     pub fn wrap(&self, w: &mut World) {
         let mut bodies = self.load(w);
         if let Some(domain) = &*w.domain {
@@ -211,7 +213,7 @@ impl Declared {
     }
 }
 
-/// Mass, centre, axes and motion of a body made of these particles.
+/// Mass, centre, axes and motion of a body with these particles.
 fn of_particles(w: &World, members: &[usize]) -> Body {
     let (p, masses) = (&w.particles, Masses::of(w));
     let mut b = Body::default();
@@ -237,7 +239,8 @@ fn of_particles(w: &World, members: &[usize]) -> Body {
     b
 }
 
-/// The tensor of inertia xx yy zz xy xz yz of solid spheres: mass, place as seen from the centre, radius.
+/// Inertia tensor xx yy zz xy xz yz of solid spheres given by mass, position relative to the centre, and
+/// radius.
 pub fn tensor(spheres: impl Iterator<Item = (f64, Vec3, f64)>) -> [f64; 6] {
     let mut tensor = [0.0; 6];
     for (m, d, r) in spheres {
@@ -252,8 +255,9 @@ pub fn tensor(spheres: impl Iterator<Item = (f64, Vec3, f64)>) -> [f64; 6] {
     tensor
 }
 
-/// Axes and principal moments from a tensor of inertia xx yy zz xy xz yz; in flat scenes the last axis is z, so that bodies turn about one
-/// component of their quaternion alone: with z elsewhere the steps of nearly straight ones would make a motion out of the plane from rounding.
+/// Axes and principal moments from an inertia tensor xx yy zz xy xz yz. In flat scenes the last axis is z, so
+/// that bodies rotate about one quaternion component alone: with z as another axis, the integration of nearly
+/// straight bodies would turn rounding errors into out-of-plane motion.
 pub fn orient(body: &mut Body, tensor: [f64; 6], flat: bool) {
     let (mut moments, mut frame) = principal(tensor);
     let along = |k: usize| frame[k][2].abs();

@@ -1,4 +1,4 @@
-//! Particles of rigid bodies where their bodies have them, several at a time.
+//! Sets particles of rigid bodies to the motion of their bodies, several at a time.
 
 use super::pass::POSE;
 use perigrain_base::math::form::{Form, InLanes};
@@ -10,8 +10,8 @@ use perigrain_base::math::vec3::{SIX, Vec3, add, cross, dot, sub};
 use perigrain_styles::matter::Masses;
 use perigrain_world::Images;
 
-/// Positions, velocities, spins and radii, number of the body, place in it, and where each particle's part of the virial goes, if
-/// somebody asks for that.
+/// Positions, velocities, spins, radii, body numbers, positions in the body, and the destination of each
+/// particle's virial, if requested.
 pub type Columns<'a> = (
     &'a mut [Vec3],
     &'a mut [Vec3],
@@ -21,37 +21,39 @@ pub type Columns<'a> = (
     Option<&'a mut [[f64; 6]]>,
 );
 
-/// Half the virial of the forces that hold bodies together, and the square of the longest way.
+/// Half the virial of the constraint forces, and the square of the largest displacement.
 pub type Came = ([f64; 6], f64);
 
-/// What tells the forces that hold bodies together: by how much particles become faster in half a step [force/mass], and by what.
+/// Data for the constraint forces: the factor from force/mass to the velocity change of half a step, and the
+/// forces and masses.
 pub struct Holds<'a> {
     pub masses: Masses<'a>,
     pub f: &'a [Vec3],
     pub half: f64,
 }
 
-/// What moves particles with their bodies.
+/// Moves particles with their bodies.
 pub struct Follow<'a> {
-    /// Where bodies are.
+    /// Positions and motions of the bodies.
     pub poses: &'a [[f64; POSE]],
     pub image: &'a Images,
     /// Edges of the box.
     pub edges: Periods,
-    /// Whether places change too.
+    /// Whether positions change too.
     pub moving: bool,
-    /// Where somebody asks for the virial.
+    /// Present if the virial is requested.
     pub holds: Option<Holds<'a>>,
 }
 
 impl Follow<'_> {
     /// The particles from `start` on.
     pub fn chunk(&self, start: usize, columns: Columns) -> Came {
-        // SAFETY: the processor has what its form needs, and the loop asks for nothing else.
+        // SAFETY: the processor supports its form, and the loop has no other requirement.
         unsafe { Form::here().run(Chunk { follow: self, start, columns }) }
     }
 
-    /// Half of x F of one particle along [`SIX`], F being what holds it beside other forces; `old`: place and velocity before.
+    /// Half of x F of one particle along [`SIX`], F being the constraint force; `old`: previous position and
+    /// velocity.
     fn held(&self, holds: &Holds, i: usize, old: &[Vec3; 2], v: Vec3) -> [f64; 6] {
         let (m, x) = (holds.masses.get(i), add(old[0], self.edges.shift_of(self.image[i])));
         let hold: Vec3 = std::array::from_fn(|d| m * (v[d] - old[1][d]) / holds.half - holds.f[i][d]);
@@ -73,13 +75,13 @@ impl InLanes for Chunk<'_> {
     unsafe fn run<const N: usize, V: Lanes<N>>(mut self) -> Came {
         let n = self.columns.0.len();
         let mut came = ([0.0; 6], 0.0);
-        // SAFETY (all below): passed on; the rows are there.
+        // SAFETY (all below): the caller's guarantee; the rows are there.
         let (mut farthest, mut wrong) = unsafe { (V::all(0.0), V::all(0.0)) };
         for from in (0..n).step_by(N) {
             if let Some(poses) = self.plain::<N>(from) {
                 let square = unsafe { self.group::<N, V>(from, &poses) };
                 farthest = farthest.most(square);
-                // Zero times what is infinite or no number is no number, and stays so in a sum.
+                // Zero times infinity or NaN is NaN, and stays NaN in a sum.
                 wrong = wrong + square * 0.0;
                 continue;
             }
@@ -93,7 +95,8 @@ impl InLanes for Chunk<'_> {
 }
 
 impl Chunk<'_> {
-    /// Where the bodies of so many particles are, if all have one, spin, have crossed no face, and nobody asks what holds them.
+    /// Poses for `N` particles, if all have a body and spin, have crossed no face, and no virial is
+    /// requested.
     #[inline(always)]
     fn plain<const N: usize>(&self, from: usize) -> Option<[*mut f64; N]> {
         let Self { follow, start, columns: (_, _, turning, number, ..) } = self;
@@ -110,10 +113,10 @@ impl Chunk<'_> {
         Some(at)
     }
 
-    /// So many particles whose bodies are there: the squares of their ways.
+    /// `N` particles whose bodies are known: the squares of their displacements.
     ///
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     unsafe fn group<const N: usize, V: Lanes<N>>(&mut self, from: usize, poses: &[*mut f64; N]) -> V {
         let (x, v, turning, _, place, _) = &mut self.columns;
@@ -123,7 +126,7 @@ impl Chunk<'_> {
         for l in 0..N {
             at[l] = l as u32;
         }
-        // SAFETY: by the caller's promise; poses are rows of four numbers, and so many vectors are there.
+        // SAFETY: by the caller's guarantee; poses are rows of four numbers, and `N` vectors are there.
         unsafe {
             let [ax, ay, az, _] = load_rows::<V, N>(poses, 0);
             let [bx, by, bz, _] = load_rows::<V, N>(poses, 4);
@@ -157,7 +160,7 @@ impl Chunk<'_> {
         let Self { follow, start, columns: (x, v, turning, number, place, virials) } = self;
         let Some(pose) = follow.poses.get((number[k] as usize).wrapping_sub(1)) else { return };
         let old = [x[k], v[k]];
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         let [away, velocity, centre] = unsafe { carried::<F>(pose, &place[k]) };
         v[k] = three(velocity);
         if let Some((spin, radius)) = turning
@@ -180,24 +183,26 @@ impl Chunk<'_> {
     }
 }
 
-/// Writes as many vectors as there are lanes.
+/// Writes one vector per lane.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 unsafe fn put<const N: usize, V: Lanes<N>>(to: &mut [Vec3], [x, y, z]: Vec3<V>) {
     let (rows, to) = (V::to_rows([x, y, z, z]), &mut to[..N]);
     for l in 0..N - 1 {
-        // SAFETY: within the list; the fourth number lies where the next row begins, which is written later.
+        // SAFETY: within the list; the fourth number overwrites the start of the next row, which is written
+        // later.
         unsafe { rows[l].store(to.as_mut_ptr().add(l).cast()) };
     }
     to[N - 1] = three(rows[N - 1]);
 }
 
-/// Where a particle is as seen from the centre of its body, how fast it is, and the centre: A p, ω × A p + v, x.
+/// Position of a particle relative to the centre of its body, its velocity, and the centre: A p, ω × A p + v,
+/// x.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 unsafe fn carried<F: Four>(pose: &[f64; POSE], place: &Vec3) -> [F; 3] {
     let at = pose.as_ptr();

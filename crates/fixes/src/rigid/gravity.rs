@@ -1,4 +1,5 @@
-//! Gravity on rigid bodies: M g at the centre, where a body's mass and centre are not the sums over its particles.
+//! Gravity on rigid bodies: M g at the centre, for bodies whose mass and centre are not the sums over their
+//! particles.
 
 use super::Declared;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -7,12 +8,13 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::{Gravity, SealCx};
 use perigrain_world::{GroupId, SlotId, World};
 
-/// Fixes gravity that pull bodies as a whole.
+/// The gravity fixes that act on bodies as a whole.
 #[derive(Clone, Default)]
 pub struct Weight {
-    /// The one that `gravity` names: it acts besides all forces on particles.
+    /// The one named by `gravity`: it acts in addition to all forces on particles.
     named: Option<SlotId>,
-    /// Those that pull particles of bodies with a mass of their own: the bit of their group, and where their acceleration is.
+    /// Those that act on particles of bodies with a mass of their own: group bit and slot of the
+    /// acceleration.
     pulling: Vec<(u32, SlotId)>,
 }
 
@@ -25,14 +27,14 @@ pub struct Pulls {
     particles: Vec<(u32, Vec3)>,
 }
 
-/// Particles of a body: mass, and where they are as seen from its centre, with the groups they are in.
+/// A particle of a body: mass, position relative to the centre, and group mask.
 type Member = (f64, Vec3, u32);
 
 impl Weight {
-    /// What the fixes gravity of a deck mean for the bodies of `fix`.
+    /// The effect of the deck's gravity fixes on the bodies of `fix`.
     ///
     /// # Errors
-    /// `gravity` names no fix gravity.
+    /// `gravity` names a fix that is not a fix gravity.
     pub fn find(fix: &Declared, cx: &mut dyn SealCx) -> Result<Self> {
         let (all, span) = (cx.gravities(), cx.span());
         let named = match &fix.gravity {
@@ -56,7 +58,7 @@ impl Weight {
             g.acts && (same || w.particles.mask.iter().any(|m| m & both == both))
         };
         let lammps = w.settings.lammps();
-        // Bodies may come later: whose particles are pulled is asked at each step.
+        // Bodies may be added later: which particles feel gravity is evaluated at each step.
         let other = |g: &&Gravity| g.acts && fix.gives() && named.is_none_or(|n| n.id != g.id);
         let pulling: Vec<&Gravity> = all.iter().filter(other).collect();
         let note = match named {
@@ -64,7 +66,7 @@ impl Weight {
             None => pulling.iter().copied().find(shares).map(|g| told(fix, g, lammps, span)),
         };
         note.into_iter().for_each(|note| w.parts.notes.push(note));
-        // LAMMPS leaves the pull on particles as it is.
+        // LAMMPS leaves gravity on particles unchanged.
         let kept = if lammps { vec![] } else { pulling };
         Ok(Self {
             named: named.map(|g| g.slot),
@@ -72,12 +74,12 @@ impl Weight {
         })
     }
 
-    /// Whether no fix gravity pulls bodies as a whole.
+    /// Whether no fix gravity acts on bodies as a whole.
     pub fn is_none(&self) -> bool {
         self.named.is_none() && self.pulling.is_empty()
     }
 
-    /// Accelerations now.
+    /// The current accelerations.
     pub fn now(&self, w: &World) -> Pulls {
         let at = |slot: SlotId| w.slots.get(slot).vector.first_chunk().copied().unwrap_or([0.0; 3]);
         Pulls {
@@ -87,7 +89,7 @@ impl Weight {
     }
 }
 
-/// That a fix gravity acts on particles and on their bodies.
+/// The warning for a fix gravity that acts both on particles and on their bodies.
 fn twice(g: &Gravity, span: Span) -> Diagnostic {
     let text =
         format!("fix gravity `{}` pulls these bodies twice: at their centres, and their particles", g.id);
@@ -95,7 +97,7 @@ fn twice(g: &Gravity, span: Span) -> Diagnostic {
     Diagnostic::warning(Code::SUSPICIOUS, span, text).help(help)
 }
 
-/// That gravity and the masses of particles do not go together.
+/// The warning that gravity acts on particles whose masses differ from the body's.
 fn told(fix: &Declared, g: &Gravity, lammps: bool, span: Span) -> Diagnostic {
     let source = if fix.infile.is_some() { "`infile`" } else { "the template" };
     let help = format!("write `gravity {}` here and `disable` at the end of fix gravity", g.id);
@@ -113,19 +115,20 @@ fn told(fix: &Declared, g: &Gravity, lammps: bool, span: Span) -> Diagnostic {
 }
 
 impl Pulls {
-    /// A pull on all particles of the group with this bit.
+    /// Gravity on all particles of the group with this bit.
     #[cfg(test)]
     pub fn of_particles(bit: u32, a: Vec3) -> Self {
         Self { centre: None, particles: vec![(bit, a)] }
     }
 
-    /// Whether there are none.
+    /// Whether it is empty.
     pub fn is_none(&self) -> bool {
         self.centre.is_none() && self.particles.is_empty()
     }
 
-    /// Force and torque about its centre that a body of this mass feels besides forces on its particles: M g, and in the place of
-    /// the weights of particles that have been pulled one by one, Σ m g and Σ m d × g, M g too, if all of them have been.
+    /// Force and torque about the centre that a body of this mass feels in addition to the forces on its
+    /// particles: M g of the named fix; and, if all particles were pulled one by one, M g in place of their
+    /// weights Σ m g and Σ m d × g.
     pub fn on(&self, mass: f64, members: impl Iterator<Item = Member> + Clone) -> [Vec3; 2] {
         let mut force = self.centre.map_or([0.0; 3], |a| scale(mass, a));
         let mut torque = [0.0; 3];
@@ -144,7 +147,7 @@ impl Pulls {
     }
 }
 
-/// What [`Pulls::on`] asks of particle `i` of a body.
+/// The data of particle `i` that [`Pulls::on`] needs.
 pub fn member(masses: &Masses, mask: &[u32], i: usize, d: Vec3) -> Member {
     (masses.get(i), d, mask[i])
 }
@@ -160,7 +163,7 @@ mod tests {
         // Σ m a + what is added = M a; Σ m d × a + what is added = 0.
         let [force, torque] = Pulls { centre: None, particles: vec![(1, a)] }.on(1.5, all.into_iter());
         assert_eq!((force, torque), ([0.0, 0.0, 1.0], [0.0, -1.5, 0.0]));
-        // A part of a body that is pulled is what the deck says.
+        // A body of which only a part is pulled follows the deck literally.
         let some = [all[0], (1.0, [0.25, 0.0, 0.0], 2)];
         let [force, torque] = Pulls { centre: Some(a), particles: vec![(1, a)] }.on(1.5, some.into_iter());
         assert_eq!((force, torque), ([0.0, 0.0, -3.0], [0.0; 3]));

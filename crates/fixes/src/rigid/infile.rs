@@ -11,10 +11,10 @@ use perigrain_world::World;
 /// Words of a line: number, mass, centre, inertia, velocity, angular momentum, image counts.
 const WORDS: usize = 20;
 
-/// Changes the bodies that the file names.
+/// Changes the bodies listed in the file.
 ///
 /// # Errors
-/// Files that cannot be read, lines that are not right, bodies that are not there.
+/// Unreadable files, malformed lines, unknown bodies.
 pub fn apply(fix: &Declared, w: &mut World, file: &Word) -> Result<()> {
     let beside = w.folder.join(&file.text);
     let path = if perigrain_base::gate::exists(&beside) { beside } else { file.text.clone().into() };

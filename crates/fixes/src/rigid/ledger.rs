@@ -1,4 +1,4 @@
-//! What bodies whose masses are not those of their particles mean for the energy ledger.
+//! Energy ledger of bodies whose masses are not the sums over their particles.
 
 use super::Declared;
 use super::motion::Crew;
@@ -9,8 +9,8 @@ use perigrain_styles::rigid_bodies::Body;
 use perigrain_world::World;
 
 impl Declared {
-    /// Notes twice the kinetic energies, of translation and of rotation, and the power of gravity that bodies have beyond those of their
-    /// particles, which the ledger counts by itself.
+    /// Records twice the kinetic energies of translation and rotation, and the power of gravity, in excess of
+    /// those of the particles, which the ledger counts itself.
     pub fn tell_ledger(&self, w: &mut World, crew: &Crew, bodies: &[Body]) {
         if !ledger::is_open(w) || (!self.gives() && crew.weight.is_none()) {
             return;
@@ -38,7 +38,8 @@ mod tests {
     use super::*;
     use perigrain_base::math::vec3::{add, cross, scale};
 
-    // The power of M g at the centre is that on particles, Σ m g (V + ω × d), and that of what is added.
+    // The power of M g at the centre is that on the particles, Σ m g (V + ω × d), plus that of the added
+    // force.
     #[test]
     fn powers_of_weights_add_up() {
         let (a, v, omega) = ([0.1, -0.2, -2.0], [0.3, 0.4, -0.5], [1.0, -0.7, 0.2]);

@@ -1,4 +1,4 @@
-//! Bodies that are copies of a molecule template which gives the mass, the centre or the inertia of the whole.
+//! Bodies that are copies of a molecule template with its own total mass, centre or inertia.
 
 use super::bodies::{orient, tensor};
 use perigrain_base::math::body::{
@@ -10,26 +10,27 @@ use perigrain_styles::rigid_bodies::Body;
 use perigrain_world::{Template, World};
 use std::sync::Arc;
 
-/// Places may differ from those of the template by this part of its size.
+/// Positions may differ from those of the template by this fraction of its size.
 const FIT: f64 = 1e-6;
 
-/// The template that `mol` names.
+/// The template named by `mol`.
 #[derive(Clone)]
 pub struct Mold {
     /// Its name.
     pub name: String,
-    /// The molecules it is of.
+    /// Its molecules.
     pub set: Arc<[Template]>,
 }
 
 impl Mold {
-    /// Whether it gives something that is not the sum over particles.
+    /// Whether it gives a value that is not the sum over particles.
     pub fn gives(&self) -> bool {
         self.set.iter().any(gives)
     }
 
-    /// The body that these particles are, `sum` being what they sum up to, if they are a copy of a template that gives something. Where all
-    /// lie in a line only `before`, the orientation their body had so far, says how it is turned about that.
+    /// The body of these particles if they are a copy of such a template; `sum` is the body summed from the
+    /// particles. If all lie on a line, only `before`, the previous orientation of the body, fixes the
+    /// rotation about it.
     pub fn cast(&self, w: &World, members: &[usize], sum: &Body, before: Option<Quat>) -> Option<Body> {
         let mut members = members.to_vec();
         members.sort_by_key(|&i| w.particles.tag[i]);
@@ -47,7 +48,7 @@ fn gives(t: &Template) -> bool {
     t.mass.is_some() || t.com.is_some() || t.inertia.is_some()
 }
 
-/// The copy of a template at these places: no body of its own where it gives nothing, and nothing where it is no copy.
+/// The copy of a template at these positions: `None` if the template gives no values, or if this is no copy.
 fn copy(
     t: &Template,
     w: &World,
@@ -68,7 +69,7 @@ fn copy(
     let (mass, q, moments) = (whole.mass, after(q, whole.q), (q, whole.moments));
     let (turn, moments) = moments;
     let x = add(found, turned(turn, sub(whole.x, middle)));
-    // The particles move as a rigid body, whatever its centre is said to be.
+    // The particles move as a rigid body, whatever centre is given.
     let omega = spin(sum.momentum, sum.q, sum.moments);
     let v = add(sum.v, cross(omega, sub(x, sum.x)));
     let m = matrix(q);
@@ -77,15 +78,15 @@ fn copy(
     Some(Some(Body { mass, x, v, momentum, q, moments, ..*sum }))
 }
 
-/// Mass, centre, moments and axes of a template as it lies in its file: what it gives, else the sums over these particles, which are
-/// those of the file.
+/// Mass, centre, moments and axes of a template as in its file: the given values, or else the sums over these
+/// particles, which are those of the file.
 fn whole(t: &Template, w: &World, members: &[usize]) -> Body {
     let (masses, lammps) = (Masses::of(w), w.settings.lammps());
     let weighed = |k: usize| masses.get(members[k]);
     let sum: f64 = (0..t.count).map(weighed).sum();
     let mass = t.mass.unwrap_or(sum);
     let moment = (0..t.count).fold([0.0; 3], |a, k| add(a, scale(weighed(k), t.places[k])));
-    // LAMMPS divides the sum over particles by the mass that the file gives.
+    // LAMMPS divides the sum over particles by the mass given in the file.
     let over = if lammps { mass } else { sum };
     let x = t.com.unwrap_or(scale(1.0 / over, moment));
     let spheres = (0..t.count).map(|k| {
@@ -93,7 +94,7 @@ fn whole(t: &Template, w: &World, members: &[usize]) -> Body {
         (weighed(k), sub(t.places[k], x), radius)
     });
     let inertia = match t.inertia {
-        // LAMMPS takes Ixy for Iyz and the other way round.
+        // LAMMPS swaps Ixy and Iyz.
         Some([xx, yy, zz, xy, xz, yz]) if lammps => [xx, yy, zz, yz, xz, xy],
         Some(given) => given,
         None => tensor(spheres),
@@ -107,7 +108,8 @@ fn mean(list: &[Vec3]) -> Vec3 {
     scale(1.0 / list.len() as f64, list.iter().fold([0.0; 3], |a, x| add(a, *x)))
 }
 
-/// The turn that takes places to others, both about their means, as near to `guess` as they allow; nothing if none does.
+/// The rotation that maps positions to others, both relative to their means, as near to `guess` as they
+/// allow; `None` if there is none.
 fn fit(from: &[Vec3], to: &[Vec3], guess: Quat) -> Option<Quat> {
     let near: Vec<Vec3> = from.iter().map(|x| turned(guess, *x)).collect();
     let farthest =
@@ -123,7 +125,7 @@ fn fit(from: &[Vec3], to: &[Vec3], guess: Quat) -> Option<Quat> {
     }
     let (u, v) = (scale(1.0 / size, near[far]), scale(1.0 / goal, to[far]));
     let first = between(u, v);
-    // What is left is a turn about that direction.
+    // The remaining freedom is a rotation about that direction.
     let across = |x: Vec3| sub(x, scale(dot(x, v), v));
     let beside: Vec<Vec3> = near.iter().map(|x| across(turned(first, *x))).collect();
     let side = farthest(&beside)?;
@@ -135,13 +137,13 @@ fn fit(from: &[Vec3], to: &[Vec3], guess: Quat) -> Option<Quat> {
     from.iter().zip(to).all(fits).then_some(q)
 }
 
-/// The shortest turn from one unit vector to another.
+/// The shortest rotation from one unit vector to another.
 fn between(u: Vec3, v: Vec3) -> Quat {
     let (w, axis) = (1.0 + dot(u, v), cross(u, v));
     if w > 1e-15 {
         return normalized([w, axis[0], axis[1], axis[2]]);
     }
-    // Half a turn about any axis across it.
+    // Half a turn about any perpendicular axis.
     let least = (0..3).min_by(|&a, &b| u[a].abs().total_cmp(&u[b].abs())).unwrap_or(0);
     let mut unit = [0.0; 3];
     unit[least] = 1.0;
@@ -162,7 +164,7 @@ mod tests {
             let found = fit(&body, &moved(q, &body), UNTURNED).unwrap();
             let same = (0..4).map(|k| q[k] * found[k]).sum::<f64>();
             assert!((same.abs() - 1.0).abs() < 1e-14, "{q:?} {found:?}"); // a few roundings
-            // What lies in a line keeps the turn about it that it had.
+            // Particles on a line keep their previous rotation about it.
             let line = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
             let guess = turn([1.0, 0.0, 0.0], 0.4);
             assert_eq!(
@@ -173,7 +175,7 @@ mod tests {
         let mut other = moved(half, &body);
         other[2][0] += 1e-3;
         assert_eq!(fit(&body, &other, UNTURNED), None);
-        // Mirrored, it is another body.
+        // The mirror image is a different body.
         assert_eq!(fit(&body, &body.map(|[x, y, z]| [x, y, -z]), UNTURNED), None);
     }
 }

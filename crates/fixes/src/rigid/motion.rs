@@ -1,4 +1,4 @@
-//! One step of rigid bodies and of the particles that follow them.
+//! One step of rigid bodies and of their particles.
 
 use super::follow::{Came, Follow, Holds};
 use super::gravity::Weight;
@@ -14,32 +14,32 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::rigid_bodies::{Body, WIDTH};
 use perigrain_world::{Offers, SlotId, World};
 
-/// What the ops of a step work with: who belongs to which body, and where bodies are.
+/// Working data of a step: the members of each body, and the positions of the bodies.
 pub struct Crew {
-    /// Generation of lists and number of particles that the members are of.
+    /// List generation and number of particles for which the members are valid.
     seen: Option<(u64, usize)>,
-    /// Where the members of each body begin in `members`.
+    /// Index in `members` of each body's first member.
     pub first: Vec<usize>,
-    /// Particles, body by body, in the order of storage.
+    /// Particle indices, body by body, in storage order.
     pub members: Vec<usize>,
-    /// Places of the bodies.
+    /// Poses of the bodies.
     poses: Vec<[f64; POSE]>,
     keys: Keys,
-    /// The bodies of this rank, where it moves its own alone.
+    /// The bodies of this rank, where it moves only its own.
     pub own: Own,
-    /// What pulls bodies as a whole.
+    /// Gravity on bodies as a whole.
     pub weight: Weight,
 }
 
-/// Half the virial of the forces that hold bodies together.
+/// Half the virial of the constraint forces.
 struct Held {
     total: [f64; 6],
-    /// Each particle's part, where somebody asks for that.
+    /// Per-particle parts, if requested.
     atoms: Vec<[f64; 6]>,
 }
 
 impl Crew {
-    /// Nobody so far.
+    /// Without members.
     pub fn of(fix: &Declared) -> Self {
         Self {
             seen: None,
@@ -57,7 +57,7 @@ impl Crew {
         &self.members[self.first[k]..self.first[k + 1]]
     }
 
-    /// Sorts the particles by bodies where their order may have changed; whether it may.
+    /// Sorts the particles by body if their order may have changed; returns whether it may have.
     pub fn muster(&mut self, w: &World, bodies: usize) -> bool {
         let now = Some((w.rebuild.generation, w.n()));
         if self.seen == now && self.first.len() == bodies + 1 {
@@ -86,7 +86,7 @@ impl Crew {
 }
 
 impl Declared {
-    /// First half kick, drift, turn; particles follow.
+    /// First half kick, drift and rotation; the particles follow.
     pub fn advance(&self, w: &mut World, t: &Tick, crew: &mut Crew) {
         self.move_bodies(w, t, crew, Part::First);
         let tally = t.virial && self.virial;
@@ -102,8 +102,8 @@ impl Declared {
         }
     }
 
-    /// New forces on the bodies and the second half kick; in the setup of a run the forces alone. Particles follow. What decks
-    /// can read goes to the slot.
+    /// New forces on the bodies and the second half kick; in the setup of a run only the forces. The
+    /// particles follow. Values for decks go to the slot.
     pub fn finish_step(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
         self.move_bodies(w, t, crew, if t.setup { Part::Forces } else { Part::Second });
         let tally = t.virial && self.virial;
@@ -111,7 +111,7 @@ impl Declared {
         if tally {
             let before = w.memo.remove(crew.keys.virial).filter(|_| !t.setup);
             for (k, total) in w.tally.fixes.iter_mut().enumerate() {
-                // In setup the other half of the step is taken to be alike.
+                // In the setup the other half of the step is assumed to be equal.
                 *total += held.total[k] + before.as_ref().map_or(held.total[k], |v| v[k]);
             }
         }
@@ -136,12 +136,13 @@ impl Declared {
         self.tell_ledger(w, crew, &bodies);
     }
 
-    /// The end of a step and the beginning of the next one, which asks for no virial; nobody sees the velocities in between.
+    /// The end of a step and the beginning of the next one, when no virial is requested and nothing reads the
+    /// velocities in between.
     pub fn go_on(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
         if w.is_narrow() || w.slots.get(slot).offers == Offers::default() {
             self.move_bodies(w, t, crew, Part::Both);
         } else {
-            // Something within steps reads the values.
+            // Some op reads the values within the step.
             self.move_bodies(w, t, crew, Part::Second);
             self.publish(w, t, slot, &self.load(w));
             self.move_bodies(w, t, crew, Part::First);
@@ -183,8 +184,8 @@ impl Declared {
         w.memo.insert(crew.keys.bodies, kept);
     }
 
-    /// Velocities and spins of the particles from those of their bodies, places and orientations too where they are `moving`; where it is
-    /// asked for, half the virial of the forces that hold the bodies together.
+    /// Sets velocities and spins of the particles from those of their bodies, and with `moving` positions and
+    /// orientations too; if requested, sums half the virial of the constraint forces.
     fn follow(&self, w: &mut World, t: &Tick, crew: &Crew, moving: bool, tally: bool) -> Held {
         let half = half(w, t);
         let edges = w.edges();
@@ -220,7 +221,7 @@ impl Declared {
         Held { total, atoms }
     }
 
-    /// Orientations and dipole moments of the particles as those of their bodies are now.
+    /// Sets orientations and dipole moments of the particles from those of their bodies.
     fn turn_members(&self, w: &mut World, crew: &Crew) {
         if !w.particles.style.turns() {
             return;
@@ -236,7 +237,7 @@ impl Declared {
         crew.keys.turn.turn(&mut w.particles, &w.columns, true, body);
     }
 
-    /// Velocities and spins of the particles as their bodies have them now, outside of a run.
+    /// Sets velocities and spins of the particles from those of their bodies, outside of a run.
     pub fn carry(&self, w: &mut World) {
         let t = Tick::between_runs(&w.clock);
         let mut crew = Crew::of(self);
@@ -244,14 +245,15 @@ impl Declared {
         self.follow(w, &t, &crew, false, false);
     }
 
-    /// The values that decks can read.
+    /// Publishes the values that decks can read.
     fn publish(&self, w: &mut World, t: &Tick, slot: SlotId, bodies: &[Body]) {
         let (flat, lammps) = (w.settings.two_dimensional, w.settings.lammps());
         let units = w.settings.units.constants();
         let edges = w.edges();
         let (mut moving, mut turning, mut freedom) = (0.0, 0.0, 0.0);
         for (k, b) in bodies.iter().enumerate() {
-            // Of components that are turned off neither motion nor freedom counts; in the plane there is one axis.
+            // Disabled components count neither as motion nor as degrees of freedom; in the plane there is
+            // one axis.
             let [moves, turns] = self.allowed(k, flat);
             let inner = apply_transposed(&matrix(b.q), b.omega);
             moving += (0..3).map(|d| moves[d] * b.mass * b.v[d] * b.v[d]).sum::<f64>();
@@ -263,7 +265,7 @@ impl Declared {
             freedom += f64::max(all - f64::from(u8::from(linear)), 0.0);
         }
         let temperature = match (moving + turning) * units.mvv2e / (freedom * units.boltz) {
-            // LAMMPS' is no temperature.
+            // LAMMPS' value is not a temperature.
             _ if lammps && self.style == "rigid/nve/small" => (moving + 0.5 * turning) * units.mvv2e,
             _ if freedom == 0.0 => 0.0,
             t => t,
@@ -285,7 +287,7 @@ impl Declared {
     }
 }
 
-/// In the place of what decks can read, where nothing does: a rank knows its own bodies alone.
+/// Replaces `publish` where nothing reads the values: a rank knows only its own bodies.
 fn keep_quiet(w: &mut World, t: &Tick, slot: SlotId) {
     let out = w.slots.get_mut(slot);
     (out.step, out.scalar) = (Some(t.step), f64::NAN);

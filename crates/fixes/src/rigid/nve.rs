@@ -1,4 +1,4 @@
-//! fix rigid/nve, rigid/nve/small: rigid bodies whose orientations move by NO_SQUISH.
+//! fix rigid/nve, rigid/nve/small: rigid bodies with orientations integrated by NO_SQUISH.
 
 use super::{large, small};
 use crate::{Fix, FixStyle};

@@ -1,4 +1,5 @@
-//! The motion of rigid bodies themselves: forces, kicks, drift and turn, as many bodies at a time as the processor can.
+//! Motion of the rigid bodies themselves: forces, kicks, drift and rotation, as many bodies at a time as the
+//! processor has lanes.
 
 use super::Declared;
 use super::gravity::{Pulls, member};
@@ -12,37 +13,38 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::rigid_bodies::WIDTH;
 use perigrain_world::Particles;
 
-/// Numbers of a body's place: the columns of its matrix, centre, velocity, angular velocity, each in a row of four with a spare one.
+/// Numbers of a body's pose: columns of its matrix, centre, velocity, angular velocity, each in a row of four
+/// with one unused.
 pub const POSE: usize = 24;
 
-/// Numbers of a body that its motion takes up: whole rows of four, up to the first image count.
+/// Numbers of a body that its motion uses: whole rows of four, up to the first image count.
 const MOVING: usize = 28;
 
-/// The part of the largest moment of inertia below which the smallest one makes a body nearly straight.
+/// If the smallest moment of inertia is below this fraction of the largest one, the body is nearly straight.
 const SLENDER: f64 = 1e-3;
 
-/// What a pass makes of a step.
+/// The part of a step that a pass computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
-    /// Nothing: the places alone.
+    /// Poses only.
     Stand,
-    /// First half kick, drift, turn.
+    /// First half kick, drift, rotation.
     First,
-    /// New forces alone.
+    /// New forces only.
     Forces,
     /// New forces and the second half kick.
     Second,
-    /// The second half kick of a step, and what the next one begins with.
+    /// The second half kick of a step, and the first half of the next one.
     Both,
 }
 
 impl Part {
-    /// Whether forces are new.
+    /// Whether new forces are summed.
     pub fn gathers(self) -> bool {
         matches!(self, Part::Forces | Part::Second | Part::Both)
     }
 
-    /// Whether bodies drift and turn.
+    /// Whether bodies drift and rotate.
     fn moves(self) -> bool {
         matches!(self, Part::First | Part::Both)
     }
@@ -50,17 +52,17 @@ impl Part {
 
 /// A pass over bodies.
 pub struct Pass<'a> {
-    /// Whose bodies.
+    /// The fix of the bodies.
     pub fix: &'a Declared,
-    /// What is made of the step.
+    /// The part of the step.
     pub part: Part,
     /// Δt/2 in units that turn force/mass into velocity.
     pub half: f64,
     /// Δt.
     pub dt: f64,
-    /// A scene of two dimensions.
+    /// Two-dimensional scene.
     pub flat: bool,
-    /// LAMMPS' steps.
+    /// LAMMPS' integration.
     pub lammps: bool,
     /// Edges of the box.
     pub edges: Periods,
@@ -70,11 +72,11 @@ pub struct Pass<'a> {
     pub masses: Masses<'a>,
     /// Gravity on bodies as a whole.
     pub pulls: Pulls,
-    /// Where the members of each body begin.
+    /// Index of each body's first member.
     pub first: &'a [usize],
-    /// Particles by bodies.
+    /// Particles by body.
     pub members: &'a [usize],
-    /// Which bodies are moved, if not all.
+    /// The bodies that are moved, if not all.
     pub which: Option<&'a [u32]>,
 }
 
@@ -94,7 +96,7 @@ struct Moving<R> {
 }
 
 impl<R: Real> Moving<R> {
-    /// In the order of [`Body`](super::bodies::Body) as it is kept.
+    /// From the storage order of [`Body`](super::bodies::Body).
     #[inline(always)]
     fn of(a: &[R; MOVING]) -> Self {
         let three = |k: usize| [a[k], a[k + 1], a[k + 2]];
@@ -123,7 +125,7 @@ impl<R: Real> Moving<R> {
         ]
     }
 
-    /// Half a kick.
+    /// A half kick.
     #[inline(always)]
     fn kick(&mut self, half: f64, on: &[Vec3<R>; 2]) {
         let by = self.mass.like(half) / self.mass;
@@ -146,29 +148,29 @@ impl<R: Real> Moving<R> {
 }
 
 impl Pass<'_> {
-    /// The number of the body at place `k` among those that are moved.
+    /// The number of the `k`-th body that is moved.
     #[inline(always)]
     fn number(&self, k: usize) -> usize {
         self.which.map_or(k, |which| which[k] as usize)
     }
 
-    /// The bodies from `start` on among those that are moved.
+    /// Moves the bodies from `start` on.
     pub fn bodies(&self, start: usize, rows: &mut [[f64; WIDTH]], poses: &mut [[f64; POSE]]) {
         if self.part.gathers() {
             rows.iter_mut().enumerate().for_each(|(k, row)| self.gather(self.number(start + k), row));
         }
         let done = match self.fix.exact() {
             true => 0,
-            // SAFETY: the processor has what its form needs, and the loop asks for nothing else.
+            // SAFETY: the processor supports its form, and the loop has no other requirement.
             false => unsafe { Form::here().run(Groups { pass: self, start, rows, poses }) },
         };
         let rest = rows[done..].iter_mut().zip(&mut poses[done..]);
         rest.enumerate().for_each(|(k, (row, pose))| self.one(start + done + k, row, pose));
     }
 
-    /// The body at place `k`.
+    /// Moves the `k`-th body.
     fn one(&self, k: usize, row: &mut [f64; WIDTH], pose: &mut [f64; POSE]) {
-        // Bodies have more numbers than those of their motion: see `columns`.
+        // A body has more numbers than those of its motion: see `columns`.
         let (own, _) = row.split_first_chunk_mut::<MOVING>().unwrap_or_else(|| unreachable!());
         let mut b = Moving::of(own);
         let exact = self.fix.exact() || self.slender(&b.moments);
@@ -178,16 +180,18 @@ impl Pass<'_> {
         (*own, *pose) = (b.numbers(), b.pose());
     }
 
-    /// Whether a body is so straight that Richardson's steps let it tumble: their error of (ω Δt)² outweighs what holds the axis of the largest
-    /// moment, which is as small as the smallest moment is beside the others. In flat scenes, where z is an axis to the bit, nothing tumbles.
+    /// Whether a body is so straight that Richardson's method makes it tumble: its error of (ω Δt)² exceeds
+    /// the moment that stabilizes the axis of the largest moment, which is as small as the smallest moment.
+    /// In flat scenes, where z is exactly an axis, nothing tumbles.
     fn slender(&self, moments: &Vec3) -> bool {
         !self.flat && !self.lammps && moments[0] > 0.0 && moments[0] < SLENDER * moments[2]
     }
 
-    /// As many bodies as there are lanes; `all`: what counts of forces and torques, where that is the same for all bodies.
+    /// One body per lane; `all` holds the switched components of forces and torques, if they are the same for
+    /// all bodies.
     ///
     /// # Safety
-    /// The processor must have what the form needs.
+    /// The processor must support the form.
     #[inline(always)]
     unsafe fn group<const N: usize, V: Lanes<N>>(
         &self,
@@ -196,7 +200,7 @@ impl Pass<'_> {
         rows: &mut [[f64; WIDTH]; N],
         poses: &mut [[f64; POSE]; N],
     ) {
-        // Closures would keep the compiler from putting these operations in line.
+        // With closures the compiler would not inline these operations.
         let mut on = [[[0.0; N]; 3]; 2];
         for l in 0..N {
             let own = match all {
@@ -208,7 +212,7 @@ impl Pass<'_> {
             }
         }
         let [[fx, fy, fz], [tx, ty, tz]] = on;
-        // SAFETY: by the caller's promise.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let on = [[V::of(fx), V::of(fy), V::of(fz)], [V::of(tx), V::of(ty), V::of(tz)]];
             let mut b = Moving::of(&columns::<N, V, WIDTH, MOVING>(rows));
@@ -218,7 +222,8 @@ impl Pass<'_> {
         }
     }
 
-    /// The pass for a body, or lanes of bodies; `exactly` gives the orientation after a step where Richardson's is not wanted.
+    /// The pass for a body, or lanes of bodies; `exactly` computes the orientation after a step where
+    /// Richardson's method is not used.
     #[inline(always)]
     fn go<R: Real>(
         &self,
@@ -246,7 +251,7 @@ impl Pass<'_> {
         (b.q, b.omega) = richardson(b.q, b.momentum, omega, b.moments, 0.5 * self.dt);
     }
 
-    /// Sums of forces and torques of body `k`, in the order of storage.
+    /// Sums forces and torques of body `k` in storage order.
     fn gather(&self, k: usize, row: &mut [f64; WIDTH]) {
         let (mut force, mut torque, centre) = ([0.0; 3], [0.0; 3], [row[2], row[3], row[4]]);
         let p = self.p;
@@ -269,7 +274,7 @@ impl Pass<'_> {
     }
 }
 
-/// The loop over bodies several at a time; how many that were.
+/// The loop over groups of bodies; returns the number of bodies processed.
 struct Groups<'a, 'b> {
     pass: &'a Pass<'b>,
     start: usize,
@@ -290,24 +295,24 @@ impl InLanes for Groups<'_, '_> {
                 (0..N).for_each(|l| pass.one(start + N * k + l, &mut rows[l], &mut poses[l]));
                 continue;
             }
-            // SAFETY: passed on.
+            // SAFETY: the caller's guarantee.
             unsafe { pass.group::<N, V>(start + N * k, all, rows, poses) };
         }
         N * rows.len()
     }
 }
 
-/// The first `M` numbers of some rows as lanes; `M` is a multiple of four.
+/// The first `M` numbers of several rows as lanes; `M` is a multiple of four.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 unsafe fn columns<const N: usize, V: Lanes<N>, const W: usize, const M: usize>(
     rows: &mut [[f64; W]; N],
 ) -> [V; M] {
     const { assert!(M <= W && M.is_multiple_of(4)) };
     let at = starts(rows);
-    // SAFETY: by the caller's promise, and within the rows by the assertion.
+    // SAFETY: the caller's guarantee; within the rows by the assertion.
     unsafe {
         let mut out = [V::all(0.0); M];
         for (k, four) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
@@ -317,10 +322,10 @@ unsafe fn columns<const N: usize, V: Lanes<N>, const W: usize, const M: usize>(
     }
 }
 
-/// The way back.
+/// The inverse of [`columns`].
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 unsafe fn put<const N: usize, V: Lanes<N>, const W: usize, const M: usize>(
     rows: &mut [[f64; W]; N],
@@ -334,7 +339,7 @@ unsafe fn put<const N: usize, V: Lanes<N>, const W: usize, const M: usize>(
     }
 }
 
-/// Where rows begin.
+/// Pointers to the rows.
 #[inline(always)]
 fn starts<const N: usize, const W: usize>(rows: &mut [[f64; W]; N]) -> [*mut f64; N] {
     let mut at = [std::ptr::null_mut(); N];

@@ -1,5 +1,5 @@
-//! Rigid bodies where grains are shared out to ranks: a rank moves the bodies of its particles, each as a whole, so that no sums over
-//! bodies travel.
+//! Rigid bodies on ranks: a rank moves the bodies of its particles as a whole, so that no sums over bodies
+//! are exchanged.
 
 use super::Declared;
 use super::bodies::Split;
@@ -15,15 +15,15 @@ use perigrain_world::share::RigidBodies;
 /// The bodies of this rank.
 #[derive(Default)]
 pub struct Own {
-    /// The deal that they are of.
+    /// The deal of rows for which they are valid.
     deal: Option<u64>,
     /// Their numbers from 0, ascending.
     pub bodies: Vec<u32>,
-    /// Where they are moved, side by side.
+    /// Buffers in which they are moved side by side.
     pub room: Room,
 }
 
-/// Room for bodies that are moved, and for their places.
+/// Buffers for bodies that are moved, and for their poses.
 #[derive(Default)]
 pub struct Room {
     rows: Vec<[f64; WIDTH]>,
@@ -31,7 +31,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// Lets `act` move these bodies alone, from the one at a place among them on.
+    /// Lets `act` move only these bodies, beginning at an index among them.
     pub fn move_some(
         &mut self,
         bodies: &[u32],
@@ -50,10 +50,10 @@ impl Room {
 }
 
 impl Declared {
-    /// Whether a rank moves its own bodies alone at this tick: where grains are shared out, or the peridynamic bodies beside these, and no
-    /// sums over all particles are asked for.
+    /// Whether a rank moves only its own bodies at this tick: grains (or the peridynamic bodies beside them)
+    /// are distributed over ranks, and no sums over all particles are requested.
     pub fn shares(&self, w: &mut World, t: &Tick) -> bool {
-        // Dipole moments are not handed over.
+        // Dipole moments are not exchanged.
         if w.share.is_none() || t.virial || w.particles.style.dipole || ledger::is_open(w) {
             return false;
         }
@@ -70,12 +70,12 @@ impl Declared {
         groups.iter().all(|group| w.groups.is_fixed(*group)) && w.is_common(bits)
     }
 
-    /// Of which rows an op needs values that makes this part of a step.
+    /// The rows whose values an op of this part of a step needs.
     pub fn span(&self, w: &mut World, t: &Tick) -> Span {
         if self.shares(w, t) { Span::Asks } else { Span::All }
     }
 
-    /// The op at work acts on the bodies of this rank alone, if it shares the work.
+    /// Restricts the current op to the bodies of this rank, if it shares the work.
     pub fn take_part(&self, w: &mut World, crew: &mut Crew) {
         w.act_narrowly();
         let bodies = w.memo.get(self.keys.bodies).map_or(0, |rows| rows.len() / WIDTH);

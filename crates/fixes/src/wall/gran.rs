@@ -1,4 +1,4 @@
-//! fix wall/gran: planes across an axis, or a cylinder about z, on which grains lean.
+//! fix wall/gran: planes normal to an axis, or a cylinder about z, as walls for grains.
 
 use super::planes::{Followed, Pair};
 use super::words::{self, KEYWORDS};
@@ -98,16 +98,16 @@ impl FixStyle for WallGran {
     }
 }
 
-/// Where the wall stands.
+/// Position of the wall.
 #[derive(Clone)]
 enum Place {
-    /// Across an axis.
+    /// Normal to an axis.
     Planes(Pair),
-    /// About z, its radius.
+    /// Radius of a cylinder about z.
     Tube(f64),
 }
 
-/// How it moves.
+/// Motion of the wall.
 #[derive(Clone, Copy)]
 enum Motion {
     /// Axis, amplitude, angular frequency.
@@ -140,7 +140,7 @@ fn wall(args: &mut Args, cx: &BuildCx) -> Result<(Flat, Span)> {
 }
 
 impl Flat {
-    /// Refuses to wiggle along an axis along which this wall cannot.
+    /// Refuses to wiggle along an axis that this wall does not allow.
     fn may_wiggle(&self, axis: usize, at: Span) -> Result<()> {
         match &self.place {
             Place::Tube(_) if axis != 2 => {
@@ -155,7 +155,7 @@ impl Flat {
         }
     }
 
-    /// Warns of walls that no grain will ever meet.
+    /// Warns of walls that no grain can reach.
     fn warn(&self, cx: &BuildCx, span: Span) {
         let Some(d) = &*cx.world.domain else { return };
         let fixed = |axis: usize, side: usize| d.boundary.0[axis][side] == Face::Fixed;
@@ -214,7 +214,7 @@ impl Form for Flat {
         self.tell_beyond(fix, cx)?;
         let stands = match &self.place {
             Place::Planes(pair) => {
-                // Plastic grains ask for their walls before any forces.
+                // Plastic grains need their walls before any forces.
                 let stage = if fix.is_plastic() { Stage::PreForce } else { Stage::PostForce };
                 Stands::Planes(pair.seal(cx, stage, Key::new(&format!("{}/planes", fix.key(Self::STYLE))))?)
             }
@@ -233,7 +233,7 @@ impl Form for Flat {
 }
 
 impl Flat {
-    /// Tells of grains that stand on the far side of a plane: it would push them out.
+    /// Warns of grains on the far side of a plane, which would push them out.
     fn tell_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
         let Place::Planes(pair) = &self.place else { return Ok(()) };
         let (axis, [lo, hi]) = (pair.axis, pair.fixed());
@@ -252,10 +252,10 @@ impl Flat {
     }
 }
 
-/// Where the wall stands during a run.
+/// Position of the wall during a run.
 enum Stands {
     Planes(Followed),
-    /// About z, its radius.
+    /// Radius of a cylinder about z.
     Tube(f64),
 }
 
@@ -265,14 +265,14 @@ struct Running {
     motion: Option<Motion>,
     key: Numbers,
     outline: Key<Outline>,
-    /// How far it has moved along its motion's axis.
+    /// Displacement along the axis of its motion.
     offset: f64,
     velocity: [f64; 3],
     spin: f64,
 }
 
 impl Running {
-    /// How far its motion takes it since the last call.
+    /// Advances the motion; returns the distance moved since the last call.
     fn go(&mut self, motion: Motion, w: &mut World, t: &Tick) -> f64 {
         let mut elapsed = Elapsed::load(w, self.key);
         if !t.setup {
@@ -292,7 +292,7 @@ impl Running {
             }
             (Motion::Shear(axis @ (0 | 1), speed), Stands::Tube(_)) => {
                 self.spin = speed;
-                // LAMMPS lets a turning cylinder fly along the axis that names the turning, too.
+                // LAMMPS also moves a rotating cylinder along the axis that names the rotation.
                 self.velocity[axis] = if w.settings.lammps() { speed } else { 0.0 };
             }
             (Motion::Shear(axis, speed), _) => self.velocity[axis] = speed,

@@ -57,7 +57,7 @@ impl Style for WallMesh {
     }
 }
 
-/// Words that only meshes know.
+/// Keywords of meshes only.
 const OWN: [&str; 3] = [Placing::KEYWORDS[0], Placing::KEYWORDS[1], "move"];
 
 impl FixStyle for WallMesh {
@@ -98,7 +98,7 @@ impl FixStyle for WallMesh {
     }
 }
 
-/// Reads the file's triangles into their place; with their numbers in the file.
+/// Reads the file's triangles and places them; returns their numbers in the file as well.
 fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<(Facets, Vec<u32>)> {
     let Some(mut read) = triangles::read_faces(file, cx)? else { return Ok((Facets::default(), vec![])) };
     placing.apply(&mut read.triangles, [1.0; 3]);
@@ -122,12 +122,12 @@ fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<(Facets, Vec<u
 #[derive(Clone)]
 struct Triangles {
     mesh: Arc<Facets>,
-    /// Their numbers in the file, from 1.
+    /// Numbers of the triangles in the file, from 1.
     numbers: Arc<[u32]>,
     motion: Motion,
 }
 
-/// Where the work of sliding on each triangle is kept.
+/// Key of the sliding work on each triangle.
 fn work_key(key: Numbers) -> Numbers {
     key.with("/work")
 }
@@ -156,7 +156,7 @@ impl Form for Triangles {
     }
 }
 
-/// The wall during a run, with what it feels triangle by triangle.
+/// The wall during a run, with loads per triangle.
 struct Tracked {
     running: Running,
     work: Numbers,
@@ -192,7 +192,7 @@ impl Surface for Tracked {
             }
         }
         if w.is_narrow() {
-            // By particle and triangle: added up in the order of one process.
+            // By particle and triangle: summed in the order of a single process.
             done = rows::of_all(done);
         }
         done.iter().for_each(|([_, part], [more])| work[*part as usize] += more);

@@ -1,4 +1,4 @@
-//! Walls of granular scenes: what the fixes wall/gran, wall/gran/region and wall/mesh have in common.
+//! Walls for grains: shared by the fixes wall/gran, wall/gran/region and wall/mesh.
 
 pub mod gran;
 pub mod mesh;
@@ -23,28 +23,29 @@ use perigrain_world::contacts::Contacts;
 use perigrain_world::{GroupId, Key, Numbers, Outline, World};
 use words::Material;
 
-/// A wall of some form during a run.
+/// A wall of some shape during a run.
 trait Surface: Send {
-    /// Puts the wall where it is at this step; an upper bound of how far its points have moved since the last call.
+    /// Moves the wall to its position at this step; returns an upper bound of the displacement of its points
+    /// since the last call.
     fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64>;
 
-    /// Whether it stands where it is for the whole run.
+    /// Whether it is at rest for the whole run.
     fn stands(&self) -> bool {
         false
     }
 
-    /// Shows the wall as it is now.
+    /// Passes the wall's current state to `see`.
     fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall));
 
-    /// Local values of the contacts that were found, [`Form::LOCAL`] columns.
+    /// Stores local values of the contacts found, [`Form::LOCAL`] columns.
     fn local(&mut self, _w: &mut World, _contacts: &WallSweep, _t: &Tick) -> Vec<f64> {
         vec![]
     }
 }
 
-/// A declared wall: what its form is, and all that does not depend on the form.
+/// The shape of a declared wall; [`Common`] holds everything that does not depend on the shape.
 trait Form: Clone + Send + 'static {
-    /// The word in the deck.
+    /// Style name in the deck.
     const STYLE: &'static str;
     /// Columns of local values.
     const LOCAL: usize = 0;
@@ -55,29 +56,29 @@ trait Form: Clone + Send + 'static {
     /// What is missing in the scene.
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>>;
 
-    /// Captures what it must know of the moment it is declared, under `key`.
+    /// Captures the state at declaration under `key`.
     fn declare(&self, w: &mut World, key: Numbers);
 
-    /// What it looks like.
+    /// Its outline for pictures.
     fn outline(&self) -> Outline;
 }
 
-/// What all walls have.
+/// Data of all walls.
 #[derive(Clone)]
 struct Common {
     id: String,
     group: GroupId,
     material: Material,
-    /// Whether each particle's contact is told.
+    /// Whether per-particle contact data is output.
     contacts: bool,
-    /// How warm the wall is.
+    /// Wall temperature.
     temperature: Option<(Param, Span)>,
-    /// About which point the wall's torque is meant.
+    /// Reference point of the wall's torque.
     center: [f64; 3],
 }
 
 impl Common {
-    /// Columns of the values by particle.
+    /// Number of columns of the per-particle values.
     fn columns(&self) -> usize {
         op::COLUMNS + usize::from(self.temperature.is_some())
     }
@@ -87,7 +88,7 @@ impl Common {
         plastic_grain(&self.material.model.normal).is_some()
     }
 
-    /// Where small state of the fix is kept in the world.
+    /// Key of the fix's small state in the world.
     fn key(&self, style: &str) -> Numbers {
         Key::new(&format!("{style}/{}", self.id))
     }
@@ -138,7 +139,7 @@ impl<F: Form> Fix for Declared<F> {
     }
 }
 
-/// Refuses a wall across a direction in which the box repeats.
+/// Refuses a wall across a periodic direction.
 fn not_across_periodic(cx: &BuildCx, axes: &[usize], span: Span) -> Result<()> {
     let Some(domain) = &*cx.world.domain else {
         let text = "the simulation box is not defined yet: a create_box must come first";

@@ -1,4 +1,4 @@
-//! The op of a wall: who may touch it, contacts, forces, and what it feels.
+//! The op of a wall: lists nearby particles, finds contacts, and computes forces on particles and wall.
 
 use super::peace::Peace;
 use super::plastic::Plastic;
@@ -32,20 +32,21 @@ pub const FELT: usize = 7;
 /// Forces of one wall.
 pub struct WallOp {
     name: String,
-    /// Where the memory of contacts is kept.
+    /// Key of the contact memory.
     key: Key<Contacts>,
     bit: u32,
     law: Granular,
     surface: Box<dyn Surface>,
     sweep: WallSweep,
-    /// The rebuild the list of particles near the wall was made at.
+    /// Generation of the rebuild for which the list of particles near the wall was made.
     generation: Option<u64>,
-    /// The deal of rows to ranks for which it is a list of this rank's own ones, and whether there was such a list in this run.
+    /// The deal of rows to ranks for which it lists this rank's own particles, if such a list was made in
+    /// this run.
     deal: Option<u64>,
     was_part: bool,
-    /// How far the wall may have moved since.
+    /// Upper bound of the wall's displacement since then.
     travelled: f64,
-    /// Where particles were then, and their radii; empty where rebuilds follow them.
+    /// Positions of particles at that time, and their radii; empty where rebuilds cover their motion.
     anchors: Vec<(Vec3, f64)>,
     slot: SlotId,
     contacts: bool,
@@ -53,28 +54,28 @@ pub struct WallOp {
     local: usize,
     center: [f64; 3],
     span: Span,
-    /// Which particle was too deep in the wall, by which part of its radius and when.
+    /// The particle too deep in the wall: ID, depth as a fraction of its radius, step.
     deep: Option<(u32, f64, i64)>,
     warmth: Option<Warmth>,
-    /// The memory of contacts before a setup that only evaluates.
+    /// Contact memory before a setup that only evaluates forces.
     kept: Option<Contacts>,
-    /// What plastic grains need.
+    /// Data for plastic grains.
     plastic: Option<Plastic>,
-    /// Until when nobody can touch it.
+    /// The period in which no particle can touch the wall.
     peace: Peace,
 }
 
-/// What a wall that conducts heat needs.
+/// Data for a wall that conducts heat.
 struct Warmth {
     /// Its temperature.
     wall: Reading,
-    /// Columns of temperatures and heat flows of the particles.
+    /// Columns of particle temperatures and heat flows.
     temperature: Numbers,
     flow: Numbers,
 }
 
 impl Warmth {
-    /// Where the wall has a temperature.
+    /// For a wall with a temperature.
     fn new(common: &Common, cx: &mut dyn SealCx) -> Result<Option<Self>> {
         let Some((wall, _)) = &common.temperature else { return Ok(None) };
         let wall = cx.param(wall, Stage::PostForce, &When::Always)?;
@@ -91,10 +92,10 @@ impl Warmth {
 }
 
 impl WallOp {
-    /// With nothing computed yet.
+    /// The op before its first step.
     ///
     /// # Errors
-    /// What a wall with a temperature lacks.
+    /// Anything that a wall with a temperature lacks.
     pub fn new(
         style: &str,
         local: usize,
@@ -134,7 +135,8 @@ impl WallOp {
         self.plastic.is_some()
     }
 
-    /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
+    /// Updates the list of particles near the wall, if particles or wall have moved too far since the last
+    /// update.
     fn list(&mut self, w: &World, grains: &Spheres) {
         let (s, followed) = (&w.settings.neighbor, followed(w));
         let deal = w.narrow_share().map(|share| share.deal);
@@ -145,8 +147,8 @@ impl WallOp {
         if fresh && near && (followed || stayed(grains, rows, &self.anchors, s.skin)) {
             return;
         }
-        // Half a skin for the wall, and one for particles: those that have moved half a skin already may move half a skin back, and
-        // those whose anchors are known a whole one.
+        // Half a skin for the wall, and one for the particles: one that has moved half a skin already may
+        // move half a skin back, and one whose anchor is known a whole skin.
         let far = 1.5 * s.skin;
         let Self { surface, sweep, law, bit, .. } = self;
         let which = Meeting { mask: &w.particles.mask, group: *bit, rows };
@@ -160,18 +162,18 @@ impl WallOp {
         }
     }
 
-    /// Puts the wall where it is and takes what its contacts remember.
+    /// Moves the wall to its current position and takes its contact memory out of the world.
     fn place(&mut self, w: &mut World, t: &Tick) -> Result<Contacts> {
         self.travelled += self.surface.place(w, t)?;
         Ok(take(w, self.key))
     }
 
-    /// Finds who touches it.
+    /// Finds the contacts.
     fn meet(&mut self, w: &World, t: &Tick, memory: &mut Contacts) {
-        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
+        // The setup only evaluates forces; LAMMPS nevertheless shortens the springs of sliding contacts.
         self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
         let p = &w.particles;
-        // Masses count when forces are asked for.
+        // Masses are needed for forces only.
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         self.list(w, &grains);
@@ -182,10 +184,10 @@ impl WallOp {
         }
     }
 
-    /// Before any forces: what plastic grains must know of this wall.
+    /// Before all forces: passes this wall's data to plastic grains.
     fn approach(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let Some(plastic) = &self.plastic else { return Ok(()) };
-        // Grains grow before they meet the wall.
+        // Grains expand before they meet the wall.
         plastic.begin(w, t);
         let mut memory = self.place(w, t)?;
         self.meet(w, t, &mut memory);
@@ -196,7 +198,7 @@ impl WallOp {
         Ok(())
     }
 
-    /// Remembers the deepest particle when the law first holds no longer.
+    /// Records the deepest particle when the contact law first becomes invalid.
     fn find_deep(&mut self, w: &World, t: &Tick) {
         // Plastic grains are made for deep contacts.
         if self.deep.is_some() || self.plastic.is_some() {
@@ -211,7 +213,7 @@ impl WallOp {
         self.deep = deep.filter(|d| d.1 > DEEP).reduce(deeper).map(|(tag, part)| (tag, part, t.step));
     }
 
-    /// Adds the heat that flows between the wall and the particles; what the wall takes up.
+    /// Adds the heat flow between the wall and the particles; returns the heat the wall gains.
     fn conduct(&mut self, w: &mut World) -> f64 {
         let (Some(warmth), n) = (&self.warmth, w.n()) else { return 0.0 };
         let wall = warmth.wall.get(w);
@@ -225,7 +227,7 @@ impl WallOp {
         -lost
     }
 
-    /// How far anybody may go before somebody touches the wall [length]: a skin at most.
+    /// How far particles can move before one touches the wall [length]; at most a skin.
     fn room(&mut self, w: &World) -> f64 {
         let (p, skin) = (&w.particles, w.settings.neighbor.skin);
         let grains =
@@ -237,11 +239,11 @@ impl WallOp {
         room
     }
 
-    /// Finds out for how long nobody can touch the wall, where it stands still and nobody does.
+    /// For a wall at rest without contacts, determines how long none can occur.
     fn look_ahead(&mut self, w: &World, t: &Tick) {
         let touched = self.sweep.contacts().next().is_some();
         let still = self.surface.stands() && self.local == 0 && self.plastic.is_none();
-        // A rank knows what touches its own particles only.
+        // A rank knows contacts of its own particles only.
         if touched || !still || t.setup || !followed(w) || w.is_narrow() {
             return self.peace.end();
         }
@@ -255,7 +257,7 @@ impl WallOp {
         let n = w.n();
         let local = self.surface.local(w, &self.sweep, t);
         if w.is_narrow() {
-            // Nothing reads sums over the particles of one rank.
+            // Nothing reads sums over the particles of a single rank.
             let out = w.slots.get_mut(self.slot);
             out.step = Some(t.step);
             out.vector.clear();
@@ -287,13 +289,13 @@ impl WallOp {
     }
 }
 
-/// Whether no particle is ever farther than half a skin from where it was at the last rebuild.
+/// Whether particles always stay within half a skin of their positions at the last rebuild.
 fn followed(w: &World) -> bool {
     let s = &w.settings.neighbor;
     s.check && s.every == 1 && s.delay == 0 && !s.once
 }
 
-/// Whether no surface of a particle of these rows has come farther than `far` from where it was.
+/// Whether no particle surface of these rows has moved more than `far` since.
 fn stayed(grains: &Spheres, rows: &[Range<usize>], anchors: &[(Vec3, f64)], far: f64) -> bool {
     let grown = |k: usize| {
         let (from, radius) = anchors[k];
@@ -306,7 +308,7 @@ fn stayed(grains: &Spheres, rows: &[Range<usize>], anchors: &[(Vec3, f64)], far:
     anchors.len() == grains.x.len() && rows.iter().map(come).fold(0.0, f64::max) <= far
 }
 
-/// Of the particles that ranks have seen too deep in a wall first, the deepest one, for all of them.
+/// The deepest of the particles that the ranks recorded, the same on all ranks.
 fn deepest_of_all(own: Option<(u32, f64, i64)>) -> Option<(u32, f64, i64)> {
     let all = rows::of_all(own.map(|(tag, part, step)| ([tag], [part, step as f64])));
     all.into_iter()
@@ -314,7 +316,7 @@ fn deepest_of_all(own: Option<(u32, f64, i64)>) -> Option<(u32, f64, i64)> {
         .min_by(|a, b| a.2.cmp(&b.2).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)))
 }
 
-/// Takes out what the contacts of a wall remember.
+/// Takes the contact memory of a wall out of the world.
 fn take(w: &mut World, key: Key<Contacts>) -> Contacts {
     w.wall_contacts.get_mut(key).map(std::mem::take).unwrap_or_default()
 }
@@ -327,7 +329,7 @@ fn give(w: &mut World, key: Key<Contacts>, memory: Contacts) {
     }
 }
 
-/// One wall as two ops, for plastic grains: who meets it before all forces, and what it does after those of pairs.
+/// One wall as two ops, for plastic grains: contacts before all forces, wall forces after pair forces.
 pub fn halves(wall: WallOp) -> Vec<Box<dyn Op>> {
     let name = wall.name.clone();
     let both = Arc::new(Mutex::new(wall));
@@ -426,7 +428,7 @@ impl Op for WallOp {
             plastic.press(w, t, &self.sweep, &mut memory);
         }
         let p = &w.particles;
-        // Bodies lend their masses to those who touch.
+        // Particles of rigid bodies touch with the mass of their body.
         let masses = match self.sweep.touching().0 {
             [] => Cow::Borrowed(&p.mass[..]),
             _ => w.contact_masses(),

@@ -1,41 +1,42 @@
-//! For how long nobody can touch a wall, and when it is worth while to find that out.
+//! Predicts how long no particle can touch a wall, and decides when this prediction pays off.
 
 use perigrain_world::{Seen, Travel};
 
-/// While nobody goes farther than there was room at the last look, nobody touches the wall, and it is not looked at.
+/// A period without contacts: while no particle moves farther than the clearance at the last check, the wall
+/// is skipped.
 #[derive(Default)]
 pub struct Peace {
-    /// The last look, and how far everybody may go.
+    /// The last check, and the clearance at that time.
     seen: Option<(Seen, f64)>,
-    /// When it was.
+    /// Step of the last check.
     since: i64,
-    /// How many steps in which nobody touches go by until the next look, and how many did before the last one.
+    /// Contact-free steps left until the next check, and the number before the last one.
     wait: u32,
     waited: u32,
 }
 
-/// To look takes as long as to find nobody touching: a look that saves fewer steps is not repeated soon.
+/// A check costs as much as finding no contact: if it saves fewer steps, it is not repeated soon.
 const WORTH: i64 = 8;
-/// The longest wait for the next look, in steps.
+/// The longest wait for the next check, in steps.
 const LONGEST_WAIT: u32 = 64;
 
 impl Peace {
-    /// Whether it lasts by the account of ways.
+    /// Whether the period still holds for these displacements.
     pub fn lasts(&self, account: Travel) -> bool {
         self.seen.is_some_and(|(seen, room)| seen.within(account, room))
     }
 
-    /// Somebody touches, or the wall moves.
+    /// Ends the period: there is a contact, or the wall moves.
     pub fn end(&mut self) {
         self.seen = None;
     }
 
-    /// At this step there was so much room.
+    /// Begins a period at this step with this clearance.
     pub fn begin(&mut self, step: i64, seen: Seen, room: f64) {
         (self.seen, self.since) = (Some((seen, room)), step);
     }
 
-    /// Whether to look in this step, in which nobody touches.
+    /// Whether to check in this step, in which nothing touches.
     pub fn is_worth_a_look(&mut self, step: i64) -> bool {
         if self.seen.take().is_some() {
             let short = step - self.since < WORTH;

@@ -1,4 +1,4 @@
-//! Planes of fix wall/gran: where they stand, and how they follow variables.
+//! Planes of fix wall/gran: their positions, fixed or given by variables.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
@@ -8,21 +8,21 @@ use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::region::{Region, Shape};
 use perigrain_world::{Numbers, Outline, World};
 
-/// A lower and an upper plane across one axis, as a deck names them.
+/// A lower and an upper plane normal to one axis, as declared.
 #[derive(Clone)]
 pub struct Pair {
-    /// Across which axis.
+    /// Normal axis.
     pub axis: usize,
-    /// Where they are; `None` (NULL) where there is none.
+    /// Positions; `None` (NULL) for a missing plane.
     places: [Option<Param>; 2],
     span: Span,
 }
 
-/// The words for them in messages.
+/// Their names in messages.
 const NAMES: [&str; 2] = ["lower", "upper"];
 
 impl Pair {
-    /// Takes `lo hi`: numbers, variables, or NULL for one of them.
+    /// Parses `lo hi`: numbers, variables, or NULL for one of them.
     ///
     /// # Errors
     /// Two NULLs, planes in the wrong order, unknown variables.
@@ -43,7 +43,7 @@ impl Pair {
         }
     }
 
-    /// The places that are numbers.
+    /// The positions that are numbers.
     pub fn fixed(&self) -> [Option<f64>; 2] {
         [0, 1].map(|k| match self.places[k] {
             Some(Param::Number(at)) => Some(at),
@@ -56,10 +56,10 @@ impl Pair {
         self.places.iter().any(|place| matches!(place, Some(Param::Ref(_))))
     }
 
-    /// The planes of a run, whose variables are fresh at `stage`; `key`: where their last places are remembered.
+    /// The planes of a run, with variables evaluated at `stage`; `key` stores their last positions.
     ///
     /// # Errors
-    /// A variable that is gone.
+    /// A missing variable.
     pub fn seal(&self, cx: &mut dyn SealCx, stage: Stage, key: Numbers) -> Result<Followed> {
         let mut places = [None; 2];
         for (reading, place) in places.iter_mut().zip(&self.places) {
@@ -69,18 +69,18 @@ impl Pair {
         Ok(Followed { axis, places, follows, key, span, at: self.fixed(), velocity: [0.0; 2] })
     }
 
-    /// What those look like that stand where a number says.
+    /// Outline of the planes at fixed positions.
     pub fn outline(&self) -> Outline {
         drawn(self.axis, self.fixed())
     }
 }
 
-/// What is wrong with a lower plane that is not below the upper one.
+/// The message for a lower plane that is not below the upper one.
 fn disordered(lo: f64, hi: f64) -> String {
     format!("the lower plane {lo} lies not below the upper one {hi}")
 }
 
-/// Planes at these places, as pictures show them.
+/// Outline of planes at these positions, for pictures.
 fn drawn(axis: usize, places: [Option<f64>; 2]) -> Outline {
     Outline::new(move |w| {
         let Some(bounds) = w.domain.as_ref().map(perigrain_world::Domain::bounds) else { return vec![] };
@@ -93,33 +93,34 @@ fn drawn(axis: usize, places: [Option<f64>; 2]) -> Outline {
 
 /// The planes during a run.
 pub struct Followed {
-    /// Across which axis.
+    /// Normal axis.
     pub axis: usize,
     places: [Option<Reading>; 2],
     follows: bool,
-    /// Step, places and velocities of the last call are remembered here: those of planes that follow.
+    /// Key of step, positions and velocities at the last call, for planes that follow variables.
     key: Numbers,
     span: Span,
-    /// Where they are.
+    /// Current positions.
     pub at: [Option<f64>; 2],
-    /// How fast they move along their normal.
+    /// Velocities along the normal.
     pub velocity: [f64; 2],
 }
 
-/// How much is remembered: the step, two places, two velocities.
+/// Numbers stored: the step, two positions, two velocities.
 const KEPT: usize = 5;
 
 impl Followed {
-    /// Whether they stand for the whole run.
+    /// Whether they are at rest for the whole run.
     pub fn stand(&self) -> bool {
         !self.follows
     }
 
-    /// Puts them where their variables say, with the velocity of the way since the step before (as LAMMPS does, none in the
-    /// first step); the longer of the ways that they have gone since the last call, and what they look like where they have.
+    /// Moves the planes to the positions of their variables; their velocity is the displacement since the
+    /// previous step over the time step (as in LAMMPS, zero in the first step). Returns the larger
+    /// displacement since the last call, and the outline if they have moved.
     ///
     /// # Errors
-    /// Variables that are no place, or in the wrong order.
+    /// Variables that are not finite, or planes in the wrong order.
     pub fn follow(&mut self, w: &mut World, t: &Tick) -> Result<(f64, Option<Outline>)> {
         if !self.follows {
             return Ok((0.0, None));
@@ -129,7 +130,7 @@ impl Followed {
         let kept = w.memo.get(self.key).and_then(|m| <[f64; KEPT]>::try_from(&m[..]).ok());
         let step = t.step as f64;
         self.velocity = match kept {
-            // The setup of a run takes what the last step has seen.
+            // The setup of a run uses the positions of the last step.
             Some([last, .., lower, upper]) if last == step => [lower, upper],
             Some([last, lo, hi, ..]) if last + 1.0 == step => {
                 [(now[0], lo), (now[1], hi)].map(|(now, was)| now.map_or(0.0, |now| (now - was) / t.dt))
@@ -139,7 +140,7 @@ impl Followed {
         let [lo, hi] = now.map(Option::unwrap_or_default);
         w.memo.insert(self.key, vec![step, lo, hi, self.velocity[0], self.velocity[1]]);
         let before = std::mem::replace(&mut self.at, now);
-        // A plane that was nowhere yet has come from far away.
+        // A plane that had no position before counts as moved from far away.
         let way = |k: usize| match (now[k], before[k]) {
             (Some(now), Some(before)) => (now - before).abs(),
             (Some(_), None) => f64::INFINITY,
@@ -149,7 +150,7 @@ impl Followed {
         Ok((way(0).max(way(1)), moved.then(|| drawn(self.axis, now))))
     }
 
-    /// Refuses planes at no place, and those that have passed through each other.
+    /// Refuses positions that are not finite, and planes that have passed each other.
     fn check(&self, now: [Option<f64>; 2], t: &Tick) -> Result<()> {
         let step = t.step;
         for (at, name) in now.into_iter().zip(NAMES) {

@@ -1,4 +1,4 @@
-//! What walls do to plastic grains (normal model `mdr`).
+//! Walls and plastic grains (normal model `mdr`).
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_contact::Model;
@@ -10,14 +10,14 @@ use perigrain_styles::SealCx;
 use perigrain_world::contacts::Contacts;
 use perigrain_world::{Key, World};
 
-/// What the numbers of plastic grains are called in decks, in their order.
+/// Names of the parameters of plastic grains in decks, in their order.
 const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
 
-/// Refuses a wall that is not of what the plastic grains of the pair style are made of: their memory is one. How a wall sticks
-/// is its own.
+/// Refuses a wall whose material parameters differ from those of the pair style: wall and pairs share one
+/// memory per grain. Adhesion of the wall may differ.
 ///
 /// # Errors
-/// Another normal model, or another number.
+/// Another normal model, or another parameter.
 pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
     let Some(grains) = cx.world().parts.plastic else { return Ok(()) };
     let Some(wall) = plastic_grain(&model.normal) else {
@@ -34,21 +34,21 @@ pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
     Err(d.help(format!("write {} for the wall too", grains[k])).into())
 }
 
-/// A wall under plastic grains.
+/// A wall for plastic grains.
 pub struct Plastic {
     material: Material,
-    /// Where their memory is kept.
+    /// Key of its contact memory.
     key: Key<Contacts>,
     spare: Vec<f64>,
 }
 
-/// Where the memory of plastic grains on the wall of this ID is kept.
+/// Key of the memory of plastic grains on the wall of this ID.
 pub fn key(id: &str) -> Key<Contacts> {
     Key::new(&format!("mdr/{id}"))
 }
 
 impl Plastic {
-    /// For walls whose normal model is `mdr`.
+    /// For walls with the normal model `mdr`.
     pub fn of(model: &Model, id: &str) -> Option<Self> {
         Some(Self { material: plastic(&model.normal)?, key: key(id), spare: vec![] })
     }
@@ -61,7 +61,7 @@ impl Plastic {
         }
     }
 
-    /// Tells the grains how much nearer the wall comes.
+    /// Passes the approach of the wall to the grains.
     pub fn gather(&mut self, w: &mut World, t: &Tick, sweep: &WallSweep) {
         if t.setup {
             return;
@@ -79,12 +79,12 @@ impl Plastic {
         state.put(&mut w.columns);
     }
 
-    /// Presses the grains; the rest of the law is told by `contacts`.
+    /// Applies the wall's pressure to the grains; `contacts` does the rest of the law.
     pub fn press(&mut self, w: &mut World, t: &Tick, sweep: &WallSweep, contacts: &mut Contacts) {
         let n = w.n();
         let mut state = State::take(&mut w.columns, n);
         let mut memory = w.wall_contacts.remove(self.key).unwrap_or_default();
-        // In setup forces are only evaluated.
+        // The setup only evaluates forces.
         let kept = t.setup.then(|| state.clone());
         let (touching, keys) = sweep.touching();
         memory.carry(keys, WALL, &mut self.spare);

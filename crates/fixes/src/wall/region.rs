@@ -72,7 +72,7 @@ impl FixStyle for WallGranRegion {
     }
 }
 
-/// The region by name: it may be put anew between runs.
+/// The region by name: it may be redefined between runs.
 #[derive(Clone)]
 struct Shaped {
     region: String,
@@ -116,11 +116,11 @@ struct Running {
     name: Key<Region>,
     span: Span,
     key: Numbers,
-    /// A region that follows variables, as it was at the step before.
+    /// A region that follows variables, as it was at the previous step.
     before: Option<Region>,
-    /// The time since then, if it was then that it was there.
+    /// The time since then, if the region existed then.
     elapsed: Option<f64>,
-    /// The largest radius when the run began.
+    /// The largest radius at the beginning of the run.
     radius: f64,
 }
 
@@ -137,9 +137,9 @@ impl Surface for Running {
         if memo.len() < 2 {
             before.clone_from(region);
         }
-        // Regions are put anew between runs only: all but the pose is as it was.
+        // Regions are redefined between runs only: all but the pose is unchanged.
         before.set_pose(&mut memo.iter().skip(1).copied());
-        // Places of the wall that matter are a radius from a particle in the box at most.
+        // Wall points that matter are within a radius of some particle in the box.
         let margin = 2.0 * self.radius;
         let corners = w.domain.as_ref().map(|d| {
             let bounds = d.bounds();
@@ -157,14 +157,14 @@ impl Surface for Running {
 
     fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
         see(&Faces {
-            // Places were found a moment ago, so that the region is there.
+            // Contact points were just found, so that the region exists.
             region: w.regions.get(self.name),
             look: Look { before: self.before.as_ref().zip(self.elapsed), lammps: w.settings.lammps() },
         });
     }
 }
 
-/// The region's surface at one moment.
+/// The region's surface in this step.
 struct Faces<'a> {
     region: Option<&'a Region>,
     look: Look<'a>,
@@ -190,7 +190,7 @@ impl Wall for Faces<'_> {
     }
 
     fn holds(&self, _near: &Near) -> bool {
-        // LAMMPS lets go of regions at once.
+        // LAMMPS ends contacts with regions at once.
         !self.look.lammps
     }
 }

@@ -1,4 +1,4 @@
-//! Words that all walls share: the force style with its numbers, and keywords.
+//! Words that all walls share: the force style with its parameters, and keywords.
 
 use super::Common;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
@@ -16,14 +16,14 @@ const STYLES: [&str; 4] = ["granular", "hooke", "hooke/history", "hertz/history"
 /// Keywords of every wall.
 pub const KEYWORDS: [&str; 4] = ["contacts", "temperature", "material", "about"];
 
-/// What a wall and the grains on it are made of.
+/// Materials of a wall and of the grains on it.
 #[derive(Clone, Copy)]
 pub struct Material {
-    /// The model of the contacts.
+    /// Contact model.
     pub model: Model,
-    /// The wall's own, where `material` gave one.
+    /// The wall's own material, if given by `material`.
     pub own: Option<Model>,
-    /// Where the model is said.
+    /// Span of the model.
     pub span: Span,
 }
 
@@ -37,7 +37,7 @@ impl Material {
     }
 }
 
-/// Reads the force style and its numbers, up to one of the words that name the wall.
+/// Reads the force style and its parameters, up to one of the words that name the wall.
 ///
 /// # Errors
 /// Every mistake in them.
@@ -49,7 +49,7 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
         let mut model = Model::classic(hertz, history, &numbers);
         let [gamma_n, gamma_t] = numbers.gamma;
         if gamma_n > 0.0 {
-            // Walls are granular models to LAMMPS, with all that is wrong about their springs.
+            // To LAMMPS, walls use the granular model, including its errors in springs.
             model.tangential.drag = Drag::Times(gamma_t / gamma_n);
         }
         Ok::<_, Diagnostics>(model)
@@ -63,12 +63,12 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
             return Err(unknown_force(word, ends).into());
         }
     };
-    // As in LAMMPS, friction takes hold of a grain on a wall at its full radius, whatever the overlap.
+    // As in LAMMPS, friction acts on a grain at its full radius, whatever the overlap.
     Ok(Material { model: Model { arm: Arm::Radius, ..model }, own: None, span })
 }
 
-/// The refusal of a word that is no force style of a wall: one that is a normal model lacks `granular` before it, and one of the
-/// words about the wall stands before its force.
+/// The error for a word that is not a force style of walls: a normal model lacks `granular` before it; a word
+/// about the wall stands before its force.
 fn unknown_force(word: &Word, ends: &[&str]) -> Diagnostic {
     let d = Diagnostic::error(
         Code::UNKNOWN_STYLE,
@@ -108,10 +108,10 @@ fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
     fail(Code::CONFLICT, c.span, format!("{wrong}: a wall has no use for it"))
 }
 
-/// Reads one keyword that every wall knows; whether the word is one.
+/// Reads one of the keywords of all walls; returns whether the word is one.
 ///
 /// # Errors
-/// Mistakes in its numbers.
+/// Mistakes in its arguments.
 pub fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, common: &mut Common) -> Result<bool> {
     match word.text.as_str() {
         "contacts" => common.contacts = true,
@@ -129,7 +129,7 @@ pub fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, common: &mut Common) 
     Ok(true)
 }
 
-/// Refuses heat without a temperature of the wall, and the reverse.
+/// Refuses heat without a wall temperature, and the reverse.
 pub fn check_heat(common: &Common) -> Result<()> {
     let conducts = common.material.model.heat != Heat::None;
     let (span, text, help) = match &common.temperature {
@@ -146,7 +146,7 @@ pub fn check_heat(common: &Common) -> Result<()> {
     Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into())
 }
 
-/// `material E nu`: the wall's own elastic constants; the others are those of the model.
+/// `material E nu`: the wall's own elastic constants; the other parameters are those of the model.
 fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
     let young = args.positive("Young's modulus of the wall")?;
     let at = args.here();
@@ -164,7 +164,7 @@ fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
     Ok(Model { normal, ..*model })
 }
 
-/// The wall's common part before its keywords are read.
+/// The common data of a wall before its keywords are read.
 pub fn common(cx: &BuildCx, material: Material) -> Common {
     if material.model.damping == Damping::Tsuji {
         cx.fault(material.span, "damping tsuji without its factor √2", true);

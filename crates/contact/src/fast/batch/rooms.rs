@@ -1,4 +1,5 @@
-//! Rooms of a batch: what each group of contacts hands from stage to stage, and vectors on their way to memory.
+//! Buffers of a batch: data that groups of contacts pass from stage to stage, and vectors to be added to
+//! memory.
 
 use super::GROUPS;
 use perigrain_base::math::lanes::Lanes;
@@ -6,35 +7,36 @@ use perigrain_base::math::pair::Pair;
 use perigrain_base::math::vec3::Vec3;
 use std::mem::MaybeUninit;
 
-/// Room for something of each group, not cleared: that would take longer than the contacts of a slab of few.
+/// A buffer with one value per group, not cleared: that would take longer than the contacts of a small slab.
 pub(super) struct Room<T>(MaybeUninit<[T; GROUPS]>);
 
 impl<T: Copy> Room<T> {
-    /// With nothing in it.
+    /// An empty buffer.
     #[inline(always)]
     pub(super) fn new() -> Self {
         Self(MaybeUninit::uninit())
     }
 
     /// # Safety
-    /// It must be one of the groups.
+    /// `group` must be below the number of groups.
     #[inline(always)]
     pub(super) unsafe fn put(&mut self, group: usize, value: T) {
         debug_assert!(group < GROUPS);
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's guarantee.
         unsafe { self.0.as_mut_ptr().cast::<T>().add(group).write(value) }
     }
 
     /// # Safety
-    /// Something must have been put there.
+    /// A value must have been put there.
     #[inline(always)]
     pub(super) unsafe fn at(&self, group: usize) -> &T {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's guarantee.
         unsafe { &*self.0.as_ptr().cast::<T>().add(group) }
     }
 }
 
-/// Vectors in lanes as they go to memory: x and y together, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and z.
+/// Vectors in lanes, arranged for output: x and y interleaved, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and
+/// z.
 #[derive(Clone, Copy)]
 pub(super) struct Outgoing<const N: usize> {
     pub(super) xy: [[f64; N]; 2],
@@ -62,10 +64,10 @@ impl<const N: usize> Outgoing<N> {
         [xy[0], xy[1], self.z[lane]]
     }
 
-    /// Adds the vector of a lane to that of grain `i`.
+    /// Adds the vector of a lane to the row of grain `i`.
     #[inline(always)]
     pub(super) unsafe fn add<P: Pair>(&self, to: *mut f64, lane: usize, i: u32) {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let ((xy, z), to) = (self.lane::<P>(lane), to.add(3 * i as usize));
             xy.add_to(to);
@@ -73,10 +75,10 @@ impl<const N: usize> Outgoing<N> {
         }
     }
 
-    /// Adds the vector of a lane to that of grain `i` and takes it from that of grain `j`.
+    /// Adds the vector of a lane to the row of grain `i` and subtracts it from that of grain `j`.
     #[inline(always)]
     pub(super) unsafe fn act<P: Pair>(&self, to: *mut f64, lane: usize, i: u32, j: u32) {
-        // SAFETY: passed on.
+        // SAFETY: the caller's guarantee.
         unsafe {
             let (xy, z) = self.lane::<P>(lane);
             let (to, from) = (to.add(3 * i as usize), to.add(3 * j as usize));

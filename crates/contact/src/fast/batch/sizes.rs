@@ -1,11 +1,11 @@
-//! Where and how spheres touch, in lanes.
+//! Contact geometry in lanes.
 
 use crate::Geometry;
 use crate::driver::DEEP;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, scale};
 
-/// Of two grains: their radii, the sum of these, and what is made of them.
+/// Radii of two grains, their sum, and derived sizes.
 #[derive(Clone, Copy)]
 pub(super) struct Sizes<R> {
     radii: [R; 2],
@@ -22,7 +22,7 @@ impl<R: Real> Sizes<R> {
     }
 }
 
-/// The geometry of touching spheres, as `Geometry::of_spheres`.
+/// The geometry of touching spheres, like `Geometry::of_spheres`.
 #[inline(always)]
 pub(super) fn geometry<R: Real>(d: Vec3<R>, sizes: &Sizes<R>, mass: R) -> Geometry<R> {
     let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
@@ -47,8 +47,8 @@ pub(super) fn reduced<R: Real>(mi: R, mj: R) -> R {
     mi * mj / (mi + mj)
 }
 
-/// The reduced mass where frozen grains have a minus sign and count as infinitely heavy; `free`: that of two that are not, if
-/// it is known.
+/// The reduced mass, where frozen grains have negative mass and count as infinitely heavy; `free`: the
+/// reduced mass of two grains that are not frozen, if known.
 #[inline(always)]
 pub(super) fn beside_frozen<R: Real>(mi: R, mj: R, free: Option<R>) -> R {
     let (zero, a, b) = (mi.like(0.0), mi.abs(), mj.abs());

@@ -1,14 +1,14 @@
-//! How lists wear.
+//! Validity of lists after displacements.
 
 use super::*;
 use perigrain_world::Travel;
 
 /// Grains: enough for several slabs.
 const ALL: usize = 288;
-/// How many stand in one place.
+/// Number of grains at one position.
 const HEAP: usize = 32;
 
-/// Three heaps of grains in each of three lists, 1 apart along x; lists reach into the next one.
+/// Three heaps of grains in each of three lists, spaced 1 along x; lists reach into the next one.
 fn scene() -> (Vec<List>, Vec<[f64; 3]>, Vec<u32>) {
     let x: Vec<[f64; 3]> = (0..ALL).map(|i| [(i / HEAP) as f64, 0.0, 0.0]).collect();
     let tag: Vec<u32> = (0..ALL as u32).collect();
@@ -17,7 +17,7 @@ fn scene() -> (Vec<List>, Vec<[f64; 3]>, Vec<u32>) {
         let grains = |range: std::ops::Range<usize>| range.map(|i| i as u32).collect::<Vec<_>>();
         list.watched.push(0, HERE, &grains(from..from + own));
         list.watched.push(1, HERE, &grains(from + own..(from + 2 * own).min(ALL)));
-        // One three layers on, of which none is near.
+        // One three layers further, with nothing nearby.
         if k == 0 {
             list.watched.push(4, HERE, &[ALL as u32 - 1]);
         }
@@ -60,10 +60,10 @@ fn lists_wear_by_what_ways_differ_and_one_by_one() {
         validity.strayed(&lists, &grains(x, &tag, (&still, &radius), Travel::default()), 0.1, all)
     };
     assert_eq!(look(&x, true), [0, 1, 2]);
-    // All go far together.
+    // All move far together.
     x.iter_mut().for_each(|x| x[1] += 3.0);
     assert_eq!(look(&x, false), [0usize; 0]);
-    // The last grain leaves the others of its list and of the list before, which reaches into it.
+    // The last grain moves away from the others of its list and of the previous list, which reaches into it.
     x[ALL - 1][0] += 0.06;
     assert_eq!(look(&x, false), [1, 2]);
     assert_eq!(look(&x, false), [0usize; 0], "the new lists know");
@@ -77,7 +77,7 @@ fn lists_wear_by_what_ways_differ_and_one_by_one() {
 fn images_move_with_the_box() {
     let (mut lists, x, tag) = scene();
     let (still, radius) = ([[0.0; 3]; ALL], [0.5; ALL]);
-    // The last list sees the first grain one period on along x.
+    // The last list sees the first grain one period further along x.
     lists[2].watched.push(1, HERE + 1, &[0]);
     let mut validity = ListValidity::default();
     let now = |length: f64| Periods::upright([length, 0.0, 0.0]);

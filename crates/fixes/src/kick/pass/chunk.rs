@@ -1,4 +1,4 @@
-//! Particles of a block as the loops of a pass see them.
+//! Particles of a block as the loops of a pass access them.
 
 use super::Part;
 use perigrain_base::math::body::Quat;
@@ -15,7 +15,7 @@ pub(super) struct Chunk<'a> {
     pub(super) omega: &'a mut [Vec3],
     pub(super) torque: &'a mut [Vec3],
     pub(super) radius: &'a [f64],
-    /// Empty where none are to follow spins.
+    /// Empty where no orientations are integrated.
     pub(super) quat: &'a mut [Quat],
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Fours<'a> {
 }
 
 impl Fours<'_> {
-    /// Four of them, to be looked at one by one.
+    /// Group `k` of four, for the loop over single particles.
     #[inline(always)]
     pub(super) fn one<'a>(&'a mut self, k: usize, mask: &'a [u32; 4]) -> Chunk<'a> {
         Chunk {
@@ -47,7 +47,8 @@ impl Fours<'_> {
     }
 }
 
-/// Particles of a block as the loops see them: what they do not touch here is handed to them all the same, past all marks.
+/// Particles of a block as the loops access them. Columns that this pass does not change are handed over as
+/// well, without access marks.
 pub(super) fn chunk<'a>(
     s: &'a mut ParticleBlock<'_>,
     own: Range<usize>,

@@ -1,4 +1,4 @@
-//! Kicks of one vector and of four, and of the parts of them that stay.
+//! Kicks of one vector and of four, and the force components that are kept.
 
 use perigrain_base::math::real::Real;
 use perigrain_base::math::threes::{self, Threes};
@@ -15,38 +15,38 @@ pub(super) fn kick<const KICKS: usize>(v: &mut Vec3, f: &Vec3, by: f64) {
     }
 }
 
-/// Which parts of four vectors stay, where some do not.
+/// Masks of the components of four vectors that are kept, where some are not.
 pub(super) type Parts<F> = Option<[<F as Real>::Mask; 3]>;
 
-/// Those of each vector that are not zero.
+/// The components of `which` that are not zero.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 pub(super) unsafe fn parts_of<F: Threes>(which: Vec3) -> [F::Mask; 3] {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         let ([a, b, c], zero) = (threes::repeated::<F>(which), F::splat(0.0));
         [a.above(zero), b.above(zero), c.above(zero)]
     }
 }
 
-/// The parts that stay; the others are zero.
+/// Keeps these components; the others become zero.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 pub(super) unsafe fn only<F: Threes>([a, b, c]: [F; 3], parts: &Parts<F>) -> [F; 3] {
     let Some([p, q, r]) = *parts else { return [a, b, c] };
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     let zero = unsafe { F::splat(0.0) };
     [F::choose(p, a, zero), F::choose(q, b, zero), F::choose(r, c, zero)]
 }
 
-/// [`kick`] of four of which these parts stay, and what comes of it.
+/// [`kick`] of four vectors with only these components kept; returns the result.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 pub(super) unsafe fn kicked<F: Threes, const KICKS: usize>(
     v: &mut [Vec3; 4],
@@ -55,7 +55,7 @@ pub(super) unsafe fn kicked<F: Threes, const KICKS: usize>(
     by: F,
 ) -> [F; 3] {
     let p = v.as_flattened_mut().as_mut_ptr();
-    // SAFETY: twelve numbers; the rest is the caller's promise.
+    // SAFETY: twelve numbers; the rest is the caller's guarantee.
     unsafe {
         let ([a, b, c], [ba, bb, bc]) = (only(threes::load::<F>(p), parts), by.spread());
         let (da, db, dc) = (ba * fa, bb * fb, bc * fc);

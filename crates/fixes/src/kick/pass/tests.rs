@@ -1,5 +1,5 @@
-//! Kicks and drifts of a few particles, with and without what stands beside them. Masses are found as the program finds them: every other
-//! way would be compiled for all forms of a pass.
+//! Kicks and drifts of a few particles, with and without fused forces. Masses are looked up as in the
+//! program: any other closure would be compiled for all forms of a pass.
 
 use super::*;
 use perigrain_base::math::body::Quat;
@@ -29,7 +29,7 @@ fn moved(parts: &[Part], wide: bool) -> (Vec<Vec3>, Vec<Vec3>, Vec<Vec3>, f64) {
         let beside = Beside::default();
         fastest = match (part, wide) {
             (_, true) => k.block(c, true, *part, &Masses::Own(&mass), 0, &beside),
-            // SAFETY: the portable form needs nothing.
+            // SAFETY: the portable form has no requirements.
             (Part::First, _) => unsafe { k.four::<Plain, 1, true, true>(c, &beside, masses) },
             // SAFETY: as above.
             (Part::Second, _) => unsafe { k.four::<Plain, 1, false, true>(c, &beside, masses) },
@@ -76,7 +76,7 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2, oriented: false };
     let mass: Vec<f64> = (0..N).map(|i| 1.0 + i as f64 / 3.0).collect();
     let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
-    // All alike, one that is held, one that is not pulled, one that stays.
+    // All alike, one held, one not pulled, one not moving.
     let masks = [[3; N], [3, 3, 3, 3, 7, 3, 3, 3, 3, 3, 7], [3, 3, 3, 3, 3, 2, 3, 3, 1, 3, 3]];
     for (mask, flat, clears) in masks.into_iter().flat_map(|m| [(m, 0, true), (m, 2, true), (m, 2, false)]) {
         let beside = Beside { pull: Some(pull), held, flat, clears };
@@ -117,7 +117,7 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
         };
         let ((one, energy), (each, expected)) = (run(true), run(false));
         assert_eq!(one, each);
-        // Eleven terms of about 10, added in another order.
+        // Eleven terms of about 10, summed in a different order.
         assert!((energy - expected).abs() < 1e-13, "{energy} {expected}");
     }
 }
@@ -139,10 +139,10 @@ fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
 fn who_does_not_turn_keeps_the_orientation_bit_by_bit() {
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1, oriented: true };
     let (mut x, mut v, mut f, mut omega) = (some(1), some(2), some(4), some(5));
-    // One of the first four turns, all of the next, none of those behind.
+    // One of the first four rotates, all of the next four, none of the rest.
     (0..N).filter(|i| !(*i == 2 || (4..8).contains(i))).for_each(|i| omega[i] = [0.0; 3]);
     let (spins, radius) = (omega.clone(), [0.5; N]);
-    // Lengths are 1 but for rounding, which an empty step would change.
+    // Lengths are 1 up to rounding, which an empty step would change.
     let before: Vec<Quat> = (0..N).map(|i| [0.3 + 0.1 * i as f64, -0.2, 0.4, 0.1 * i as f64]).collect();
     let (mut quat, mut torque) = (before.clone(), vec![[0.0; 3]; N]);
     let c = Chunk {

@@ -1,4 +1,4 @@
-//! How a mesh moves: its place, turn and velocity at each step.
+//! Motion of a mesh: position, rotation and velocity at each step.
 
 use crate::elapsed::Elapsed;
 use crate::lineforce::direction;
@@ -16,7 +16,7 @@ use perigrain_world::{Key, Numbers, Outline, World};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// The motion a deck names.
+/// The declared motion.
 #[derive(Clone, Debug)]
 pub enum Motion {
     /// None.
@@ -83,7 +83,7 @@ impl Motion {
     }
 }
 
-/// Where the place of a mesh that follows variables is kept from step to step.
+/// Key of the position of a mesh that follows variables.
 pub fn place_key(key: Numbers) -> Numbers {
     key.with("/place")
 }
@@ -95,20 +95,20 @@ pub struct Running {
     readings: [Option<Reading>; 3],
     key: Numbers,
     place: Numbers,
-    /// What it looks like, for pictures.
+    /// Its outline, for pictures.
     outline: Key<Outline>,
     shift: Vec3,
     angle: f64,
     velocity: Vec3,
-    /// The farthest corner from the axis.
+    /// Distance of the farthest corner from the axis.
     arm: f64,
 }
 
 impl Running {
-    /// At rest in its first place; with the keys of its state and of what it looks like.
+    /// At rest in its initial position; `keys` are those of its state and outline.
     ///
     /// # Errors
-    /// Variables that are gone.
+    /// Missing variables.
     pub fn new(
         mesh: Arc<Facets>,
         motion: &Motion,
@@ -142,10 +142,10 @@ impl Running {
         })
     }
 
-    /// Goes to where the mesh is at this step; how far its points have moved at most.
+    /// Moves the mesh to its position at this step; returns the largest displacement of its points.
     ///
     /// # Errors
-    /// A displacement that is no number.
+    /// A displacement that is not finite.
     pub fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
         if matches!(self.motion, Motion::Rest) {
             return Ok(0.0);
@@ -172,7 +172,7 @@ impl Running {
         Ok(length(sub(self.shift, before.0)) + self.arm * (self.angle - before.1).abs())
     }
 
-    /// The displacement that variables give, and the velocity of its change since the step before.
+    /// The displacement given by the variables, and the velocity as its change since the previous step.
     fn follow(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         self.shift = self.readings.map(|r| r.map_or(0.0, |r| r.get(w)));
         if self.shift.iter().any(|a| !a.is_finite()) {
@@ -182,7 +182,7 @@ impl Running {
             Some(&[step, x, y, z]) if t.step as f64 - step == 1.0 => {
                 scale(1.0 / t.dt, sub(self.shift, [x, y, z]))
             }
-            // Within the setup of a run that goes on where the last one ended, nothing has moved.
+            // In the setup of a run that continues where the last one ended, nothing has moved.
             _ => [0.0; 3],
         };
         let [x, y, z] = self.shift;
@@ -190,7 +190,7 @@ impl Running {
         Ok(())
     }
 
-    /// How it has moved.
+    /// Its current pose.
     fn pose(&self) -> Pose {
         let turn = match &self.motion {
             Motion::Rotate(point, axis, _) => Some((*point, *axis, self.angle)),
@@ -199,7 +199,7 @@ impl Running {
         Pose { turn, shift: self.shift }
     }
 
-    /// A place as seen from the mesh.
+    /// A position in the frame of the mesh.
     fn undo(&self, x: Vec3) -> Vec3 {
         let x = sub(x, self.shift);
         match &self.motion {
@@ -209,7 +209,7 @@ impl Running {
     }
 }
 
-/// A mesh where it is now.
+/// A mesh at its current position.
 pub struct Placed<'a>(pub &'a Running);
 
 impl Wall for Placed<'_> {
