@@ -97,7 +97,7 @@ impl<F: Fn(&mut ParticleBlock, &Beside) -> [BlockSums; 3] + Send + Sync + 'stati
     }
 }
 
-/// What a motion needs to know of an action to take it into its pass.
+/// What a motion needs to know about an action to take it into its pass.
 enum Kind {
     /// Nothing: the action runs alone.
     Other,
@@ -134,7 +134,7 @@ pub struct Beside {
 }
 
 impl Act {
-    /// What a motion needs to know of this action; `Other` for a motion.
+    /// What a motion needs to know about this action; `Other` for a motion.
     fn kind(&self) -> &Kind {
         match &self.0 {
             Does::Alone(_, kind) => kind,

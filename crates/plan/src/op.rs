@@ -191,7 +191,7 @@ impl std::fmt::Display for When {
     }
 }
 
-/// What an op may know of the present step.
+/// The present step as ops see it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     /// Present step.
@@ -351,7 +351,7 @@ pub enum Way {
 
 /// One thing a step does. Ops own scratch only; whatever outlives a step lives in `World`.
 pub trait Op: Send {
-    /// What the plan has to know of it, queried once.
+    /// What the plan has to know about it, queried once.
     fn about(&self) -> About;
     /// Called once all ops of a plan are known, with the fields that some of them change by name.
     fn settle(&mut self, _changed: Fields) {}

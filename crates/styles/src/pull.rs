@@ -54,11 +54,11 @@ pub struct Found {
     pub ends: [usize; 2],
 }
 
-/// All bonds that act and that `wants` wants, with the places of their ends; without those that have lost one where the
-/// deck allows it.
+/// All active bonds that `wants` accepts, with the places of their ends; without those that have lost an end where the deck
+/// allows it.
 ///
 /// # Errors
-/// An end that is gone.
+/// A missing end.
 pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<(usize, Found)>> {
     let tags = &w.particles.tag;
     let index = Index::new(tags);
