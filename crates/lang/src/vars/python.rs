@@ -1,4 +1,4 @@
-//! Variables of style `python`: functions of a program that hosts the session, and what the command `python` has said of them.
+//! Variables of style `python`: functions of a program that hosts the session, and their declaration by the command `python`.
 
 use super::{Data, Vars};
 use crate::args::{Args, blame};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 ///
 /// It is no state of a session: copies talk to the same program, and no file holds it.
 pub trait Functions: Debug + Send + Sync {
-    /// Works off code at the top of the program's names.
+    /// Executes code at the top level of the program's names.
     ///
     /// # Errors
     /// The program's own words on why it failed.
@@ -57,7 +57,7 @@ impl Given {
     }
 }
 
-/// What is given to a function, in the place where the command says it.
+/// An argument of a function, at its place in the command.
 #[derive(Clone, Debug)]
 enum Input {
     Word(String),
@@ -72,14 +72,14 @@ pub struct Function {
     gives: Option<(String, char)>,
 }
 
-/// What the words of the command `python` ask for.
+/// The request of a `python` command.
 #[derive(Debug)]
 pub enum Asked<'a> {
     /// A function is made known, after code if there is some.
     Known(String, Function, Option<Source<'a>>),
     /// A function is called.
     Invoked(String),
-    /// Code is worked off.
+    /// Code is executed.
     Source(Source<'a>),
 }
 
