@@ -134,7 +134,7 @@ impl To {
                 "-i",
                 "-",
             ]);
-            // What most players show; it wants even numbers of pixels, and a GIF has colours of its own.
+            // Most players show this format; it needs even numbers of pixels, and a GIF has colours of its own.
             let even = size.iter().all(|n| n.is_multiple_of(2));
             if even && path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("gif")) {
                 command.args(["-pix_fmt", "yuv420p"]);
@@ -158,7 +158,7 @@ impl To {
 impl Drop for To {
     fn drop(&mut self) {
         let Self::Program(child, pipe) = self else { return };
-        // The program ends where its input does; what it has to say about that stands on the screen.
+        // The program ends with its input; its messages are on the screen.
         drop(pipe.take());
         let _ = child.wait();
     }

@@ -98,12 +98,12 @@ struct Counted<'a> {
     out: &'a mut dyn Write,
     crc: crc32fast::Hasher,
     count: u64,
-    /// What the system said when it refused.
+    /// The system's error when it refused.
     failed: Option<std::io::Error>,
 }
 
 impl Counted<'_> {
-    /// Keeps what the system says; who asked gets the kind of it.
+    /// Keeps the system's error; the caller gets its kind.
     fn note<T>(&mut self, outcome: std::io::Result<T>) -> std::io::Result<T> {
         outcome.map_err(|e| {
             let kind = e.kind();
@@ -128,10 +128,10 @@ impl Write for Counted<'_> {
     }
 }
 
-/// Reads a restart file whole, or says why it is none.
+/// Reads a whole restart file.
 ///
 /// # Errors
-/// Files that cannot be read, are cut off, damaged, of another program, of another version.
+/// Files that cannot be read, are truncated, damaged, of another program, of another version.
 pub fn read(path: &Path) -> Result<Saved> {
     let failed = |e: std::io::Error| trouble("read the restart file", path, &e);
     let refuse = |why: String| {

@@ -52,7 +52,7 @@ pub fn particles(w: &World) -> Outcome {
     ] {
         must(!triples.as_flattened().iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
-    // A density that was never told is none.
+    // A density that was never set is none.
     for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past()), ("charge", p.charge.past())] {
         must(!all.iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
@@ -79,7 +79,7 @@ pub fn stand(w: &World) -> bool {
     let energies = [t.atom.len(), t.bond_atom.len(), t.fix_atom.len()];
     let virials = [t.atom_virial.len(), t.atom_bonds.len(), t.atom_fixes.len()];
     let places = [r.held.len(), r.kept.x.len()];
-    // Where nobody had moved since creation no places are held.
+    // Where no particle had moved since creation no places are held.
     let held = r.unmoved || r.held.len() == w.n();
     held && energies.into_iter().chain(virials).chain(places).all(|len| len == 0 || len == w.n())
 }
@@ -114,7 +114,7 @@ pub fn bonds(w: &World) -> Outcome {
         b.turned.keys().chain(b.memory.keys()).all(|e| e[0] < e[1]),
         "what a bond remembers belongs to no pair",
     )?;
-    // Counted from type 0, which nobody has.
+    // Counted from type 0, which no particle has.
     must(b.power.len() <= b.types + 1, "there are dashpots of more types than there are")?;
     let angles = &b.angles;
     must(angles.types <= usize::from(u16::MAX), "there are more types of angles than can be")?;
@@ -124,7 +124,7 @@ pub fn bonds(w: &World) -> Outcome {
     must(coeffs.into_iter().all(|k| (1..=b.types).contains(k)), "coefficients belong to no type")
 }
 
-/// Grains that touch each other are two, in order; those that touch a wall are told with the part of it.
+/// Grains that touch each other are two, in order; those that touch a wall are stored with the part of it.
 pub fn contacts(w: &World) -> Outcome {
     let sound = |c: &contacts::Contacts| {
         must(c.sound(), "contacts and their history differ in length")?;
