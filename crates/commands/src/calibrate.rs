@@ -169,7 +169,7 @@ impl CommandStyle for Calibrate {
     }
 }
 
-/// A line to be worked off.
+/// A `calibrate` line to be executed.
 struct Line {
     kind: Kind,
     id: String,

@@ -106,7 +106,7 @@ impl Style for CreateAtoms {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Creation {
     kind: u16,
     place: Place,
@@ -116,9 +116,9 @@ struct Creation {
     test: Option<Test>,
     mol: Option<Copies>,
     group: Option<String>,
-    /// Where `volumes cut` is said.
+    /// The place of `volumes cut`.
     cut: Option<Span>,
-    /// Said before the particles are made.
+    /// Lines for the log before the particles are made.
     note: Vec<String>,
 }
 
@@ -169,7 +169,7 @@ impl CommandStyle for CreateAtoms {
     }
 }
 
-/// Where particles are made, and what is said about it.
+/// Where particles are made, and the lines for the log about it.
 fn place(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
     let place = match style.text.as_str() {
         "box" => Place::Lattice { region: None, subset: None },

@@ -166,7 +166,7 @@ fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<(
     Ok(())
 }
 
-/// Adds bonds and says how many.
+/// Adds bonds and logs their number.
 fn add(cx: &mut ActCx, new: impl Iterator<Item = Bond>) {
     let before = cx.world.bonds.len();
     new.for_each(|bond| cx.world.bonds.push(bond));

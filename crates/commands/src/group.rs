@@ -52,7 +52,7 @@ impl Style for Group {
     }
 }
 
-/// Who joins.
+/// Which particles join.
 enum Choice {
     Nobody,
     Kind(Numbers),
@@ -260,7 +260,7 @@ fn surface(a: &mut Args, cx: &BuildCx, style: &Word, name: String) -> Result<Box
     }))
 }
 
-/// Says how many particles a group has now.
+/// Logs how many particles a group has now.
 fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
     let count = cx.world.particles.mask.iter().filter(|m| **m & group.bit() != 0).count();
     cx.say(format!("{count} atoms in group {name}"));
@@ -412,7 +412,7 @@ mod tests {
         w.particles.mask.iter().filter(|m| **m & bit != 0).count()
     }
 
-    // Oracle: the same lines on the same 324 particles; LAMMPS says 50, 12, 9, 56, 44, 6.
+    // Oracle: the same lines on the same 324 particles; LAMMPS prints 50, 12, 9, 56, 44, 6.
     #[test]
     fn counts_are_lammps_counts() {
         let mut w = bar();

@@ -48,7 +48,7 @@ impl CommandStyle for MaterialStyle {
     }
 }
 
-/// Reads `key value …` over what a file said.
+/// Reads `key value …` over the values of a file.
 fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
     let mut missing = if base.is_some() { vec![] } else { vec!["E", "nu", "rho"] };
     let mut m = base.unwrap_or_else(|| blank(id));
@@ -100,7 +100,7 @@ fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
     }
 }
 
-/// A material about which nothing has been said; its numbers are harmless.
+/// A material without given properties; its numbers are harmless.
 fn blank(id: &str) -> Material {
     Material {
         name: id.to_owned(),

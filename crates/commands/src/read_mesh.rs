@@ -56,7 +56,7 @@ impl Style for ReadMesh {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     making: Making,

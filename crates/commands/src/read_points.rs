@@ -45,14 +45,14 @@ impl Style for ReadPoints {
     }
 }
 
-/// Columns to be read with what they say, and the names of others.
+/// Columns to be read with their properties, and the names of others.
 type Found = (Vec<(usize, Property)>, Vec<String>);
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     making: Making,
-    /// Property and column, as said.
+    /// Property and column, as given.
     columns: Vec<(Word, Word, Property)>,
     volume: Option<f64>,
     diameter: Option<f64>,
@@ -116,7 +116,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The columns to be read with what they say, and the names of others.
+    /// The columns to be read with their properties, and the names of others.
     fn wanted(&self, cx: &ActCx, names: &[String], head: Span) -> Result<Found> {
         let (mut wanted, mut others): (Vec<(usize, Property)>, Vec<String>) = (vec![], vec![]);
         for (name, column, p) in &self.columns {
@@ -190,7 +190,7 @@ impl Body for Reading {
 
     fn settles(&self) -> Vec<&'static str> {
         let mut settles = self.making.settles();
-        // A column may hold it: who reads the file knows.
+        // A column may hold it; this is known once the file is read.
         settles.extend(["density", "mass"]);
         settles
     }

@@ -51,7 +51,7 @@ impl Style for ReadVoxels {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     making: Making,
@@ -257,7 +257,7 @@ impl Reading {
         }
     }
 
-    /// Says how the volume of each material has come through.
+    /// Logs the volume of each material in the image and in the particles made.
     fn compare(&self, cx: &mut ActCx, grid: &Grid, [image, made]: [&[f64]; 2]) {
         for (k, kind) in grid.types.iter().enumerate() {
             let (before, after) = (image[k + 1], made[k + 1]);

@@ -80,7 +80,7 @@ impl Style for RegionCommand {
     }
 }
 
-/// What the keywords after the shape say.
+/// The keywords after the shape.
 struct Options {
     outside: bool,
     lattice: bool,
@@ -202,7 +202,7 @@ fn keywords(style: &Word) -> &'static [&'static str] {
     if style.text == "mesh" { &MESH_KEYWORDS } else { &KEYWORDS }
 }
 
-/// What `units` says further on: it counts for a `rotate` before it too.
+/// The value of a later `units`: it counts for a `rotate` before it too.
 fn units_of(mut a: Args) -> Result<bool> {
     while let Some(word) = a.next() {
         if word.text == "units" {

@@ -207,7 +207,7 @@ fn larger(old: &Domain, count: [i64; 3]) -> Domain {
     Domain { flat: old.flat, tilt, ..Domain::new(old.lo, hi, old.boundary) }
 }
 
-/// Says where the box is, as LAMMPS does.
+/// Logs where the box is, as LAMMPS does.
 pub fn say_box(cx: &mut ActCx) -> Result<()> {
     let domain = cx.world.domain()?;
     let line = format!("  {}", domain.told(domain.lo, domain.hi));

@@ -103,7 +103,7 @@ impl CommandStyle for RunStyleCommand {
     }
 }
 
-/// Puts a style in force; what another one has kept between steps is forgotten.
+/// Puts a style in force; what another one has kept between steps is dropped.
 fn put(w: &mut World, style: RunStyle) {
     if w.settings.run_style != style {
         w.settings.run_style = style;

@@ -90,7 +90,7 @@ impl Model {
         }
     }
 
-    /// Tells of contacts that bear much and cannot slip, and of an estimate where none holds.
+    /// Warns of contacts with high loads that cannot slip, and of an estimate where none holds.
     pub fn tell(&self, cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) {
         match &self.kind {
             Kind::Dsm { setup, solved: Some(r), .. } => warn_sticking(cx, &line.words, setup, r),
@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// Solves at the present stiffnesses of the bonds, from the latest field. What the strength was is forgotten.
+    /// Solves at the present stiffnesses of the bonds, from the latest field. The former strength is dropped.
     ///
     /// # Errors
     /// What the solvers refuse.

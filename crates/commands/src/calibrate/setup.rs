@@ -20,7 +20,7 @@ use perigrain_world::{GroupId, World};
 
 /// A body between held ends.
 pub struct Setup {
-    /// Who is at the ends.
+    /// The particles at the ends.
     pub ends: Ends,
     /// What is held.
     pub held: Held,
@@ -67,7 +67,7 @@ pub struct Response {
     pub steps: Option<usize>,
     /// To which part K is known by how fast the energy fell, if it did.
     pub open: f64,
-    /// To which part K is known for certain, if that was asked for.
+    /// The fraction to which K is certain, if requested.
     pub certain: Option<f64>,
     /// Particles with components that nothing resists.
     pub loose: usize,

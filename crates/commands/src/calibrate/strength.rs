@@ -178,7 +178,7 @@ fn write(name: &FilePath, scene: &Scene, tested: &Tested, path: &Path) -> Result
         for (k, it) in path.breaks.iter().enumerate() {
             let force = it.force(tested.delta);
             let strain = it.load * tested.delta / tested.length;
-            // What bonds that break together set free is told of the first one.
+            // The energy released by bonds that break together is booked for the first one.
             let mut released = it.released();
             for bond in &it.bonds {
                 let [a, b] = scene.bonds[*bond as usize].ids;

@@ -214,7 +214,7 @@ fn two_types_meet_two_targets() {
             near(did.numbers[10 + k], set, 1e-12);
         }
     }
-    // One target leaves a direction open, which is told.
+    // One target leaves a direction open; a note names it.
     let did = act(
         &mut w,
         "calibrate fit f all target K 1e6 vary bond 1 E vary bond 2 E tol 1e-6",
@@ -303,7 +303,7 @@ fn contacts_carry_load_beside_bonds() {
         Law::Hertz,
     );
     near(without.unwrap().numbers[0], bare.numbers[0], 1e-12);
-    // Contacts of another law are left out, which is told.
+    // Contacts of another law are left out, with a note.
     let hooke = act_with(&mut w, "calibrate dsm a all strain -0.02 tol 1e-6", Beams::standard(2), Law::Hooke)
         .unwrap();
     near(hooke.numbers[0], bare.numbers[0], 1e-12);

@@ -57,7 +57,7 @@ enum Add {
     Keep,
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Wish {
     fields: Vec<usize>,
     labels: BTreeMap<String, String>,
