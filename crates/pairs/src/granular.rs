@@ -126,7 +126,7 @@ const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each othe
     spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
     neither yielding nor (of new contacts) damping in the setup of a run.";
 
-/// Syntax and text of the page, with what normal models say of themselves.
+/// Syntax and text of the page, with the paragraphs of the normal models.
 static PAGE: LazyLock<[String; 2]> = LazyLock::new(|| {
     let line = |style: &&Normal| {
         [style.name].into_iter().chain(style.numbers.iter().map(|n| n.word)).collect::<Vec<_>>().join(" ")

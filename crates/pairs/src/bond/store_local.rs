@@ -35,7 +35,7 @@ const VALUES: [(&str, Value); 9] = [
     ("z/ref", Value::First(2)),
 ];
 
-/// What a bond style's line says of bonds that break.
+/// The words of a bond style's line about bonds that break.
 #[derive(Clone)]
 pub struct Store {
     id: String,
@@ -85,7 +85,7 @@ impl Store {
         if self.looks_back() { COLUMNS } else { Fields::NONE }
     }
 
-    /// Takes note of bonds that have broken, told by the places of their ends, that of the lower ID first.
+    /// Keeps broken bonds, given by the places of their ends, that of the lower ID first.
     pub fn keep(&self, w: &mut World, step: i64, broken: &[[usize; 2]]) {
         let p = &w.particles;
         // Read only where it is stated: see `reads`.

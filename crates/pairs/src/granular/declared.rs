@@ -45,7 +45,7 @@ pub struct Declared {
     /// The style; contact history is kept under its name.
     name: &'static str,
     cutoff: Option<f64>,
-    /// What all pairs of types get, where the style's own line says it all.
+    /// The coefficients of all pairs of types, if the style's own line gives them.
     all: Option<Coeff>,
     given: BTreeMap<(u16, u16), Coeff>,
     /// As a sub-style: the pairs of types it acts on.

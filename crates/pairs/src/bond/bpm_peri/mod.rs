@@ -93,7 +93,7 @@ fn refused<T>(span: Span, why: &str, instead: &str) -> Result<T> {
     Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help(instead.to_string()).into())
 }
 
-/// What a line says of bonds.
+/// The options of a line for bonds.
 #[derive(Clone, Copy, PartialEq)]
 struct Coeff {
     kind: LawKind,
