@@ -48,7 +48,7 @@ fn bring_along(
         }
     }
     let old: Vec<FixNode> = graph.fixes.extract_if(.., |f| f.style == BROUGHT).collect();
-    // A restart file says the line, and the deck says it again: what is kept then stands.
+    // A restart file repeats the line, and so does the deck: state kept then is valid.
     let again = |id: &str, fix: &dyn Fix| {
         let (restored, shape) = (w.parts.resume.is_some(), fix.shape());
         restored

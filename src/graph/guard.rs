@@ -1,4 +1,4 @@
-//! The guard over a run's energy: put into the plan with the steps it must look at.
+//! The guard over a run's energy: put into the plan with the steps it must check.
 
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result};

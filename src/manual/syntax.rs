@@ -1,4 +1,4 @@
-//! The syntax lines of the manual as something to be walked along: which word of them stands where the cursor is.
+//! The syntax lines of the manual, parsed: which word of a line stands at the cursor.
 
 /// A word of a syntax line, or something in brackets.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct Form {
     tail: Vec<Part>,
 }
 
-/// What a form says of the word at some place.
+/// A form's description of the word at some place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// What may stand here: words as they are, or placeholders such as `ID`, `FILE`, `yes|no`.
@@ -104,7 +104,7 @@ impl Form {
         fixed.filter(|(w, _)| w.split('|').all(is_word)).map(|(w, t)| if takes(w, t) { 1 } else { -1 }).sum()
     }
 
-    /// What it says of the word after those typed; the first of them is the command.
+    /// The description of the word after those typed; the first of them is the command.
     pub fn place(&self, typed: &[&str]) -> Place {
         let n = typed.len();
         let Some(parts) = self.along(typed) else { return self.choose(n) };
@@ -135,7 +135,7 @@ impl Form {
             .collect();
         let here = left.iter().map(|g| g[0].clone());
         let last = fixed.last().copied().unwrap_or_default();
-        // `attribute …`: the last word may be said again.
+        // `attribute …`: the last word may be repeated.
         let again = last.ends_with('…').then(|| last.to_string());
         let rest = [again.clone().unwrap_or_default(), optional(&left)].concat();
         let before = typed.last().map_or(String::new(), |w| (*w).to_string());

@@ -1,4 +1,4 @@
-//! What a log tells of a run, LAMMPS' or perigrain's.
+//! The content of a log, LAMMPS' or perigrain's.
 
 use super::{Ended, Weight};
 use crate::sweep::lammps;

@@ -191,7 +191,7 @@ pub fn zip(axes: &mut Vec<Axis>, names: &[String]) -> Result<()> {
 /// All combinations, the last axis fastest.
 ///
 /// # Errors
-/// A variable on two axes, more runs than anybody means.
+/// A variable on two axes, an implausible number of runs.
 pub fn combined(axes: &[Axis]) -> Result<Vec<Row>> {
     let names: Vec<&String> = axes.iter().flat_map(|axis| &axis.names).collect();
     if let Some(twice) = names.iter().enumerate().find(|(k, n)| names[..*k].contains(n)) {

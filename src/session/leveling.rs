@@ -1,11 +1,11 @@
-//! Steps of several lengths (`run_style respa`): what cannot act in them is refused, and levels without forces are told.
+//! Steps of several lengths (`run_style respa`): ops that cannot act in them are refused, and levels without forces get a note.
 
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Span};
 use perigrain_world::{Respa, RunStyle};
 
 impl Session {
-    /// The levels of steps that the deck wants.
+    /// The levels of steps that the deck has chosen.
     pub(super) fn respa(&self) -> Option<&Respa> {
         match &self.world.settings.run_style {
             RunStyle::Respa(r) => Some(r),

@@ -31,8 +31,8 @@ impl Session {
             if dt <= sure {
                 return Some((sure, dt));
             }
-            // The exact limit is asked for where the estimate is exceeded. A deck that is only looked at has no bodies to ask: what a whole
-            // lattice stands is said of it, so that no deck is warned about that a run finds right.
+            // The exact limit is computed where the estimate is exceeded. A deck that is only checked has no bodies: there the
+            // limit of a whole lattice is used, so that no deck gets a warning that a run would not give.
             let limit = styles[k].limit(&self.world).or(p.stable_step);
             Some((limit.unwrap_or(sure), dt))
         };
@@ -51,7 +51,7 @@ impl Session {
         );
     }
 
-    /// How many times as long the time step could be, as far as pair styles and walls can tell: nothing where bonds of a bond
+    /// How many times as long the time step could be by the estimates of pair styles and walls: `None` where bonds of a bond
     /// style, levels, short steps of solids or a fix decide.
     pub(super) fn room_for_step(&self) -> Option<f64> {
         let (w, g) = (&self.world, &self.graph);
@@ -67,7 +67,7 @@ impl Session {
         own.chain(walls).flatten().reduce(f64::min).map(|longest| longest / w.clock.dt)
     }
 
-    /// Which step is too long for bonds, where that is said, and what to say instead.
+    /// Which step is too long for bonds, the place where it is set, and what to write instead.
     fn step_remedy(&self, limit: f64, place: Span) -> (&'static str, Span, String) {
         let whole = self.world.clock.dt;
         match &self.world.settings.run_style {
@@ -100,19 +100,19 @@ impl Session {
         }
     }
 
-    /// A warning where the step is too long for particles that a bond style joins. The cheap bound is asked first: a step within it
-    /// needs no exact limit.
+    /// A warning where the step is too long for particles that a bond style joins. The cheap bound is computed first: a step
+    /// within it needs no exact limit.
     fn check_bonds(&self, span: Span, place: Span, found: &mut Diagnostics) {
         let Some(bond) = self.graph.bond.as_ref().filter(|_| !self.world.bonds.is_empty()) else { return };
         let (w, whole) = (&self.world, self.world.clock.dt);
-        // A run that goes on: bonds have become fewer, if anything.
+        // In a continued run the number of bonds can only have fallen.
         if self.ran && !w.parts.changed && self.checked_step == Some(whole) {
             return;
         }
         let integrated = self.graph.fixes.iter().filter(|f| f.fix.facts(w).integrates());
         let bits = integrated.fold(0, |bits, f| bits | f.group.bit());
         let moves = |i: usize| w.particles.mask[i] & bits != 0;
-        // What is wrong with bonds is said when the run is set up.
+        // Errors of bonds are reported when the run is set up.
         let Ok(Some(body)) = swinging(w, bond.force.as_ref(), moves, span) else { return };
         let steps = match &w.settings.run_style {
             RunStyle::Respa(r) => r.steps(r.bond),
@@ -157,7 +157,8 @@ impl Session {
         );
     }
 
-    /// A note where no line says how long the skin is, and that of the units has lists of grains hold many times the pairs that can touch.
+    /// A note where no line sets the skin, and the default of the units has lists of grains hold many times the pairs that can
+    /// touch.
     pub(super) fn check_skin(&self, span: Span, found: &mut Diagnostics) {
         let (near, p) = (&self.world.settings.neighbor, &self.world.particles);
         if near.said || !p.style.sphere || p.style.peri || p.len() < MANY || self.all_excluded() {
@@ -214,7 +215,7 @@ impl Session {
         }
     }
 
-    /// Tells once of grains that a run has pushed far into each other.
+    /// Warns once of grains that a run has pushed far into each other.
     pub(super) fn say_deep(&mut self, span: Span) -> Result<()> {
         let Some(deep) = self.world.parts.deep.as_mut().filter(|d| !d.told) else { return Ok(()) };
         deep.told = true;

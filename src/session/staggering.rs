@@ -1,4 +1,4 @@
-//! How the steps of a run are made; steps of two lengths: who moves in which, and whether the scene suits them.
+//! How the steps of a run are made; steps of two lengths: which particles move in which, and whether the scene suits them.
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -72,12 +72,12 @@ impl Session {
         Ok(Staggered::new(solids, ratio))
     }
 
-    /// The line that asked for steps of two lengths.
+    /// The line that chose steps of two lengths.
     pub(super) fn run_style_place(&self, span: Span) -> Span {
         self.graph.lines.latest("run_style").map_or(span, |n| n.span)
     }
 
-    /// Who moves in short steps.
+    /// The particles that move in short steps.
     fn solids(&self, twice: u32) -> Solids {
         let solids = self.graph.pair.as_ref().map_or(vec![], |node| node.pair.facts().solids);
         Solids { kinds: (1..=self.world.types as u16).map(|k| solids.contains(&k)).collect(), twice }

@@ -1,11 +1,11 @@
-//! `timer`: how much is said about time, and the limit of time for runs.
+//! `timer`: how much is printed about time, and the time limit for runs.
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Result};
 use perigrain_lang::{Args, Word};
 use std::time::{Duration, Instant};
 
-/// What `timer` has said.
+/// The settings of `timer`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timer {
     style: &'static str,
@@ -43,7 +43,7 @@ impl Session {
         (settings.deadline, settings.limit_every) = (Some(self.born + limit.time), 1);
     }
 
-    /// Tells that a limit of time has ended a run, and which files go on from there if the session was given the limit.
+    /// Reports that a time limit has ended a run, and which files continue from there if the session was given the limit.
     ///
     /// # Errors
     /// A log that cannot be written.

@@ -1,4 +1,4 @@
-//! One case: a deck whose first lines say what it shows, where the expected numbers come from, and how near they must be met.
+//! One case: a deck whose first lines state what it shows, where the expected numbers come from, and how near they must be met.
 //!
 //! Lines that begin with `#|` are together a TOML document; for the deck they are comments, so that a case runs by itself, too.
 

@@ -9,7 +9,7 @@ use crate::session::axes::Axis;
 use perigrain_base::diag::nearest;
 use std::path::PathBuf;
 
-/// What `perigrain bench` is asked for; nothing here has been acted upon.
+/// The parsed words of `perigrain bench`; none has been applied yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// The deck, its knobs, and what all sweeps have.
@@ -28,7 +28,7 @@ pub struct Request {
     pub typed: String,
 }
 
-/// What `-against` says.
+/// The value of `-against`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reference {
     /// The finest run, along these knobs.

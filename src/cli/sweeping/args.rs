@@ -13,7 +13,7 @@ pub enum List {
     Table(PathBuf),
 }
 
-/// What `perigrain sweep` is asked for; nothing here has been acted upon.
+/// The parsed words of `perigrain sweep`; none has been applied yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// The deck and LAMMPS' switches.
@@ -30,9 +30,9 @@ pub struct Request {
     pub out: Option<PathBuf>,
     /// How often a failed run is tried again.
     pub retry: usize,
-    /// An earlier sweep there is forgotten.
+    /// An earlier sweep there is discarded.
     pub anew: bool,
-    /// Only tell where the sweep stands.
+    /// Only print the state of the sweep.
     pub status: bool,
 }
 

@@ -11,7 +11,7 @@ use std::io::Write;
 pub struct Show<'a> {
     /// The runs.
     pub jobs: &'a [Job],
-    /// Say nothing.
+    /// Print nothing.
     pub quiet: bool,
     /// The line for all.
     pub tally: Tally,
