@@ -1,11 +1,11 @@
-//! What somebody at a terminal finds without knowing where to look: subcommands, pages, examples, words in the wrong place.
+//! What a user at a terminal finds without knowing where to look: subcommands, pages, examples, words in the wrong place.
 #![cfg(unix)]
 
 use super::pty::{PLAIN, shown, too_wide, width};
 use std::fs;
 use std::path::Path;
 
-/// What the program says to these words on a terminal of 80 columns, pages shown as they are.
+/// The output of the program for these words on a terminal of 80 columns, pages shown as they are.
 fn said(folder: &Path, args: &str) -> String {
     shown(folder, 80, "print a\n", args, &[("PAGER", "cat"), ("NO_COLOR", "1")]).replace('\r', "")
 }

@@ -1,4 +1,4 @@
-//! A quiet step asks for no memory: a run of many steps asks for as much as one of few.
+//! A quiet step allocates no memory: a run of many steps allocates as much as one of few.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::alloc::{GlobalAlloc, Layout, System};
