@@ -126,7 +126,7 @@ fn a_plan_writes_no_file_and_overwrites_none() {
     let told = out(&o);
     let plans = told.lines().filter(|l| l.trim() == "initial integrate").count();
     assert!(plans == 2 && told.contains("used once") && told.contains("used 3 times"), "{told}");
-    assert!(!told.contains("not shown") && !told.contains("what only a run can tell"), "{told}");
+    assert!(!told.contains("not shown") && !told.contains("what only a run determines"), "{told}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     assert_eq!(fs::read_to_string(folder.path().join("run.restart")).unwrap(), "old");
 }

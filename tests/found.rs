@@ -78,7 +78,7 @@ fn help_searches_names_and_texts() {
         ("help fix", "\n  fix nve/sphere "),
         ("help fix", "\n  fix wall/gran "),
         ("help wall", "# Pages named so: `wall`\n\n  fix wall/gran "),
-        ("help wall", "# Pages that speak of it: `wall`\n\n"),
+        ("help wall", "# Pages that contain it: `wall`\n\n"),
         ("help hertz/material", "\n  pair_style granular "),
         // Words that no page has beside each other.
         ("help crack speed", "\n  compute crack "),

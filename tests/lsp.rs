@@ -136,7 +136,7 @@ impl<W: Write, R: Read> Client<W, R> {
     fn end(mut self, server: JoinHandle<bool>) {
         assert_eq!(self.ask("shutdown", Value::Null), Value::Null);
         self.note("exit", Value::Null);
-        assert!(server.join().unwrap(), "the server ended otherwise than it was told to");
+        assert!(server.join().unwrap(), "the server did not end as requested");
     }
 }
 

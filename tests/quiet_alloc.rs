@@ -102,7 +102,7 @@ fn asked(session: &mut Session, steps: usize) -> usize {
 
 #[cfg_attr(
     debug_assertions,
-    ignore = "what debug builds check asks for memory: cargo test --release --test quiet_alloc"
+    ignore = "checks of debug builds allocate memory: cargo test --release --test quiet_alloc"
 )]
 #[test]
 fn a_quiet_step_asks_for_no_memory() {

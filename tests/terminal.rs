@@ -333,7 +333,7 @@ fn a_limit_of_time_leaves_a_restart_file() {
     let step: i64 = step.lines().next().unwrap().trim().parse().unwrap();
     let file = format!("in.deck.{step}.restart");
     assert!(
-        text.contains(&format!("  to go on from: {file}")) && text.contains(&format!("then {step}")),
+        text.contains(&format!("  to continue from: {file}")) && text.contains(&format!("then {step}")),
         "{text}"
     );
     assert!(text.contains("The limit of `-timeout` has passed: no further run"), "{text}");

@@ -129,7 +129,7 @@ fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_goes_on() {
         assert_eq!(ranks.len(), 3);
         signal("-9", ranks[victim]);
         let o = first.wait_with_output().unwrap();
-        let named = format!("rank 1 on {} has ended without a word; it was making run 2 (n=2)", host());
+        let named = format!("rank 1 on {} has ended without a message; it was making run 2 (n=2)", host());
         assert!(!o.status.success() && said(&o).contains(&named) == (victim > 0), "{}", said(&o));
         // The next sweep's logs are waited for, not these.
         for run in ["0001-n=1", "0002-n=2", "0003-n=3"] {

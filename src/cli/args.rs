@@ -204,7 +204,7 @@ pub const SWITCHES: &[Switch] = &[
         o.report = Some(v.one("a file")?.into());
         Ok(())
     }),
-    switch(&["-view"], "[PORT]", "show the run in a browser on this machine while it goes on", |o, v| {
+    switch(&["-view"], "[PORT]", "show the run in a browser on this machine while it runs", |o, v| {
         o.view = Some(v.port()?);
         Ok(())
     }),

@@ -160,7 +160,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
     super::ranks::refuse("each Python would run a scene of its own")?;
     let (o, decks) = super::args::parse_many(words)?;
     if !decks.is_empty() {
-        let usage = Usage::new("a deck on the command line is not worked off here");
+        let usage = Usage::new("a deck on the command line is not executed here");
         return Err(usage.help("leave it out, and hand it over with `file(PATH)`"));
     }
     let alone = [

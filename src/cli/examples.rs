@@ -106,7 +106,7 @@ fn list() -> String {
     for example in EXAMPLES {
         let _ = writeln!(text, "  {:<24} {}", example.name, example.title());
     }
-    text + "\n`perigrain examples show NAME` tells more, `perigrain examples copy NAME` writes its files here.\n"
+    text + "\n`perigrain examples show NAME` shows one, `perigrain examples copy NAME` writes its files here.\n"
 }
 
 impl Example {

@@ -74,7 +74,7 @@ fn found(words: &str, each: &[&str], all: &[Page]) -> Option<String> {
     let parts = [
         ("Pages named so", lines(&named)),
         ("How-tos", questions(&howtos)),
-        ("Pages that speak of it", lines(&telling)),
+        ("Pages that contain it", lines(&telling)),
     ];
     let text: Vec<String> = parts
         .iter()
@@ -110,7 +110,7 @@ mod tests {
             "{walls}"
         );
         assert!(page("fix").unwrap().contains("\n  fix wall/gran "));
-        assert!(page("Wiggle").unwrap().starts_with("# Pages that speak of it: `wiggle`"));
+        assert!(page("Wiggle").unwrap().starts_with("# Pages that contain it: `wiggle`"));
         assert!(page("fix nvee").unwrap_err().help.unwrap().contains("`fix nve`"));
     }
 

@@ -19,7 +19,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
             "one fix dt/guard watches the whole scene",
         )
         .label(node.span, "the other one")
-        .help(format!("say `unfix {}` first", other.id))
+        .help(format!("use `unfix {}` first", other.id))
         .into());
     }
     let late = |stage: Stage| matches!(stage, Stage::EndOfStep | Stage::Output);

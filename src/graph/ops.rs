@@ -292,7 +292,7 @@ fn too_far(w: &World, lost: &[usize], t: &Tick) -> perigrain_base::diag::Diagnos
         ),
     )
     .help("enlarge the box, or let it follow the particles with `boundary s s s` or `m`")
-    .help("`thermo_modify lost warn` or `ignore` deletes such particles and goes on")
+    .help("`thermo_modify lost warn` or `ignore` deletes such particles and continues")
     .into()
 }
 

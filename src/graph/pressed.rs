@@ -92,7 +92,7 @@ impl Look {
                 "beyond 2/ω, ω the largest frequency of grains on their contacts with each other and with walls (less where dashpots \
                  act), they swing ever farther until contacts open: such a run may end well, and is wrong",
             )
-            .help(format!("say `timestep {say:.1e}` or less, or take softer grains"))
+            .help(format!("use `timestep {say:.1e}` or less, or take softer grains"))
             .help("`fix ID all dt/critical 100 0.8` lets the step follow")
     }
 }

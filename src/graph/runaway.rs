@@ -252,16 +252,16 @@ impl Look {
         };
         let d = match self.scales.step {
             Some(limit) if dt > limit => d.help(format!(
-                "the time step {dt:.3e} is {:.2} times the longest that is stable, about {limit:.2e}: say `timestep {:.1e}` or \
+                "the time step {dt:.3e} is {:.2} times the longest that is stable, about {limit:.2e}: use `timestep {:.1e}` or \
                  less",
                 dt / limit,
                 0.8 * limit
             )),
             _ => d
-                .help(format!("take a shorter time step than {dt:.3e}: `compute dt/critical` tells the longest stable one"))
+                .help(format!("take a shorter time step than {dt:.3e}: `compute dt/critical` computes the longest stable one"))
                 .help("`fix dt/guard` goes back where energy was made, and on in shorter steps"),
         };
-        d.help("`thermo_modify energy ignore` lets such runs go on")
+        d.help("`thermo_modify energy ignore` lets such runs continue")
     }
 }
 

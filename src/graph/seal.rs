@@ -103,9 +103,9 @@ impl<'a> Sealer<'a> {
         let out: [(bool, &str, &str); 5] = [
             (!p.style.sphere, "rotation and torque", "no particle has a radius"),
             (self.graph.pair.is_none(), "pair forces", "no pair_style"),
-            (self.plan.energy.is_empty(), "energy tally", "nobody reads the potential energy"),
-            (self.plan.virial.is_empty(), "virial tally", "nobody reads the pressure"),
-            (self.plan.atom_energy.is_empty(), "per-particle energies", "nobody reads them"),
+            (self.plan.energy.is_empty(), "energy tally", "nothing reads the potential energy"),
+            (self.plan.virial.is_empty(), "virial tally", "nothing reads the pressure"),
+            (self.plan.atom_energy.is_empty(), "per-particle energies", "nothing reads them"),
         ];
         for (missing, what, why) in out {
             if missing {

@@ -163,7 +163,7 @@ impl Thermo {
         }
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let text =
-            format!("this thermo_style forgets what thermo_modify has set before: {}", words.join(", "));
+            format!("this thermo_style resets what thermo_modify has set before: {}", words.join(", "));
         let note = Diagnostic::note(Code::SUSPICIOUS, *span, text);
         Some(note.help("put the thermo_modify line behind it"))
     }
@@ -230,7 +230,7 @@ impl Thermo {
                     } else {
                         args.next();
                     }
-                    no_effect(cx, word, "without effect: every warning is said once here");
+                    no_effect(cx, word, "without effect: every warning is printed once here");
                 }
                 "triclinic/general" if args.flag("triclinic/general")? => {
                     let text = "there are no general triclinic boxes in perigrain";

@@ -256,7 +256,7 @@ mod tests {
         assert_eq!(say(combined(&axes).unwrap()), "a=1 c=7 b=x, a=1 c=7 b=y, a=2 c=8 b=x, a=2 c=8 b=y");
         assert!(combined(&[each("a", "1"), each("a", "2")]).is_err());
         assert!(zip(&mut vec![each("a", "1 2"), each("b", "1")], &["a".into(), "b".into()]).is_err());
-        assert!(zip(&mut axes, &["nobody".into()]).is_err());
+        assert!(zip(&mut axes, &["missing".into()]).is_err());
         assert!(combined(&[each("a", "1..2000"), each("b", "1..2000")]).is_err());
     }
 

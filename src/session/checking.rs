@@ -177,8 +177,8 @@ impl Session {
                         momentum is not conserved, and grains meet bodies that hardly move";
             found.push(
                 Diagnostic::warning(Code::UNITS_OF_FORCE, span, text)
-                    .help("say `peri_modify force newton` (implied by `material` coefficients): forces become newtons, masses ρV")
-                    .help("or scale by hand as in LAMMPS: multiply c by the particle volume V and `set … mass` to ρV"),
+                    .help("use `peri_modify force newton` (implied by `material` coefficients): forces become newtons, masses ρV")
+                    .help("or scale the numbers as in LAMMPS: multiply c by the particle volume V and `set … mass` to ρV"),
             );
         }
     }

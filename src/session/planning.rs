@@ -66,7 +66,7 @@ impl Plans {
             out += "no run, no plan\n\n";
         }
         if !self.open.is_empty() {
-            out += "what only a run can tell\n";
+            out += "what only a run determines\n";
         }
         let mut open: Vec<String> =
             self.open.iter().map(|(span, why)| format!("  {:<34} {why}\n", line(*span))).collect();
@@ -208,7 +208,7 @@ mod tests {
         plans.leave_open(at(2), "why else");
         plans.leave_open(Span::new(file, 13, 14), "why");
         let wanted = "run at in.d:1, in.d:2 (2 times), used 3 times\na\n\nrun at in.d:3, used once\nb\n\n\
-                      what only a run can tell\n  in.d:3                             why";
+                      what only a run determines\n  in.d:3                             why";
         assert_eq!(plans.text(&sources), wanted);
     }
 }

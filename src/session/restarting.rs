@@ -273,12 +273,12 @@ impl Session {
             self.world.columns.remove(key);
         }
         let text = format!(
-            "the restart file holds state of {}, which nobody claims: it is forgotten",
+            "the restart file holds state of {}, which no fix or compute has claimed: it is dropped",
             state.join(", ")
         );
         let note = Diagnostic::note(Code::SUSPICIOUS, span, text);
         self.note_once(
-            note.help("declare a fix of the same style and ID before the run to go on with its state"),
+            note.help("declare a fix of the same style and ID before the run to continue with its state"),
         );
     }
 }

@@ -74,8 +74,8 @@ impl Session {
             RunStyle::Staggered { ratio: Some(m), rare, .. } if *m > 1 => {
                 let rare = *rare;
                 let remedy = match rare {
-                    false => format!("say `m {}` or more", (whole / (0.8 * limit)).ceil()),
-                    true => format!("say `m {}` or less", (0.8 * limit / whole).floor().max(1.0)),
+                    false => format!("use `m {}` or more", (whole / (0.8 * limit)).ceil()),
+                    true => format!("use `m {}` or less", (0.8 * limit / whole).floor().max(1.0)),
                 };
                 (if rare { "the rare step" } else { "the short step" }, self.run_style_place(place), remedy)
             }
@@ -83,7 +83,7 @@ impl Session {
                 let remedy = format!("let a step of their level be {:.1e} or less", 0.8 * limit);
                 ("the step of their level", self.run_style_place(place), remedy)
             }
-            _ => ("the time step", place, format!("say `timestep {:.1e}` or less", 0.8 * limit)),
+            _ => ("the time step", place, format!("use `timestep {:.1e}` or less", 0.8 * limit)),
         }
     }
 
@@ -125,7 +125,7 @@ impl Session {
         let Some(limit) = body.limit().filter(|limit| dt > *limit) else { return };
         let whose = if steps > 1 { "the time step of their level" } else { "the time step" };
         let text = format!("{whose} {dt:e} is longer than bonds allow: {limit:.3e}");
-        let remedy = format!("say `timestep {:.1e}` or less", 0.8 * limit * steps as f64);
+        let remedy = format!("use `timestep {:.1e}` or less", 0.8 * limit * steps as f64);
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
                 .help("beyond 2/ω, ω the largest frequency of the bonded particles as they stand, they fly apart within some tens of steps")
@@ -153,7 +153,7 @@ impl Session {
         );
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
-                .help(format!("say `timestep {:.1e}` or less, or take softer grains", 0.05 * contact)),
+                .help(format!("use `timestep {:.1e}` or less, or take softer grains", 0.05 * contact)),
         );
     }
 
@@ -169,13 +169,13 @@ impl Session {
             return;
         }
         let text = format!(
-            "neighbour lists reach {:e} farther than touching, {:.1} times the largest grain: no line says how far, and that is the default of units {}",
+            "neighbour lists reach {:e} farther than touching, {:.1} times the largest grain: no `neighbor` line sets the skin, and that is the default of units {}",
             near.skin,
             near.skin / widest,
             self.world.settings.units.name()
         );
         let remedy = format!(
-            "say `neighbor {:.1e} bin`: lists hold the pairs that may touch soon, and steps are many times as fast",
+            "use `neighbor {:.1e} bin`: lists hold the pairs that may touch soon, and steps are many times as fast",
             0.25 * widest
         );
         found.push(Diagnostic::note(Code::SUSPICIOUS, span, text).help(remedy));
@@ -206,7 +206,7 @@ impl Session {
         let room = self.room_for_step().filter(|room| *room < 0.5);
         match room.map(|room| room * self.world.clock.dt) {
             Some(step) => format!(
-                "say `timestep {step:.1e}` or less first: the step is longer than a tenth of a contact, and grains go that deep before it \
+                "use `timestep {step:.1e}` or less first: the step is longer than a tenth of a contact, and grains go that deep before it \
                  pushes them back"
             ),
             None => "look for particles that were created inside each other, or take stiffer grains and a shorter step: contacts last as \

@@ -51,7 +51,7 @@ impl Session {
                 place,
                 format!("steps of two lengths need grains and peridynamic solids, and here {text}"),
             )
-            .help("say `run_style verlet`")
+            .help("use `run_style verlet`")
             .into());
         }
         self.refuse_movers(&solid)?;
@@ -64,7 +64,7 @@ impl Session {
                     return refuse(
                         Code::INCOMPLETE,
                         place,
-                        "`m auto` finds no stable step of the peridynamic solids: say `m N`",
+                        "`m auto` finds no stable step of the peridynamic solids: use `m N`",
                     );
                 }
             },
@@ -110,7 +110,7 @@ impl Session {
                 let text =
                     format!("fix {} cannot act on peridynamic particles in steps of two lengths", f.style);
                 Err(Diagnostic::error(Code::CONFLICT, f.span, text)
-                    .help("move them by `fix nve` and hold parts of them with `fix setforce`, or say `run_style verlet`")
+                    .help("move them by `fix nve` and hold parts of them with `fix setforce`, or use `run_style verlet`")
                     .into())
             }
         }

@@ -55,7 +55,7 @@ impl Session {
         if names.is_empty() {
             names.push(limit.restart.replacen('*', &step.to_string(), 1));
         }
-        log.line(&format!("  to go on from: {}", names.join(" or ")))
+        log.line(&format!("  to continue from: {}", names.join(" or ")))
     }
 
     /// The `timer` command.
@@ -75,7 +75,9 @@ impl Session {
                     timer.limit = limit(args.expect("a time such as 2:00:00, or off")?)?;
                     restart = true;
                 }
-                Some(&"every") => every = args.integer_from(1, "the steps between two looks at the clock")?,
+                Some(&"every") => {
+                    every = args.integer_from(1, "the steps between two readings of the clock")?
+                }
                 Some(style) => timer.style = style,
                 None => return Err(args.unknown(word, &KNOWN)),
             }

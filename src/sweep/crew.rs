@@ -158,7 +158,7 @@ impl Crew {
 
     fn lost(&self, ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostics {
         let making = self.making(rank, sweep);
-        let text = format!("{} has ended without a word; it was making {making}", ranks.name(rank));
+        let text = format!("{} has ended without a message; it was making {making}", ranks.name(rank));
         let d = Diagnostic::error(Code::OTHER_SWEEP, None, text);
         d.help("what is done is kept: run the same command again, on any number of ranks, to make the rest")
             .into()

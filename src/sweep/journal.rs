@@ -213,7 +213,7 @@ impl Journal {
         let written = self.file.write_all(seal(fields).as_bytes()).and_then(|()| self.file.sync_data());
         written.map_err(|e| {
             let d = trouble("write", &self.path, &e);
-            d.help("runs that are done are kept: the same command goes on when the journal can be written")
+            d.help("runs that are done are kept: the same command continues when the journal can be written")
                 .into()
         })
     }
@@ -274,7 +274,7 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Read> {
     }
     for line in damaged {
         let text =
-            format!("`{}`, line {line}, is damaged: a run that it told of is made anew", path.display());
+            format!("`{}`, line {line}, is damaged: a run that it recorded is made anew", path.display());
         out.notes.push(Diagnostic::warning(Code::BAD_FILE, None, text));
     }
     if out.head.is_none() && bytes.contains(&b'\n') {

@@ -453,8 +453,8 @@ impl<'a> Work<'a> {
 
 /// The sweep in the folder is not the requested one.
 fn other(sweep: &Sweep, what: String) -> Diagnostics {
-    let text = format!("the sweep in `{}` cannot go on: {what}", sweep.folder.display());
+    let text = format!("the sweep in `{}` cannot continue: {what}", sweep.folder.display());
     Diagnostic::error(Code::OTHER_SWEEP, None, text)
-        .help("`-anew` begins it anew and forgets its runs; `-out DIR` puts this one elsewhere")
+        .help("`-anew` begins it anew and discards its runs; `-out DIR` puts this one elsewhere")
         .into()
 }

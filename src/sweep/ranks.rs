@@ -108,7 +108,11 @@ impl Ranks {
 
     /// What follows on any other rank from the end of the first one.
     pub fn orphaned(&self) -> u8 {
-        eprintln!("error: {}: rank 0 on {} has ended without a word", self.name(self.own()), self.hosts[0]);
+        eprintln!(
+            "error: {}: rank 0 on {} has ended without a message",
+            self.name(self.own()),
+            self.hosts[0]
+        );
         1
     }
 }

@@ -109,7 +109,7 @@ pub fn main() -> bool {
     let mut text = String::new();
     let task = std::io::stdin().read_to_string(&mut text).ok().and_then(|_| Task::read(&text));
     let Some(task) = task else {
-        eprintln!("error: `{WORD}` is for `perigrain sweep`, which says what to run");
+        eprintln!("error: `{WORD}` is for `perigrain sweep`, which sends it the run to make");
         return false;
     };
     let lock = File::open(&task.lock);

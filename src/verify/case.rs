@@ -170,7 +170,7 @@ impl Case {
         let what = &check.what;
         let reasons = check.known.as_ref().map_or("given", |known| &known.reason);
         if check.why.trim().is_empty() || reasons.trim().is_empty() {
-            return Some(format!("`{what}` says no reason"));
+            return Some(format!("`{what}` gives no reason"));
         }
         let is_range = matches!(check.expected, Some(Expected::Range(_)));
         if is_range != (check.tolerance == 0.0) {

@@ -109,7 +109,7 @@ fn what_a_killed_run_leaves_is_whole_and_goes_on() {
         }
     }
     println!(
-        "{kills} kills within {time} ms: {files} restart files, all whole; {resumed} runs went on to the same bits, {early} had none yet"
+        "{kills} kills within {time} ms: {files} restart files, all whole; {resumed} runs continued to the same bits, {early} had none yet"
     );
     assert!(early < kills, "every run was killed before its first restart file");
 }

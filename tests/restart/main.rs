@@ -218,6 +218,6 @@ fn state_that_nobody_claims_is_forgotten_with_a_note() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{PILE}{PILE_AGAIN}run 10\nwrite_restart DIR/a"), false);
     let (world, said) = run(folder.path(), "read_restart DIR/a\nfix 9 all nve/sphere\nrun 1", false);
-    assert!(said.contains("holds state of move/3, which nobody claims"), "{said}");
+    assert!(said.contains("holds state of move/3, which no fix or compute has claimed"), "{said}");
     assert!(world.memo.is_empty() && world.columns.names().is_empty());
 }

@@ -271,7 +271,7 @@ fn words_of_lammps_lead_on() {
 #[test]
 fn notes_name_the_year() {
     let said = |compat: &str| text(&run("hertz_history_wall.in", &["-compat", compat]));
-    let fault = "springs of walls with history that hang on the contact radius";
+    let fault = "springs of walls with history that depend on the contact radius";
     let old = said("lammps/2025");
     assert!(old.contains(&format!("note[PG0301]: compat lammps/2025: {fault}")), "{old}");
     for newest in ["lammps", "lammps/2026"] {

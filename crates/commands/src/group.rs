@@ -32,7 +32,7 @@ impl Style for Group {
             text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the \
                    particles named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. `variable` takes \
                    those for which the atom-style variable is not zero. `subtract` takes members of the first group that \
-                   are in none of the others. At most 32 groups, `all` among them. `molecule` asks for molecule IDs as `id` \
+                   are in none of the others. At most 32 groups, `all` among them. `molecule` selects molecule IDs as `id` \
                    for ids; `include molecule` takes all molecules of which some particle is in the group already.\n\n\
                    `dynamic` chooses the members anew at the start of each run and at every step that is a multiple of N \
                    (default 1): those of PARENT that are inside the region and for which the atom-style variable is not \

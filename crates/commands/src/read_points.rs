@@ -34,7 +34,7 @@ impl Style for ReadPoints {
                    `columns` takes a column of another name for a property: `columns x X_mm volume \"cell volume\"`, and then it must be there. Columns of \
                    other names are left out, and the log names them.\n\n\
                    What has no column comes from the line: `type`, `volume`, `diameter`, `density`, alike for all. Peridynamic particles need a volume, \
-                   spheres a diameter, a radius or a volume (that of the ball); mass follows from the density as with `set`. Without `id` ids go on \
+                   spheres a diameter, a radius or a volume (that of the ball); mass follows from the density as with `set`. Without `id` ids continue \
                    behind the largest one.\n\n\
                    Lengths are multiplied by `scale`, volumes by its third power, then places, velocities and angular velocities are turned, then places shifted; \
                    speeds stay. Only particles inside of the box are made; a warning counts the others. Refused with line and column: two \
@@ -122,7 +122,7 @@ impl Reading {
         for (name, column, p) in &self.columns {
             let Some(k) = names.iter().position(|n| *n == column.text) else {
                 let d = no_column(names, head, &name.text, &column.text);
-                return Err(d.label(column.span, "asked for here").into());
+                return Err(d.label(column.span, "requested here").into());
             };
             wanted.push((k, p.clone()));
         }

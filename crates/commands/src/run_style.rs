@@ -152,7 +152,7 @@ fn staggered(a: &mut Args, cx: &BuildCx) -> Result<RunStyle> {
         return fail(
             Code::MISSING_ARGUMENT,
             a.name_span(),
-            "with `faster grains` say how rarely bonds act: `m N`",
+            "with `faster grains` give the interval of bonds: `m N`",
         );
     }
     if rare && twice.is_some() {

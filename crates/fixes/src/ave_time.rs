@@ -34,7 +34,7 @@ impl Style for AveTime {
                    `start N`: no sample before step N. `off k`: the k-th value is not averaged, its latest sample counts. \
                    `file name` and `append name`: where averages go; `overwrite`: only the latest stays there (needs \
                    `ave running`). `format %g`: of each number. `title1 title2 title3`: the lines at the head of the file \
-                   (the third in mode vector only). Where the elements of a compute have names, as those of energy/ledger, a line more tells them \
+                   (the third in mode vector only). Where the elements of a compute have names, as those of energy/ledger, one more line lists them \
                    (`# columns: step c_e[kinetic] …`, `# rows: …`), not with `compat lammps`.\n\n\
                    Scalar where there is one value and vector where there are several in mode scalar; vector for one, array \
                    with a column per value for several in mode vector. 0 before the first average. Where \

@@ -401,7 +401,7 @@ mod tests {
             log.line("x").unwrap();
             let problem = log.flush().unwrap_err().to_string();
             assert!(problem.contains("/dev/full"), "{problem}");
-            log.line("goes on").unwrap();
+            log.line("continues").unwrap();
             log.flush().unwrap();
         }
     }

@@ -104,7 +104,7 @@ impl Movie {
             To::Program(..) => {
                 let text = format!("ffmpeg ended before `{}` was whole: {e}", self.path.display());
                 Diagnostic::error(Code::NO_FILE, None, text)
-                    .help("what it said stands above; an ending such as `.mp4` or `.gif` tells it the format")
+                    .help("its output stands above; an ending such as `.mp4` or `.gif` selects the format")
                     .into()
             }
         })

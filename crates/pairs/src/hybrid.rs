@@ -90,7 +90,9 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
         if let Some(first) = subs.iter().map(|s| s.facts().name).find(|name| solid(name) && solid(sub)) {
             let text = format!("`{sub}` beside `{first}`: one scene has one peridynamic style");
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, text)
-                .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
+                .help(
+                    "coefficients may differ for every pair of types; LAMMPS crashes here without a message",
+                )
                 .into());
         }
         let mut own = args.until(|word| known.contains(&plain(word)));

@@ -195,7 +195,7 @@ impl<'a> FusedPass<'a> {
 
     /// Once all particles are ready, puts the result of each op into `came`, as [`fuse`] does.
     pub fn finish(self, w: &World, came: &mut Vec<BlockSums>) {
-        debug_assert!(self.waiting.left.iter().all(|n| *n == 0), "somebody waits for forces still");
+        debug_assert!(self.waiting.left.iter().all(|n| *n == 0), "particles still wait for forces");
         let all = par::along_tree(&self.waiting.came, join).unwrap_or_default();
         came.clear();
         came.extend_from_slice(&all[..self.acts.len()]);

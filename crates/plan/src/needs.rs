@@ -264,7 +264,7 @@ mod tests {
         let stated = needs.named();
         let account = Account { stated, touched: [X | F, Fields::NONE], ..Account::default() };
         assert_eq!(account.idle(), [V, F]);
-        assert_eq!(Needs::all().named(), [Fields::NONE; 2], "who takes everything says nothing by name");
+        assert_eq!(Needs::all().named(), [Fields::NONE; 2], "a statement of everything names no fields");
         assert_eq!(needs.to_string(), "reads x v; adds to f");
         assert_eq!(Needs::new().write(Fields::ALL).keep(V).to_string(), "writes everything; keeps v");
     }

@@ -345,7 +345,7 @@ impl BuildCx<'_> {
         };
         if hi == Shape::OPEN {
             return wrong(format!(
-                "how many values `{head}` has is only known in a run: say up to which, as `[1*4]`"
+                "how many values `{head}` has is only known in a run: give the last one, as `[1*4]`"
             ));
         }
         // A single column is named without an index, and a value without columns is the reader's error to report.
@@ -405,7 +405,7 @@ fn check_columns(r: &ValueRef, what: &str, columns: usize, values: &str, one: &s
         (0, _) => wrong(format!("{what} `{name}` has no {values}")),
         (1, []) => Ok(()),
         (1, [_]) => wrong(format!("{what} `{name}` has one {one}: write it without an index")),
-        (c, []) => wrong(format!("{what} `{name}` has {c} columns: say which, as `[1]`")),
+        (c, []) => wrong(format!("{what} `{name}` has {c} columns: choose one, as `[1]`")),
         (c, [k]) if *k >= 1 && *k <= c => Ok(()),
         (c, _) => wrong(format!("{what} `{name}` has columns 1 to {c}")),
     }
@@ -418,7 +418,7 @@ fn check_vector(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
     match r.index.as_slice() {
         [] if shape.vector > 0 => Ok(()),
         [] if shape.array > 0 => {
-            wrong(format!("{what} `{name}` has an array of {} columns: say which, as `[1]`", shape.array))
+            wrong(format!("{what} `{name}` has an array of {} columns: choose one, as `[1]`", shape.array))
         }
         [] => wrong(format!("{what} `{name}` has no global vector")),
         [k] if *k >= 1 && *k <= shape.array => Ok(()),
@@ -439,11 +439,11 @@ fn check_number(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
     match r.index.as_slice() {
         [] if shape.scalar => Ok(()),
         [] if shape.vector > 0 && shape.vector < Shape::OPEN => wrong(format!(
-            "{what} `{name}` has no single value here: say which of {}, as `[1]`",
+            "{what} `{name}` has no single value here: choose one of {}, as `[1]`",
             shape.vector
         )),
         [] if shape.array > 0 => {
-            wrong(format!("{what} `{name}` has no single value here: say row and column, as `[1][1]`"))
+            wrong(format!("{what} `{name}` has no single value here: give row and column, as `[1][1]`"))
         }
         [] => wrong(format!("{what} `{name}` has no single value here")),
         [k] if *k >= 1 && *k <= shape.vector => Ok(()),
@@ -459,7 +459,7 @@ fn check_number(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
             wrong(format!("the array of {what} `{name}` has columns 1 to {}", shape.array))
         }
         [_] if shape.array > 0 => {
-            wrong(format!("{what} `{name}` has an array: say row and column, as `[1][1]`"))
+            wrong(format!("{what} `{name}` has an array: give row and column, as `[1][1]`"))
         }
         [_, _] => wrong(format!("{what} `{name}` has no global array")),
         _ => wrong(format!("{what} `{name}` has no global vector")),

@@ -177,7 +177,7 @@ pub fn no_option(args: &mut Args) -> Result<()> {
         "press" => "this fix uses no pressure",
         "bodyforces" => "this fix moves no rigid bodies",
         "respa" => {
-            "this fix has no level of steps to choose: its page and that of run_style tell in which it acts"
+            "this fix has no level of steps to choose: its page and that of run_style state in which it acts"
         }
         _ => {
             let text = format!("this fix has no option `{}`", w.text);

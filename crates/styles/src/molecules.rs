@@ -191,7 +191,7 @@ impl Words {
             return match &self.rigid {
                 Some(word) => {
                     let d = Diagnostic::error(Code::INCOMPLETE, word.span, "`rigid` is for molecules");
-                    Err(d.help("say with `mol TEMPLATE` which").into())
+                    Err(d.help("choose one with `mol TEMPLATE`").into())
                 }
                 None if kind == 0 => {
                     let types = cx.world.types;

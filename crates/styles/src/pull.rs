@@ -71,7 +71,7 @@ pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<
             let text =
                 format!("an end of the bond between particles {} and {} is gone", bond.ends[0], bond.ends[1]);
             return Err(Diagnostic::error(Code::LOST, span, text)
-                .help("`delete_atoms … bond yes` takes bonds of deleted particles along; `thermo_modify lost/bond ignore` goes on without their forces")
+                .help("`delete_atoms … bond yes` takes bonds of deleted particles along; `thermo_modify lost/bond ignore` continues without their forces")
                 .into());
         };
         list.push((k, Found { kind: bond.kind as u16, ends: [a, b] }));

@@ -99,10 +99,7 @@ impl Columns {
     /// Debug builds panic where no rule defines what becomes of a column of this name when particles are moved.
     pub fn vector(&mut self, key: Vectors, n: usize) -> &mut Vec<[f64; 3]> {
         self.vectors.get_or(key, || {
-            debug_assert!(
-                under(key.text()).is_some(),
-                "columns::UNDER does not say what a turn does to `{key}`"
-            );
+            debug_assert!(under(key.text()).is_some(), "columns::UNDER has no rule for a turn of `{key}`");
             vec![[0.0; 3]; n]
         })
     }

@@ -90,7 +90,7 @@ impl Material {
                 return Err(Diagnostic::error(
                     Code::CONFLICT,
                     at(s.span()),
-                    "Gc and s00 both say when a bond breaks",
+                    "Gc and s00 both set when a bond breaks",
                 )
                 .help("keep one of them")
                 .into());

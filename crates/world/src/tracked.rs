@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn what_is_looked_at_is_marked_and_lengths_are_free() {
         let mut x = Tracked::new(vec![1.0, 2.0]);
-        assert_eq!(x.take_marks(), (false, true), "who puts a new one there has written");
+        assert_eq!(x.take_marks(), (false, true), "a new value counts as written");
         assert_eq!((x.len(), x.past()[0], x.take_marks()), (2, 1.0, (false, false)));
         assert_eq!((x[1], x.take_marks()), (2.0, (true, false)));
         x[0] = 3.0;

@@ -85,7 +85,7 @@ impl Request {
             );
         }
         if rest.iter().any(|w| w == "-report") {
-            return Err(Usage::new("a bench reports what it measures").help("say `-measure WORD…`"));
+            return Err(Usage::new("a bench reports what it measures").help("use `-measure WORD…`"));
         }
         request.sweep = Sweep::parse(rest)?;
         request.check()?;
@@ -126,7 +126,7 @@ impl Request {
         }
         if self.measures.is_empty() {
             return Err(Usage::new("a bench needs something to measure")
-                .help("say `-measure WORD…`, as `-measure pe c_ID v_name`"));
+                .help("use `-measure WORD…`, as `-measure pe c_ID v_name`"));
         }
         if let Reference::Forms(forms) = &self.against
             && forms.len() != self.measures.len()

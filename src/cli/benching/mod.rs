@@ -110,7 +110,7 @@ fn leave_out(request: &Request, bench: &mut Bench) -> std::result::Result<bool, 
         let word = format!("{name} ");
         let place = request.typed.find(&format!(" -each {word}")).map(|at| at + " -each ".len());
         d.span = place.map(|at| Span::new(typed, at, at + name.len()));
-        d.help.push("this knob is left out, the others go on".into());
+        d.help.push("this knob is left out, the others stay".into());
     }
     deck::print(&ahead.problems, &ahead.sources);
     for axis in &mut bench.axes {

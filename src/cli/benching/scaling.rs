@@ -122,7 +122,7 @@ fn run(kind: &Kind, repeat: usize, switches: &[&str]) -> Result<Run, Usage> {
     let once = || {
         let (said, memory) = said(switches, Some(kind.deck))?;
         read(&said, memory)
-            .ok_or_else(|| Usage::new(format!("a run of `{}` does not tell its time", kind.name)))
+            .ok_or_else(|| Usage::new(format!("a run of `{}` does not report its time", kind.name)))
     };
     let runs: Result<Vec<Run>, Usage> = (0..repeat).map(|_| once()).collect();
     let fastest = runs?.into_iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds));
@@ -180,7 +180,7 @@ fn wires() -> Result<Machine, Usage> {
         line.split_whitespace().nth(1)?.parse::<f64>().ok()
     };
     let (Some(short), Some(long)) = (microseconds(" for 8 bytes"), microseconds(" for 1048576 bytes")) else {
-        return Err(Usage::new("two ranks of this machine do not tell their times"));
+        return Err(Usage::new("two ranks of this machine do not report their times"));
     };
     let bandwidth = f64::from(1 << 20) / (1e-6 * (long - short).max(1.0));
     Ok(Machine { cores: 1, bandwidth, latency: 1e-6 * short, memory: f64::INFINITY })

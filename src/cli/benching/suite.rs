@@ -87,7 +87,7 @@ fn first(wanted: &Wanted, ranks: Option<Ranks>) -> Result<u8, Usage> {
         show(&format!("\n{} of {n}  {}: {}\n", k + 1, case.name, case.title));
         match one(&case, &manner, wanted.anew, &stop) {
             Ok(None) => {
-                show("interrupted: the same command goes on\n");
+                show("interrupted: the same command continues\n");
                 return Ok(INTERRUPTED);
             }
             Ok(Some((bench, found, fine))) => {

@@ -60,7 +60,7 @@ pub fn first(o: &Options, ranks: &Ranks) -> std::io::Result<u8> {
                     let making: Vec<String> = making.map(|n| format!("partition {}", n + 1)).collect();
                     let what =
                         if making.is_empty() { "none was left to it".into() } else { making.join(", ") };
-                    eprintln!("error: {} has ended without a word: {what}", ranks.name(rank));
+                    eprintln!("error: {} has ended without a message: {what}", ranks.name(rank));
                     return Ok(FAILED);
                 }
             }

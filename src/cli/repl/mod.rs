@@ -28,7 +28,7 @@ use std::time::Instant;
 use undoing::Undo;
 
 /// The greeting of the prompt.
-const GREETING: &str = "Lines of a deck are worked off as you type them. Tab completes, `help` (or `?`) and `:help` tell more, \
+const GREETING: &str = "Lines of a deck are executed as you type them. Tab completes, `help` (or `?`) and `:help` explain more, \
                         Ctrl-C stops a run, Ctrl-D leaves.";
 
 /// An interactive session.

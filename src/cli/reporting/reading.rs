@@ -93,7 +93,7 @@ fn told(files: &[PathBuf]) -> Result<Report> {
         );
     }
     if dumps.is_empty() {
-        r.remarks.push("No dump was given: there are no particles to look at.".into());
+        r.remarks.push("No dump was given: there are no particles to show.".into());
     }
     r.facts.push(("page made".into(), day(SystemTime::now())));
     Ok(r)

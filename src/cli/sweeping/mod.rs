@@ -231,7 +231,7 @@ fn ending(sweep: &Sweep, results: &Results) -> String {
     let place = sweep.folder.join(table::TABLE);
     text += &format!("{}: {}\n", place.display(), counts(results));
     if results.interrupted {
-        text += "interrupted: the same command goes on\n";
+        text += "interrupted: the same command continues\n";
     }
     text
 }

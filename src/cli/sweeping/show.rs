@@ -28,7 +28,7 @@ impl Show<'_> {
 
 impl Watch for Show<'_> {
     fn resumed(&mut self, done: usize, state: &State) {
-        self.say(&format!("going on: {done} of {} runs are done", state.jobs));
+        self.say(&format!("continuing: {done} of {} runs are done", state.jobs));
     }
 
     fn note(&mut self, note: &Diagnostics) {

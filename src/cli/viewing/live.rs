@@ -157,9 +157,9 @@ mod tests {
     #[test]
     fn a_run_pauses_steps_goes_on_and_stops() {
         let (live, stop) = (Live::default(), AtomicBool::new(false));
-        assert!(!live.looks(&stop), "nobody is there");
+        assert!(!live.looks(&stop), "there is no reader");
         assert_eq!(live.frame(0).map(|f| f.0), None);
-        assert!(live.looks(&stop), "somebody has asked for a snapshot");
+        assert!(live.looks(&stop), "a snapshot has been requested");
         assert!(!live.act("/dance") && live.act("/pause"));
         assert!(live.looks(&stop), "the step before the pause is shown");
         std::thread::scope(|s| {

@@ -114,11 +114,11 @@ fn allowed(head: &[String], port: u16, token: &str) -> Result<Question, (&'stati
     };
     let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
     if !value("host").is_some_and(|host| own.iter().any(|o| o == host)) {
-        return Err((FORBIDDEN, "another host was asked for\n"));
+        return Err((FORBIDDEN, "the request names another host\n"));
     }
     let foreign = |origin: &str| !own.iter().any(|o| origin == format!("http://{o}"));
     if value("origin").is_some_and(foreign) {
-        return Err((FORBIDDEN, "another page asks\n"));
+        return Err((FORBIDDEN, "the request comes from another page\n"));
     }
     let mut words = head.first().map_or("", |l| l).split(' ');
     let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());

@@ -178,7 +178,7 @@ impl Session {
 /// Ids with holes have no place in a list by ids.
 fn gaps() -> perigrain_base::diag::Diagnostics {
     Diagnostic::error(Code::WRONG_KIND, None, "the ids of the particles are not 1, 2, 3 … without a gap")
-        .help("gather as they stand (`gather_atoms_concat`, with the ids beside it), or say `reset_atoms id` first")
+        .help("gather as they stand (`gather_atoms_concat`, with the ids beside it), or use `reset_atoms id` first")
         .into()
 }
 

@@ -50,6 +50,6 @@ impl Session {
             None,
             format!("fix `{id}` has {length} values, and no value {index}"),
         );
-        Err(d.help("`fix_external_set_vector_length` says how many there are").into())
+        Err(d.help("`fix_external_set_vector_length` sets how many there are").into())
     }
 }

@@ -70,7 +70,7 @@ impl Model {
             _ if words.aims(Quantity::Strength) => {
                 let text = "`target strength` needs a body between ends";
                 let d = Diagnostic::error(Code::CONFLICT, span, text);
-                return Err(d.help("take `method dsm`, which is what a fit does if nothing is said").into());
+                return Err(d.help("take `method dsm`, the default of a fit").into());
             }
             Solver::Periodic => Kind::Periodic { volume: cell(w, scene, span)?, cell: None },
             Solver::Ste => {
@@ -281,7 +281,7 @@ fn refuse_contacts(setup: &Setup, target: &str, span: Span) -> Result<()> {
     }
     let text = format!("`target {target}` is for bonds alone, and contacts act here");
     let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
-    Err(d.help("say `contacts no`, or give K or E as the target").into())
+    Err(d.help("use `contacts no`, or give K or E as the target").into())
 }
 
 /// To which part of the energy a solution is to be known: an error of the field is the root of that of the energy, and Poisson's ratio is of

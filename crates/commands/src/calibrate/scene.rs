@@ -192,7 +192,7 @@ fn check(
     if all.iter().any(|k| !k.is_finite() || *k < 0.0) {
         let text = format!("the bond between particles {a} and {b} has a negative or infinite stiffness");
         return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
-            .help(format!("look at `bond_coeff {kind}` and at the radii of the particles"))
+            .help(format!("check `bond_coeff {kind}` and the radii of the particles"))
             .into());
     }
     Ok(())

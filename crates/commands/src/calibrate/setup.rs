@@ -99,7 +99,7 @@ pub fn ends(w: &World, scene: &Scene, words: &Words, span: Span) -> Result<(Ends
     let body = extent[1] - extent[0];
     if ends.overlap() || ends.free_length() <= 1e-9 * body {
         let text = "the body is too short: a particle belongs to both of its ends";
-        let help = "say `thick T` with a smaller T, by default the mean radius, or choose another axis";
+        let help = "use `thick T` with a smaller T, by default the mean radius, or choose another axis";
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
     }
     let length = if words.body { body } else { ends.free_length() };
@@ -135,7 +135,7 @@ impl Setup {
         if !held.through && words.wall.is_none() {
             let text = "no chain of bonds leads from end to end: the stiffness is zero";
             let help =
-                "look at the bonds (`compute bond/local`), or reach further into the body with `thick T`";
+                "check the bonds (`compute bond/local`), or reach further into the body with `thick T`";
             return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
         }
         let moduli = Moduli::new(&mean_field(&scene.network, area * lengths[1]));

@@ -46,7 +46,7 @@ pub fn warn_softer(cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>
         return;
     }
     let text = format!(
-        "between held ends K is {} at most, and not {}: struts between voids bend, of which a particle's surroundings tell nothing",
+        "between held ends K is {} at most, and not {}: struts between voids bend, which an estimate from a particle's surroundings cannot show",
         general(most, 5),
         general(e.body, 5)
     );
@@ -82,10 +82,9 @@ mod tests {
         let apart = ste.numbers[0] / dsm.numbers[0];
         assert!(apart > 1.5, "{apart}");
         assert_eq!(ste.notes.len(), 1);
-        assert!(
-            ste.notes[0]
-                .ends_with("struts between voids bend, of which a particle's surroundings tell nothing")
-        );
+        assert!(ste.notes[0].ends_with(
+            "struts between voids bend, which an estimate from a particle's surroundings cannot show"
+        ));
         // The stated upper bound is an upper bound, and not far from the actual value.
         let most: f64 = ste.notes[0].split_whitespace().nth(5).unwrap().parse().unwrap();
         assert!(most > 0.99 * dsm.numbers[0] && most < 1.5 * dsm.numbers[0], "{most} {}", dsm.numbers[0]);

@@ -48,7 +48,7 @@ pub fn warn_sticking(cx: &ActCx, words: &Words, setup: &Setup, r: &Response) {
     }
     let text = format!("contacts bear {:.0} % of the energy, and none of them slips", 100.0 * share);
     let help =
-        "say `mu M` with the friction of the particles: where surfaces slip the body may be far softer";
+        "use `mu M` with the friction of the particles: where surfaces slip the body may be far softer";
     cx.note(Diagnostic::note(Code::SUSPICIOUS, cx.span, text).help(help));
 }
 

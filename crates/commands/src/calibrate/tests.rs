@@ -329,7 +329,7 @@ fn what_makes_no_sense_is_refused() {
         ("calibrate dms a all", "[dms] "),
         ("calibrate dsm a-b all", "[a-b] `a-b` is no ID"),
         ("calibrate dsm taken all", "[taken] there is a compute ke of the ID `taken`"),
-        ("calibrate dsm a nobody", "[nobody] there is no group"),
+        ("calibrate dsm a nogroup", "[nogroup] there is no group"),
         ("calibrate dsm a all strain -1", "[-1] a strain of -1 turns bonds inside out"),
         ("calibrate dsm a all strain 0", "[0] without a strain"),
         (

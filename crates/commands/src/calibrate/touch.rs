@@ -51,7 +51,7 @@ impl Hertz {
                         "contacts are left out: their force does not grow as overlap^3/2, as Hertz' does";
                     cx.note(
                         Diagnostic::warning(Code::NO_EFFECT, cx.span, text)
-                            .help("`contacts no` says that this is meant"),
+                            .help("`contacts no` states that this is meant"),
                     );
                     return Ok(None);
                 }

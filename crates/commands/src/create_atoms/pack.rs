@@ -364,7 +364,7 @@ impl Pack {
         cx.say(format!("  overlap of spheres that touch {average} on average, {most} at most"));
         let less = percent(1.0 - came.shrunk);
         if came.shrunk < 1.0 {
-            cx.say(format!("  diameters are {less} smaller than asked for, so that nothing overlaps"));
+            cx.say(format!("  diameters are {less} smaller than requested, so that nothing overlaps"));
         }
         if came.beyond > TOLD * mean {
             cx.say(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));

@@ -158,7 +158,7 @@ impl Vars {
         match (partition.turn)(partition.rounds.saturating_sub(1)) {
             Ok(turn) => Ok(Some(turn)),
             Err(e) => {
-                let text = format!("the partitions cannot agree on who is next: {e}");
+                let text = format!("the partitions cannot agree on the next one: {e}");
                 fail(Code::NO_FILE, names.first().map(|n| n.span), text)
             }
         }

@@ -90,7 +90,7 @@ impl<'de> Deserializer<'de> for &mut Asked {
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, Error> {
-        Err(Error::custom("stored types say what they are"))
+        Err(Error::custom("stored types describe themselves"))
     }
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {

@@ -64,7 +64,8 @@ impl Store {
         }
         if values.is_empty() {
             let known: Vec<&str> = VALUES.iter().map(|(name, _)| *name).collect();
-            let text = format!("`store/local` says what to keep of bonds that break: {}", known.join(" "));
+            let text =
+                format!("`store/local` needs the values to keep of bonds that break: {}", known.join(" "));
             return fail(Code::INCOMPLETE, args.here(), text);
         }
         let (rows, first) = (Key::new(&format!("{NAME}/{id}")), Key::new(&format!("{NAME}/{id}/first")));

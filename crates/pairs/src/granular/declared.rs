@@ -31,7 +31,7 @@ const FAULTS: [(HasFault, &str, bool); 4] = [
         "synchronized_verlet whose forces act along the normal of the middle of the step",
         false,
     ),
-    (Model::slides_loosely, "springs of contacts that forget the contact radius when they slide", true),
+    (Model::slides_loosely, "springs of contacts that lose the contact radius when they slide", true),
     (
         |m| m.twisting != Twisting::None,
         "a sliding twist in the direction of the spin, not of its torque",

@@ -169,8 +169,7 @@ impl Waiting {
         let text = format!(
             "in the middle of step {step}, after {made} of the {all} short steps that fill a longer one"
         );
-        let help =
-            "no restart file holds such a scene: go on from one that `restart N` has written at a whole step";
+        let help = "no restart file holds such a scene: continue from one that `restart N` has written at a whole step";
         Err(Diagnostic::error(Code::INTERRUPTED, None, text).help(help).into())
     }
 }

@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
             false => fail(
                 Code::SYNTAX,
                 line.span(),
-                format!("{end} must stand here: the section is as long as it said"),
+                format!("{end} must stand here: the section is as long as its header states"),
             ),
         }
     }
