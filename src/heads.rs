@@ -1,4 +1,4 @@
-//! Decks that say at their head what they are for: lines that begin with `#|` are together a TOML document, for the deck they are
+//! Decks with a description at their head: lines that begin with `#|` together are a TOML document; for the deck they are
 //! comments.
 
 use serde::de::DeserializeOwned;

@@ -1,4 +1,4 @@
-//! One deck being worked off: text in, diagnostics and results out.
+//! Execution of one deck: text in, diagnostics and results out.
 
 mod acts;
 mod ahead;
@@ -77,7 +77,7 @@ pub struct Ending {
     pub interrupted: bool,
 }
 
-/// A deck being worked off.
+/// The execution of a deck.
 pub struct Session {
     /// All texts read.
     pub sources: Sources,
@@ -94,19 +94,19 @@ pub struct Session {
     pub plan: Option<StepPlan>,
     watch: Box<dyn Watch>,
     ran: bool,
-    /// Whether it has been said that there are few grains for so many ranks.
+    /// Whether the warning about few grains for so many ranks has been given.
     said_few: bool,
     /// The step with which the present scene has passed the check of its bonds.
     checked_step: Option<f64>,
     shown: usize,
     interrupted: bool,
-    /// `quit` was said, here or inside `run … every`.
+    /// The status of `quit`, here or inside `run … every`.
     quit: Option<i32>,
     /// The cursor that read what was typed last.
     typed: Option<Script>,
-    /// What is being worked off was typed, and is this text.
+    /// The present text was typed, and is this one.
     prompt: Option<FileId>,
-    /// Commands whose lack of effect has been said.
+    /// Commands whose lack of effect has been noted.
     told: std::collections::BTreeSet<String>,
     /// A file could not be looked into (`check` mode).
     blind: bool,
@@ -115,11 +115,11 @@ pub struct Session {
     spent: Spent,
     /// What a check has seen of runs.
     foreseen: ahead::Foreseen,
-    /// What runs have said on a terminal.
+    /// What runs have printed on a terminal.
     spoken: ending::Spoken,
     /// What step tables are to show beside the deck's own columns.
     columns: Vec<String>,
-    /// What the deck's `sweep` line says.
+    /// The deck's `sweep` line.
     swept: Option<Swept>,
     born: std::time::Instant,
     /// The pair style was refused (`check` mode): that there is none is no news.
@@ -132,11 +132,11 @@ pub struct Session {
     seen_names: u64,
     /// The plans so far, where a deck is planned.
     plans: planning::Plans,
-    /// Where plans are told.
+    /// The log that plans are written to.
     told_to: Log,
     /// The text of the latest line.
     read_from: Option<FileId>,
-    /// Lines worked off, each turn of a loop by itself.
+    /// Lines executed, each turn of a loop counted.
     turns: u64,
     /// Lines behind which several ranks could have agreed about an end.
     behind: u64,
@@ -144,7 +144,7 @@ pub struct Session {
     made: i64,
     /// How many scenes there have been.
     scenes: u64,
-    /// What was asked for from outside, each text once.
+    /// Requests from outside, each text once.
     asked: std::collections::BTreeMap<String, FileId>,
 }
 
@@ -163,7 +163,7 @@ impl Session {
     pub fn new(mut options: Options) -> Result<Self> {
         let told_to = options.log.clone();
         if options.mode == Mode::Plan {
-            // What lines would say of a run that is not made is no part of a plan.
+            // The text of lines about a run that is not made is no part of a plan.
             options.log = Log::silent();
         }
         let mut s = Self {
@@ -217,7 +217,7 @@ impl Session {
         Ok(s)
     }
 
-    /// Who is told of each step.
+    /// Sets the observer of steps.
     pub fn set_watch(&mut self, watch: Box<dyn Watch>) {
         self.watch = watch;
     }
@@ -262,12 +262,12 @@ impl Session {
         self.scenes += 1;
     }
 
-    /// What is not known of a scene at its beginning.
+    /// What is unknown about a scene at its beginning.
     fn sight(&self) -> Unseen {
         if self.checking() { Unseen::in_a_check() } else { Unseen::default() }
     }
 
-    /// Works off a deck.
+    /// Executes a deck.
     ///
     /// # Errors
     /// The first line that is refused or fails; in check mode all problems of the whole deck.
@@ -350,7 +350,7 @@ impl Session {
         if problems.is_empty() { Ok(Ending { status, interrupted: self.interrupted }) } else { Err(problems) }
     }
 
-    /// Whether a line of a deck that is only looked at failed for want of a file that only a run writes; the note is taken.
+    /// Whether a line of a deck that is only checked failed for want of a file that only a run writes; the note is taken.
     fn unseen(&mut self, script: &Script, e: &Diagnostics) -> bool {
         if !self.looking() || e.is_empty() || e.has_errors() {
             return false;
@@ -382,7 +382,7 @@ impl Session {
         script.next(&mut self.sources, &self.vars, &mut env)
     }
 
-    /// Works off one line; `Some(status)` when the deck is over.
+    /// Executes one line; `Some(status)` when the deck is over.
     fn line(&mut self, script: &mut Script, line: &Line) -> Result<Option<i32>> {
         self.options.log.echo(&line.raw)?;
         for text in &line.echoes {

@@ -1,4 +1,4 @@
-//! What the program has at hand for who begins: decks to start from, examples, pages on a terminal, completions.
+//! Help for beginners: decks to start from, examples, pages on a terminal, completions.
 
 use std::fs;
 use std::path::Path;
@@ -61,7 +61,7 @@ fn a_mistyped_subcommand_is_taken_for_one() {
 mod terminal {
     use super::*;
 
-    /// What the program says on a terminal of 60 columns and 20 rows.
+    /// The output of the program on a terminal of 60 columns and 20 rows.
     fn on_a_terminal(args: &str, pager: &str) -> String {
         let line = format!("stty cols 60 rows 20; exec {} {args}", env!("CARGO_BIN_EXE_perigrain"));
         let mut command = Command::new("sh");

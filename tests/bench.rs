@@ -119,7 +119,7 @@ fn short_runs_are_made_again_until_they_have_taken_50_ms() {
     let [seconds, runs] = ["seconds", "repeats"].map(|name| column(at, "in.x.bench/bench.csv", name));
     for (s, n) in seconds.into_iter().zip(runs) {
         let (s, n) = (s.unwrap(), n.unwrap());
-        // The first run, which takes no less than the least, says how many there are.
+        // The first run, which takes no less than the least, determines how many there are.
         assert!((n - 1.0) * s < 0.05 && n <= 100.0, "{n} runs of {s} s");
         assert!(n > 1.0 || s >= 0.05, "one run of {s} s");
     }

@@ -7,7 +7,7 @@ use perigrain::par::set_threads;
 use perigrain::session::{Options, Session};
 use perigrain::world::World;
 
-/// Works off a deck; the world at its end.
+/// Executes a deck; the world at its end.
 fn run(deck: &str) -> World {
     let log = Log::silent();
     let mut session = Session::new(Options { log, ..Options::default() }).unwrap();

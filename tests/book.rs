@@ -1,5 +1,6 @@
-//! The book keeps its word: its decks run, its pictures are those of the decks, its formulas name their source and the code that
-//! computes them, and each page says which question it answers. What a deck prints stands below it in a block `output`, line for line.
+//! Checks of the book: its decks run, its pictures are those of the decks, its formulas name their source and the code that
+//! computes them, and each page states which question it answers. The output of a deck stands below it in a block `output`, line
+//! for line.
 //! `PERIGRAIN_BLESS=1 cargo test --test folders book::` makes the pictures anew.
 
 use super::docs::{docs, texts};
@@ -20,7 +21,7 @@ struct Deck {
     command: Option<String>,
 }
 
-/// Every page that is written by hand.
+/// Every hand-written page.
 fn pages() -> Vec<PathBuf> {
     texts()
         .into_iter()
@@ -246,7 +247,7 @@ fn paragraph(behind: &str) -> &str {
     behind.trim_start().split("\n\n").next().unwrap()
 }
 
-/// What is wrong with what stands behind a formula: it says `Source: …`, then `Code: …` with files and names that occur in them.
+/// What is missing after a formula: `Source: …`, then `Code: …` with files and names that occur in them.
 fn unfounded(behind: &str) -> Option<String> {
     let note = paragraph(behind);
     let Some((_, code)) = note.strip_prefix("Source: ").and_then(|note| note.split_once("Code: ")) else {

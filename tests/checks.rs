@@ -14,7 +14,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Ten mistakes, each with the columns of the word at fault and a part of what is said.
+/// Ten mistakes, each with the columns of the wrong word and a part of the message.
 const PLANTED: &[(usize, usize, usize, &str, &str)] = &[
     (9, 1, 8, "PG0102", "unknown command `boundery`"),
     (15, 34, 37, "PG0124", "there is no region `blok`"),
@@ -63,7 +63,7 @@ fn check(deck: &str, folder: &Path) -> (Vec<Diagnostic>, Session) {
     looked_at(Mode::Check, deck, folder)
 }
 
-/// All that is said against a deck that is checked or planned.
+/// All problems of a deck that is checked or planned.
 fn looked_at(mode: Mode, deck: &str, folder: &Path) -> (Vec<Diagnostic>, Session) {
     let options = Options { mode, log: Log::silent(), folder: folder.into(), ..Options::default() };
     let mut session = Session::new(options).unwrap();
@@ -79,7 +79,7 @@ const RIGHTLY: &[(&str, &str)] = &[
     ("pd_data.in", "shorter than the lattice spacing"),
     // Half of an impact is one sphere that flies.
     ("reduced.in", "no pair_style"),
-    // 30 steps of loops and formulas: nobody looks at its contacts, which last 8 steps.
+    // 30 steps of loops and formulas: its contacts, which last 8 steps, do not matter.
     ("misc_script.in", "longer than a tenth of a contact"),
     // Contacts of the grains that it pours last nine steps.
     ("gran_pour.in", "longer than a tenth of a contact"),

@@ -122,11 +122,11 @@ fn a_plan_writes_no_file_and_overwrites_none() {
     fs::write(folder.path().join("run.restart"), "old").unwrap();
     let o = perigrain(folder.path(), &["plan", "in.deck"], "");
     assert_eq!(o.status.code(), Some(0), "{}", err(&o));
-    // Three of the four runs have the same plan, which is told once.
+    // Three of the four runs have the same plan, which is printed once.
     let told = out(&o);
     let plans = told.lines().filter(|l| l.trim() == "initial integrate").count();
     assert!(plans == 2 && told.contains("used once") && told.contains("used 3 times"), "{told}");
-    assert!(!told.contains("not shown") && !told.contains("what only a run can tell"), "{told}");
+    assert!(!told.contains("not shown") && !told.contains("what only a run determines"), "{told}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     assert_eq!(fs::read_to_string(folder.path().join("run.restart")).unwrap(), "old");
 }
@@ -134,7 +134,7 @@ fn a_plan_writes_no_file_and_overwrites_none() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_run_at_a_whole_step_with_all_files_closed() {
-    // Who was started by `nohup` hands on that hangups are nothing, and the program heeds that.
+    // A process started by `nohup` passes on that hangups are ignored, and the program heeds that.
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status
         .lines()
@@ -147,7 +147,8 @@ fn an_interrupt_ends_the_run_at_a_whole_step_with_all_files_closed() {
     }
 }
 
-/// What a run leaves that a signal has ended: whole files, and a last restart file that goes on as if nothing had been.
+/// What a run that a signal has ended leaves behind: whole files, and a last restart file that continues as if nothing had
+/// happened.
 #[cfg(unix)]
 fn ended_by(signal: &str) {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! A disk that is full, and two runs in one folder: what is said, and what is left.
+//! A full disk, and two runs in one folder: the messages, and the files left behind.
 #![cfg(target_os = "linux")] // /dev/full, and `ulimit` of the shell
 
 use std::fs;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 const SCENE: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion b block 0 9 0 9 0 9\ncreate_box 1 b\n\
     create_atoms 1 region b\nset group all density 2400\nset group all volume 1e-9\n";
 
-/// Works off a deck where no file may grow beyond some kilobytes; what was said.
+/// Executes a deck where no file may grow beyond some kilobytes; the messages.
 fn cramped(folder: &Path, kilobytes: u32, line: &str, log: &str) -> String {
     fs::write(folder.join("in.deck"), format!("{SCENE}{line}\n")).unwrap();
     // Without its signal the limit is an error of the write, as a full disk is.

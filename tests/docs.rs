@@ -80,7 +80,7 @@ const BOOK: [&str; 2] = [
      - [Powders: plastic and adhesive grains](theory/powders.md)\n\
      - [Surfaces that meet grains](theory/hybrid.md)\n\
      - [Bonded particles](theory/bonds.md)\n\
-     - [How time goes on](theory/integration.md)\n\
+     - [Time integration](theory/integration.md)\n\
      - [How long may a step be](theory/time-step.md)\n\
      - [Stiffness without a run](theory/calibration.md)\n\n\
      # Reference\n\n\

@@ -1,11 +1,11 @@
-//! What somebody at a terminal finds without knowing where to look: subcommands, pages, examples, words in the wrong place.
+//! What a user at a terminal finds without knowing where to look: subcommands, pages, examples, words in the wrong place.
 #![cfg(unix)]
 
 use super::pty::{PLAIN, shown, too_wide, width};
 use std::fs;
 use std::path::Path;
 
-/// What the program says to these words on a terminal of 80 columns, pages shown as they are.
+/// The output of the program for these words on a terminal of 80 columns, pages shown as they are.
 fn said(folder: &Path, args: &str) -> String {
     shown(folder, 80, "print a\n", args, &[("PAGER", "cat"), ("NO_COLOR", "1")]).replace('\r', "")
 }
@@ -78,7 +78,7 @@ fn help_searches_names_and_texts() {
         ("help fix", "\n  fix nve/sphere "),
         ("help fix", "\n  fix wall/gran "),
         ("help wall", "# Pages named so: `wall`\n\n  fix wall/gran "),
-        ("help wall", "# Pages that speak of it: `wall`\n\n"),
+        ("help wall", "# Pages that contain it: `wall`\n\n"),
         ("help hertz/material", "\n  pair_style granular "),
         // Words that no page has beside each other.
         ("help crack speed", "\n  compute crack "),

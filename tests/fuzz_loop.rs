@@ -233,7 +233,7 @@ fn read_restart() {
     hunt("read_restart", &corpus, bodies::read_restart);
 }
 
-/// Forged restart files of all scenes: a few of each from one seed that stays, and on for as long as `PERIGRAIN_FUZZ_SECONDS` says.
+/// Forged restart files of all scenes: a few of each from one fixed seed, and more for `PERIGRAIN_FUZZ_SECONDS`.
 #[test]
 fn forged_restart() {
     let seconds: Option<f64> = std::env::var("PERIGRAIN_FUZZ_SECONDS").ok().and_then(|s| s.parse().ok());
@@ -261,5 +261,5 @@ fn forged_restart() {
 /// So many in the ordinary tests.
 const FORGED: u64 = 2000;
 
-/// What takes longer is told: cases take less than a thousandth of that.
+/// Slower cases are reported: cases take less than a thousandth of that.
 const SLOW: Duration = Duration::from_secs(1);

@@ -76,7 +76,7 @@ fn at_the_prompt_the_second_is_told_on_a_line_of_its_own() {
     let text = p.exp_string("perigrain> ").unwrap();
     let told = "stopping at the end of this step; Ctrl-\\ ends at once";
     assert!(text.contains(&format!("\n{told}\r\n")), "{text:?}");
-    // And the session goes on.
+    // And the session continues.
     p.send_line("print \"atoms $(atoms)\"").unwrap();
     p.exp_string("\natoms 27\r\n").unwrap();
     p.send_control('d').unwrap();

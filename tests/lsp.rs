@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 const DECK: &str = include_str!("scripts/scene.in");
 
-/// A client; what the server tells unasked is kept.
+/// A client; notifications of the server are kept.
 struct Client<W: Write, R: Read> {
     to: W,
     from: BufReader<R>,
@@ -122,7 +122,7 @@ impl<W: Write, R: Read> Client<W, R> {
         self.ask(method, params)
     }
 
-    /// The problems of a file in the version given, once they are told.
+    /// The problems of a file in the version given, once they are published.
     fn problems(&mut self, uri: &str, version: i64) -> Vec<Value> {
         loop {
             if let Some(told) = self.told.get(uri).filter(|told| told["version"] == version) {
@@ -136,7 +136,7 @@ impl<W: Write, R: Read> Client<W, R> {
     fn end(mut self, server: JoinHandle<bool>) {
         assert_eq!(self.ask("shutdown", Value::Null), Value::Null);
         self.note("exit", Value::Null);
-        assert!(server.join().unwrap(), "the server ended otherwise than it was told to");
+        assert!(server.join().unwrap(), "the server did not end as requested");
     }
 }
 
@@ -440,7 +440,7 @@ fn long_deck(lines: usize) -> String {
 
 #[test]
 fn answers_come_at_once_on_long_decks() {
-    // The release build is held to the 50 ms that nobody notices; the dev build gets more.
+    // The release build must stay within 50 ms, which is not noticeable; the dev build gets more.
     let most = Duration::from_millis(if cfg!(debug_assertions) { 200 } else { 50 });
     let (mut client, server) = start();
     let uri = "file:///nowhere/in.long";
@@ -517,7 +517,7 @@ fn broken_clients_get_errors_and_no_panic() {
     }
     client.end(server);
 
-    // A client that hangs up within a message, and one that never says hello.
+    // A client that closes the stream within a message, and one that never says hello.
     let (mut client, server) = start();
     client.raw(b"Content-Length: 100\r\n\r\n{\"jsonrpc\"");
     drop(client);

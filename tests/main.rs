@@ -17,6 +17,7 @@ mod data;
 mod disk;
 #[path = "dumps/main.rs"]
 mod dumps;
+mod english;
 mod examples;
 mod found;
 mod fuzz_loop;

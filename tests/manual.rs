@@ -1,4 +1,4 @@
-//! Every example of the manual really runs in a small scene, and the pages tell what there is.
+//! Every example of the manual runs in a small scene, and the pages list what there is.
 
 #[path = "common/pages.rs"]
 mod scene;
@@ -48,7 +48,7 @@ thermo       $(round(0.04/v_dt))
 run          $(round(0.4/v_dt))
 ";
 
-/// What a session says.
+/// The output of a session.
 #[derive(Clone, Default)]
 struct Heard(Arc<Mutex<Vec<u8>>>);
 

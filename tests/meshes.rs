@@ -338,7 +338,7 @@ fn walls_of_all_files_and_of_regions_push_alike() {
     };
     let law = "granular hooke 1000 0 tangential linear_nohistory 0 0";
     let both = force(&format!("wall/mesh {law} mesh cube.stl"));
-    // By hand: overlaps 0.1 and 0.15 with two faces from inside, 0.2 with one from outside.
+    // Calculated by hand: overlaps 0.1 and 0.15 with two faces from inside, 0.2 with one from outside.
     let wanted = [[-100.0, 0.0, 150.0], [0.0, 200.0, 0.0]];
     let off = both.as_flattened().iter().zip(wanted.as_flattened()).map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-10, "{both:?}");

@@ -1,4 +1,4 @@
-//! `-partition`: one deck worked off several times beside each other, as LAMMPS' partitions do.
+//! `-partition`: one deck executed several times side by side, as LAMMPS' partitions do.
 
 use std::fs;
 use std::path::Path;
@@ -79,7 +79,7 @@ fn what_does_not_fit_the_partitions_is_refused() {
         1,
         "log.lammps"
     );
-    // One fails, the others go on.
+    // One fails, the others continue.
     fs::write(at.join("in.p"), "partition yes 2 quit 3\nvariable w world a b c\nprint $w file said.$w\n")
         .unwrap();
     let o = perigrain(at, &["-in", "in.p", "-p", "3x1"]);

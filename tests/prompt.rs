@@ -24,7 +24,7 @@ fn settle(command: &mut Command, folder: &Path) {
         .env("PAGER", "cat");
 }
 
-/// What the session says to lines from a pipe.
+/// The session's output for lines from a pipe.
 fn piped(folder: &Path, lines: &str) -> Output {
     let mut command = program(folder, &["repl"]);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -1,4 +1,4 @@
-//! A quiet step asks for no memory: a run of many steps asks for as much as one of few.
+//! A quiet step allocates no memory: a run of many steps allocates as much as one of few.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -102,7 +102,7 @@ fn asked(session: &mut Session, steps: usize) -> usize {
 
 #[cfg_attr(
     debug_assertions,
-    ignore = "what debug builds check asks for memory: cargo test --release --test quiet_alloc"
+    ignore = "checks of debug builds allocate memory: cargo test --release --test quiet_alloc"
 )]
 #[test]
 fn a_quiet_step_asks_for_no_memory() {

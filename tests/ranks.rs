@@ -21,7 +21,7 @@ pub fn start(folder: &Path, program: &str, args: &[&str]) -> Child {
     for key in LAUNCHED {
         command.env_remove(key);
     }
-    // Containers may forbid a process to read another one's memory, which Open MPI would complain of.
+    // Containers may forbid a process to read another one's memory, of which Open MPI would complain.
     command.env("OMPI_MCA_btl_vader_single_copy_mechanism", "none");
     command
         .args(args)
@@ -41,7 +41,7 @@ pub fn said(o: &Output) -> String {
     String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr)
 }
 
-/// Lines that tell of time, of processes and of memory; nothing in a run follows from them.
+/// Lines with time, processes and memory; nothing in a run follows from them.
 fn is_of_this_run(line: &str) -> bool {
     // An example keeps a time in `Td`.
     const BEGINNINGS: [&str; 8] = [
@@ -71,7 +71,7 @@ fn without_times(line: &str) -> String {
     (0..words.len()).map(|k| if is_time(k) { "#" } else { words[k] }).collect::<Vec<_>>().join(" ")
 }
 
-/// All files of a folder; of logs what does not tell of time.
+/// All files of a folder; of logs only what does not depend on time.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let file = |e: fs::DirEntry| {
         let name = e.file_name().into_string().unwrap();
@@ -250,7 +250,7 @@ fn bodies_are_shared_out_and_quiet_steps_gather_nothing() {
         }
         shared.extend((!ops.is_empty()).then_some(scene.name));
     }
-    // Bonds that remember, grains and beams are worked on by all ranks alike.
+    // Bonds with history, grains and beams are processed by all ranks alike.
     assert_eq!(
         shared,
         [
@@ -528,7 +528,7 @@ fn real_launchers_have_the_same_bytes() {
             .wait_with_output()
             .unwrap();
         assert!(said(&o).contains(library) && said(&o).contains("3 ranks on 1 host"), "{}", said(&o));
-        // Processes that were told other things run what the first one has.
+        // Processes with another environment run the deck of the first one.
         fs::write(folder.path().join("in.deck"), "variable a getenv OWN\nprint \"OWN is $a\"\n").unwrap();
         let one = |own: &'static str| ["-n", "1", "env", own, PERIGRAIN, "-in", "in.deck"];
         let words = [own, &one("OWN=1"), &[":"], &one("OWN=2")].concat();

@@ -110,7 +110,7 @@ fn numbers(folder: &Path) -> String {
 
 #[test]
 fn a_run_that_is_looked_at_gives_the_same_bits() {
-    // Steps of solids are made with the next one's beginning where nobody looks.
+    // Steps of solids are made with the next one's beginning where nothing reads the scene.
     let solid = "\
 units si
 atom_style peri
@@ -253,7 +253,7 @@ fn a_run_is_looked_at_paused_and_stopped_while_it_goes_on() {
     let get = |path: &str| asked(address, &format!("GET /{path}?{token}&since=0 {host}"));
     let post =
         |path: &str| asked(address, &format!("POST /{path}?{token} {host}\r\nOrigin: http://{address}"));
-    // A connection that asks for nothing keeps nobody waiting.
+    // A connection without a request delays no other one.
     let _idle = TcpStream::connect(address).unwrap();
     let page = get("");
     assert!(

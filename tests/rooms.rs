@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Which crate may depend on which others of the house. Cargo refuses circles; this table refuses short cuts.
 const ARROWS: &[(&str, &[&str])] = &[
-    // What ranks say to each other; everything may ask which rank it is, through `base`.
+    // Communication between ranks; every crate may query its rank, through `base`.
     ("comm", &[]),
     ("base", &["comm"]),
     ("bonded", &["base"]),
@@ -111,7 +111,7 @@ fn no_crate_is_two_crates() {
 
 #[test]
 fn no_inherent_method_of_the_world_outside_its_crate() {
-    // Rust refuses them; what is left to check is that nobody makes up for it with a trait of helpers.
+    // Rust refuses them; what is left to check is that no trait of helpers stands in for them.
     for name in crates().iter().filter(|name| *name != "world") {
         for file in rust_files(&format!("crates/{name}/src")) {
             let text = fs::read_to_string(&file).unwrap();
@@ -123,9 +123,9 @@ fn no_inherent_method_of_the_world_outside_its_crate() {
 
 #[test]
 fn traits_that_many_write_are_short() {
-    // What somebody who writes an op, a fix or a pair style has to look through, methods with a default among them.
+    // The methods that an author of an op, a fix or a pair style has to look through, those with a default included.
     for (file, name, most) in [
-        // One more than eight: on ranks only an op knows of which rows it needs values.
+        // One more than eight: on ranks only an op knows the rows whose values it needs.
         ("crates/plan/src/op.rs", "Op", 9),
         ("crates/styles/src/fix.rs", "Fix", 12),
         // One more than others may have: the exact limit of a step, which peridynamic bodies alone know.

@@ -1,4 +1,4 @@
-//! Runs whose energy grows beyond reason, where the deck or LAMMPS wants them to go on (`tests/scripts/bad/runaway.in`: they end).
+//! Runs whose energy grows beyond reason, where the deck or LAMMPS lets them continue (`tests/scripts/bad/runaway.in`: they end).
 
 use std::process::Command;
 
@@ -9,7 +9,7 @@ const DECK: &str = "units si\natom_style peri\natom_modify map array\nboundary s
                     pair_coeff * * 2e21 0.0030001 0.01 0.0\nvelocity all ramp vx -1 1 x 0 5\n\
                     velocity all ramp vy -1 1 x 0 2\nfix 1 all nve\ntimestep 6e-7\nthermo 50\n";
 
-/// The exit code of the deck with more lines and switches, and how often it is said that energy has grown.
+/// The exit code of the deck with more lines and switches, and the number of warnings that energy has grown.
 fn outcome(lines: &str, switches: &[&str]) -> (Option<i32>, usize) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("in.deck"), format!("{DECK}{lines}run 200\n")).unwrap();
@@ -30,6 +30,6 @@ fn decks_choose_what_becomes_of_energy_from_nothing() {
     assert_eq!(outcome("thermo_modify energy ignore\n", &[]), (Some(0), 0));
     assert_eq!(outcome("", &["-compat", "lammps/2025"]), (Some(0), 1));
     assert_eq!(outcome("thermo_modify energy error\n", &["-compat", "lammps/2025"]), (Some(1), 1));
-    // As long as the step is right nobody hears of it.
+    // With a right step there is no warning.
     assert_eq!(outcome("timestep 1.7e-7\n", &[]), (Some(0), 0));
 }

@@ -1,4 +1,4 @@
-//! `-safe`: what a deck that nobody trusts is kept from, through the program.
+//! `-safe`: the limits of an untrusted deck, through the program.
 #![cfg(unix)]
 
 use std::fs;
@@ -154,7 +154,7 @@ fn limits_end_a_deck() {
     ] {
         refused(&folder, lines, &["-limit", limit[0], limit[1]], part);
     }
-    // Memory that a line is about to ask for is forecast.
+    // The memory that a line is about to request is forecast.
     let many = format!("{SCENE}lattice sc 1e6\ncreate_atoms 1 box\n");
     let (code, _, said) = perigrain(&folder, &many, &["-limit", "memory", "200"]);
     assert!(code == Some(1) && said.contains("0.2 GB are free"), "{said}");

@@ -255,7 +255,7 @@ fn fits(expected: &Expected, message: &Message) -> bool {
         && expected.help.iter().all(|h| message.help.iter().any(|m| m.contains(h)))
 }
 
-/// Expected messages that were not printed, and printed ones that nobody expected.
+/// Expected messages that were not printed, and printed ones that were not expected.
 fn unmatched(what: &str, said: &[Message], expected: &[Expected], kind: Kind, severity: &str) -> String {
     let mut report = missing(what, said, expected, kind, severity);
     for m in said.iter().filter(|m| m.severity == severity) {

@@ -281,7 +281,7 @@ fn one_sweep_at_a_time_works_in_a_folder() {
         "{}",
         said(&o)
     );
-    // The sweep is asked to end: nothing was done.
+    // The sweep gets a request to end: nothing was done.
     Command::new("kill").args(["-TERM", &first.id().to_string()]).status().unwrap();
     assert_eq!(first.wait().unwrap().code(), Some(130));
     assert!(said(&sweep(at, &["in.x.sweep", "-status"])).contains("0 runs ok, 2 left, not at work"));

@@ -4,7 +4,7 @@
 use perigrain::output::log::{Buffer, Log};
 use perigrain::session::{Options, Session};
 
-/// Works off a deck; what the log says, or why it ended.
+/// Executes a deck; its log, or the error that ended it.
 fn run(deck: &str) -> Result<String, String> {
     let screen = Buffer::default();
     let options = Options { log: Log::new(Some(Box::new(screen.clone()))), ..Options::default() };
@@ -13,7 +13,7 @@ fn run(deck: &str) -> Result<String, String> {
     Ok(screen.text())
 }
 
-/// What a deck prints after a word.
+/// The text that a deck prints after a word.
 fn said(log: &str, word: &str) -> f64 {
     let line =
         log.lines().find_map(|line| line.strip_prefix(word)).unwrap_or_else(|| panic!("no {word} in {log}"));

@@ -1,16 +1,16 @@
-//! What a run, its progress and its tables look like on a terminal: the bytes of a real one.
+//! Output of a run, its progress and its tables on a real terminal, byte by byte.
 //!
-//! What a terminal shows, claim by claim, and the test that reads it from the bytes of a pseudo-terminal:
+//! The claims about the terminal, and the test for each, which reads the bytes of a pseudo-terminal:
 //!
 //! | claim | test |
 //! |---|---|
 //! | progress is that of the whole deck, over loops around `run` | `progress_is_that_of_the_whole_deck` |
-//! | a loop that asks the clock ends in sight; where nobody can know, the bar is that of the run | the same |
+//! | a loop that reads the clock ends in sight; where the end is unknown, the bar is that of the run | the same |
 //! | nothing is drawn while the scene is built | `the_line_tells_how_far_it_is_and_what_is_left` |
 //! | the step in the line is the present one | the same |
 //! | time left is learnt from the run, and never 0 s | the same |
 //! | the line fits a window that changes its size | `a_window_may_change_its_size` |
-//! | memory is foretold before the run | `a_run_ends_in_three_lines_and_setup_says_one_line_each` |
+//! | memory is forecast before the run | `a_run_ends_in_three_lines_and_setup_says_one_line_each` |
 //! | a run ends in three lines: time and speed, where results are, what would make it faster | the same |
 //! | setup says what it made in one line each | the same |
 //! | LAMMPS' blocks stay in `log.lammps` | the same |
@@ -34,7 +34,7 @@
 //! | pages are wrapped at words, and go through a pager | the same, `at_hand::terminal::pages_are_wrapped_…` |
 //! | `help fix` lists fixes | `found::help_searches_names_and_texts` |
 //! | `help wall` finds `wall/gran`: a search over names and texts | the same |
-//! | an unknown word that is known elsewhere is told where it belongs | `found::a_word_that_is_known_elsewhere_is_told_…` |
+//! | for a word that is known elsewhere the message names the place | `found::a_word_that_is_known_elsewhere_is_told_…` |
 //!
 //! Those of the prompt are in `tests/prompt/terminal.rs`.
 #![cfg(unix)]
@@ -76,7 +76,7 @@ fn a_run_ends_in_three_lines_and_setup_says_one_line_each() {
     assert!(lines[end].contains(" steps/s, ") && lines[end].ends_with(" particle steps/s"), "{text}");
     assert_eq!(lines[end + 1], "results: log.lammps, run.dump, run.*.restart");
     assert!(lines[end + 2].starts_with("faster: ") && lines[end + 2].contains(" % goes into "), "{text}");
-    // What has been said is not said again.
+    // Nothing is printed twice.
     let count = |begin: &str| lines.iter().filter(|l| l.starts_with(begin)).count();
     assert_eq!([count("10 steps in "), count("results: "), count("27 particles, ")], [3, 1, 1], "{text}");
 }
@@ -119,12 +119,12 @@ fn progress_is_that_of_the_whole_deck() {
     );
     let none = ["0/0", " of 0 steps", "of this run"];
     assert!(none.iter().all(|word| !text.contains(word)), "{text}");
-    // A loop that asks the clock ends in sight, perhaps earlier.
+    // A loop that reads the clock ends in sight, perhaps earlier.
     let until = "if \"$t < 0.00016 && $(ke) < 1\" then \"jump SELF again\"";
     let deck = format!("{GRAINS}thermo 0\nvariable t equal time\nlabel again\nrun 80000 post no\n{until}\n");
     let text = shown(folder.path(), 120, &deck, PLAIN, &[]);
     assert!(text.contains(" of up to 160,000 steps, "), "{text}");
-    // How often a loop comes that hangs on a run nobody knows: the bar is that of the run.
+    // A loop whose number of turns depends on a run is unpredictable: the bar is that of the run.
     let deck = format!(
         "{GRAINS}thermo 0\nlabel again\nrun 120000 post no\nif \"$(ke) < 2e-8\" then \"jump SELF again\"\n"
     );
@@ -333,7 +333,7 @@ fn a_limit_of_time_leaves_a_restart_file() {
     let step: i64 = step.lines().next().unwrap().trim().parse().unwrap();
     let file = format!("in.deck.{step}.restart");
     assert!(
-        text.contains(&format!("  to go on from: {file}")) && text.contains(&format!("then {step}")),
+        text.contains(&format!("  to continue from: {file}")) && text.contains(&format!("then {step}")),
         "{text}"
     );
     assert!(text.contains("The limit of `-timeout` has passed: no further run"), "{text}");

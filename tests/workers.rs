@@ -87,7 +87,7 @@ fn ranks_without_a_run_are_counted_once() {
     let words = said(&o);
     assert!(o.status.success() && words.contains("5 ranks on 1 host, 2 runs: 3 ranks have nothing to do\n"));
     assert!(words.matches("nothing to do").count() == 1 && words.contains("2 runs ok"), "{words}");
-    // Mistakes are told once too.
+    // Mistakes are reported once too.
     for (args, why) in [
         (&["sweep", "in.x", "-each", "m", "1", "2"][..], "never uses the variable `m`"),
         (&["sweep", "in.x"], "needs values"),
@@ -129,14 +129,14 @@ fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_goes_on() {
         assert_eq!(ranks.len(), 3);
         signal("-9", ranks[victim]);
         let o = first.wait_with_output().unwrap();
-        let named = format!("rank 1 on {} has ended without a word; it was making run 2 (n=2)", host());
+        let named = format!("rank 1 on {} has ended without a message; it was making run 2 (n=2)", host());
         assert!(!o.status.success() && said(&o).contains(&named) == (victim > 0), "{}", said(&o));
         // The next sweep's logs are waited for, not these.
         for run in ["0001-n=1", "0002-n=2", "0003-n=3"] {
             fs::remove_dir_all(at.join("o").join(run)).unwrap_or_default();
         }
     }
-    // One process goes on with what ranks have left, and says where it was.
+    // One process continues what ranks have left, and reports where it was.
     fs::remove_file(at.join("wait")).unwrap();
     let o = perigrain(at, &[&SWEEP[..], &["-out", "o"]].concat());
     let left = "under way when the sweep ended, and begun anew: ";

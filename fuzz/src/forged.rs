@@ -1,4 +1,4 @@
-//! Restart files that somebody has made: a real one with bytes changed and its checksum mended.
+//! Forged restart files: a real one with bytes changed and its checksum corrected.
 
 use perigrain::session::{Mode, Options, Session};
 use std::fs;
@@ -100,7 +100,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Works off a deck that makes a scene, and keeps the file.
+    /// Executes a deck that makes a scene, and keeps the file.
     pub fn new(make: &str, again: &str, steps: i64, list: bool) -> Self {
         let folder = tempfile::tempdir().expect("a folder for a file");
         let path = folder.path().join("a.restart");

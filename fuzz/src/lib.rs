@@ -1,4 +1,4 @@
-//! What the targets share: a deck worked off in a folder of its own, with a file of any bytes beside it.
+//! Shared code of the targets: a deck executed in a folder of its own, with a file of any bytes beside it.
 
 pub mod forged;
 

@@ -1,6 +1,6 @@
 //! Time against error: a deck run over its knobs, each run measured against a reference.
 //!
-//! A [`Bench`] is a sweep with measures; [`Bench::found`] says of each setting what it took, how far off it was and of which order.
+//! A [`Bench`] is a sweep with measures; [`Bench::found`] gives the time, the error and the order of each setting.
 
 pub mod front;
 pub mod norm;
@@ -21,10 +21,10 @@ use reference::Against;
 
 /// The knob that makes every run several times.
 pub const REPEAT: &str = "-repeat";
-/// What runs of a setting take together at least where nothing says how often it is run [s]: below that times are those of the clock
-/// and of what else the machine does.
+/// The least total time of a setting's runs where the number of runs is not given [s]: shorter times measure the clock and the
+/// other load of the machine.
 pub const LEAST: f64 = 0.05;
-/// Runs of a setting at most, where nothing says how often.
+/// The largest number of runs of a setting where the number is not given.
 const MOST: f64 = 100.0;
 /// The folder of runs that are made again, in that of the others.
 const AGAIN: &str = "again";
@@ -75,13 +75,13 @@ pub struct Error {
     pub in_front: bool,
     /// It is what others are compared with.
     pub is_reference: bool,
-    /// It is the reference with other switches of the program: its error says nothing of knobs, and has no part in orders, front and
-    /// pictures.
+    /// It is the reference with other switches of the program: its error is independent of the knobs, and is left out of orders,
+    /// front and pictures.
     pub is_twin: bool,
 }
 
 impl Error {
-    /// The error, where it says something of the knobs.
+    /// The error, where it depends on the knobs.
     pub fn counted(&self) -> Option<f64> {
         self.error.filter(|_| !self.is_twin)
     }
@@ -233,7 +233,7 @@ impl Bench {
         axis.rows.iter().map(number).collect()
     }
 
-    /// What the runs say, and those of [`Bench::again`] with their jobs.
+    /// The results of the runs, and of those of [`Bench::again`] with their jobs.
     pub fn found(&self, outcomes: &[Option<Outcome>], again: &[(Job, Outcome)]) -> Found {
         let mut found = Found::default();
         let runs: Vec<Run> = (0..self.settings()).map(|k| self.run(k, outcomes, again, &mut found)).collect();

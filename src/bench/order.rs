@@ -11,8 +11,8 @@ const EVEN: f64 = 0.5;
 pub struct Order {
     /// The power.
     pub power: f64,
-    /// Whether both halves, from the first setting to the second and on to the third, say about the same. Where one error is small by
-    /// chance they do not.
+    /// Whether both halves, from the first setting to the second and on to the third, give about the same order. Where one error
+    /// is small by chance they do not.
     pub is_even: bool,
 }
 

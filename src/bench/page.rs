@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub struct Outcome {
     /// The case.
     pub case: Case,
-    /// Its runs, and what they say; none if they could not be made.
+    /// Its runs and their results; an error if they could not be made.
     pub found: Result<(Bench, Found), String>,
 }
 

@@ -32,7 +32,7 @@ impl Against {
     }
 }
 
-/// The errors of all settings in a measure. Where there is none, `problems` says why.
+/// The errors of all settings in a measure. Where there is none, `problems` has the reason.
 pub(super) fn errors(bench: &Bench, m: &Measure, runs: &[Run], problems: &mut Diagnostics) -> Vec<Error> {
     let file = match &m.against {
         Against::File(path) => match read(path, &m.word) {

@@ -3,7 +3,7 @@
 //! A step's work is shared by cores; ranks exchange what lies at the seams of their parts; of grains the places of all are gathered where
 //! neighbours are looked for anew. Nothing is taken to be done meanwhile. Each rank has the rows of all particles, so a machine needs memory for all.
 
-/// What is known of a kind of scene beside its measured time.
+/// Properties of a kind of scene besides its measured time.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     /// What it is.
@@ -151,7 +151,8 @@ mod tests {
     const SOLID: Measured = Measured { seconds: 68e-9, bytes: 350.0 };
     const GRAINS: Measured = Measured { seconds: 57e-9, bytes: 580.0 };
 
-    /// Reckoned by hand, but for the solid's seams, which are twice as wide as once thought: 10^8 particles on 64 machines of 64 cores.
+    /// Calculated by hand, except for the solid's seams, which are twice as wide as once thought: 10^8 particles on 64 machines
+    /// of 64 cores.
     #[test]
     fn work_and_seams_add_up() {
         let solid = step(&KINDS[0], SOLID, 1e8, 64, &NODE).unwrap();

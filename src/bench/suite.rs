@@ -1,6 +1,6 @@
-//! The suite: decks that the program carries, with their knobs, what is measured, and what theory says of it.
+//! The suite: decks that the program carries, with their knobs, their measures, and the theory.
 //!
-//! Lines that begin with `#|` at the head of a deck say so; for the deck they are comments.
+//! They are described in lines that begin with `#|` at the head of a deck, which are comments for the deck.
 
 use super::norm::Norm;
 use super::reference::Against;
@@ -100,7 +100,7 @@ pub struct Manner {
     pub lammps: Option<PathBuf>,
     /// This program.
     pub program: Starter,
-    /// Whether runs tell how far they are.
+    /// Whether runs report their progress.
     pub telling: bool,
     /// The ranks that make the runs, if there are several.
     pub ranks: Option<Ranks>,

@@ -11,7 +11,7 @@ use std::path::Path;
 /// The table for programs.
 pub const TABLE: &str = "bench.csv";
 
-/// The knobs that have a column: the first name of each axis speaks for those tied to it.
+/// The knobs that have a column: the first name of each axis stands for those tied to it.
 fn knobs(bench: &Bench) -> Vec<&str> {
     bench.axes.iter().flat_map(|axis| axis.names.iter().map(String::as_str)).collect()
 }

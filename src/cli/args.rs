@@ -1,4 +1,4 @@
-//! LAMMPS' command-line switches, read by hand because `-var name a b c` fits no option parser.
+//! LAMMPS' command-line switches, parsed by own code because `-var name a b c` fits no option parser.
 
 use super::partitions::{self, World};
 use super::ranks;
@@ -21,7 +21,7 @@ pub enum Deck {
 /// Where a stream of text goes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Target {
-    /// Where it goes when nothing is said: `log.lammps`, the terminal.
+    /// The default destination: `log.lammps`, the terminal.
     #[default]
     Usual,
     /// As usual, with every word also on a terminal.
@@ -32,7 +32,7 @@ pub enum Target {
     File(PathBuf),
 }
 
-/// Everything that can be said about how a deck is worked off; nothing here has been acted upon.
+/// All options for the execution of a deck, before any has been applied.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// `perigrain in.deck`, `-in in.deck`, else standard input.
@@ -47,7 +47,7 @@ pub struct Options {
     pub vars: Vec<(String, Vec<String>)>,
     /// `-report FILE`: the run as a web page.
     pub report: Option<PathBuf>,
-    /// `-view [PORT]`: the page while the run goes on; 0 for any port.
+    /// `-view [PORT]`: the page during the run; 0 for any port.
     pub view: Option<u16>,
     /// `-timeout TIME`: how long runs may take in all.
     pub timeout: Option<Duration>,
@@ -63,7 +63,7 @@ pub struct Options {
     pub plog: Target,
     /// `-pscreen file|none`.
     pub pscreen: Target,
-    /// Which of several partitions this process works off.
+    /// Which of several partitions this process executes.
     pub world: Option<World>,
     /// `-layout list`: no lattice layout, for tests.
     pub list_layout: bool,
@@ -71,7 +71,7 @@ pub struct Options {
     pub no_skipping: bool,
     /// `-portable`: no AVX2, for tests.
     pub portable: bool,
-    /// `-safe`, `-limit NAME N`: what a deck that nobody trusts may use.
+    /// `-safe`, `-limit NAME N`: the limits of an untrusted deck.
     pub safe: Option<Limits>,
     /// `-help`.
     pub help: bool,
@@ -204,7 +204,7 @@ pub const SWITCHES: &[Switch] = &[
         o.report = Some(v.one("a file")?.into());
         Ok(())
     }),
-    switch(&["-view"], "[PORT]", "show the run in a browser on this machine while it goes on", |o, v| {
+    switch(&["-view"], "[PORT]", "show the run in a browser on this machine while it runs", |o, v| {
         o.view = Some(v.port()?);
         Ok(())
     }),
@@ -231,7 +231,7 @@ pub const SWITCHES: &[Switch] = &[
             let message = format!("perigrain has no package `{package}`");
             return Err(Usage::new(message).help("leave it out, or write `-pk omp N`"));
         }
-        // LAMMPS reads 0 as "what the environment says"; further keywords tune what does not exist here.
+        // LAMMPS reads 0 as "from the environment"; further keywords tune what does not exist here.
         let n = v.number("a number of threads")?;
         o.threads = (n > 0).then_some(n);
         v.rest();
@@ -444,7 +444,7 @@ pub fn parse_many(words: Vec<String>) -> Result<(Options, Vec<Deck>), Usage> {
             decks.push(Deck::File(word.into()));
             continue;
         }
-        // Two dashes are as good as one: other programs want them, and completions of shells write them.
+        // Two dashes are as good as one: other programs require them, and completions of shells write them.
         let one = if word.starts_with("--") { &word[1..] } else { &word };
         let Some(switch) = SWITCHES.iter().find(|s| s.names.iter().any(|name| [one, &word].contains(name)))
         else {

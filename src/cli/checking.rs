@@ -30,7 +30,7 @@ pub fn check(decks: &[Options], json: bool) -> u8 {
     code
 }
 
-/// The deck's name and everything that can be said against it, in the order of its lines.
+/// The deck's name and all its problems, in the order of its lines.
 fn problems(o: &Options, sources: &mut Sources) -> (String, Diagnostics) {
     let (name, text) = match deck::read(&o.deck) {
         Ok(read) => read,

@@ -1,4 +1,4 @@
-//! A deck given on the command line, worked off by a session.
+//! Execution of a deck given on the command line, by a session.
 
 use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
@@ -71,7 +71,7 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     if let Some(sheet) = &mut sheet {
         let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
         let told = Told { options: o, text: text.clone(), session: &session, outcome: &outcome, film, log };
-        // What it looks at it looks at alone.
+        // The first rank reads the scene without the others.
         written = comm::run_as(Arc::new(Alone), || sheet.write(told));
         if written.is_ok() {
             log.to_screen(&sheet.said());
@@ -104,7 +104,7 @@ pub fn draw(o: &Options) -> u8 {
     }
 }
 
-/// A session as the switches want it.
+/// A session with the options of the switches.
 ///
 /// # Errors
 /// Variables of the command line that cannot be set.
@@ -112,10 +112,10 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
     Session::new(settled(o, mode, log)?)
 }
 
-/// What a session is told by the switches; threads and the gate are settled.
+/// The session options of the switches; applies threads and the gate.
 ///
 /// # Errors
-/// A folder that is not there.
+/// A missing folder.
 pub(super) fn settled(o: &Options, mode: Mode, log: &Log) -> Result<session::Options> {
     session::set_threads(o.threads.or_else(asked_of_openmp).unwrap_or(0));
     let folder = match &o.deck {
@@ -141,7 +141,7 @@ pub(super) fn settled(o: &Options, mode: Mode, log: &Log) -> Result<session::Opt
     })
 }
 
-/// What a deck leaves behind to go on from where `-timeout` ends it, in the folder it is started in.
+/// The restart file for a deck that `-timeout` ends, in the folder where the deck was started.
 fn last_restart(o: &Options) -> String {
     let name = match &o.deck {
         Deck::Stdin => None,
@@ -152,7 +152,7 @@ fn last_restart(o: &Options) -> String {
     format!("{name}{partition}.*.restart")
 }
 
-/// A session for a program that hosts it, as the words of a command line want it; the screen is the host's unless they say otherwise.
+/// A session for a program that hosts it, with the options of a command line; the screen is the host's unless an option sets it.
 ///
 /// # Errors
 /// Words that are not understood or concern a program of its own, files that cannot be written.
@@ -160,7 +160,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
     super::ranks::refuse("each Python would run a scene of its own")?;
     let (o, decks) = super::args::parse_many(words)?;
     if !decks.is_empty() {
-        let usage = Usage::new("a deck on the command line is not worked off here");
+        let usage = Usage::new("a deck on the command line is not executed here");
         return Err(usage.help("leave it out, and hand it over with `file(PATH)`"));
     }
     let alone = [
@@ -216,7 +216,7 @@ fn catch_interrupt(session: &Session, progress: &Progress) {
     let ask = move || {
         if stop.swap(true, Ordering::Relaxed) {
             progress.leave();
-            // Nobody may be there to read it.
+            // There may be no reader.
             let _ = writeln!(stderr(), "ended at once: the last lines of files may be missing");
             std::process::exit(i32::from(INTERRUPTED));
         }
@@ -227,7 +227,7 @@ fn catch_interrupt(session: &Session, progress: &Progress) {
     let _ = ctrlc::set_handler(ask);
 }
 
-/// Ctrl-C ends what is going on at a whole step, however often it comes.
+/// Ctrl-C ends the present work at a whole step, however often it comes.
 pub(super) fn catch_interrupts(session: &Session, progress: &Progress) {
     let (stop, progress) = (session.stop_flag(), progress.clone());
     let _ = ctrlc::set_handler(move || {
@@ -280,7 +280,7 @@ pub(super) fn name(deck: &Deck) -> String {
     }
 }
 
-/// Opens screen and log file. Looking at a plan leaves no log unless one is asked for.
+/// Opens screen and log file. A plan leaves no log unless one is requested.
 fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
     open_screen(log, o, progress)?;
     open_log(log, o, mode)

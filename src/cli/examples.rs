@@ -56,7 +56,7 @@ const EXAMPLES: &[Example] = examples![
     "squeezed_block": "in.squeezed_block";
 ];
 
-/// What is asked of `examples`.
+/// The words of `examples`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 pub struct Wanted {
     #[command(subcommand)]
@@ -81,10 +81,10 @@ enum Act {
     },
 }
 
-/// Does what is asked.
+/// Performs the request.
 ///
 /// # Errors
-/// An unknown name, a folder that is there already or cannot be made.
+/// An unknown name, a folder that exists already or cannot be made.
 pub fn perform(wanted: &Wanted) -> Result<(), Usage> {
     match &wanted.act {
         None | Some(Act::List) => super::pager::page(&list()),
@@ -106,7 +106,7 @@ fn list() -> String {
     for example in EXAMPLES {
         let _ = writeln!(text, "  {:<24} {}", example.name, example.title());
     }
-    text + "\n`perigrain examples show NAME` tells more, `perigrain examples copy NAME` writes its files here.\n"
+    text + "\n`perigrain examples show NAME` shows one, `perigrain examples copy NAME` writes its files here.\n"
 }
 
 impl Example {
@@ -128,7 +128,7 @@ fn find(name: &str) -> Result<&'static Example, Usage> {
     })
 }
 
-/// Writes the files into a new folder: what stands in one that is there is nobody's to overwrite.
+/// Writes the files into a new folder; an existing one is never overwritten.
 fn copy(example: &Example, folder: &Path) -> Result<(), Usage> {
     let trouble = |what: String| move |e: std::io::Error| Usage::new(format!("{what}: {e}"));
     if folder.exists() {

@@ -23,7 +23,7 @@ pub struct Wanted {
     files: Vec<PathBuf>,
 }
 
-/// Lays out each file by itself; the exit code tells whether one was refused or, with `--check`, would change.
+/// Formats each file by itself; the exit code shows whether one was refused or, with `--check`, would change.
 pub fn perform(wanted: &Wanted) -> std::result::Result<u8, Usage> {
     if wanted.files.iter().filter(|path| is_input(path)).count() > 1 {
         return Err(Usage::new("`-` can be read once only"));

@@ -63,7 +63,7 @@ impl Live {
         });
     }
 
-    /// Takes it away as the program ends, unless somebody is at it and perhaps waits for ever.
+    /// Removes it as the program ends, unless another thread holds it and perhaps never lets go.
     pub fn leave(&self) {
         let Some(mut line) = self.0.as_ref().and_then(|inner| inner.try_lock().ok()) else { return };
         match line.seen {

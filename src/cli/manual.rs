@@ -1,4 +1,4 @@
-//! Pages of the manual as they are asked for: the list, one by its name, those that speak of a word.
+//! Pages of the manual on request: the list, one by its name, those that contain a word.
 
 use super::args::Usage;
 use crate::manual::howtos::{HOWTOS, HowTo};
@@ -24,11 +24,11 @@ pub fn list() -> String {
     text
 }
 
-/// The page of a name, as `fix nve`, `nve` or `run`; behind that of a command that takes styles, the list of them. Of a word
-/// that has no page, those that speak of it.
+/// The page of a name, as `fix nve`, `nve` or `run`; after that of a command that takes styles, the list of them. For a word that
+/// has no page, the pages that contain it.
 ///
 /// # Errors
-/// No page has the name or speaks of it; the nearest is offered.
+/// No page has the name or contains it; the nearest is offered.
 pub fn page(name: &str) -> Result<String, Usage> {
     let all = pages();
     let found: Vec<&Page> = all.iter().filter(|p| p.title() == name || p.name == name).collect();
@@ -62,7 +62,7 @@ fn speaking_of(words: &str, all: &[Page]) -> Option<String> {
         .or_else(|| found(&words, &words.split_whitespace().collect::<Vec<_>>(), all))
 }
 
-/// The pages that have each of the parts, for who asked for these words.
+/// The pages that contain each of the parts, as the answer to a search for these words.
 fn found(words: &str, each: &[&str], all: &[Page]) -> Option<String> {
     let holds = |text: &str| {
         let text = text.to_lowercase();
@@ -74,7 +74,7 @@ fn found(words: &str, each: &[&str], all: &[Page]) -> Option<String> {
     let parts = [
         ("Pages named so", lines(&named)),
         ("How-tos", questions(&howtos)),
-        ("Pages that speak of it", lines(&telling)),
+        ("Pages that contain it", lines(&telling)),
     ];
     let text: Vec<String> = parts
         .iter()
@@ -110,7 +110,7 @@ mod tests {
             "{walls}"
         );
         assert!(page("fix").unwrap().contains("\n  fix wall/gran "));
-        assert!(page("Wiggle").unwrap().starts_with("# Pages that speak of it: `wiggle`"));
+        assert!(page("Wiggle").unwrap().starts_with("# Pages that contain it: `wiggle`"));
         assert!(page("fix nvee").unwrap_err().help.unwrap().contains("`fix nve`"));
     }
 

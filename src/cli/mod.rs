@@ -1,4 +1,4 @@
-//! The command line: what was asked for, done, and turned into an exit code.
+//! The command line: parses the request, performs it, and returns an exit code.
 
 pub mod args;
 mod benching;
@@ -45,7 +45,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(work())
 }
 
-/// The same for a program that hosts this one and has told so: the exit code.
+/// The same for a program that hosts this one and has registered itself: the exit code.
 pub fn work() -> u8 {
     let words =
         crate::sweep::starter::words().into_iter().map(|w| w.to_string_lossy().into_owned()).collect();
@@ -125,7 +125,7 @@ fn complain(usage: &Usage) {
     }
 }
 
-/// What there is to say about one diagnostic code, or the list of all for `all`.
+/// The explanation of one diagnostic code, or the list of all for `all`.
 fn explain(word: &str) -> Result<String, Usage> {
     if word == "all" {
         return Ok(CODES.iter().map(explained).collect::<Vec<_>>().join("\n"));

@@ -32,19 +32,19 @@ pub fn width(most: usize) -> usize {
     columns.map_or(most, |columns: usize| most.min(columns))
 }
 
-/// Hands the text to `$PAGER`, or to `less`; whether one could be started. An empty `PAGER` wants none.
+/// Passes the text to `$PAGER`, or to `less`; whether one could be started. With an empty `PAGER` none is.
 fn through_pager(text: &str) -> bool {
     let wanted = std::env::var("PAGER").unwrap_or_else(|_| "less".into());
     let mut words = wanted.split_whitespace();
     let Some(program) = words.next() else { return false };
     let mut pager = Command::new(program);
-    // What `less` is told where the user has told it nothing: keep colours, leave the text on the screen.
+    // Defaults for `less` where the user has set none: keep colours, leave the text on the screen.
     if std::env::var_os("LESS").is_none() {
         pager.env("LESS", "FRX");
     }
     let Ok(mut child) = pager.args(words).stdin(Stdio::piped()).spawn() else { return false };
     if let Some(mut input) = child.stdin.take() {
-        // A reader who leaves before the end is no failure.
+        // A pager that is closed before the end is no failure.
         let _ = input.write_all(text.as_bytes());
     }
     let _ = child.wait();
@@ -73,7 +73,7 @@ pub fn wrapped(text: &str, width: usize) -> String {
     out
 }
 
-/// A line of a list, whose text goes on below itself: `  fix nve   what it does`.
+/// A line of a list, whose text continues below itself: `  fix nve   what it does`.
 fn entry(line: &str, width: usize) -> String {
     let name = line.trim_start();
     let behind = name.find("  ").map(|k| &name[k..]).unwrap_or_default();

@@ -17,7 +17,7 @@ use std::process::{Child, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What one of several processes is told about itself.
+/// The role of one of several processes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct World {
     /// Its number, from 0.
@@ -87,7 +87,7 @@ pub fn of(o: &Options) -> Option<Partition> {
 }
 
 impl World {
-    /// Takes the next turn of a round: from the file that all processes share, or on ranks by asking at the rank's socket.
+    /// Takes the next turn of a round: from the file that all processes share, or on ranks by a request to the rank's socket.
     fn take(&self, round: u64, of: usize) -> std::io::Result<usize> {
         #[cfg(unix)]
         if std::os::unix::fs::FileTypeExt::is_socket(&std::fs::metadata(&self.turns)?.file_type()) {
@@ -134,7 +134,7 @@ pub fn work_off(o: &Options) -> Result<u8, Usage> {
     let here = || {
         let turns = std::env::temp_dir().join(format!("perigrain.{}.turns", std::process::id()));
         let outcome = all(o, &turns);
-        // It is of no use to anybody any more.
+        // It is no longer needed.
         let _ = std::fs::remove_file(&turns);
         Ok(said(outcome))
     };

@@ -37,11 +37,11 @@ pub struct Progress {
 struct State {
     /// Steps of the whole deck, once they are known.
     deck: Arc<Mutex<Option<Ahead>>>,
-    /// Ends the look ahead, and since when it has gone on.
+    /// The flag that ends the look ahead, and when it began.
     looking: Option<(Arc<AtomicBool>, Instant)>,
-    /// Steps of the runs that are over, as they were asked for.
+    /// Steps requested for the runs that are over.
     before: i64,
-    /// Steps of the run that goes on, those of its stretches that are over, and of the present one.
+    /// Steps of the present run: requested, those of its completed stretches, and those of the present one.
     asked: i64,
     stretches: i64,
     done: i64,
@@ -56,7 +56,7 @@ struct State {
 }
 
 impl Progress {
-    /// A line that shows itself when a run has gone on for a while, with the latest thermo values of `log` if there is one.
+    /// A line that appears when a run has lasted for a while, with the latest thermo values of `log` if there is one.
     pub fn new(log: Option<Log>) -> Self {
         let live = Live::of_stderr();
         if let Some(log) = log.as_ref().filter(|_| !live.is_hidden()) {
@@ -65,7 +65,7 @@ impl Progress {
         Self { live, log, state: Arc::default() }
     }
 
-    /// Reads the deck for the number of its steps, beside what else goes on.
+    /// Reads the deck for the number of its steps, in the background.
     pub fn look_ahead(&self, options: &Options, name: &str, text: &str) {
         if self.live.is_hidden() {
             return;
@@ -89,7 +89,7 @@ impl Progress {
         (state.asked, state.stretches, state.done, state.mark) = (steps, 0, 0, None);
     }
 
-    /// A stretch of the run begins: its setup, which the speed of steps knows nothing of, is made.
+    /// A stretch of the run begins with its setup, which is left out of the speed of steps.
     pub fn begins(&self) {
         let mut state = self.state();
         state.stretches += state.done;
@@ -180,8 +180,8 @@ impl State {
         deck.is_some_and(|all| self.before + self.stretches + self.done < all.steps)
     }
 
-    /// Steps made and steps in all: those of the whole deck if they are known and fit what has been made, else those of the run, or
-    /// of what goes on without a run having been asked for; and the words around the second number.
+    /// Steps made and steps in all: those of the whole deck if they are known and fit what has been made, else those of the run,
+    /// or of the present work if no run was requested; and the words around the second number.
     fn share(&self, made: &Made) -> (i64, i64, [&'static str; 2]) {
         let deck = *self.deck.lock().unwrap_or_else(PoisonError::into_inner);
         let in_run = self.stretches + self.done;
@@ -272,7 +272,7 @@ impl Tally {
     }
 }
 
-/// Whether colours are welcome on standard error: a terminal, and `NO_COLOR` is not set.
+/// Whether to use colours on standard error: a terminal, and `NO_COLOR` is not set.
 pub fn colors(stderr: &Stderr) -> bool {
     stderr.is_terminal() && colors_wanted()
 }

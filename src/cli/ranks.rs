@@ -19,7 +19,7 @@ const DONE: Duration = Duration::from_secs(600);
 /// More ranks than this on one machine are a slip of the finger.
 pub(super) const MOST: usize = 256;
 
-/// What a rank that is not the first would have printed, told if it ends alone.
+/// The output that a rank other than the first would have printed, shown if it ends alone.
 static KEPT: Mutex<String> = Mutex::new(String::new());
 
 /// Works a deck off, as one of several ranks where there are several.
@@ -146,7 +146,7 @@ fn local(o: &Options) -> Result<Option<Arc<dyn Comm>>, Usage> {
 fn unjoined(by: &Launched, why: &str) -> Usage {
     let (host, rank, size) = (comm::host(), by.rank, by.size);
     if rank > 0 {
-        // The first rank says it for all; where it alone has a library, this one does.
+        // The first rank prints it for all; if only that rank has a library, this one does.
         std::thread::sleep(Duration::from_secs(1));
         eprintln!("error: rank {rank} of {size} on {host} cannot join the others: {why}");
     }
@@ -179,8 +179,8 @@ fn together(ranks: &dyn Comm, o: &Options, mode: Mode) -> Result<u8, Usage> {
     Ok(code)
 }
 
-/// Ends ranks that are not alike; the exit code. The first one says why before any of them ends: launchers end all others then, and what
-/// these still had to say is lost.
+/// Ends ranks that are not alike; the exit code. The first one prints the reason before any of them ends: launchers then end all
+/// others, and their last output is lost.
 fn unlike(ranks: &dyn Comm, usage: &Usage) -> u8 {
     if ranks.rank() == 0 {
         super::complain(usage);

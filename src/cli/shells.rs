@@ -1,4 +1,4 @@
-//! What other programs ask of a command line: completions for shells and pages for `man`.
+//! Interfaces of the command line for other programs: completions for shells and pages for `man`.
 
 use super::args::{SWITCHES, Usage};
 use super::{show, tasks};

@@ -3,7 +3,7 @@
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-/// Calls `ask` for each of them, on a thread of its own. One that the caller has switched off, as `nohup` does, stays so.
+/// Calls `ask` for each of them, on a thread of its own. A signal that the caller has switched off, as `nohup` does, stays off.
 #[cfg(unix)]
 pub fn listen(ask: impl Fn() + Send + 'static) {
     use signal_hook::consts::{SIGHUP, SIGTERM, SIGXCPU};
@@ -48,7 +48,7 @@ pub fn outlive_large_files() {}
 #[cfg(not(unix))]
 pub fn listen(_ask: impl Fn() + Send + 'static) {}
 
-/// The signals that are ignored, a bit each from the first one on; `None` where the system does not tell.
+/// The signals that are ignored, a bit each from the first one on; `None` if the system does not report them.
 #[cfg(unix)]
 fn ignored() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

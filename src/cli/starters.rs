@@ -1,4 +1,4 @@
-//! The subcommand `new`: a small deck that runs as it stands and says in its lines what to change.
+//! The subcommand `new`: a small deck that runs as it is, with comments on what to change.
 
 use super::args::Usage;
 use super::show;

@@ -1,4 +1,4 @@
-//! What the program is asked to do: a subcommand, or a deck as LAMMPS would be given it.
+//! The tasks of the program: a subcommand, or a deck as on LAMMPS' command line.
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 pub enum Task {
     /// Run a deck.
     Run(Options),
-    /// Say what ranks are connected by.
+    /// Show how ranks are connected.
     Ranks(Options),
-    /// Work off lines as they are typed.
+    /// Execute lines as they are typed.
     Repl(Options),
     /// Report every problem of decks without acting.
     Check {
@@ -45,7 +45,7 @@ pub enum Task {
     Suite(benching::suite::Wanted),
     /// Measure what a step takes here, and forecast it on many machines.
     Scaling(benching::scaling::Wanted),
-    /// Make one of the runs of a sweep or bench, as standard input says.
+    /// Make one of the runs of a sweep or bench, described on standard input.
     Worker,
     /// Run the published cases that the program carries.
     Verify(verifying::Wanted),
@@ -83,7 +83,7 @@ enum Sub {
         #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Work off lines as they are typed, after a deck if one is given; `perigrain` on a terminal does the same
+    /// Execute lines as they are typed, after a deck if one is given; `perigrain` on a terminal does the same
     Repl {
         /// A deck to begin with, and LAMMPS' switches
         #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
@@ -102,7 +102,7 @@ enum Sub {
     Fmt(formatting::Wanted),
     /// Answer an editor about decks, as a language server over standard input and output
     Lsp {
-        /// The streams, as some editors say; there are no others
+        /// The streams, in the words of some editors; there are no others
         #[arg(long, hide = true)]
         stdio: bool,
     },
@@ -118,7 +118,7 @@ enum Sub {
         #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Say which MPI library connects the ranks of `mpirun -n N perigrain ranks`, and how fast
+    /// Show which MPI library connects the ranks of `mpirun -n N perigrain ranks`, and how fast
     Ranks {
         /// `-ranks N`: as many processes of this machine
         #[arg(value_name = "SWITCH", trailing_var_arg = true, allow_hyphen_values = true)]
@@ -144,7 +144,7 @@ enum Sub {
         )]
         rest: Vec<String>,
     },
-    /// Run published cases and say whether this build on this machine gives their numbers
+    /// Run published cases and check whether this build on this machine gives their numbers
     Verify(verifying::Wanted),
     /// Write a web page about a run that is over, from its log and dumps; `-report FILE` does so while a run is made
     Report(reporting::reading::Wanted),
@@ -159,7 +159,7 @@ enum Sub {
         #[arg(value_hint = ValueHint::FilePath)]
         file: PathBuf,
     },
-    /// Print completions for a shell, as `source <(perigrain completions bash)` wants them
+    /// Print completions for a shell, for `source <(perigrain completions bash)`
     Completions {
         /// The shell
         shell: Shell,
@@ -223,7 +223,7 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     Ok(task)
 }
 
-/// What becomes of a task without a deck where somebody sits at a terminal.
+/// The task that replaces one without a deck on a terminal.
 fn at_terminal(task: Task) -> Result<Task, Usage> {
     if task.options().is_none_or(|o| o.deck != Deck::Stdin) || !is_terminal() {
         return Ok(task);
@@ -352,7 +352,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     })
 }
 
-/// A help page that was asked for, or what is wrong.
+/// A requested help page, or an error.
 fn unread(e: &clap::Error) -> Result<Task, Usage> {
     let text = e.to_string();
     if !e.use_stderr() {

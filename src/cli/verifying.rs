@@ -10,7 +10,7 @@ use crate::verify::running::run_all;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// What is asked of `verify`.
+/// The words of `verify`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 pub struct Wanted {
     /// Print the cases instead of running them
@@ -39,7 +39,7 @@ pub struct Wanted {
     pub markdown: Option<PathBuf>,
 }
 
-/// Runs what is wanted; the exit code says whether every number is the field's.
+/// Runs the chosen cases; the exit code shows whether every number agrees with its source.
 ///
 /// # Errors
 /// A pattern that no case has, a file that cannot be written.
@@ -57,7 +57,7 @@ pub fn verify(wanted: &Wanted) -> Result<u8, Usage> {
     judged(cases, wanted)
 }
 
-/// Runs cases, shows and writes what came out; the exit code says whether anything failed.
+/// Runs cases, shows and writes the results; the exit code shows whether anything failed.
 fn judged(cases: Vec<Case>, wanted: &Wanted) -> Result<u8, Usage> {
     // Cases are small: several side by side are faster than one on several threads.
     let workers = session::set_threads(wanted.threads.unwrap_or(0));
@@ -71,7 +71,7 @@ fn judged(cases: Vec<Case>, wanted: &Wanted) -> Result<u8, Usage> {
     Ok(if report.is_well() { OK } else { FAILED })
 }
 
-/// Writes the reports that are asked for.
+/// Writes the requested reports.
 fn write(wanted: &Wanted, report: &Report) -> Result<(), Usage> {
     type Make = fn(&Report) -> String;
     let all: [(&Option<PathBuf>, Make); 4] = [

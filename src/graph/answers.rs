@@ -1,4 +1,4 @@
-//! What formulas ask about the session itself: masks, settings, which features exist and are in use.
+//! Answers to formulas about the session itself: masks, settings, which features exist and are in use.
 
 use super::node::Graph;
 use super::{catalogue, measure};
@@ -56,7 +56,7 @@ pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
 #[derive(Clone, Debug, Default)]
 pub struct Declared {
     pair: Option<&'static str>,
-    /// The pair style can be asked about single pairs of particles.
+    /// The pair style can be probed for single pairs of particles.
     single: bool,
     bond: Option<&'static str>,
     computes: Vec<String>,
@@ -70,7 +70,7 @@ impl Declared {
         let pair = graph.pair.as_ref().map(|p| &p.pair);
         Self {
             pair: pair.map(|p| p.facts().name),
-            // One that still lacks coefficients has something to tell.
+            // A style that still lacks coefficients can be probed.
             single: pair.is_some_and(|p| p.probes(w, true).map_or(true, |probes| !probes.is_empty())),
             bond: graph.bond.as_ref().map(|b| b.force.name()),
             computes: graph.computes.iter().map(|c| c.id.clone()).collect(),
@@ -159,7 +159,7 @@ fn available(category: &Word, name: &Word) -> Result<bool> {
     if category_name == "feature" {
         return Ok(["gzip", "png", "exceptions"].contains(&name));
     }
-    // LAMMPS' manual says `pair_style` where LAMMPS knows `pair`.
+    // LAMMPS' manual has `pair_style` where LAMMPS reads `pair`.
     let of = if category_name == "pair_style" { "pair" } else { category_name };
     match catalogue::styles(of) {
         Some(names) => Ok(names.contains(&name)),

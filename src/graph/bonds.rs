@@ -48,7 +48,7 @@ fn bring_along(
         }
     }
     let old: Vec<FixNode> = graph.fixes.extract_if(.., |f| f.style == BROUGHT).collect();
-    // A restart file says the line, and the deck says it again: what is kept then stands.
+    // A restart file repeats the line, and so does the deck: state kept then is valid.
     let again = |id: &str, fix: &dyn Fix| {
         let (restored, shape) = (w.parts.resume.is_some(), fix.shape());
         restored
@@ -91,7 +91,7 @@ pub fn bond_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     };
     if w.bonds.types == 0 {
         let d = Diagnostic::error(Code::CONFLICT, args.here(), "there are no bond types");
-        return Err(d.help("say how many: `create_box … bond/types N`").into());
+        return Err(d.help("set the number: `create_box … bond/types N`").into());
     }
     let (first, last) = args.type_range(w.bonds.types)?;
     let kinds: Vec<u16> = (first..=last).collect();
@@ -121,7 +121,7 @@ pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
             let text = "there are bonds but no bond_style: they exert no forces";
             found.push(
                 Diagnostic::warning(Code::NO_FORCES, span, text)
-                    .help("`bond_style zero` says that this is meant"),
+                    .help("`bond_style zero` states that this is meant"),
             );
         }
         return;
@@ -146,7 +146,7 @@ pub fn check_angles(w: &World, span: Span, found: &mut Diagnostics) {
     if angles.style.is_none() && !angles.list.is_empty() {
         let text = "there are angles but no angle_style: they exert no forces";
         let d = Diagnostic::warning(Code::NO_FORCES, span, text);
-        found.push(d.help("`angle_style zero` says that this is meant"));
+        found.push(d.help("`angle_style zero` states that this is meant"));
     }
     if let Some(first) = angles.missing().first() {
         let text = format!("angle_style zero has no coefficients for angle type {first}");

@@ -134,7 +134,7 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
     }
 }
 
-/// A line said once more counts where it was said last.
+/// A repeated line counts where it appeared last.
 fn say<T>(lines: &mut Vec<T>, line: T, same: impl Fn(&T, &T) -> bool) {
     lines.retain(|old| !same(old, &line));
     lines.push(line);
@@ -207,7 +207,7 @@ pub(super) fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<(&'a str, Spa
 }
 
 fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    // As in LAMMPS: what particles have besides may be said before there is a box.
+    // As in LAMMPS: additional properties of particles may be declared before there is a box.
     if args.peek_at(2).is_none_or(|style| style.text != "property/atom") {
         needs_box(w, args)?;
     }

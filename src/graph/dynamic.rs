@@ -1,4 +1,4 @@
-//! Dynamic groups: who belongs to them is decided anew in each step, after forces and before the fixes that change them.
+//! Dynamic groups: their members are chosen anew in each step, after forces and before the fixes that change them.
 
 use super::node::{FixNode, Graph};
 use super::seal::Sealer;
@@ -57,7 +57,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     Ok(())
 }
 
-/// Fixes that remember the particles of their group, or ask for it in vain: LAMMPS lets no dynamic group have them.
+/// Fixes that keep the particles of their group from the start, or cannot use others: LAMMPS allows no dynamic group for them.
 const FIXED_MEMBERS: [&str; 17] = [
     "adapt",
     "ave/atom",

@@ -154,7 +154,8 @@ impl Env for RunEnv<'_> {
     }
 }
 
-/// While the deck is read: values are computed on the spot; what only a run can tell is unknown where a deck is only looked at.
+/// While the deck is read: values are computed on the spot; values that only a run determines are unknown where a deck is only
+/// checked.
 pub struct DeckEnv<'a> {
     /// The world.
     pub w: &'a mut World,
@@ -162,7 +163,7 @@ pub struct DeckEnv<'a> {
     pub graph: &'a Graph,
 }
 
-/// Whether only a run can tell a keyword's value, where a scene is only looked at.
+/// Whether only a run determines a keyword's value, where a scene is only checked.
 fn hidden(w: &World, name: &str) -> bool {
     let u = &w.parts.unseen;
     let follows =
@@ -182,7 +183,7 @@ fn hidden(w: &World, name: &str) -> bool {
 }
 
 impl DeckEnv<'_> {
-    /// Plans the values asked for by `ask` and runs that plan once.
+    /// Plans the values that `ask` requests and runs that plan once.
     fn now<T>(&mut self, span: Span, vars: &Vars, ask: impl FnOnce(&mut Sealer) -> Result<T>) -> Result<T> {
         let (answer, mut plan, t) = self.planned(span, vars, ask)?;
         plan.run(self.w, &t, &Stage::ALL)?;
@@ -231,7 +232,7 @@ impl DeckEnv<'_> {
         let mut wanted = t.clone();
         plan.ask(&mut wanted);
         let tally = &self.w.tally;
-        // LAMMPS asks for the step alone, and tells what the last run has left of particles that were changed since.
+        // LAMMPS checks the step alone, and returns what the last run has left of particles that were changed since.
         let stands = tally.step == Some(t.step) && (!self.w.parts.changed || self.w.settings.lammps());
         let short = (wanted.energy && !stands)
             || (wanted.virial && !(stands && tally.with_virial))
@@ -253,12 +254,12 @@ impl DeckEnv<'_> {
 }
 
 impl DeckEnv<'_> {
-    /// Whether only a run can tell what particles do.
+    /// Whether only a run determines the state of particles.
     fn blind(&self) -> bool {
         self.w.parts.unseen.particles
     }
 
-    /// What `read` makes of the slot that a reference means, filled for this moment; unknown where only a run can tell.
+    /// The result of `read` for the slot of a reference, filled for this moment; unknown where only a run determines it.
     fn filled(
         &mut self,
         r: &ValueRef,
@@ -404,7 +405,7 @@ impl Values for DeckValues<'_> {
         let reading = self.reading(w, r)?;
         let values = (0..w.n()).map(|i| reading.atom(w, i)).collect();
         if let (Reading::Atom(slot, _), RefKind::Variable) = (reading, r.kind) {
-            // Variables are reckoned anew at each use: what acts asked for needs no place during runs.
+            // Variables are evaluated anew at each use: values requested by acts need no place during runs.
             w.slots.get_mut(slot).empty();
         }
         Ok(values)

@@ -1,4 +1,4 @@
-//! The guard over a run's energy: put into the plan with the steps it must look at.
+//! The guard over a run's energy: put into the plan with the steps it must check.
 
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -19,7 +19,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
             "one fix dt/guard watches the whole scene",
         )
         .label(node.span, "the other one")
-        .help(format!("say `unfix {}` first", other.id))
+        .help(format!("use `unfix {}` first", other.id))
         .into());
     }
     let late = |stage: Stage| matches!(stage, Stage::EndOfStep | Stage::Output);

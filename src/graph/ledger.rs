@@ -1,4 +1,4 @@
-//! The ledger's ops: forces of fixes are told apart as they act, and every step is entered.
+//! The ledger's ops: forces of fixes are booked separately as they act, and every step is entered.
 
 use super::node::FixNode;
 use super::seal::Sealer;
@@ -12,7 +12,7 @@ use perigrain_world::field::{
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, TYPE_MASS, V, VOLUME, X, X0,
 };
 
-/// Whether somebody keeps the ledger.
+/// Whether a ledger is kept.
 pub fn wanted(s: &Sealer) -> bool {
     let graph = s.graph();
     graph.computes.iter().any(|c| c.style == "energy/ledger")
@@ -30,7 +30,7 @@ pub fn begin(s: &mut Sealer) {
     s.add(vec![op.boxed()], span);
 }
 
-/// Fixes of one channel one behind the other, whose forces are told apart from others' together.
+/// Consecutive fixes of one channel, whose forces are booked together, apart from others'.
 #[derive(Default)]
 pub struct Marks {
     waiting: Option<Mark>,

@@ -44,7 +44,7 @@ pub struct FixNode {
     pub id: String,
     /// Its style's name.
     pub style: &'static str,
-    /// Whom it concerns.
+    /// The group it acts on.
     pub group: GroupId,
     /// The fix.
     pub fix: Box<dyn Fix>,
@@ -120,7 +120,7 @@ impl Graph {
         std::iter::once(pair).chain(pair.parts()).find(|p| p.facts().name == style)
     }
 
-    /// What the deck's lines said of a coefficient.
+    /// The value of a coefficient in the deck's lines.
     pub fn coefficient(&self, of: &Coefficient) -> Option<f64> {
         match of.bond {
             true => self.bond.as_ref()?.force.coefficient(&of.name, of.types.0),
@@ -149,7 +149,7 @@ impl Graph {
     /// The temperature that knows the flow which a compute takes away: itself, or that of its `bias`.
     pub fn knows_flow(&self, id: &str) -> Option<&ComputeNode> {
         let mut node = self.find_compute(id)?;
-        // At most as many as there are computes: nobody is its own bias.
+        // At most as many as there are computes: none is its own bias.
         for _ in 0..self.computes.len() {
             let Some(r) = node.compute.bias() else { return Some(node) };
             node = self.find_compute(&r.name)?;

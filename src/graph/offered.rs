@@ -59,7 +59,7 @@ fn only_particles(value: Value, r: &ValueRef) -> Result<Value> {
     Err(by_variable(Diagnostic::error(Code::WRONG_KIND, r.span, text), r).into())
 }
 
-/// Says how a single number gets into a formula of many.
+/// Explains how a single number gets into a formula of many.
 fn by_variable(d: Diagnostic, r: &ValueRef) -> Diagnostic {
     d.help(format!("write `variable NAME equal {r}` and put `v_NAME` into this formula"))
 }

@@ -11,7 +11,7 @@ use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TO
 use perigrain_world::index::Index;
 use perigrain_world::{Domain, Extent, Kept, NeighborSettings, Particles, Seen, World, extent};
 
-/// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
+/// Wraps, shrinks, checks for lost particles and marks lists for a rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
     /// What happens to lost particles.
     pub lost: Lost,
@@ -25,7 +25,7 @@ pub enum Lost {
     /// The run ends.
     #[default]
     Error,
-    /// They are deleted; thermo output says so once.
+    /// They are deleted; thermo output warns once.
     Warn,
     /// They are deleted.
     Ignore,
@@ -102,7 +102,7 @@ fn corners_moved(w: &World) -> f64 {
     for (a, b) in domain.corners().into_iter().zip(before.corners()) {
         let way = apart(a, b);
         if way > ways[0] * more {
-            // LAMMPS forgets the one that was farthest so far, and makes its lists at these times.
+            // LAMMPS drops the largest displacement so far, and rebuilds its lists at these times.
             ways = [way, if lammps { ways[1] } else { ways[0] }];
         } else if way > ways[1] {
             ways[1] = way;
@@ -181,7 +181,7 @@ fn flip(w: &mut World) {
     let Some(flip) = domain.flip.take() else { return };
     let p = &mut w.particles;
     if !lammps {
-        // In LAMMPS those who have crossed a face since the last rebuild keep their velocities here.
+        // In LAMMPS particles that have crossed a face since the last rebuild keep their velocities here.
         carry(domain, p);
         let all: Vec<usize> = (0..p.x.len()).collect();
         p.image.wrap(domain, &mut p.x, &all);
@@ -217,7 +217,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
             carry(domain, p);
             p.image.wrap(domain, &mut p.x, &(0..n).collect::<Vec<_>>());
         }
-        // Across fixed faces nobody has been wrapped: there the corners still are those of all.
+        // Across fixed faces no particle has been wrapped: there the corners still are those of all.
         extent.corners.iter().all(|corner| domain.keeps_upright(corner))
     });
     let domain = &*domain;
@@ -243,13 +243,13 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
         w.rebuild.kept.last = [before, w.rebuild.generation];
     }
     w.rebuild.step = t.step;
-    // Whoever makes radii grow says so anew in each run.
+    // Ops that make radii grow report so anew in each run.
     w.rebuild.grown = w.rebuild.grown.map(|_| 0.0).filter(|_| !t.setup);
     hold(w);
     Ok(())
 }
 
-/// Deletes who is beyond fixed faces in LAMMPS' order, one axis after the other: who is drawn later hangs on it.
+/// Deletes the particles beyond fixed faces in LAMMPS' order, one axis after the other: later random numbers depend on it.
 fn lose(w: &mut World) {
     w.fall_back();
     for d in 0..3 {
@@ -261,7 +261,7 @@ fn lose(w: &mut World) {
     }
 }
 
-/// `thermo_modify lost/bond warn`: tells of bonds that have lost one of their ends.
+/// `thermo_modify lost/bond warn`: warns of bonds that have lost one of their ends.
 fn warn_of_bonds(w: &mut World, t: &Tick) {
     if w.bonds.lost != LostBond::Warn || w.bonds.is_empty() {
         return;
@@ -292,7 +292,7 @@ fn too_far(w: &World, lost: &[usize], t: &Tick) -> perigrain_base::diag::Diagnos
         ),
     )
     .help("enlarge the box, or let it follow the particles with `boundary s s s` or `m`")
-    .help("`thermo_modify lost warn` or `ignore` deletes such particles and goes on")
+    .help("`thermo_modify lost warn` or `ignore` deletes such particles and continues")
     .into()
 }
 
@@ -302,7 +302,7 @@ fn hold(w: &mut World) {
     rebuild.seen = Seen::now(*w.travel, 0.0);
     rebuild.corners = w.domain.as_ref().map(|d| [d.lo, d.hi]);
     rebuild.tilt = w.domain.as_ref().and_then(|d| d.tilt).unwrap_or_default();
-    // Nobody at all has not moved either.
+    // A scene without particles does not count as unmoved.
     rebuild.unmoved = !p.x0.is_empty() && p.x == p.x0;
     if rebuild.unmoved {
         rebuild.held = Vec::new();

@@ -23,7 +23,7 @@ const KEYWORDS: [&str; 13] = [
     "compute/tally",
 ];
 
-/// `pair_modify keyword value …`: read whole; what has no effect here is said to have none.
+/// `pair_modify keyword value …`: read whole; keywords without effect here get a note.
 pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     let Some(node) = &graph.pair else {
         return fail(Code::WRONG_ORDER, args.name_span(), "pair_modify comes before any pair_style");

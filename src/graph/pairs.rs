@@ -25,7 +25,7 @@ pub fn pair_style(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context)
     Ok(Declared::default())
 }
 
-/// Says the lines behind an earlier `pair_style` again, each with the lattice that was in force.
+/// Repeats the lines behind an earlier `pair_style`, each with the lattice that was in force.
 fn restate(graph: &mut Graph, w: &mut World, old: &PairNode, cx: &Context) -> Result<()> {
     let lattice = w.lattice.clone();
     // What there is to note has been noted.

@@ -57,13 +57,13 @@ struct Movers {
 }
 
 impl Movers {
-    /// Whether a particle goes and turns as forces want.
+    /// Whether a particle moves and turns as forces require.
     fn of(&self, mask: u32) -> [bool; 2] {
         [self.goes, self.turns].map(|bits| mask & self.held == 0 && mask & bits != 0)
     }
 }
 
-/// Looks at contacts.
+/// Examines contacts.
 struct Look {
     probes: Vec<Box<dyn Probe>>,
     movers: Movers,
@@ -92,7 +92,7 @@ impl Look {
                 "beyond 2/ω, ω the largest frequency of grains on their contacts with each other and with walls (less where dashpots \
                  act), they swing ever farther until contacts open: such a run may end well, and is wrong",
             )
-            .help(format!("say `timestep {say:.1e}` or less, or take softer grains"))
+            .help(format!("use `timestep {say:.1e}` or less, or take softer grains"))
             .help("`fix ID all dt/critical 100 0.8` lets the step follow")
     }
 }
@@ -108,7 +108,8 @@ impl Op for Look {
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let same = w.parts.pressed.filter(|p| p.dt == t.dt);
-        // A look takes as long as some 15 steps: a run that goes on is worth one at its beginning and end only so long after the last.
+        // An examination takes as long as some 15 steps: a continued run repeats it at its beginning and end only this long after
+        // the last.
         let soon = same.is_some_and(|p| (0..LOOK).contains(&(t.step - p.step)));
         let goes_on = !t.setup || t.unchanged;
         if same.is_some_and(|p| p.told) || (soon && goes_on) {

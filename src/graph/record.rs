@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The three kinds of node that keep LAMMPS' imperative order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Replaces or removes what an earlier line said.
+    /// Replaces or removes an earlier declaration.
     Declare,
     /// Changes the world once.
     Act,
@@ -61,7 +61,7 @@ impl Node {
         self.provides.as_ref().filter(|p| p.kind == UseKind::Variable).map(|p| p.name.as_str())
     }
 
-    /// The positive number said for a fact.
+    /// The positive number given for a fact.
     fn said(&self, fact: &str) -> Option<f64> {
         let mut words = self.text.split_whitespace().skip_while(|w| *w != fact);
         words.nth(1)?.parse::<f64>().ok().filter(|d| *d > 0.0)
@@ -110,7 +110,7 @@ pub struct Record {
     followed: BTreeMap<String, usize>,
     /// In how many definitions of other variables a variable is named.
     within: BTreeMap<String, BTreeMap<String, usize>>,
-    /// What has been settled, with the numbers said.
+    /// What has been settled, with the given numbers.
     settled: BTreeMap<&'static str, Option<Extremes>>,
     /// The latest turn that may have changed particles.
     changed: u64,
@@ -160,7 +160,7 @@ impl Record {
         };
         self.count(k, false);
         let old = std::mem::replace(&mut self.nodes[k], node);
-        // Declarations without a name add to what they have said before.
+        // Declarations without a name add to earlier ones.
         if same.is_some() && old.provides.is_none() && old.role == Role::Declare {
             let uses = &mut self.nodes[k].uses;
             uses.extend(old.uses);
@@ -220,8 +220,7 @@ impl Record {
         }
     }
 
-    /// Forgets who provided a name that has been deleted: a loop that goes through names leaves no more nodes than it has
-    /// lines.
+    /// Removes the provider of a deleted name: a loop over names leaves no more nodes than it has lines.
     pub fn delete(&mut self, name: &Use) {
         for k in self.providers.remove(name).unwrap_or_default() {
             self.count(k, false);
@@ -276,7 +275,7 @@ impl Record {
         self.settled.contains_key(fact)
     }
 
-    /// The positive numbers that acts have said for a fact, if any.
+    /// The positive numbers that acts have given for a fact, if any.
     pub fn said(&self, fact: &str) -> Option<Extremes> {
         self.settled.get(fact).copied().flatten()
     }

@@ -22,7 +22,7 @@ pub fn place_now(w: &mut World, graph: &Graph, vars: &Vars, meant: impl Fn(&str)
     let follows = w.regions.iter().filter(|(key, region)| region.follows() && meant(key.text()));
     let keys: Vec<Key<Region>> = follows.map(|(key, _)| key).collect();
     for key in keys {
-        // Out of the world meanwhile: a formula that asks the region it places would never end.
+        // Out of the world meanwhile: a formula that queries the region it places would never end.
         let Some(region) = w.regions.remove(key) else { continue };
         let placed = placed(w, graph, vars, &region);
         w.regions.insert(key, placed.as_ref().unwrap_or(&region).clone());
@@ -34,10 +34,10 @@ pub fn place_now(w: &mut World, graph: &Graph, vars: &Vars, meant: impl Fn(&str)
     Ok(())
 }
 
-/// Puts all regions in their places that can be put now; the others stay where they were, and whoever names one of
-/// them in a line or formula is told.
+/// Puts all regions in their places that can be placed now; the others stay where they were, and a line or formula that names one
+/// of them is refused with a message.
 pub fn place_all(w: &mut World, graph: &Graph, vars: &Vars) {
-    // All of them out of the world meanwhile: what their variables ask for comes here again.
+    // All of them out of the world meanwhile: evaluating their variables may come here again.
     let following: Vec<Key<Region>> =
         w.regions.iter().filter(|(_, r)| r.follows()).map(|(key, _)| key).collect();
     let taken: Vec<_> = following.into_iter().filter_map(|key| Some((key, w.regions.remove(key)?))).collect();
@@ -89,11 +89,11 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     Ok(())
 }
 
-/// Puts one region where its variables say.
+/// Puts one region where its variables place it.
 struct PlaceRegion {
     title: String,
     region: Key<Region>,
-    /// Values of its variables, in the order in which it asks for them.
+    /// Values of its variables, in the order in which it reads them.
     readings: Vec<Reading>,
     stage: Stage,
 }

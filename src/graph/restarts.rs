@@ -1,4 +1,4 @@
-//! `restart`: restart files written while a run goes on.
+//! `restart`: restart files written during a run.
 
 use super::node::{FixNode, Graph};
 use super::seal::Sealer;
@@ -183,10 +183,10 @@ impl Op for Write {
     }
 }
 
-/// Writes a restart file of a scene, at whole steps of a run (`ran`) or between runs: the only way to one.
+/// Writes a restart file of a scene, at whole steps of a run (`ran`) or between runs: the only function that does.
 ///
-/// Forces stand while a run goes on, and after it as long as no line changes the scene. A minimization leaves none: velocities
-/// may change before the next run.
+/// Forces are valid during a run, and after it as long as no line changes the scene. A minimization leaves none: velocities may
+/// change before the next run.
 ///
 /// # Errors
 /// The disk's.

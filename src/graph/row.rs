@@ -16,13 +16,13 @@ pub struct Row {
     pub layout: Layout,
     /// Its values.
     pub readings: Vec<Reading>,
-    /// Where the deck asks for those of which only a run can tell whether they are there.
+    /// The place in the deck of columns that only a run can provide or lack.
     pub spans: Vec<Option<Span>>,
     /// At which steps.
     pub when: When,
     /// Where to.
     pub log: Log,
-    /// Says once that particles were lost.
+    /// Warns once that particles were lost.
     pub warn: bool,
     /// How many columns the header on a narrow screen has.
     pub shown: usize,
@@ -53,7 +53,7 @@ impl Row {
         Ok(())
     }
 
-    /// Says on a narrow screen which columns it has no room for.
+    /// Lists on a narrow screen the columns that do not fit.
     fn name_the_rest(&self) {
         let rest: Vec<&str> =
             self.layout.columns.iter().skip(self.shown).map(|c| c.header.as_str()).collect();

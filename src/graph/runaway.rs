@@ -21,14 +21,14 @@ use perigrain_world::{Fields, RunStyle, World};
 pub enum Runaway {
     /// It ends with an error.
     Error,
-    /// The log says so once.
+    /// The log warns once.
     Warn,
     /// Nothing.
     Ignore,
 }
 
-/// The energy over that at the beginning of the run from which on it is beyond reason: of a scene that nobody does work on, or
-/// kinetic energy where speeds are beyond reason too.
+/// The ratio to the energy at the beginning of the run from which on the energy is beyond reason: of a scene without external
+/// work, or kinetic energy where speeds are beyond reason too.
 const GROWN: f64 = 1e6;
 
 /// The same for grains: their energy is known to the last contact, and nothing that a law of contacts makes comes near.
@@ -66,9 +66,9 @@ const IDLE: [&str; 22] = [
     "viscous/sphere",
 ];
 
-/// What the scene can tell of speeds and steps.
+/// The scales of speed and time of the scene.
 struct Scales {
-    /// The speed of the fastest waves, roughly; across the box in one step where nobody knows.
+    /// The speed of the fastest waves, roughly; across the box in one step where it is unknown.
     waves: f64,
     /// Whether it is that of waves.
     known: bool,
@@ -76,7 +76,7 @@ struct Scales {
     step: Option<f64>,
 }
 
-/// Adds the op that looks at speeds with each row of the step table.
+/// Adds the op that checks speeds with each row of the step table.
 ///
 /// # Errors
 /// What the pair style lacks.
@@ -147,11 +147,11 @@ struct State {
     kinetic: f64,
 }
 
-/// Looks at speeds.
+/// Checks speeds.
 struct Look {
     how: Runaway,
     scales: Scales,
-    /// Whether nobody does work on particles and all energies are known.
+    /// Whether no external work is done on particles and all energies are known.
     closed: bool,
     /// Whether there are solids: their energy is tallied.
     solids: bool,
@@ -188,7 +188,8 @@ impl Look {
         State { square, kinetic: half * (straight + turning) }
     }
 
-    /// All energy at the beginning of a run, if it is known. A closed scene that a run goes on with unchanged has no more than it had.
+    /// All energy at the beginning of a run, if it is known. A closed scene that a run continues unchanged has no more than it
+    /// had.
     fn budget(&mut self, w: &mut World, t: &Tick, kinetic: f64) -> Result<Option<f64>> {
         let tallied = !self.solids || w.tally.step == Some(t.step);
         let strain = if self.solids { w.tally.pair.abs() } else { 0.0 };
@@ -232,7 +233,7 @@ impl Look {
         ))
     }
 
-    /// Says a problem once, as an error where that is wanted.
+    /// Reports a problem once, as an error where that is wanted.
     fn tell(&mut self, problem: Diagnostic) -> Result<()> {
         self.told = true;
         match self.how {
@@ -251,16 +252,16 @@ impl Look {
         };
         let d = match self.scales.step {
             Some(limit) if dt > limit => d.help(format!(
-                "the time step {dt:.3e} is {:.2} times the longest that is stable, about {limit:.2e}: say `timestep {:.1e}` or \
+                "the time step {dt:.3e} is {:.2} times the longest that is stable, about {limit:.2e}: use `timestep {:.1e}` or \
                  less",
                 dt / limit,
                 0.8 * limit
             )),
             _ => d
-                .help(format!("take a shorter time step than {dt:.3e}: `compute dt/critical` tells the longest stable one"))
+                .help(format!("take a shorter time step than {dt:.3e}: `compute dt/critical` computes the longest stable one"))
                 .help("`fix dt/guard` goes back where energy was made, and on in shorter steps"),
         };
-        d.help("`thermo_modify energy ignore` lets such runs go on")
+        d.help("`thermo_modify energy ignore` lets such runs continue")
     }
 }
 
@@ -271,7 +272,7 @@ impl Op for Look {
             let reads = if self.closed { V | MASS | KIND | TYPE_MASS | TALLY } else { V };
             return About { when, ..About::new("energy watch", Stage::Output, Needs::new().read(reads)) };
         }
-        // Whether energies are numbers is asked of every scene that is left to itself.
+        // The check that energies are numbers covers every scene that is left to itself.
         let tally = if self.solids || self.closed { TALLY } else { Fields::NONE };
         let reads = X | V | OMEGA | RADIUS | MASS | KIND | TYPE_MASS | MASK | TAG | X0 | tally;
         let lists = BONDS | BOX | COLUMNS | CONTACTS | FAMILIES | LISTS | MOLECULE | TRAVEL;

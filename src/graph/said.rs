@@ -1,4 +1,4 @@
-//! Texts with values in them, and steps that a variable names, for styles that speak during a run.
+//! Texts with values in them, and steps that a variable names, for styles that write during a run.
 
 use super::env::RunEnv;
 use super::keywords::{self, Sources};
@@ -54,8 +54,8 @@ fn sources(
     Ok(from)
 }
 
-/// Plans the values that a variable needs and returns what asks it about a place, with internal-style variables set to
-/// the coordinates.
+/// Plans the values that a variable needs and returns a function that evaluates it at a place, with internal-style variables set
+/// to the coordinates.
 ///
 /// # Errors
 /// Unknown variables, and those to be set that are of another style.
@@ -161,7 +161,7 @@ fn walk(w: &mut World, vars: &Vars, r: &ValueRef) -> Result<When> {
     Ok(When::At(steps.into()))
 }
 
-/// The world of which only the clock may be asked.
+/// The world, reduced to its clock.
 struct ClockEnv<'a>(&'a World);
 
 impl ClockEnv<'_> {

@@ -1,4 +1,4 @@
-//! Declarations and world become a step plan: values before their readers, and only what somebody reads.
+//! Declarations and world become a step plan: values before their readers, and only values that are read.
 
 mod context;
 
@@ -25,20 +25,20 @@ pub struct Sealer<'a> {
     /// The ops so far.
     pub plan: StepPlan,
     span: Span,
-    /// What has been placed so far and may be asked for again: computes, and what they have evaluated; name and stage.
+    /// The computes placed so far, which may be requested again, and their evaluations; name and stage.
     placed: Vec<(String, Stage)>,
     /// Names being resolved, to find circles.
     trail: Vec<String>,
-    /// Evaluations of variables and keywords so far, for the compute that is being asked or else for all other lines: each has a
-    /// slot of its own.
+    /// Evaluations of variables and keywords so far, for the present compute or else for all other lines: each has a slot of its
+    /// own.
     uses: usize,
-    /// Where the run speaks.
+    /// The log of the run.
     pub log: Log,
-    /// What formulas may ask about declarations.
+    /// Declarations as formulas see them.
     declared: Option<Arc<Declared>>,
     /// The word outside computes and variables whose value is being planned.
     asking: Span,
-    /// The first such word that wants energies or pressures.
+    /// The first such word that needs energies or pressures.
     pub tallies: Option<Span>,
     /// The level of steps that the present fix has been given.
     chosen: Option<usize>,
@@ -103,9 +103,9 @@ impl<'a> Sealer<'a> {
         let out: [(bool, &str, &str); 5] = [
             (!p.style.sphere, "rotation and torque", "no particle has a radius"),
             (self.graph.pair.is_none(), "pair forces", "no pair_style"),
-            (self.plan.energy.is_empty(), "energy tally", "nobody reads the potential energy"),
-            (self.plan.virial.is_empty(), "virial tally", "nobody reads the pressure"),
-            (self.plan.atom_energy.is_empty(), "per-particle energies", "nobody reads them"),
+            (self.plan.energy.is_empty(), "energy tally", "nothing reads the potential energy"),
+            (self.plan.virial.is_empty(), "virial tally", "nothing reads the pressure"),
+            (self.plan.atom_energy.is_empty(), "per-particle energies", "nothing reads them"),
         ];
         for (missing, what, why) in out {
             if missing {
@@ -122,8 +122,8 @@ impl<'a> Sealer<'a> {
         }
     }
 
-    /// Whether only a run can tell how many elements a value has; a fixed number was judged when its line was read, and
-    /// some fixes fill theirs only when they act.
+    /// Whether only a run determines how many elements a value has; a fixed number was checked when its line was read, and some
+    /// fixes fill theirs only when they act.
     pub fn is_open(&self, r: &ValueRef) -> bool {
         match r.kind {
             RefKind::Fix => self.graph.find_fix(&r.name).is_none_or(|f| f.fix.shape().vector == Shape::OPEN),
@@ -136,13 +136,13 @@ impl<'a> Sealer<'a> {
         self.world.parts.plastic.is_some()
     }
 
-    /// Whom to ask about single pairs, see [`Pair::probes`](perigrain_styles::Pair::probes).
+    /// The probes of single pairs, see [`Pair::probes`](perigrain_styles::Pair::probes).
     fn probes_of(&self, bonds: bool) -> Result<Vec<Box<dyn Probe>>> {
         let probes = self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world, bonds));
         Ok(probes?.into_iter().map(|(_, probe)| probe).collect())
     }
 
-    /// All fixes with what they tell of themselves.
+    /// All fixes with their declarations.
     pub fn facts(&self) -> impl Iterator<Item = (&'a FixNode, Facts)> {
         self.graph.fixes.iter().map(|f| (f, f.fix.facts(self.world)))
     }
@@ -237,8 +237,8 @@ impl<'a> Sealer<'a> {
         Ok(())
     }
 
-    /// Places what evaluates a variable or keyword into a slot. A compute that is asked again asks again for what it reads: that
-    /// is not evaluated once more, but at these times too.
+    /// Places the evaluation of a variable or keyword into a slot. A compute that is requested again requests its own inputs
+    /// again: these are not evaluated once more, but at these times too.
     fn evaluate(
         &mut self,
         what: &str,
@@ -268,7 +268,7 @@ impl<'a> Sealer<'a> {
         }
     }
 
-    /// What formulas may ask about declarations.
+    /// Declarations as formulas see them.
     pub fn declared(&mut self) -> Arc<Declared> {
         let (w, graph) = (&*self.world, self.graph);
         self.declared.get_or_insert_with(|| Arc::new(Declared::new(w, graph))).clone()

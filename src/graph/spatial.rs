@@ -101,7 +101,7 @@ pub fn stays(w: &mut World) -> bool {
     false
 }
 
-/// None where lists cannot stay, or it is not known; more than `enough` is not told exactly.
+/// `None` where lists cannot stay, or it is not known; more than `enough` is not exact.
 fn drift(w: &World, enough: f64) -> Option<Drift> {
     let (period, s) = (w.periods(), &w.settings.neighbor);
     let [edge, far] = cells(w)?;
@@ -128,7 +128,7 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
         let mut gone = Gone { ways: vec![STILL; slabs.count()], turned: vec![], beyond: false };
         for i in range {
             let mut turns = before.get(i).copied().unwrap_or_default();
-            // Who is half around the box from where it was at the last rebuild has been moved by a period.
+            // A particle half around the box from its place at the last rebuild has been moved by a period.
             let around = period.turns(sub(x[i], held[i]));
             if around != [0.0; 3] {
                 (0..3).for_each(|d| turns[d] = turns[d].saturating_add(around[d] as i8));
@@ -175,7 +175,8 @@ fn drift(w: &World, enough: f64) -> Option<Drift> {
     Some(Drift { near, far, turns })
 }
 
-/// What the grains of all rows have done, told by `gone` of some; where grains are shared out to ranks, each looks at its own.
+/// The motion of the grains of all rows, where `gone` returns that of some; where grains are distributed over ranks, each rank
+/// covers its own.
 fn by_all(w: &World, slabs: usize, gone: impl Fn(Range<usize>) -> Gone + Sync) -> Option<Gone> {
     let Some(share) = w.share.as_ref().filter(|_| w.grains_dealt().is_some()) else {
         return par::reduce(w.n(), gone, Gone::join);
@@ -196,7 +197,7 @@ const MOST_TURNS: u8 = 100;
 /// The least and the most of some ways [length].
 type Bounds = [[f64; 3]; 2];
 
-/// Those of nobody.
+/// The bounds of no particle.
 const STILL: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
 /// Bounds of two sets of ways together.
@@ -213,9 +214,9 @@ fn across([least, most]: Bounds) -> f64 {
 struct Gone {
     /// Their ways, slab by slab.
     ways: Vec<Bounds>,
-    /// Who was moved by periods since the last rebuild, and by how many since lists were made.
+    /// Particles moved by periods since the last rebuild, and by how many since lists were made.
     turned: Vec<(usize, [i8; 3])>,
-    /// Some have gone farther than is asked for, and not all were looked at.
+    /// Some have moved farther than is allowed, and not all were examined.
     beyond: bool,
 }
 

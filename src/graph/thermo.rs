@@ -28,9 +28,9 @@ pub struct Thermo {
     pub lost_bond: LostBond,
     /// `thermo_modify temp` names another temperature, which the pressure is still to take.
     pub new_temperature: Option<ValueRef>,
-    /// What `thermo_modify` has set, which a new style forgets.
+    /// The settings of `thermo_modify`, which a new style resets.
     modified: BTreeSet<String>,
-    /// What a new style has forgotten and no `thermo_modify` has set since, and the place of that style.
+    /// The settings that a new style has reset and no `thermo_modify` has made since, and the place of that style.
     forgotten: (Span, BTreeSet<String>),
     /// `thermo_modify energy`.
     pub runaway: Option<Runaway>,
@@ -114,7 +114,7 @@ impl Thermo {
         args.finish()
     }
 
-    /// `thermo_style style …`; formats given before are forgotten, as in LAMMPS.
+    /// `thermo_style style …`; formats given before are reset, as in LAMMPS.
     ///
     /// # Errors
     /// Unknown styles and columns.
@@ -155,7 +155,7 @@ impl Thermo {
         Ok(())
     }
 
-    /// A note on what a new style has forgotten, if nothing has set it again by the time of a run.
+    /// A note on the settings that a new style has reset, if no line has made them again by the time of a run.
     pub fn forgotten(&self) -> Option<Diagnostic> {
         let (span, words) = &self.forgotten;
         if words.is_empty() {
@@ -163,7 +163,7 @@ impl Thermo {
         }
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let text =
-            format!("this thermo_style forgets what thermo_modify has set before: {}", words.join(", "));
+            format!("this thermo_style resets what thermo_modify has set before: {}", words.join(", "));
         let note = Diagnostic::note(Code::SUSPICIOUS, *span, text);
         Some(note.help("put the thermo_modify line behind it"))
     }
@@ -230,7 +230,7 @@ impl Thermo {
                     } else {
                         args.next();
                     }
-                    no_effect(cx, word, "without effect: every warning is said once here");
+                    no_effect(cx, word, "without effect: every warning is printed once here");
                 }
                 "triclinic/general" if args.flag("triclinic/general")? => {
                     let text = "there are no general triclinic boxes in perigrain";
@@ -314,7 +314,7 @@ impl Thermo {
         Err(Diagnostic::error(Code::CONFLICT, r.span, text).help(help).into())
     }
 
-    /// The op that prints rows, its values asked for.
+    /// The op that prints rows, with its values requested.
     ///
     /// # Errors
     /// Columns that name what no longer exists.

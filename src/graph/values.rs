@@ -68,7 +68,7 @@ impl Op for Keyword {
 
 /// A variable on its way into a slot.
 pub(super) struct Evaluate {
-    /// What formulas may ask about declarations.
+    /// Declarations as formulas see them.
     pub(super) declared: Arc<Declared>,
     /// For plan and timing.
     pub(super) name: String,
@@ -86,7 +86,7 @@ pub(super) struct Evaluate {
     pub(super) stage: Stage,
     /// What its formula reads of the scene.
     pub(super) reads: Fields,
-    /// The bits of the groups whose particles alone it asks for, if it names no others.
+    /// The bits of the only groups whose particles it reads, if it names no others.
     pub(super) groups: Option<u32>,
     /// Whether all ranks move all of these alike, as long as particles are what they are.
     pub(super) common: Option<([u64; 2], bool)>,
@@ -122,7 +122,7 @@ fn names(vars: &Vars, name: &str, words: &[&str]) -> bool {
     looks(vars, name, words, &mut vec![])
 }
 
-/// The groups that a variable's formula, and those that it names, ask group functions about, if they ask about no other particles.
+/// The groups that a variable's formula, and those that it names, pass to group functions, if they read no other particles.
 pub(super) fn groups_alone(vars: &Vars, name: &str) -> Option<Vec<String>> {
     fn look(vars: &Vars, name: &str, seen: &mut Vec<String>, groups: &mut Vec<String>) -> bool {
         if seen.iter().any(|s| s == name) {

@@ -1,4 +1,4 @@
-//! Virials of single particles, for steps at which somebody reads them.
+//! Virials of single particles, for steps at which they are read.
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
@@ -11,7 +11,7 @@ use perigrain_world::field::{
 };
 use perigrain_world::{RunStyle, World};
 
-/// Adds the op that asks pair styles for the virials of particles; after everything that may read them.
+/// Adds the op that gets the virials of particles from pair styles; after everything that may read them.
 ///
 /// # Errors
 /// What is missing in the scene.
@@ -36,14 +36,14 @@ fn ask(probes: Vec<Box<dyn Probe>>) -> Vec<Box<dyn Op>> {
     if probes.is_empty() { vec![] } else { vec![Box::new(Virials { probes })] }
 }
 
-/// Asks every pair after the forces of a step: positions and velocities are still those that forces saw.
+/// Probes every pair after the forces of a step: positions and velocities are still those that forces saw.
 struct Virials {
     probes: Vec<Box<dyn Probe>>,
 }
 
 impl Op for Virials {
     fn about(&self) -> About {
-        // Contacts are there whenever virials of particles are asked for.
+        // Contacts are there whenever virials of particles are requested.
         let needs = Needs::new()
             .read(MASK | MOLECULE | BONDS | MEMO)
             .read(

@@ -20,11 +20,11 @@ pub fn seal(s: &mut Sealer) {
     s.add(vec![Box::new(op)], span);
 }
 
-/// Tells everybody when particles have joined.
+/// Notifies fixes and computes when particles have joined.
 struct Welcome {
     fixes: Vec<Box<dyn Fix>>,
     computes: Vec<Box<dyn Compute>>,
-    /// Who was there when they were told last.
+    /// The roster at the last notification.
     roster: u64,
 }
 

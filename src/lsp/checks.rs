@@ -53,7 +53,7 @@ pub struct Checker {
 }
 
 impl Checker {
-    /// Starts the thread; `tell` gets the reports.
+    /// Starts the thread; `tell` receives the reports.
     pub fn new(tell: impl Fn(Report) + Send + 'static) -> Self {
         let (jobs, queue) = channel();
         let running = Running::default();
@@ -64,7 +64,7 @@ impl Checker {
         Self { jobs, running }
     }
 
-    /// Asks for a check; one of an older text of the same deck is given up.
+    /// Queues a check; one of an older text of the same deck is given up.
     pub fn ask(&self, job: Job) {
         let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, stop)) = running.as_ref().filter(|(uri, _)| *uri == job.uri) {
@@ -99,7 +99,7 @@ fn work(queue: &Receiver<Job>, running: &Running, tell: &dyn Fn(Report)) {
     }
 }
 
-/// What is said where the check itself has failed.
+/// The report where the check itself has failed.
 fn broken(job: &Job) -> Report {
     let text = "perigrain failed at this text, which it should not, whatever the text: please report it";
     let start = json!({"line": 0, "character": 0});

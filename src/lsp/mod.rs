@@ -1,4 +1,4 @@
-//! `perigrain lsp`: the language server, which editors ask about decks over standard input and output.
+//! `perigrain lsp`: the language server, which answers editors' requests about decks over standard input and output.
 //!
 //! One thread reads, one writes, one checks decks, and one answers: from texts and the manual alone, so that no answer waits for
 //! a check.
@@ -40,7 +40,7 @@ const INTERNAL_ERROR: i64 = -32603;
 const NOT_INITIALIZED: i64 = -32002;
 const REQUEST_FAILED: i64 = -32803;
 
-/// Answers until the client says `exit` or hangs up; whether it has said `shutdown` before.
+/// Answers until the client sends `exit` or closes the stream; whether it has sent `shutdown` before.
 pub fn serve(input: impl Read + Send + 'static, output: impl Write + Send + 'static) -> bool {
     let (events, queue) = channel();
     let (out, written) = channel();
@@ -76,9 +76,9 @@ fn write_all(messages: &Receiver<Value>, mut output: impl Write) {
 /// A talk with a client.
 struct Talk {
     server: Server,
-    /// `initialize` was said.
+    /// `initialize` was received.
     begun: bool,
-    /// `shutdown` was said.
+    /// `shutdown` was received.
     over: bool,
 }
 
@@ -105,7 +105,7 @@ impl Talk {
     fn hear(&mut self, message: &Value) {
         let params = message.get("params").unwrap_or(&Value::Null);
         let Some(method) = message.get("method").and_then(Value::as_str) else {
-            // An answer to something that was never asked, or nothing at all.
+            // An answer to a request that was never made, or nothing at all.
             if message.get("result").is_none() && message.get("error").is_none() {
                 let id = message.get("id").unwrap_or(&Value::Null);
                 self.server.send(refused(id, &Refusal(INVALID_REQUEST, "a message without a method".into())));

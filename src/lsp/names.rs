@@ -127,7 +127,7 @@ impl Index {
         })
     }
 
-    /// The name at a byte, where names always stand or where the manual says that one stands.
+    /// The name at a byte, where names always stand or where the manual has one.
     pub fn at(&self, byte: usize) -> Option<Mention> {
         let here = self.mentions.iter().find(|m| (m.bytes.start..=m.bytes.end).contains(&byte));
         if let Some(mention) = here {

@@ -1,4 +1,4 @@
-//! What the server knows: open texts, files on the disk, what belongs to which deck; and the checks it has asked for.
+//! The state of the server: open texts, files on the disk, the files of each deck; and the checks it has requested.
 
 use super::checks::{Checker, Job, Report};
 use super::names::{Index, Kind, Mention, Role};
@@ -114,7 +114,7 @@ impl Server {
         self.check(uri);
     }
 
-    /// Forgets an open file: what is on the disk counts again.
+    /// Closes a file: the content on the disk counts again.
     pub fn close(&mut self, uri: &str) {
         self.open.remove(uri);
         self.parents.remove(uri);
@@ -127,7 +127,7 @@ impl Server {
         }
     }
 
-    /// Asks for checks of the decks that an open file is part of.
+    /// Requests checks of the decks that an open file is part of.
     pub fn check(&mut self, uri: &str) {
         for deck in self.decks_of(uri) {
             let Some(file) = self.file_of(&deck) else { continue };
@@ -193,7 +193,7 @@ impl Server {
         Some(known.map_or_else(|| uri_of(&found), |open| open.file.uri.clone()))
     }
 
-    /// Takes in what a check has found, and tells the client.
+    /// Takes the results of a check, and sends them to the client.
     pub fn take(&mut self, report: Report) {
         if self.asked.get(&report.uri) != Some(&report.number) {
             // The text is another one by now.

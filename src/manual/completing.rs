@@ -62,7 +62,7 @@ pub fn complete(line: &str, known: &Known, folder: &Path) -> (usize, Vec<String>
 /// What stands before a line at the prompt, and what is completed in its place.
 const HABITS: [(&str, &str); 2] = [("%time ", ""), ("?", "help ")];
 
-/// As [`complete`], and says what each of them is.
+/// As [`complete`], with the kind of each candidate.
 pub fn candidates(line: &str, known: &Known, folder: &Path) -> (usize, Vec<Candidate>) {
     let start = line
         .rfind(|c: char| c.is_whitespace() || c == '"' || c == '\'')
@@ -147,7 +147,7 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
     (skip, out)
 }
 
-/// Where a region may go on without an end, or end with the box.
+/// The ends of a region: unbounded, or at the box.
 const FACES: [&str; 8] = ["XLO", "XHI", "YLO", "YHI", "ZLO", "ZHI", "LO", "HI"];
 
 /// Where a wall lies, if it is there at all: numbers, and no words as they stand in syntax lines.
@@ -170,7 +170,7 @@ struct Slot<'a> {
 }
 
 impl Slot<'_> {
-    /// Regions behind a `region` that wants one, wherever in the line it stands.
+    /// Regions after a `region` that needs one, wherever in the line it stands.
     fn behind_region(&self, syntax: &str) -> Vec<Candidate> {
         let wants = ["region ID", "region regionID", "region region-ID"].iter().any(|w| syntax.contains(w));
         if !wants || self.typed.len() < 3 || self.typed.last() != Some(&"region") {

@@ -20,7 +20,7 @@ pub const HOWTOS: &[HowTo] = embed! {
 };
 
 impl HowTo {
-    /// As it is asked for: `howto notch`.
+    /// Its name in requests: `howto notch`.
     pub fn title(&self) -> String {
         format!("howto {}", self.name)
     }
@@ -44,7 +44,7 @@ impl HowTo {
     }
 }
 
-/// `[words](place)` as the words, which may go on in the next line.
+/// `[words](place)` as the words, which may continue in the next line.
 fn without_links(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;

@@ -229,7 +229,7 @@ fn best(typed: &[&str], known: &Known) -> Option<&'static Entry> {
     best.map(|(_, entry)| entry)
 }
 
-/// What may stand behind the words typed as far as other forms of the same page say that fit as well as the best one.
+/// The words that may follow the typed ones in those forms of the same page that fit as well as the best one.
 pub fn places(typed: &[&str], known: &Known) -> Option<(Vec<Place>, Page)> {
     let entry = best(typed, known)?;
     let fit = entry.form.fit(typed);
@@ -251,7 +251,7 @@ pub fn synopsis(typed: &[&str], known: &Known) -> Option<(Vec<String>, Option<us
     Some((words, next, entry.page))
 }
 
-/// What the word number `k` of a line names, as the form says that fits the line best.
+/// The name that word number `k` of a line stands for, in the form that fits the line best.
 pub fn named(words: &[&str], k: usize) -> Option<Named> {
     let command = *words.first()?;
     let (word, last) = (*words.get(k)?, *words.get(k.checked_sub(1)?)?);
@@ -286,12 +286,12 @@ pub fn keywords_in(text: &str) -> Vec<&str> {
     words
 }
 
-/// What a page's text says of a word: from where the word stands in backticks to the end of that sentence or item.
+/// A page's text on a word: from the word in backticks to the end of that sentence or item.
 pub fn told_of(text: &str, word: &str) -> Option<String> {
     const LONGEST: usize = 500;
     let opening = format!("`{word}");
     let begins = |(k, _): &(usize, &str)| text[k + opening.len()..].starts_with(['`', ' ']);
-    // What stands in parentheses speaks of something else.
+    // Text in parentheses is about something else.
     let outside = |(k, _): &(usize, &str)| text[..*k].matches('(').count() == text[..*k].matches(')').count();
     let all = || text.match_indices(&opening).filter(begins);
     let (start, _) = all().find(outside).or_else(|| all().next())?;

@@ -26,14 +26,14 @@ pub struct Page {
     pub kind: &'static str,
     /// The word in the deck.
     pub name: &'static str,
-    /// What is said about it.
+    /// Its text.
     pub doc: Doc,
     /// Its lines, where their words are declared.
     pub forms: &'static [Form],
 }
 
 impl Page {
-    /// As it is asked for and headed: `fix nve`, `run`.
+    /// Its name in requests and its heading: `fix nve`, `run`.
     pub fn title(&self) -> String {
         match self.kind {
             "topic" | "command" => self.name.to_string(),
@@ -90,7 +90,7 @@ pub fn pages() -> Vec<Page> {
     all().to_vec()
 }
 
-/// The same, for those who only look.
+/// The same, for readers that only borrow.
 pub fn all() -> &'static [Page] {
     static ALL: LazyLock<Vec<Page>> = LazyLock::new(gathered);
     &ALL

@@ -108,7 +108,7 @@ impl Form {
         fixed.filter(|(w, _)| w.split('|').all(is_word)).map(|(w, t)| if takes(w, t) { 1 } else { -1 }).sum()
     }
 
-    /// What it says of the word after those typed; the first of them is the command.
+    /// The description of the word after those typed; the first of them is the command.
     pub fn place(&self, typed: &[&str]) -> Place {
         let n = typed.len();
         let Some(parts) = self.along(typed) else { return self.choose(n) };
@@ -149,7 +149,7 @@ impl Form {
             .collect();
         let here = left.iter().map(|g| g[0].clone());
         let last = fixed.last().copied().unwrap_or_default();
-        // `attribute …`: the last word may be said again.
+        // `attribute …`: the last word may be repeated.
         let again = last.ends_with('…').then(|| last.to_string());
         let rest = [again.clone().unwrap_or_default(), optional(&left)].concat();
         let before = typed.last().map_or(String::new(), |w| (*w).to_string());

@@ -109,7 +109,7 @@ fn canvas(curves: &[Curve], first: usize, across: &str, colours: bool, marks: &M
     out
 }
 
-/// A number with digits enough to tell the ends of its range apart.
+/// A number with digits enough to distinguish the ends of its range.
 fn label_of(a: f64, [lo, hi]: [f64; 2]) -> String {
     let size = hi.abs().max(lo.abs());
     let (text, width) = (short(a), hi - lo);

@@ -64,7 +64,7 @@ impl Curves {
         out
     }
 
-    /// What the page says where rows are left out.
+    /// The page's remark where rows are left out.
     pub fn thinned(&self) -> Option<String> {
         let shown = self.steps.len();
         let left = shown < self.rows;

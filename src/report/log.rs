@@ -1,4 +1,4 @@
-//! What a log tells of a run, LAMMPS' or perigrain's.
+//! The content of a log, LAMMPS' or perigrain's.
 
 use super::{Ended, Weight};
 use crate::sweep::lammps;
@@ -47,8 +47,8 @@ pub fn read(text: &str) -> Told {
     }
     let whole = text.contains("Total wall time:");
     let interrupted = lines.iter().any(|l| l.starts_with("Interrupted at step "));
-    let remark =
-        (error.is_none() && !whole).then(|| "it has no end; the run goes on, or was broken off".to_string());
+    let remark = (error.is_none() && !whole)
+        .then(|| "it has no end: the run is still in progress, or was broken off".to_string());
     let ended = match error {
         Some(why) => Ended::Failed(why),
         None if interrupted => Ended::Interrupted,

@@ -22,11 +22,11 @@ pub enum Ended {
     Interrupted,
     /// It was refused or failed, for this reason.
     Failed(String),
-    /// A log was read, which says no more.
+    /// A log was read, which does not state it.
     Unknown,
 }
 
-/// How much it weighs what a run had to say.
+/// The severity of a run's message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
     /// Worth knowing.
@@ -75,9 +75,9 @@ pub struct Report {
     pub gallery: Gallery,
     /// Snapshots of the particles.
     pub film: Vec<film::Frame>,
-    /// It is shown while the run goes on.
+    /// It is shown during the run.
     pub live: bool,
-    /// What the page itself has to say: what was left out, what could not be read.
+    /// Remarks of the page itself: what was left out, what could not be read.
     pub remarks: Vec<String>,
 }
 
@@ -104,7 +104,7 @@ impl Report {
     }
 }
 
-/// A number with the digits that a reader wants.
+/// A number with as many digits as a reader needs.
 fn short(value: f64) -> String {
     perigrain_base::math::cformat::general(value, 6)
 }

@@ -17,7 +17,7 @@ const CURVES: &str = include_str!("web/curves.js");
 const VIEW: &str = include_str!("web/view.js");
 /// What the view of particles is made of.
 const STAGE: &str = include_str!("web/stage.html");
-/// What a page has besides while its run goes on.
+/// What a page has in addition during its run.
 const LIVE: [&str; 2] = [include_str!("web/live.html"), include_str!("web/live.js")];
 /// Over what curves are drawn.
 const CHARTS: &str = "<div class=\"bar\"><label>over <select id=\"axis\"></select></label>\
@@ -26,7 +26,7 @@ const CHARTS: &str = "<div class=\"bar\"><label>over <select id=\"axis\"></selec
 /// No script but those of the page itself, no style, nothing from elsewhere.
 const POLICY: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
                     style-src 'unsafe-inline'; img-src data: blob:";
-/// The page of a run that goes on asks the program that it comes from.
+/// The page of a present run connects to the program that it comes from.
 const ASKS: &str = "; connect-src 'self'";
 
 /// So many messages a page shows.

@@ -18,7 +18,7 @@ const TOGETHER: u64 = 24_000_000;
 pub struct Picture {
     /// Its file's name.
     pub name: String,
-    /// What kind of file, as browsers say it.
+    /// The MIME type.
     pub kind: &'static str,
     /// The file.
     pub bytes: Vec<u8>,

@@ -111,7 +111,7 @@ impl Session {
         Ok(())
     }
 
-    /// Says what a command has made: its lines in the log, and one line on a terminal, unless they are results as those of
+    /// Prints what a command has made: its lines in the log, and one line on a terminal, unless they are results as those of
     /// `calibrate`.
     fn tell_in_one_line(&self, cmd: &Command, said: &[String]) -> Result<()> {
         let log = &self.options.log;
@@ -140,7 +140,7 @@ impl Session {
         }
     }
 
-    /// Whether an act on particles is passed over: in a check, and in a plan where what it does hangs on a run.
+    /// Whether an act on particles is passed over: in a check, and in a plan where its effect depends on a run.
     fn passes(&self, leaves: bool) -> bool {
         let unseen = self.world.parts.unseen;
         // A result of what the particles are by then is not known.

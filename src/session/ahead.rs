@@ -1,4 +1,4 @@
-//! How many steps a deck will make in all, as far as reading it tells.
+//! The number of steps a deck will make in all, as far as it can be found by reading the deck.
 
 use super::{Options, Session, whole};
 use crate::graph::env::DeckEnv;
@@ -24,7 +24,7 @@ pub(super) struct Foreseen {
     steps: i64,
     /// Those of the run seen last.
     last: i64,
-    /// Only a run can tell how many there are.
+    /// Only a run determines how many there are.
     unsure: bool,
     /// They may be fewer.
     at_most: bool,
@@ -46,7 +46,7 @@ impl Session {
         seen.at_most |= halts;
     }
 
-    /// Takes note that the line at hand, or how often it comes, hangs on a run.
+    /// Notes that the present line, or the number of its repetitions, depends on a run.
     pub(super) fn doubt(&mut self, script: &Script) {
         let seen = &mut self.foreseen;
         seen.unsure |= script.is_speculative() || (script.is_cut_short() && !seen.looped);
@@ -57,7 +57,7 @@ impl Session {
         self.foreseen.until = self.bound(raw);
     }
 
-    /// Takes note of a jump of which only a run can tell whether it is made.
+    /// Notes a jump of which only a run determines whether it is made.
     pub(super) fn foresee_jump(&mut self) {
         let seen = &mut self.foreseen;
         let Some(until) = seen.until.take().filter(|_| seen.last > 0) else {
@@ -70,7 +70,7 @@ impl Session {
         (seen.at_most, seen.looped) = (true, true);
     }
 
-    /// The step from which the condition of an `if` line does not hold, if it asks the clock.
+    /// The step from which the condition of an `if` line does not hold, if it reads the clock.
     fn bound(&mut self, raw: &str) -> Option<i64> {
         let condition = raw.split(['"', '\'']).nth(1)?;
         // In parentheses anything may stand.
@@ -112,7 +112,7 @@ impl Session {
     }
 }
 
-/// The steps of all runs of a deck; nothing where only a run can tell, where the deck is refused, or when `stop` is set.
+/// The steps of all runs of a deck; `None` where only a run determines them, where the deck is refused, or when `stop` is set.
 pub fn steps_ahead(options: &Options, name: &str, text: &str, stop: &Arc<AtomicBool>) -> Option<Ahead> {
     let options = Options { log: Log::silent(), limit: None, ..options.clone() };
     let mut session = whole::begin(&options, stop).ok()?;
@@ -152,7 +152,7 @@ mod tests {
                  if \"{condition}\" then \"jump SELF a\"\nrun 7\n"
             )
         };
-        // 120 steps are made when the condition is asked first, and 320 when it no longer holds.
+        // 120 steps are made when the condition is evaluated first, and 320 when it no longer holds.
         assert_eq!(steps(&turns("$t < ${tend}")), Some((327, true)));
         assert_eq!(steps(&turns("$(step) <= 250 && ($(ke) > 1 || $(pe) > 1)")), Some((327, true)));
         assert_eq!(steps(&turns("$t < ${tend} || $(ke) > 1")), None);

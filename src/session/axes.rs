@@ -191,7 +191,7 @@ pub fn zip(axes: &mut Vec<Axis>, names: &[String]) -> Result<()> {
 /// All combinations, the last axis fastest.
 ///
 /// # Errors
-/// A variable on two axes, more runs than anybody means.
+/// A variable on two axes, an implausible number of runs.
 pub fn combined(axes: &[Axis]) -> Result<Vec<Row>> {
     let names: Vec<&String> = axes.iter().flat_map(|axis| &axis.names).collect();
     if let Some(twice) = names.iter().enumerate().find(|(k, n)| names[..*k].contains(n)) {
@@ -256,7 +256,7 @@ mod tests {
         assert_eq!(say(combined(&axes).unwrap()), "a=1 c=7 b=x, a=1 c=7 b=y, a=2 c=8 b=x, a=2 c=8 b=y");
         assert!(combined(&[each("a", "1"), each("a", "2")]).is_err());
         assert!(zip(&mut vec![each("a", "1 2"), each("b", "1")], &["a".into(), "b".into()]).is_err());
-        assert!(zip(&mut axes, &["nobody".into()]).is_err());
+        assert!(zip(&mut axes, &["missing".into()]).is_err());
         assert!(combined(&[each("a", "1..2000"), each("b", "1..2000")]).is_err());
     }
 

@@ -1,4 +1,4 @@
-//! Words that nobody knows where they stand: what is like them, and where they belong if they are known elsewhere.
+//! Unknown words of a line: similar words, and the place where the word belongs if it is known elsewhere.
 
 use crate::graph::catalogue::styles;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, nearest};
@@ -18,7 +18,7 @@ const LINES: [(&str, &str, &str); 6] = [
 
 /// Adds to each problem with a word of the line where that word belongs.
 ///
-/// Of words that the line does not expect, those behind such a one are its own numbers and no mistakes of theirs.
+/// Words behind an unexpected one are its own numbers and not reported.
 pub(super) fn told(problems: Diagnostics, cmd: &Command) -> Diagnostics {
     let mut explained = false;
     let mut kept = vec![];
@@ -38,7 +38,7 @@ pub(super) fn told(problems: Diagnostics, cmd: &Command) -> Diagnostics {
     Diagnostics(kept)
 }
 
-/// The word of the line that a problem is about, if it is about a word that nobody knows.
+/// The word of the line that a problem is about, if it is an unknown word.
 fn at_fault<'c>(d: &Diagnostic, cmd: &'c Command) -> Option<&'c Word> {
     let unknown = [Code::UNKNOWN_COMMAND, Code::UNKNOWN_STYLE, Code::EXTRA_ARGUMENT].contains(&d.code);
     let span = d.span.filter(|_| unknown)?;
@@ -68,7 +68,7 @@ pub(super) fn unknown_command(cmd: &Command) -> Diagnostics {
 
 /// Where a word belongs that `command` does not know.
 fn home(word: &str, command: &str) -> Option<String> {
-    // Says nothing about what was meant.
+    // These give no hint of what was meant.
     if word == "none" || word == "zero" {
         return None;
     }

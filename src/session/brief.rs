@@ -1,6 +1,6 @@
 //! What a line of a deck has made, in one line for a terminal: LAMMPS' blocks stay in the log.
 
-/// Parts of LAMMPS' blocks that tell nothing of what was made.
+/// Parts of LAMMPS' blocks without information on the result.
 const EMPTY: [&str; 7] = [
     "MPI processor grid",
     " units in orthogonal box = ",
@@ -8,11 +8,11 @@ const EMPTY: [&str; 7] = [
     "0 fragments",
     "0 bodies",
     " with max type 0",
-    // Of the memory a terminal is told before the run.
+    // A terminal shows the memory before the run.
     "forecast: about ",
 ];
 
-/// The lines that a command says as one; nothing where they tell of nothing.
+/// The lines of a command as one; `None` where they have no content.
 pub(super) fn one_line(said: &[String]) -> Option<String> {
     let told: Vec<&str> = said
         .iter()
@@ -20,7 +20,7 @@ pub(super) fn one_line(said: &[String]) -> Option<String> {
         .map(str::trim)
         .filter(|s| !s.is_empty() && !EMPTY.iter().any(|e| s.ends_with(e) || s.contains(e)))
         .collect();
-    // `reading atoms ...` is said before the number of them.
+    // `reading atoms ...` is printed before the number of them.
     let begins = |s: &str| s.starts_with("reading ") && s.ends_with(" ...");
     let told: Vec<&str> = told.into_iter().filter(|s| !begins(s)).collect();
     let (head, rest) = told.split_first()?;

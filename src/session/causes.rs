@@ -11,7 +11,7 @@ pub(super) struct Refused {
     scene: bool,
     /// A step table was refused, so that its columns are unknown.
     table: bool,
-    /// The atom style was refused, so that nothing is known of what particles have.
+    /// The atom style was refused, so that the properties of particles are unknown.
     particles: bool,
     /// And it is LAMMPS', so that much of what goes with it is so, too.
     particles_of_lammps: bool,
@@ -24,7 +24,7 @@ const NAMING: [&str; 7] = ["variable", "region", "group", "compute", "fix", "dum
 const HARMLESS: [&str; 9] =
     ["thermo", "thermo_style", "thermo_modify", "timestep", "velocity", "print", "run", "if", "dump_modify"];
 
-/// Commands that may be said only before or behind others.
+/// Commands that may stand only before or behind others.
 const SETTING: [&str; 20] = [
     "units",
     "atom_style",
@@ -70,8 +70,8 @@ impl Refused {
         Diagnostics(causes)
     }
 
-    /// Takes note of a line about which only a run can tell whether it is reached: the names and the scene it changes may be
-    /// as before or as it says.
+    /// Notes a line of which only a run determines whether it is reached: the names and the scene it changes may be as before or
+    /// changed.
     pub fn perhaps(&mut self, cmd: &Command) {
         let name = cmd.name.text.as_str();
         if NAMING.contains(&name) || ["unfix", "uncompute", "undump"].contains(&name) {

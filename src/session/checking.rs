@@ -9,7 +9,7 @@ use perigrain_styles::{Pair, Use, UseKind};
 use perigrain_world::GroupId;
 use std::cell::RefCell;
 
-/// Problems with words that came out of a variable say where that variable was defined.
+/// Adds to problems with words from a variable where that variable was defined.
 pub(super) fn with_origins(mut problems: Diagnostics, cmd: &Command) -> Diagnostics {
     for d in &mut problems.0 {
         let at_fault = |w: &&Word| Some(w.span) == d.span && w.origin.is_some();
@@ -22,8 +22,8 @@ pub(super) fn with_origins(mut problems: Diagnostics, cmd: &Command) -> Diagnost
 }
 
 impl Session {
-    /// Looks at all declarations together; warnings are noted, errors returned. A run that `moves` nothing, of no
-    /// steps, needs no integrator.
+    /// Checks all declarations together; warnings are noted, errors returned. A run that `moves` nothing, of no steps, needs no
+    /// integrator.
     ///
     /// # Errors
     /// What LAMMPS would refuse too: missing coefficients, masses.
@@ -86,7 +86,7 @@ impl Session {
         }
     }
 
-    /// A deck with a loop around `run` is told once.
+    /// Adds a note once, even for a deck with a loop around `run`.
     pub(super) fn note_once(&mut self, note: Diagnostic) {
         if !self.notes.0.contains(&note) {
             self.notes.push(note);
@@ -135,7 +135,7 @@ impl Session {
         found.append(notes.into_inner());
     }
 
-    /// Facts of the scene that a pair style uses and nobody has set.
+    /// Facts of the scene that a pair style uses and that are not set.
     fn check_facts(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
         for fact in pair.facts().needs {
             // LAMMPS' default, spheres of diameter and density 1, is what reduced units are for.
@@ -177,8 +177,8 @@ impl Session {
                         momentum is not conserved, and grains meet bodies that hardly move";
             found.push(
                 Diagnostic::warning(Code::UNITS_OF_FORCE, span, text)
-                    .help("say `peri_modify force newton` (implied by `material` coefficients): forces become newtons, masses ρV")
-                    .help("or scale by hand as in LAMMPS: multiply c by the particle volume V and `set … mass` to ρV"),
+                    .help("use `peri_modify force newton` (implied by `material` coefficients): forces become newtons, masses ρV")
+                    .help("or scale the numbers as in LAMMPS: multiply c by the particle volume V and `set … mass` to ρV"),
             );
         }
     }

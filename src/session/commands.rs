@@ -74,7 +74,7 @@ impl Session {
             ("thermo_pe", "pe", ""),
         ] {
             let span = perigrain_base::diag::Span::default();
-            // All three are there, and take what is said here.
+            // All three are there, and take the new settings.
             let _ = bring(&mut self.graph, &mut self.world, (id, style, rest), GroupId::ALL, span);
         }
     }

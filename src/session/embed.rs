@@ -1,4 +1,4 @@
-//! What a program that hosts a session asks of it between lines: files to work off, values, names.
+//! The interface for a program that hosts a session, between lines: files to execute, values, names.
 
 mod columns;
 mod gather;
@@ -22,7 +22,7 @@ use perigrain_output::thermo;
 use perigrain_styles::Names;
 use perigrain_world::{Slot, TableRow};
 
-/// What a variable says at the moment.
+/// The present value of a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Told {
     /// One number.
@@ -50,7 +50,7 @@ impl Session {
     /// The value of a word of thermo output or of a formula at the moment.
     ///
     /// # Errors
-    /// What cannot be read, is no number, or has not been computed.
+    /// Words that cannot be read, are no number, or have not been computed.
     pub fn number(&mut self, formula: &str) -> Result<f64> {
         self.thermo_computes();
         let span = self.asked(formula);
@@ -73,7 +73,7 @@ impl Session {
         substitute(text, span, &self.vars, &mut env)
     }
 
-    /// What a variable says; `None` if there is no such variable.
+    /// The value of a variable; `None` if there is no such variable.
     ///
     /// # Errors
     /// A formula that cannot be evaluated.
@@ -123,7 +123,7 @@ impl Session {
         self.no_variable(name, "string")
     }
 
-    /// A variable has another value: forces may hang on it.
+    /// A variable has another value: forces may depend on it.
     fn moved(&mut self, name: &str) {
         if self.graph.lines.forces_use_variable(name) {
             self.world.touch();
@@ -265,7 +265,7 @@ impl Session {
         self.options.log.flush()
     }
 
-    /// The place of something that was asked for from outside; the same words are kept once.
+    /// The place of a request from outside; the same words are kept once.
     fn asked(&mut self, words: &str) -> Span {
         let file = match self.asked.get(words) {
             Some(file) => *file,

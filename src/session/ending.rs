@@ -1,4 +1,4 @@
-//! What a run says on a terminal in place of LAMMPS' blocks: what it will take, and three lines at its end.
+//! The text of a run on a terminal in place of LAMMPS' blocks: its expected cost, and three lines at its end.
 
 use super::Session;
 use crate::human::{about, bytes, count, duration};
@@ -12,13 +12,13 @@ use perigrain_plan::{OpClass, StepPlan};
 use perigrain_world::{Halt, memory};
 use std::time::Duration;
 
-/// Files that are named one by one; of more the number is told.
+/// Files that are named one by one; of more the number is printed.
 const NAMED: usize = 6;
 
-/// A share of the time from which it is worth a word.
+/// A share of the time from which on it is mentioned.
 const MUCH: f64 = 0.25;
 
-/// How much longer than `-timeout` says a line may be at work: a tenth of the limit within these bounds.
+/// How much longer than `-timeout` a line may take: a tenth of the limit within these bounds.
 const LEAST_GRACE: Duration = Duration::from_secs(2);
 const MOST_GRACE: Duration = Duration::from_secs(60);
 
@@ -28,10 +28,10 @@ const INTERRUPTED: i32 = 130;
 /// Particles for which several threads pay.
 const MANY: usize = 2000;
 
-/// What was said last, so that a loop around `run` does not say it again.
+/// The last text, so that a loop around `run` does not repeat it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spoken {
-    /// The scene whose memory was told, and its particles then.
+    /// The scene whose memory was printed, and its particles then.
     scene: u64,
     particles: usize,
     results: String,
@@ -39,7 +39,7 @@ pub(super) struct Spoken {
 }
 
 impl Session {
-    /// Tells on a terminal, before a run, how much memory the scene will take.
+    /// Prints on a terminal, before a run, how much memory the scene will take.
     pub(super) fn foretell(&mut self) {
         let n = self.world.n();
         let (told, log) = (&mut self.spoken, &self.options.log);
@@ -80,7 +80,7 @@ impl Session {
         lines.join("\n")
     }
 
-    /// Tells a terminal of a file that a line has written; `*` in its name stands for the step.
+    /// Reports on a terminal a file that a line has written; `*` in its name stands for the step.
     pub(super) fn tell_written(&self, file: &str) {
         if self.options.log.brief().is_some() {
             self.options
@@ -102,8 +102,8 @@ impl Session {
         Stop::new(self.stop_flag(), deadline)
     }
 
-    /// Whether a signal asks for an end behind a line. Several ranks agree about that; behind lines that a loop repeats a million
-    /// times now and then.
+    /// Whether a signal requests the end after a line. Several ranks agree about that; after lines that a loop repeats a million
+    /// times, now and then.
     pub(super) fn is_asked_to_end(&mut self, line: &Line) -> bool {
         if comm::several() {
             let light = line.command.as_ref().is_none_or(|cmd| {
@@ -178,8 +178,8 @@ impl Session {
         }
     }
 
-    /// Says that a line was the last one because a signal asked for an end; a run says so itself. What the last run left is
-    /// saved if the scene is still as it was then.
+    /// Reports that a line was the last one because of a signal; a run reports that itself. The state after the last run is saved
+    /// if the scene has not changed since.
     pub(super) fn say_interrupted(&mut self, line: &Line) -> Result<()> {
         if let Some(plan) = self.plan.as_mut().filter(|_| self.ran && !self.world.parts.changed) {
             plan.part(&mut self.world)?;

@@ -1,4 +1,4 @@
-//! The files a deck reads, and what is known of those it would have written where it is only looked at.
+//! The files a deck reads, and those it would have written where it is only checked.
 
 use super::overlay::Overlay;
 use perigrain_base::diag::{Code, Diagnostic};
@@ -61,7 +61,7 @@ impl Files for RealFiles<'_> {
     }
 }
 
-/// What is said of loops that were left before their end where a deck was only looked at.
+/// Notes on loops that were left before their end where a deck was only checked.
 pub(super) fn left_loops(script: &perigrain_lang::Script) -> Vec<Diagnostic> {
     let note = |(span, turns): (perigrain_base::diag::Span, u64)| {
         let text = format!(
@@ -72,7 +72,7 @@ pub(super) fn left_loops(script: &perigrain_lang::Script) -> Vec<Diagnostic> {
     script.left_loops().map(note).collect()
 }
 
-/// What is said of a log file that another run is writing.
+/// The warning about a log file that another run is writing.
 pub(super) fn shared(path: &Path) -> Diagnostic {
     let text = format!(
         "another run is writing `{}` now: each of them writes over what the other has written",

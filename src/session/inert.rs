@@ -1,4 +1,4 @@
-//! Commands about processes and accelerators: read whole, said once to be without effect; and `partition`.
+//! Commands about processes and accelerators: read whole, with one note that they have no effect; and `partition`.
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result};

@@ -14,7 +14,7 @@ use std::sync::atomic::Ordering;
 /// What became of a text that was typed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Heard {
-    /// `quit` was said, with this status.
+    /// The status of `quit`.
     pub quit: Option<i32>,
     /// Ended from outside: a run at a whole step, anything else between two lines.
     pub interrupted: bool,
@@ -57,16 +57,16 @@ pub struct Snapshot {
 }
 
 impl Session {
-    /// Works off a text that was typed; `name` stands in messages about it.
+    /// Executes a text that was typed; `name` stands in messages about it.
     ///
     /// # Errors
-    /// The first line that is refused or fails. What it and the lines before it have done stays;
-    /// [`Session::restore`] takes it back.
+    /// The first line that is refused or fails. The effects of it and of the lines before it stay; [`Session::restore`] takes
+    /// them back.
     pub fn eval(&mut self, name: &str, text: &str) -> Result<Heard> {
         self.hear(name, text, true)
     }
 
-    /// Works off a deck from a file in between; `jump SELF` works there, and files named in it are looked for beside it.
+    /// Executes a deck from a file in between; `jump SELF` works there, and files named in it are looked for beside it.
     ///
     /// # Errors
     /// As [`Session::eval`], and a file that cannot be read.
@@ -123,7 +123,7 @@ impl Session {
             ran,
             typed,
             timer,
-            // What has been read and said, and what the next line sets anew.
+            // Texts read and printed so far, and fields that the next line sets anew.
             sources: _,
             notes: _,
             shown: _,
@@ -228,7 +228,7 @@ impl Session {
         Ok(explain::text(&self.seal(span)?, false))
     }
 
-    /// The lines worked off so far: number, kind, text, numbers of the lines whose names it uses.
+    /// The lines executed so far: number, kind, text, numbers of the lines whose names it uses.
     pub fn lines(&self) -> Vec<(usize, &'static str, &str, Vec<usize>)> {
         let (nodes, edges) = (self.graph.lines.nodes(), self.graph.lines.edges());
         let kind = |role| match role {

@@ -1,4 +1,4 @@
-//! Variables that a deck defines behind the line that names them: fixes may, for they look at them in runs only.
+//! Variables that a deck defines after the line that names them: fixes may use them, since they read them in runs only.
 
 use perigrain_base::diag::Sources;
 use std::collections::BTreeSet;

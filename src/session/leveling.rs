@@ -1,11 +1,11 @@
-//! Steps of several lengths (`run_style respa`): what cannot act in them is refused, and levels without forces are told.
+//! Steps of several lengths (`run_style respa`): ops that cannot act in them are refused, and levels without forces get a note.
 
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Span};
 use perigrain_world::{Respa, RunStyle};
 
 impl Session {
-    /// The levels of steps that the deck wants.
+    /// The levels of steps that the deck has chosen.
     pub(super) fn respa(&self) -> Option<&Respa> {
         match &self.world.settings.run_style {
             RunStyle::Respa(r) => Some(r),
@@ -23,8 +23,8 @@ impl Session {
             let text = format!("fix {} has no part in steps of several lengths: {why}", f.style);
             found.push(
                 Diagnostic::error(Code::NOT_SUPPORTED, f.span, text)
-                    .label(place, "steps of several lengths asked for here")
-                    .help("say `run_style verlet`"),
+                    .label(place, "steps of several lengths are chosen here")
+                    .help("use `run_style verlet`"),
             );
         }
         if let Some(c) = self.graph.computes.iter().find(|c| c.style == "energy/ledger") {
@@ -32,8 +32,8 @@ impl Session {
                 "compute energy/ledger counts the work of whole steps, and here they have several lengths";
             found.push(
                 Diagnostic::error(Code::NOT_SUPPORTED, c.span, text)
-                    .label(place, "steps of several lengths asked for here")
-                    .help("leave it out, or say `run_style verlet`"),
+                    .label(place, "steps of several lengths are chosen here")
+                    .help("leave it out, or use `run_style verlet`"),
             );
         }
         self.tell_idle(r, place, found);
@@ -84,7 +84,7 @@ impl Session {
         }
         let text = format!("no force acts at level {} of the steps", idle.join(", "));
         found.push(Diagnostic::warning(Code::SUSPICIOUS, place, text).help(
-            "bonds act at level 1 and pairs at the last one unless `bond`, `pair` or `hybrid` say otherwise",
+            "bonds act at level 1 and pairs at the last one unless `bond`, `pair` or `hybrid` set another",
         ));
     }
 }

@@ -9,7 +9,7 @@ use perigrain_world::World;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How many lines that only steer may pass between two looks at the memory.
+/// How many lines of flow control may pass between two checks of the memory.
 const PASSED: u64 = 64;
 
 /// The same for steps.
@@ -47,7 +47,7 @@ impl Session {
 
 /// Ends a run at a whole step where memory is used up.
 pub(super) struct Warden<'a> {
-    /// Who is told of steps besides.
+    /// An additional observer of steps.
     pub watch: &'a mut dyn Watch,
     /// Ends the run.
     pub stop: Arc<AtomicBool>,

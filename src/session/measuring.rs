@@ -1,4 +1,4 @@
-//! What a deck that has been worked off can tell in numbers: what its runs took, and values by their words.
+//! Results of an executed deck in numbers: the cost of its runs, and values by their words.
 
 use super::Session;
 use crate::graph::build::Context;
@@ -42,7 +42,7 @@ impl Session {
         self.columns = words;
     }
 
-    /// Adds to the step table of the run that begins what it lacks of the columns asked for.
+    /// Adds the requested columns that it lacks to the step table of the run that begins.
     pub(super) fn complete_table(&mut self) {
         for word in self.columns.clone() {
             if self.graph.thermo.layout.columns.iter().any(|c| c.name == word) {
@@ -60,11 +60,11 @@ impl Session {
         }
     }
 
-    /// The value of what is called `word` now, as text: a word of thermo output, `v_name`, `c_ID[2]`, `f_ID`, or a formula of them.
-    /// Variables that hold text tell their text. Words that the last row of the step table has are taken from there.
+    /// The present value of `word`, as text: a word of thermo output, `v_name`, `c_ID[2]`, `f_ID`, or a formula of them.
+    /// Variables that hold text give their text. Words that the last row of the step table has are taken from there.
     ///
     /// # Errors
-    /// Words that mean nothing here, values that are not there or not computed.
+    /// Words that mean nothing here, values that do not exist or are not computed.
     pub fn measure(&mut self, word: &str) -> Result<String> {
         let row = self.last_row().filter(|(_, row)| row.step == self.world.clock.step);
         if let Some(at) = row.as_ref().and_then(|(columns, _)| columns.iter().position(|c| c == word)) {
@@ -91,10 +91,10 @@ impl Session {
         !self.blind
     }
 
-    /// Whether [`Session::measure`] could know `word`, as far as a deck that was only checked can tell.
+    /// Whether [`Session::measure`] could evaluate `word`, as far as this can be found in a check.
     ///
     /// # Errors
-    /// A name that nothing has.
+    /// An unknown name.
     pub fn knows_measure(&mut self, word: &str) -> Result<()> {
         let file = self.sources.add("report", word);
         let span = Span::new(file, 0, word.len());

@@ -1,4 +1,4 @@
-//! `minimize`: the declarations sealed for a minimization, and what its log says.
+//! `minimize`: the declarations sealed for a minimization, and the text of its log.
 
 use super::running::Pass;
 use super::{Mode, Session};

@@ -6,7 +6,7 @@ use perigrain_output::log::Log;
 use perigrain_world::Compat;
 use std::path::PathBuf;
 
-/// What a session is asked to do with a deck.
+/// The mode of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// Work it off.
@@ -25,7 +25,7 @@ pub enum Mode {
 pub struct Options {
     /// What to do.
     pub mode: Mode,
-    /// Where the session speaks.
+    /// The log of the session.
     pub log: Log,
     /// LAMMPS' artefacts too.
     pub compat: Compat,

@@ -7,8 +7,8 @@ use perigrain_styles::fix::Moves;
 use perigrain_world::index::Index;
 
 impl Session {
-    /// Warns where a fix moves ends of bonds that bend and twist as forces want and leaves their orientations where they are: such a body
-    /// bends itself as it turns. A check, which has no bonds, warns where nothing turns orientations at all.
+    /// Warns where a fix moves ends of bonds that bend and twist by forces and leaves their orientations as they are: such a body
+    /// bends as it turns. A check, which has no bonds, warns where nothing turns orientations at all.
     pub(super) fn check_orientations(&self, found: &mut Diagnostics) {
         let Some(bond) = &self.graph.bond else { return };
         let turns = |kind: i32| u16::try_from(kind).is_ok_and(|kind| bond.force.turns(kind));

@@ -20,8 +20,8 @@ struct Pressed {
 }
 
 impl Session {
-    /// A warning where bonds that may break join particles that overlap, and the pair style does not act between them yet: such an
-    /// overlap is a spring that nobody has pressed. Bonds that a run has met are as it made them.
+    /// A warning where bonds that may break join particles that overlap, and the pair style does not act between them yet: such
+    /// an overlap is a loaded spring without a cause. Bonds that a run has already used are as it made them.
     pub(super) fn check_overlaps(&self, span: Span, found: &mut Diagnostics) {
         let (w, Some(bond), Some(pair)) = (&self.world, &self.graph.bond, &self.graph.pair) else { return };
         let new = w.bonds.list.iter().any(|b| b.is_on() && b.length == 0.0);

@@ -16,7 +16,7 @@ struct Planned {
     runs: Vec<(Span, u64)>,
 }
 
-/// All plans of a deck, and the lines about which only a run can tell.
+/// All plans of a deck, and the lines whose effect only a run determines.
 #[derive(Default)]
 pub(super) struct Plans {
     list: Vec<Planned>,
@@ -38,7 +38,7 @@ impl Plans {
         }
     }
 
-    /// Takes note of a line about which only a run can tell; the first word about it counts.
+    /// Notes a line whose effect only a run determines; the first reason for it counts.
     pub fn leave_open(&mut self, span: Span, why: impl Into<String>) {
         if self.open.iter().all(|(s, _)| *s != span) {
             self.open.push((span, why.into()));
@@ -66,11 +66,11 @@ impl Plans {
             out += "no run, no plan\n\n";
         }
         if !self.open.is_empty() {
-            out += "what only a run can tell\n";
+            out += "what only a run determines\n";
         }
         let mut open: Vec<String> =
             self.open.iter().map(|(span, why)| format!("  {:<34} {why}\n", line(*span))).collect();
-        // Commands of one line that have the same to say.
+        // Commands of one line with the same remark.
         open.dedup();
         out += &open.concat();
         out.trim_end().to_owned()
@@ -94,7 +94,7 @@ fn is_of_values(code: Code) -> bool {
     .contains(&code)
 }
 
-/// Whether a line holds a value that only a run can tell, for which something stands in.
+/// Whether a line holds a value that only a run determines, for which a placeholder stands.
 pub(super) fn hangs_on_a_run(cmd: &Command) -> bool {
     cmd.args.iter().chain([&cmd.name]).any(|w| w.unknown)
 }
@@ -104,12 +104,12 @@ impl Session {
         self.options.mode == Mode::Plan
     }
 
-    /// Whether the scene is only looked at and only a run can tell what particles do by now.
+    /// Whether the scene is only checked and only a run determines the present state of particles.
     pub(super) fn unsure(&self) -> bool {
         self.world.parts.unseen.particles
     }
 
-    /// Takes note of what is no longer known behind a run that was not made. `ends` says whether its last step is known.
+    /// Notes what is no longer known after a run that was not made. `ends` is whether its last step is known.
     pub(super) fn unsee(&mut self, ends: bool) {
         let w = &self.world;
         let facts = |f: &FixNode| f.fix.facts(w);
@@ -141,7 +141,7 @@ impl Session {
         Ok(())
     }
 
-    /// A line that was refused where only a run can tell whether it is wrong: nothing of it is done, and the deck is read on.
+    /// A refused line of which only a run determines whether it is wrong: it has no effect, and the deck continues.
     pub(super) fn forgives(&self, script: &Script, line: Option<&Line>, e: &Diagnostics) -> bool {
         if !self.looking() || !e.has_errors() {
             return false;
@@ -177,7 +177,7 @@ impl Session {
         }
     }
 
-    /// Takes note of a line of a plan that says something which only a run can tell.
+    /// Notes a line of a plan whose effect only a run determines.
     pub(super) fn note_open(&mut self, script: &Script, cmd: &Command) {
         if !self.planning() || ["print", "label", "log", "echo", "info"].contains(&cmd.name.text.as_str()) {
             return;
@@ -208,7 +208,7 @@ mod tests {
         plans.leave_open(at(2), "why else");
         plans.leave_open(Span::new(file, 13, 14), "why");
         let wanted = "run at in.d:1, in.d:2 (2 times), used 3 times\na\n\nrun at in.d:3, used once\nb\n\n\
-                      what only a run can tell\n  in.d:3                             why";
+                      what only a run determines\n  in.d:3                             why";
         assert_eq!(plans.text(&sources), wanted);
     }
 }

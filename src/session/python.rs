@@ -27,7 +27,7 @@ impl Session {
             let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
             return Err(d.help("work the deck off from Python, with `perigrain.lammps().file(…)`").into());
         };
-        if let Some(d) = perigrain_base::gate::forbids("a deck may not work off code in Python") {
+        if let Some(d) = perigrain_base::gate::forbids("a deck may not execute Python code") {
             return Err(d.at(span).into());
         }
         match asked(args)? {

@@ -1,4 +1,4 @@
-//! What a run on several ranks says of itself.
+//! Messages about a run on several ranks.
 
 use super::Session;
 use perigrain_base::comm;
@@ -9,7 +9,7 @@ use perigrain_base::diag::Result;
 const PAYS: usize = 1000;
 
 impl Session {
-    /// Says once where ranks have so few grains that they wait for each other.
+    /// Warns once where ranks have so few grains that they wait for each other.
     pub(super) fn say_few_for_ranks(&mut self) -> Result<()> {
         let (n, ranks) = (self.world.n(), comm::present().size());
         let grains = self.world.particles.style.sphere && self.world.families.is_none();

@@ -45,7 +45,7 @@ impl Session {
         let mut plan = self.sealed(cmd.span, Pass::Rerun)?.0;
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
-        // What contacts remember belongs to the scene before, not to the snapshot before.
+        // Contact history belongs to the scene before, not to the snapshot before.
         let mut contacts = self.world.contacts.clone();
         let outcome = verlet::look(&mut plan, &mut self.world, |w| {
             // Snapshots meet particles in the order of their creation.
@@ -53,7 +53,7 @@ impl Session {
             let left = std::mem::replace(&mut w.contacts, contacts.clone());
             let shown = reel.next(w)?;
             match shown {
-                // Whom the snapshot has deleted nobody remembers from now on.
+                // The contacts of particles that the snapshot has deleted are dropped from now on.
                 Some(_) => contacts.clone_from(&w.contacts),
                 None => w.contacts = left,
             }

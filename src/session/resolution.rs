@@ -1,10 +1,10 @@
-//! Whether numbers can tell apart the places of two steps: not in a box that lies too far from the origin.
+//! Whether numbers can resolve the motion of one step: not in a box that lies too far from the origin.
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::length;
 
-/// Lengths of the box between it and the origin from which a deck is told: of 16 digits, ten are left.
+/// Lengths of the box between it and the origin from which on a warning is given: of 16 digits, ten are left.
 const FAR: f64 = 1e6;
 
 impl Session {

@@ -1,4 +1,4 @@
-//! `write_restart` and `read_restart`: a session goes on in another run of the program.
+//! `write_restart` and `read_restart`: a session continues in another run of the program.
 
 use super::{Session, refuse};
 use crate::graph::Role;
@@ -194,8 +194,8 @@ impl Session {
         Ok(())
     }
 
-    /// Says the lines of the stored pair and bond styles again, each with the lattice that was in force. What fixes have made
-    /// of their coefficients stands.
+    /// Repeats the lines of the stored pair and bond styles, each with the lattice that was in force. Changes of their
+    /// coefficients by fixes are kept.
     fn replay(&mut self, pair: &[Said], span: Span) -> Result<()> {
         let (lattice, adapted) = (self.world.lattice.clone(), self.world.adaptations_made());
         (self.graph.pair, self.graph.bond) = (None, None);
@@ -259,7 +259,7 @@ impl Session {
         self.options.log.line(&format!("  forces are computed anew: {why}"))
     }
 
-    /// State of fixes that the deck has not declared again is forgotten, as in LAMMPS.
+    /// State of fixes that the deck has not declared again is dropped, as in LAMMPS.
     fn drop_unclaimed(&mut self, span: Span) {
         let left = std::mem::take(&mut self.world.parts.restored);
         let state: Vec<String> =
@@ -273,12 +273,12 @@ impl Session {
             self.world.columns.remove(key);
         }
         let text = format!(
-            "the restart file holds state of {}, which nobody claims: it is forgotten",
+            "the restart file holds state of {}, which no fix or compute has claimed: it is dropped",
             state.join(", ")
         );
         let note = Diagnostic::note(Code::SUSPICIOUS, span, text);
         self.note_once(
-            note.help("declare a fix of the same style and ID before the run to go on with its state"),
+            note.help("declare a fix of the same style and ID before the run to continue with its state"),
         );
     }
 }

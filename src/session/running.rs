@@ -1,4 +1,4 @@
-//! `run` and `write_dump`: seal the declarations, step, say how it went.
+//! `run` and `write_dump`: seal the declarations, step, report the outcome.
 
 use super::limits::Warden;
 use super::planning::hangs_on_a_run;
@@ -31,15 +31,15 @@ const PLANNED_STRETCHES: u32 = 1000;
 /// What a plan is sealed for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
-    /// Steps in time; somebody watches whether energy grows from nothing.
+    /// Steps in time; an observer checks whether energy grows from nothing.
     Run,
-    /// A look at snapshots.
+    /// Snapshots are read.
     Rerun,
     /// A minimization: fixes that do not act in it are left out, and the energy is read.
     Minimization,
 }
 
-/// What a `run` line asks for.
+/// The words of a `run` line.
 struct RunArgs {
     steps: i64,
     start: Option<i64>,
@@ -348,7 +348,7 @@ impl Session {
         // What is put back at the end of a run changes the scene again.
         self.world.parts.changed &= outcome.is_err();
         self.ran |= outcome.is_ok();
-        // Before fixes put back what they have changed for the run: that is to go on.
+        // Before fixes restore what they have changed for the run: a continued run needs those changes.
         let early = outcome.as_ref().is_ok_and(|(o, _)| o.interrupted || self.is_out_of_time());
         let saved = if early { self.save_early(&mut plan) } else { Ok(()) };
         let finished = plan.finish(&mut self.world);
@@ -391,7 +391,7 @@ impl Session {
     ) -> Result<(verlet::Outcome, Option<Diagnostic>)> {
         let timed = self.timer.tables() || self.options.mode == Mode::Measure;
         pace.setup(plan, &mut self.world, unchanged)?;
-        // What is wrong from the first step on is told before it.
+        // Problems known before the first step are reported before it.
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         self.say_notes()?;
         self.options.log.flush()?;
@@ -416,7 +416,7 @@ impl Session {
         Ok((outcome, warden.problem))
     }
 
-    /// What a run, or a minimization with its own block of text, says at its end.
+    /// The text at the end of a run, or of a minimization with its own block of text.
     pub(super) fn say_end(
         &mut self,
         plan: &StepPlan,

@@ -11,7 +11,7 @@ use std::process::{Child, ExitStatus};
 use std::time::Duration;
 
 impl Session {
-    /// The `shell` command. What fails there is a warning, as in LAMMPS: the deck goes on.
+    /// The `shell` command. A failure there is a warning, as in LAMMPS: the deck continues.
     ///
     /// # Errors
     /// Missing words.
@@ -127,7 +127,7 @@ impl Session {
     }
 }
 
-/// Waits for a command, and ends it where a signal asks the deck to end.
+/// Waits for a command, and ends it when a signal requests the end of the deck.
 fn waited(mut child: Child) -> std::io::Result<ExitStatus> {
     let mut pause = Duration::from_micros(200);
     loop {

@@ -1,10 +1,10 @@
-//! Checks of peridynamic solids against the rest of a deck: what cannot break but is asked about, what cannot turn.
+//! Checks of peridynamic solids against the rest of a deck: damage of what cannot break, rotation of what cannot turn.
 
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics};
 
 impl Session {
-    /// Warns of damage that is asked for where no bond can break.
+    /// Warns of damage that is requested where no bond can break.
     pub(super) fn check_breaking(&self, found: &mut Diagnostics) {
         let Some(node) = &self.graph.pair else { return };
         let asks = |style: &str| style == "damage/atom" || style == "fragment/atom";

@@ -1,4 +1,4 @@
-//! What somebody who tells of a whole session wants to know of its runs: where the time went, and which pictures were drawn.
+//! The cost of a session's runs for its summary: where the time went, and which pictures were drawn.
 
 use super::Session;
 use perigrain_lang::Command;

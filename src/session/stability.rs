@@ -31,8 +31,8 @@ impl Session {
             if dt <= sure {
                 return Some((sure, dt));
             }
-            // The exact limit is asked for where the estimate is exceeded. A deck that is only looked at has no bodies to ask: what a whole
-            // lattice stands is said of it, so that no deck is warned about that a run finds right.
+            // The exact limit is computed where the estimate is exceeded. A deck that is only checked has no bodies: there the
+            // limit of a whole lattice is used, so that no deck gets a warning that a run would not give.
             let limit = styles[k].limit(&self.world).or(p.stable_step);
             Some((limit.unwrap_or(sure), dt))
         };
@@ -51,7 +51,7 @@ impl Session {
         );
     }
 
-    /// How many times as long the time step could be, as far as pair styles and walls can tell: nothing where bonds of a bond
+    /// How many times as long the time step could be by the estimates of pair styles and walls: `None` where bonds of a bond
     /// style, levels, short steps of solids or a fix decide.
     pub(super) fn room_for_step(&self) -> Option<f64> {
         let (w, g) = (&self.world, &self.graph);
@@ -67,15 +67,15 @@ impl Session {
         own.chain(walls).flatten().reduce(f64::min).map(|longest| longest / w.clock.dt)
     }
 
-    /// Which step is too long for bonds, where that is said, and what to say instead.
+    /// Which step is too long for bonds, the place where it is set, and what to write instead.
     fn step_remedy(&self, limit: f64, place: Span) -> (&'static str, Span, String) {
         let whole = self.world.clock.dt;
         match &self.world.settings.run_style {
             RunStyle::Staggered { ratio: Some(m), rare, .. } if *m > 1 => {
                 let rare = *rare;
                 let remedy = match rare {
-                    false => format!("say `m {}` or more", (whole / (0.8 * limit)).ceil()),
-                    true => format!("say `m {}` or less", (0.8 * limit / whole).floor().max(1.0)),
+                    false => format!("use `m {}` or more", (whole / (0.8 * limit)).ceil()),
+                    true => format!("use `m {}` or less", (0.8 * limit / whole).floor().max(1.0)),
                 };
                 (if rare { "the rare step" } else { "the short step" }, self.run_style_place(place), remedy)
             }
@@ -83,7 +83,7 @@ impl Session {
                 let remedy = format!("let a step of their level be {:.1e} or less", 0.8 * limit);
                 ("the step of their level", self.run_style_place(place), remedy)
             }
-            _ => ("the time step", place, format!("say `timestep {:.1e}` or less", 0.8 * limit)),
+            _ => ("the time step", place, format!("use `timestep {:.1e}` or less", 0.8 * limit)),
         }
     }
 
@@ -100,19 +100,19 @@ impl Session {
         }
     }
 
-    /// A warning where the step is too long for particles that a bond style joins. The cheap bound is asked first: a step within it
-    /// needs no exact limit.
+    /// A warning where the step is too long for particles that a bond style joins. The cheap bound is computed first: a step
+    /// within it needs no exact limit.
     fn check_bonds(&self, span: Span, place: Span, found: &mut Diagnostics) {
         let Some(bond) = self.graph.bond.as_ref().filter(|_| !self.world.bonds.is_empty()) else { return };
         let (w, whole) = (&self.world, self.world.clock.dt);
-        // A run that goes on: bonds have become fewer, if anything.
+        // In a continued run the number of bonds can only have fallen.
         if self.ran && !w.parts.changed && self.checked_step == Some(whole) {
             return;
         }
         let integrated = self.graph.fixes.iter().filter(|f| f.fix.facts(w).integrates());
         let bits = integrated.fold(0, |bits, f| bits | f.group.bit());
         let moves = |i: usize| w.particles.mask[i] & bits != 0;
-        // What is wrong with bonds is said when the run is set up.
+        // Errors of bonds are reported when the run is set up.
         let Ok(Some(body)) = swinging(w, bond.force.as_ref(), moves, span) else { return };
         let steps = match &w.settings.run_style {
             RunStyle::Respa(r) => r.steps(r.bond),
@@ -125,7 +125,7 @@ impl Session {
         let Some(limit) = body.limit().filter(|limit| dt > *limit) else { return };
         let whose = if steps > 1 { "the time step of their level" } else { "the time step" };
         let text = format!("{whose} {dt:e} is longer than bonds allow: {limit:.3e}");
-        let remedy = format!("say `timestep {:.1e}` or less", 0.8 * limit * steps as f64);
+        let remedy = format!("use `timestep {:.1e}` or less", 0.8 * limit * steps as f64);
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
                 .help("beyond 2/ω, ω the largest frequency of the bonded particles as they stand, they fly apart within some tens of steps")
@@ -153,11 +153,12 @@ impl Session {
         );
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
-                .help(format!("say `timestep {:.1e}` or less, or take softer grains", 0.05 * contact)),
+                .help(format!("use `timestep {:.1e}` or less, or take softer grains", 0.05 * contact)),
         );
     }
 
-    /// A note where no line says how long the skin is, and that of the units has lists of grains hold many times the pairs that can touch.
+    /// A note where no line sets the skin, and the default of the units has lists of grains hold many times the pairs that can
+    /// touch.
     pub(super) fn check_skin(&self, span: Span, found: &mut Diagnostics) {
         let (near, p) = (&self.world.settings.neighbor, &self.world.particles);
         if near.said || !p.style.sphere || p.style.peri || p.len() < MANY || self.all_excluded() {
@@ -168,13 +169,13 @@ impl Session {
             return;
         }
         let text = format!(
-            "neighbour lists reach {:e} farther than touching, {:.1} times the largest grain: no line says how far, and that is the default of units {}",
+            "neighbour lists reach {:e} farther than touching, {:.1} times the largest grain: no `neighbor` line sets the skin, and that is the default of units {}",
             near.skin,
             near.skin / widest,
             self.world.settings.units.name()
         );
         let remedy = format!(
-            "say `neighbor {:.1e} bin`: lists hold the pairs that may touch soon, and steps are many times as fast",
+            "use `neighbor {:.1e} bin`: lists hold the pairs that may touch soon, and steps are many times as fast",
             0.25 * widest
         );
         found.push(Diagnostic::note(Code::SUSPICIOUS, span, text).help(remedy));
@@ -205,7 +206,7 @@ impl Session {
         let room = self.room_for_step().filter(|room| *room < 0.5);
         match room.map(|room| room * self.world.clock.dt) {
             Some(step) => format!(
-                "say `timestep {step:.1e}` or less first: the step is longer than a tenth of a contact, and grains go that deep before it \
+                "use `timestep {step:.1e}` or less first: the step is longer than a tenth of a contact, and grains go that deep before it \
                  pushes them back"
             ),
             None => "look for particles that were created inside each other, or take stiffer grains and a shorter step: contacts last as \
@@ -214,7 +215,7 @@ impl Session {
         }
     }
 
-    /// Tells once of grains that a run has pushed far into each other.
+    /// Warns once of grains that a run has pushed far into each other.
     pub(super) fn say_deep(&mut self, span: Span) -> Result<()> {
         let Some(deep) = self.world.parts.deep.as_mut().filter(|d| !d.told) else { return Ok(()) };
         deep.told = true;

@@ -1,4 +1,4 @@
-//! How the steps of a run are made; steps of two lengths: who moves in which, and whether the scene suits them.
+//! How the steps of a run are made; steps of two lengths: which particles move in which, and whether the scene suits them.
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -51,7 +51,7 @@ impl Session {
                 place,
                 format!("steps of two lengths need grains and peridynamic solids, and here {text}"),
             )
-            .help("say `run_style verlet`")
+            .help("use `run_style verlet`")
             .into());
         }
         self.refuse_movers(&solid)?;
@@ -64,7 +64,7 @@ impl Session {
                     return refuse(
                         Code::INCOMPLETE,
                         place,
-                        "`m auto` finds no stable step of the peridynamic solids: say `m N`",
+                        "`m auto` finds no stable step of the peridynamic solids: use `m N`",
                     );
                 }
             },
@@ -72,12 +72,12 @@ impl Session {
         Ok(Staggered::new(solids, ratio))
     }
 
-    /// The line that asked for steps of two lengths.
+    /// The line that chose steps of two lengths.
     pub(super) fn run_style_place(&self, span: Span) -> Span {
         self.graph.lines.latest("run_style").map_or(span, |n| n.span)
     }
 
-    /// Who moves in short steps.
+    /// The particles that move in short steps.
     fn solids(&self, twice: u32) -> Solids {
         let solids = self.graph.pair.as_ref().map_or(vec![], |node| node.pair.facts().solids);
         Solids { kinds: (1..=self.world.types as u16).map(|k| solids.contains(&k)).collect(), twice }
@@ -110,7 +110,7 @@ impl Session {
                 let text =
                     format!("fix {} cannot act on peridynamic particles in steps of two lengths", f.style);
                 Err(Diagnostic::error(Code::CONFLICT, f.span, text)
-                    .help("move them by `fix nve` and hold parts of them with `fix setforce`, or say `run_style verlet`")
+                    .help("move them by `fix nve` and hold parts of them with `fix setforce`, or use `run_style verlet`")
                     .into())
             }
         }

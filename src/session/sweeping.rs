@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::{Args, Word};
 use perigrain_world::reading::place;
 
-/// What a deck's `sweep` line says.
+/// A deck's `sweep` line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Swept {
     /// The lists of values, the last one fastest.
@@ -19,7 +19,7 @@ pub struct Swept {
 const KEYS: [&str; 4] = ["each", "zip", "table", "report"];
 
 impl Session {
-    /// What the deck's `sweep` line says, if it has come to one.
+    /// The deck's `sweep` line, if it has been reached.
     pub fn swept(&self) -> Option<&Swept> {
         self.swept.as_ref()
     }
@@ -27,7 +27,7 @@ impl Session {
     /// `sweep each NAME VALUE … zip NAME … table FILE report WORD …`: a run by itself takes the first values.
     ///
     /// # Errors
-    /// Lists that make no sense, a second line that says otherwise.
+    /// Lists that make no sense, a second line that differs.
     pub(super) fn sweep(&mut self, args: &mut Args, span: Span) -> Result<()> {
         let swept = self.read_sweep(args, span)?;
         let rows = combined(&swept.axes).map_err(|e| e.at(span))?;

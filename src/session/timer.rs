@@ -1,11 +1,11 @@
-//! `timer`: how much is said about time, and the limit of time for runs.
+//! `timer`: how much is printed about time, and the time limit for runs.
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Result};
 use perigrain_lang::{Args, Word};
 use std::time::{Duration, Instant};
 
-/// What `timer` has said.
+/// The settings of `timer`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timer {
     style: &'static str,
@@ -43,7 +43,7 @@ impl Session {
         (settings.deadline, settings.limit_every) = (Some(self.born + limit.time), 1);
     }
 
-    /// Tells that a limit of time has ended a run, and which files go on from there if the session was given the limit.
+    /// Reports that a time limit has ended a run, and which files continue from there if the session was given the limit.
     ///
     /// # Errors
     /// A log that cannot be written.
@@ -55,7 +55,7 @@ impl Session {
         if names.is_empty() {
             names.push(limit.restart.replacen('*', &step.to_string(), 1));
         }
-        log.line(&format!("  to go on from: {}", names.join(" or ")))
+        log.line(&format!("  to continue from: {}", names.join(" or ")))
     }
 
     /// The `timer` command.
@@ -75,7 +75,9 @@ impl Session {
                     timer.limit = limit(args.expect("a time such as 2:00:00, or off")?)?;
                     restart = true;
                 }
-                Some(&"every") => every = args.integer_from(1, "the steps between two looks at the clock")?,
+                Some(&"every") => {
+                    every = args.integer_from(1, "the steps between two readings of the clock")?
+                }
                 Some(style) => timer.style = style,
                 None => return Err(args.unknown(word, &KNOWN)),
             }

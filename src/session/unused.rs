@@ -91,7 +91,7 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
         let c = bytes[k];
         if c.is_ascii_alphanumeric() || c == b'_' {
             let end = k + bytes[k..].iter().take_while(|b| b.is_ascii_alphanumeric() || **b == b'_').count();
-            // `${name}`: the braces are no part of it; `name$x` and `name${x}` go on.
+            // `${name}`: the braces are no part of it; `name$x` and `name${x}` continue.
             out.push(Token { text: &text[k..end], at: k, opens, part: bytes.get(end) == Some(&b'$') });
             (k, opens) = (end, false);
             continue;

@@ -14,7 +14,7 @@ const MOST_CHECKED: usize = 64;
 pub struct Checked {
     /// All texts that were read.
     pub sources: Sources,
-    /// Everything that can be said against the deck, in the order of its lines.
+    /// All problems of the deck, in the order of its lines.
     pub problems: Diagnostics,
 }
 

@@ -4,7 +4,7 @@ use super::{Job, Sweep};
 use crate::session::{self, Mode, Session};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Sources, nearest};
 
-/// What a look at the deck has found.
+/// The result of a check of the deck.
 #[derive(Clone, Debug, Default)]
 pub struct Ahead {
     /// Why no run should begin; empty if all is well.
@@ -25,7 +25,7 @@ pub fn look_ahead(sweep: &Sweep) -> Ahead {
     let mut session = match checked(sweep, first) {
         Ok((session, Ok(()))) => session,
         Ok((session, Err(problems))) => {
-            // A deck may be right for some of the values only: runs with the others go on.
+            // A deck may be right for some of the values only: runs with the others continue.
             let other = if sweep.jobs.len() > 1 { checked(sweep, last) } else { Err(Diagnostics::default()) };
             match other {
                 Ok((other, Ok(()))) => other,

@@ -7,7 +7,7 @@ use perigrain_base::comm::Gone;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use std::time::{Duration, Instant};
 
-/// How long a rank may be silent while it makes runs before that is said.
+/// How long a rank may be silent while it makes runs before that is reported.
 const SILENCE: Duration = Duration::from_secs(60);
 /// How long other ranks may take to end their runs.
 const ENDING: Duration = Duration::from_secs(10);
@@ -18,7 +18,7 @@ pub(super) struct Crew {
     own: Hands,
     /// By rank.
     posts: Vec<Post>,
-    /// Something outside has asked another rank to end.
+    /// Another rank has received a request to end.
     pub asked: bool,
 }
 
@@ -29,7 +29,7 @@ struct Post {
     threads: usize,
     /// Runs that another rank makes.
     jobs: Vec<Away>,
-    /// When it was heard last, and whether its silence has been told.
+    /// When it was heard last, and whether its silence has been reported.
     heard: Instant,
     missed: bool,
 }
@@ -86,7 +86,7 @@ impl Crew {
         self.posts[rank].threads
     }
 
-    /// What the journal says of where a run is made, where that is not plain.
+    /// The journal's name for the place where a run is made, unless it is obvious.
     pub fn name(&self, rank: usize) -> Option<String> {
         self.ranks.as_ref().map(|ranks| ranks.name(rank))
     }
@@ -158,7 +158,7 @@ impl Crew {
 
     fn lost(&self, ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostics {
         let making = self.making(rank, sweep);
-        let text = format!("{} has ended without a word; it was making {making}", ranks.name(rank));
+        let text = format!("{} has ended without a message; it was making {making}", ranks.name(rank));
         let d = Diagnostic::error(Code::OTHER_SWEEP, None, text);
         d.help("what is done is kept: run the same command again, on any number of ranks, to make the rest")
             .into()

@@ -30,7 +30,7 @@ impl Folder {
     /// Makes it if there is none, and waits until no run of an earlier sweep is left.
     ///
     /// # Errors
-    /// Somebody else at work there; folders that cannot be made.
+    /// Another sweep at work there; folders that cannot be made.
     pub fn open(sweep: &Sweep) -> Result<Self> {
         let path = std::path::absolute(&sweep.folder).unwrap_or_else(|_| sweep.folder.clone());
         std::fs::create_dir_all(&path).map_err(|e| trouble("make the folder", &path, &e))?;
@@ -40,7 +40,7 @@ impl Folder {
             let d = Diagnostic::error(Code::OTHER_SWEEP, None, text);
             return Err(d.help("wait for it, or put this one elsewhere with `-out DIR`").into());
         }
-        // Where a system knows no locks nobody can be waited for.
+        // A system without locks gives no way to wait for other processes.
         let workers = locked(&path.join(WORKERS))?;
         let _ = workers.lock().and_then(|()| workers.unlock());
         Ok(Self { path, _lock: lock })
@@ -64,7 +64,7 @@ impl Folder {
         self.path.join(name(sweep.jobs.len(), job, &sweep.jobs[job].title()))
     }
 
-    /// What a worker has to know of a run.
+    /// The description of a run for a worker.
     pub fn task(&self, sweep: &Sweep, job: usize, threads: usize, print: String) -> Task {
         let mut settings = sweep.settings.clone();
         let own = &sweep.jobs[job];
@@ -119,14 +119,14 @@ pub(super) fn forget(home: &Path) -> Result<()> {
     }
 }
 
-/// Steps made and steps of the present `run` in a run's folder, if the run has told.
+/// Steps made and steps of the present `run` in a run's folder, if the run has reported them.
 pub(super) fn steps(home: &Path) -> Option<(i64, i64)> {
     let text = std::fs::read_to_string(home.join(PROGRESS)).ok()?;
     let (done, total) = text.trim().split_once(' ')?;
     Some((done.parse().ok()?, total.parse().ok()?))
 }
 
-/// Takes the lock; false if somebody else keeps it. A process that a killed sweep was just starting holds it for a moment more.
+/// Takes the lock; false if another process keeps it. A process that a killed sweep was just starting holds it for a moment more.
 fn held(lock: &File) -> bool {
     let begin = Instant::now();
     while let Err(TryLockError::WouldBlock) = lock.try_lock() {
@@ -138,7 +138,7 @@ fn held(lock: &File) -> bool {
     true
 }
 
-/// Whether somebody is at work in a folder.
+/// Whether a sweep is at work in a folder.
 pub(super) fn at_work(folder: &Path) -> bool {
     let lock = File::open(folder.join(LOCK));
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))

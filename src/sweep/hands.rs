@@ -38,7 +38,7 @@ struct Hand {
 }
 
 impl Hands {
-    /// Runs under way, those that could not be begun among them until [`Hands::ended`] has told of them.
+    /// Runs under way, those that could not be begun among them until [`Hands::ended`] has reported them.
     pub fn count(&self) -> usize {
         self.hands.len() + self.stillborn.len()
     }

@@ -14,7 +14,7 @@ const NAME: &str = "journal";
 /// The first word of its first line, with the number of its form.
 const FORM: &str = "sweep 1";
 
-/// What the first line says.
+/// The content of the first line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Head {
     pub version: String,
@@ -137,7 +137,7 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Goes on with the journal in the folder, or begins one.
+    /// Continues the journal in the folder, or begins one.
     ///
     /// # Errors
     /// A journal of another sweep, a damaged one, files that cannot be written.
@@ -186,12 +186,12 @@ impl Journal {
         Ok(journal)
     }
 
-    /// What tells a run of this sweep from all others.
+    /// The fingerprint that distinguishes a run of this sweep from all others.
     pub fn print(&self, job: usize) -> String {
         format!("{}-{job}", self.print)
     }
 
-    /// A run begins; on one of several ranks the line says at which.
+    /// A run begins; on one of several ranks the line has the rank's name.
     ///
     /// # Errors
     /// The line cannot be written.
@@ -213,18 +213,18 @@ impl Journal {
         let written = self.file.write_all(seal(fields).as_bytes()).and_then(|()| self.file.sync_data());
         written.map_err(|e| {
             let d = trouble("write", &self.path, &e);
-            d.help("runs that are done are kept: the same command goes on when the journal can be written")
+            d.help("runs that are done are kept: the same command continues when the journal can be written")
                 .into()
         })
     }
 }
 
-/// Removes the folders of the runs of a sweep that is begun anew, as far as its journal tells them.
+/// Removes the folders of the runs of a sweep that is begun anew, as far as its journal lists them.
 fn forget_runs(sweep: &Sweep, path: &Path) {
     let Ok(Ok(before)) = std::fs::read(path).map(|bytes| read(path, &bytes)) else { return };
     let Some(head) = before.head else { return };
     for (job, vars) in head.jobs.iter().enumerate().filter(|(job, _)| before.begun[*job]) {
-        // One that cannot be removed is in nobody's way: a run that needs its place says so.
+        // A folder that cannot be removed does no harm: a run that needs its place reports it.
         let _ = folder::forget(&sweep.folder.join(folder::name(head.jobs.len(), job, &vars.title())));
     }
 }
@@ -248,7 +248,7 @@ impl Read {
     }
 }
 
-/// Reads a journal. A last line that is torn is left out, for it never counted; damage before it is told.
+/// Reads a journal. A truncated last line is left out, for it never counted; damage before it is an error.
 fn read(path: &Path, bytes: &[u8]) -> Result<Read> {
     let mut out = Read {
         head: None,
@@ -274,7 +274,7 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Read> {
     }
     for line in damaged {
         let text =
-            format!("`{}`, line {line}, is damaged: a run that it told of is made anew", path.display());
+            format!("`{}`, line {line}, is damaged: a run that it recorded is made anew", path.display());
         out.notes.push(Diagnostic::warning(Code::BAD_FILE, None, text));
     }
     if out.head.is_none() && bytes.contains(&b'\n') {
@@ -311,7 +311,7 @@ impl Read {
     }
 }
 
-/// What the journal in a folder tells.
+/// The content of the journal in a folder.
 ///
 /// # Errors
 /// A folder without one, and a damaged one.

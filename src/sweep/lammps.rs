@@ -1,4 +1,4 @@
-//! Runs that a LAMMPS makes of the same deck, and what its log tells of them.
+//! Runs that a LAMMPS makes of the same deck, and the content of its log.
 
 use super::worker::OUTPUT;
 use super::{Outcome, series};
@@ -7,7 +7,7 @@ use perigrain_output::thermo::KEYWORDS;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The value of a run's `-program` that asks for it.
+/// The value of a run's `-program` that selects it.
 pub const PROGRAM: &str = "lammps";
 /// What LAMMPS writes in the folder of the run.
 const LOG: &str = "log.lammps";
@@ -31,7 +31,7 @@ pub(super) fn command(
     command
 }
 
-/// What a log of LAMMPS, or one of perigrain's, tells.
+/// The content of a log of LAMMPS, or of perigrain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Told {
     /// The step tables, columns by the words of `thermo_style`.
@@ -78,13 +78,13 @@ fn word_of(heading: &str) -> String {
     found.map_or(heading, |k| k.name).to_owned()
 }
 
-/// A row; where the table does not tell the time, it is not a number.
+/// A row; without a time in the table, the time is not a number.
 fn row(columns: &[String], values: Vec<f64>) -> Row {
     let of = |name: &str| columns.iter().position(|c| c == name).map(|k| values[k]);
     Row { step: of("step").unwrap_or(0.0) as i64, time: of("time").unwrap_or(f64::NAN), values }
 }
 
-/// What became of a run in its folder, and what it tells of the words that were to be reported.
+/// The outcome of a run in its folder, with the words that were to be reported.
 pub(super) fn outcome(home: &Path, report: &[String], seconds: f64, threads: usize) -> Outcome {
     let text = std::fs::read_to_string(home.join(LOG)).unwrap_or_default();
     let told = read(&text);

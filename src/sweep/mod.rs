@@ -1,6 +1,7 @@
 //! Many runs of one deck side by side: a table of jobs in, worker processes, a journal, a table of results out.
 //!
-//! [`Job::all`] makes the jobs, [`work_off`] has them run, [`Results`] holds what each of them tells; nothing here knows the command line.
+//! [`Job::all`] makes the jobs, [`work_off`] has them run, [`Results`] holds their results; this module is independent of the
+//! command line.
 
 mod ahead;
 mod crew;
@@ -36,7 +37,7 @@ use ranks::Ranks;
 /// How often running processes are looked at.
 const PAUSE: Duration = Duration::from_millis(4);
 
-/// How often the table is written anew while runs go on.
+/// How often the table is written anew during runs.
 const TABLE: Duration = Duration::from_secs(1);
 
 /// One run: index variables with one value each.
@@ -50,7 +51,7 @@ impl Job {
     /// One for each combination of values, the last list fastest.
     ///
     /// # Errors
-    /// A variable in two lists, more runs than anybody means.
+    /// A variable in two lists, an implausible number of runs.
     pub fn all(axes: &[Axis]) -> Result<Vec<Self>> {
         Ok(combined(axes)?.into_iter().map(|vars| Self { vars }).collect())
     }
@@ -83,7 +84,7 @@ pub struct Deck {
     pub folder: PathBuf,
 }
 
-/// How every run is worked off.
+/// How every run is executed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// Index variables that all runs share.
@@ -109,7 +110,7 @@ pub struct Sweep {
     pub deck: Deck,
     /// One run each; their numbers count from 1.
     pub jobs: Vec<Job>,
-    /// What each run reports at its end, by the words of formulas.
+    /// What each run reports at its end: words or formulas.
     pub report: Vec<String>,
     /// What all runs share.
     pub settings: Settings,
@@ -121,9 +122,9 @@ pub struct Sweep {
     pub threads: usize,
     /// How often a run that has failed is tried again.
     pub retry: usize,
-    /// The program that works off a run when called with [`worker::WORD`]: this one, as a rule.
+    /// The program that executes a run when called with [`worker::WORD`]: this one, as a rule.
     pub program: Starter,
-    /// Whether runs tell how far they are.
+    /// Whether runs report their progress.
     pub telling: bool,
     /// The ranks that make the runs; without them this process has them made.
     pub ranks: Option<Ranks>,
@@ -151,13 +152,13 @@ pub struct Running {
     pub job: usize,
     /// Since when.
     pub since: Duration,
-    /// Steps made and steps of the present `run`, if it has told.
+    /// Steps made and steps of the present `run`, if it has reported them.
     pub steps: Option<(i64, i64)>,
 }
 
-/// Told of what happens.
+/// Observes a sweep.
 pub trait Watch {
-    /// The sweep goes on where an earlier one ended; `done` runs are left alone.
+    /// The sweep continues where an earlier one ended; `done` runs are left alone.
     fn resumed(&mut self, _done: usize, _state: &State) {}
     /// Something worth knowing about the journal or the table.
     fn note(&mut self, _note: &Diagnostics) {}
@@ -167,10 +168,10 @@ pub trait Watch {
     fn waited(&mut self, _state: &State) {}
 }
 
-/// Nobody looks.
+/// No observer.
 impl Watch for () {}
 
-/// What all runs tell.
+/// The results of all runs.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     /// What became of each job, in their order; `None` where it has not been run.
@@ -188,7 +189,7 @@ impl Results {
     }
 }
 
-/// What is known of a sweep's folder.
+/// The state of a sweep's folder.
 #[derive(Clone, Debug, Default)]
 pub struct Standing {
     /// The deck's name.
@@ -199,7 +200,7 @@ pub struct Standing {
     pub report: Vec<String>,
     /// What became of them so far.
     pub results: Results,
-    /// Runs under way, if somebody is at work there.
+    /// Runs under way, if a sweep is at work there.
     pub running: Option<usize>,
     /// Time left then, from the median of what is done.
     pub left: Option<Duration>,
@@ -210,7 +211,7 @@ pub fn home_of(sweep: &Sweep, job: usize) -> PathBuf {
     sweep.folder.join(folder::name(sweep.jobs.len(), job, &sweep.jobs[job].title()))
 }
 
-/// Looks at the folder of a sweep.
+/// Reads the folder of a sweep.
 ///
 /// # Errors
 /// A folder without a journal, and one that cannot be read.
@@ -233,10 +234,11 @@ fn time_left(outcomes: &[Option<Outcome>], spent: f64, at_once: usize) -> Option
     Duration::try_from_secs_f64((missing * median - spent).max(0.0) / at_once.max(1) as f64).ok()
 }
 
-/// Has all runs made that are not done yet. With `anew` an earlier sweep in the folder is forgotten.
+/// Makes all runs that are not done yet. With `anew` an earlier sweep in the folder is discarded.
 ///
 /// # Errors
-/// A folder that holds another sweep or is in use, a journal that cannot be written. That runs fail is none: it stands in the results.
+/// A folder that holds another sweep or is in use, a journal that cannot be written. A failed run is none: it stands in the
+/// results.
 pub fn work_off(sweep: &Sweep, anew: bool, watch: &mut dyn Watch, stop: &AtomicBool) -> Result<Results> {
     let folder = Folder::open(sweep)?;
     let mut journal = Journal::open(sweep, &folder, anew)?;
@@ -314,7 +316,7 @@ impl<'a> Work<'a> {
         None
     }
 
-    /// Takes in runs that had ended when the sweep was killed before it could say so.
+    /// Takes in runs that ended before a killed sweep could note it.
     fn adopt(&mut self) -> Result<()> {
         for job in 0..self.outcomes.len() {
             if self.outcomes[job].is_some() || !self.journal.begun[job] {
@@ -328,7 +330,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Says which runs ranks had under way when an earlier sweep ended.
+    /// Reports which runs ranks had under way when an earlier sweep ended.
     fn left_at_ranks(&self) -> Option<Diagnostic> {
         let jobs = 0..self.outcomes.len();
         let left = jobs.filter(|job| self.outcomes[*job].is_none() && self.journal.begun[*job]);
@@ -449,10 +451,10 @@ impl<'a> Work<'a> {
     }
 }
 
-/// The sweep in the folder is not the one that is asked for.
+/// The sweep in the folder is not the requested one.
 fn other(sweep: &Sweep, what: String) -> Diagnostics {
-    let text = format!("the sweep in `{}` cannot go on: {what}", sweep.folder.display());
+    let text = format!("the sweep in `{}` cannot continue: {what}", sweep.folder.display());
     Diagnostic::error(Code::OTHER_SWEEP, None, text)
-        .help("`-anew` begins it anew and forgets its runs; `-out DIR` puts this one elsewhere")
+        .help("`-anew` begins it anew and discards its runs; `-out DIR` puts this one elsewhere")
         .into()
 }

@@ -3,7 +3,7 @@
 use super::record::{join, pairs, split, unpaired};
 use std::path::PathBuf;
 
-/// What became of one run, and what it tells.
+/// The outcome of one run, and its results.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Why it failed, in one line; `None` if all went well.
@@ -86,7 +86,7 @@ impl Outcome {
     }
 }
 
-/// An outcome as the one line of a file that a worker leaves; `print` says which run of which sweep it is of.
+/// An outcome as the one line of a file that a worker leaves; `print` is the fingerprint of its run and sweep.
 pub(super) fn sealed(print: &str, outcome: &Outcome) -> String {
     super::record::seal(&[print.to_owned(), join(&outcome.fields())])
 }

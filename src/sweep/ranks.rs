@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often a rank says what it is at.
+/// How often a rank reports its state.
 const BEAT: Duration = Duration::from_secs(1);
 /// How long a file that the first rank has written may take to be seen on another machine.
 const SEEN: Duration = Duration::from_secs(10);
@@ -85,7 +85,7 @@ impl Ranks {
         let (end, mut all) = (Instant::now() + FAREWELL, true);
         while !there.is_empty() && Instant::now() < end {
             there.retain(|from| match self.hear(*from) {
-                // What else it has said comes too late.
+                // Other messages come too late.
                 Ok(said) => said.is_none_or(|said| said[0] != "bye"),
                 Err(Gone) => {
                     all = false;
@@ -97,7 +97,7 @@ impl Ranks {
         all && there.is_empty()
     }
 
-    /// A rank that is sent home says so, and waits until that has left.
+    /// A dismissed rank says good-bye, and waits until that has been sent.
     pub fn leave(&self) {
         self.say(0, &["bye".into()]);
         let end = Instant::now() + FAREWELL;
@@ -108,7 +108,11 @@ impl Ranks {
 
     /// What follows on any other rank from the end of the first one.
     pub fn orphaned(&self) -> u8 {
-        eprintln!("error: {}: rank 0 on {} has ended without a word", self.name(self.own()), self.hosts[0]);
+        eprintln!(
+            "error: {}: rank 0 on {} has ended without a message",
+            self.name(self.own()),
+            self.hosts[0]
+        );
         1
     }
 }
@@ -126,7 +130,7 @@ pub(super) enum Letter {
     End(usize, Box<Outcome>),
     /// To the first: what is under way, each with steps made and steps of its present `run`.
     At(Vec<(usize, i64, i64)>),
-    /// To the first: something outside asks the sweep to end.
+    /// To the first: a request from outside to end the sweep.
     Asked,
     /// To the first: the sweep's folder is not there on this machine.
     Blind,
@@ -181,7 +185,7 @@ impl Letter {
     }
 }
 
-/// Has runs made as the first rank says, until it sends this one home; the program's exit code.
+/// Makes the first rank's runs until it dismisses this one; the program's exit code.
 pub fn serve(ranks: &Ranks, stop: &AtomicBool) -> u8 {
     let program = match Starter::itself() {
         Ok(program) => program,

@@ -38,7 +38,7 @@ fn plain(field: &str) -> String {
     out
 }
 
-/// A line that tells by itself whether it is whole.
+/// A line with a checksum that shows whether it is complete.
 pub fn seal(fields: &[String]) -> String {
     let text = join(fields);
     format!("{:08x} {text}\n", crc32fast::hash(text.as_bytes()))

@@ -18,7 +18,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// The rows of a column in which time goes on; `None` where no table has the column, or time goes back.
+    /// The rows of a column in which time increases; `None` where no table has the column, or time goes back.
     pub fn of(tables: &Tables, word: &str) -> Option<Self> {
         let mut out = Self::default();
         for (_, time, value) in tables.column(word) {

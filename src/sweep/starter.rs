@@ -12,12 +12,12 @@ pub struct Starter {
     words: Vec<OsString>,
 }
 
-/// Who hosts this program, and the words of its command line.
+/// The program that hosts this one, and the words of its command line.
 static HOST: OnceLock<(Starter, Vec<OsString>)> = OnceLock::new();
 
-/// Tells that another program has started this one with `words` behind its own; said once, before anything else.
+/// Registers that another program has started this one with `words` behind its own; called once, before anything else.
 pub fn started_by(program: PathBuf, own: Vec<OsString>, words: Vec<OsString>) {
-    // A process has one command line: what is said again is the same.
+    // A process has one command line: a second call has the same words.
     let _ = HOST.set((Starter { program, words: own }, words));
 }
 
@@ -30,7 +30,7 @@ impl Starter {
     /// What starts this program.
     ///
     /// # Errors
-    /// The system does not tell.
+    /// The system does not report it.
     pub fn itself() -> std::io::Result<Self> {
         match HOST.get() {
             Some(host) => Ok(host.0.clone()),

@@ -17,14 +17,14 @@ use std::time::{Duration, Instant};
 /// The word that makes the program a worker.
 pub const WORD: &str = "sweep-worker";
 
-/// What the run's process and its shell commands say, beside the log.
+/// The output of the run's process and its shell commands, beside the log.
 pub(super) const OUTPUT: &str = "output";
 /// The result, once there is one.
 pub(super) const RESULT: &str = ".result";
 /// How far the run is.
 pub(super) const PROGRESS: &str = ".progress";
 
-/// How often a run tells how far it is.
+/// How often a run reports its progress.
 const PAUSE: Duration = Duration::from_millis(500);
 /// How often it looks whether the sweep is still there.
 #[cfg(unix)]
@@ -45,7 +45,7 @@ pub(super) struct Task {
     pub threads: usize,
     /// The process that waits for the run.
     pub parent: u32,
-    /// Held while the run goes on.
+    /// Held during the run.
     pub lock: PathBuf,
     pub telling: bool,
 }
@@ -104,12 +104,12 @@ impl Task {
     }
 }
 
-/// Makes the run that standard input tells of, in the working folder; whether it went well.
+/// Makes the run described on standard input, in the working folder; whether it went well.
 pub fn main() -> bool {
     let mut text = String::new();
     let task = std::io::stdin().read_to_string(&mut text).ok().and_then(|_| Task::read(&text));
     let Some(task) = task else {
-        eprintln!("error: `{WORD}` is for `perigrain sweep`, which says what to run");
+        eprintln!("error: `{WORD}` is for `perigrain sweep`, which sends it the run to make");
         return false;
     };
     let lock = File::open(&task.lock);
@@ -135,7 +135,7 @@ pub fn main() -> bool {
 
 /// Removes what is of no use when the run is over.
 fn tidy() {
-    // Files that are not there or cannot be removed disturb nobody.
+    // Missing files and files that cannot be removed do no harm.
     let _ = std::fs::remove_file(PROGRESS);
     if std::fs::metadata(OUTPUT).is_ok_and(|m| m.len() == 0) {
         let _ = std::fs::remove_file(OUTPUT);
@@ -238,7 +238,7 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
     reported
 }
 
-/// Tells what is to be reported; all that can be, and the first reason why something cannot.
+/// Evaluates the words to be reported; all that can be, and the first reason why one cannot.
 fn report(session: &mut Session, words: &[String], outcome: &mut Outcome) -> Result<(), Diagnostics> {
     let mut trouble = Ok(());
     for word in words {
@@ -269,7 +269,7 @@ fn in_one_line(problems: &Diagnostics, sources: &Sources) -> String {
     format!("{}error[{}]: {}", place(d).unwrap_or_default(), d.code, d.message)
 }
 
-/// Tells the sweep how far the run is.
+/// Reports the run's progress to the sweep.
 #[derive(Default)]
 struct Telling {
     told: Option<Instant>,
@@ -281,7 +281,7 @@ impl Watch for Telling {
             return;
         }
         self.told = Some(Instant::now());
-        // Nobody depends on it.
+        // Nothing depends on it.
         let _ = std::fs::write(PROGRESS, format!("{} {}", made.done, made.total));
     }
 }

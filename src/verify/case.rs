@@ -1,4 +1,4 @@
-//! One case: a deck whose first lines say what it shows, where the expected numbers come from, and how near they must be met.
+//! One case: a deck whose first lines state what it shows, where the expected numbers come from, and how near they must be met.
 //!
 //! Lines that begin with `#|` are together a TOML document; for the deck they are comments, so that a case runs by itself, too.
 
@@ -170,7 +170,7 @@ impl Case {
         let what = &check.what;
         let reasons = check.known.as_ref().map_or("given", |known| &known.reason);
         if check.why.trim().is_empty() || reasons.trim().is_empty() {
-            return Some(format!("`{what}` says no reason"));
+            return Some(format!("`{what}` gives no reason"));
         }
         let is_range = matches!(check.expected, Some(Expected::Range(_)));
         if is_range != (check.tolerance == 0.0) {

@@ -1,4 +1,4 @@
-//! Published cases and closed forms that the program carries with it: decks that say what must come out, and why.
+//! Published cases and closed forms that the program carries with it: decks that state the expected results and their sources.
 
 pub mod case;
 pub mod report;

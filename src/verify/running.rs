@@ -22,7 +22,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// As reports say it.
+    /// Its word in reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -35,7 +35,7 @@ impl Verdict {
 /// A check with its numbers.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What was asked.
+    /// The check.
     pub check: Check,
     /// The expected number, the middle of a range; NaN where none came out.
     pub expected: f64,
@@ -78,7 +78,7 @@ impl Outcome {
     }
 }
 
-/// Runs cases, up to `workers` at a time; `tell` hears of each as it ends. Outcomes come in the order of the cases.
+/// Runs cases, up to `workers` at a time; `tell` receives each outcome as the case ends. Outcomes come in the order of the cases.
 pub fn run_all(cases: Vec<Case>, workers: usize, tell: impl Fn(&Outcome) + Sync) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
     let done: Mutex<Vec<(usize, Outcome)>> = Mutex::default();
@@ -121,7 +121,7 @@ pub fn run(case: &Case) -> Outcome {
 
 type Measured = (Vec<Row>, Vec<Vec<Point>>);
 
-/// Works the deck off and asks for the numbers.
+/// Executes the deck and evaluates the numbers.
 fn measured(case: &Case) -> Result<Measured, String> {
     let screen = Buffer::default();
     let log = Log::new(Some(Box::new(screen.clone())));

@@ -4,7 +4,7 @@ use super::{SCENE, check};
 use perigrain::diag::{Code, Severity};
 use std::fs;
 
-/// What a check says of a deck in a folder of its own that has these files: errors, and whether it ended early.
+/// The results of a check of a deck in a folder of its own that has these files: errors, and whether it ended early.
 fn said(deck: &str, files: &[(&str, &str)]) -> (Vec<String>, bool) {
     let dir = tempfile::tempdir().unwrap();
     for (name, text) in files {

@@ -9,9 +9,9 @@ use std::sync::{Arc, MutexGuard};
 
 /// A bonded plate of type 1 and a sphere of type 2 above it, with everything that examples name.
 ///
-/// An example takes the place of the scene's own lines that say the same ([`subject`]), so that `atom_style …`
-/// or `lattice …` stand where such a line belongs; all others come before the last line. The ball has the mass of a grain and
-/// bonds of force densities: nobody looks at its energy.
+/// An example takes the place of the scene's own lines of the same kind ([`subject`]), so that `atom_style …` or `lattice …`
+/// stand where such a line belongs; all others come before the last line. The ball has the mass of a grain and bonds of force
+/// densities: its energy does not matter.
 pub const SCENE: &str = "\
 units si
 dimension 3
@@ -140,7 +140,7 @@ impl Host for Program {
     }
 }
 
-/// Has a program host a session, as `fix python/invoke` wants it.
+/// Makes a program host the session, as `fix python/invoke` requires.
 pub fn hosted(mut session: Session) -> Session {
     session.set_host(Arc::new(Program));
     session
@@ -187,7 +187,7 @@ fn integrates(example: &str) -> bool {
     })
 }
 
-/// A line that draws a picture without a word about its size draws one of 320 × 240 pixels, not of 1280 × 960: with these, drawing was
+/// A line that draws a picture without a given size draws one of 320 × 240 pixels, not of 1280 × 960: with these, drawing was
 /// half of the time of `tests/stated.rs`.
 fn small(line: &str) -> String {
     let words: Vec<&str> = line.split_whitespace().collect();

@@ -18,8 +18,8 @@ pub const GRAINS: &str = "units si\natom_style sphere\nboundary f f f\nregion bo
 /// A deck by its name with one thread.
 pub const PLAIN: &str = "in.deck -threads 1";
 
-/// The program in a folder with this deck; `args` end in what a shell may say behind the program's words. The shell that starts
-/// it lives on behind a Ctrl-C.
+/// The program in a folder with this deck; `args` end in shell code that follows the program's words. The shell that starts it
+/// survives a Ctrl-C.
 pub fn start(folder: &Path, columns: u16, deck: &str, args: &str, env: &[(&str, &str)]) -> PtySession {
     fs::write(folder.join("in.deck"), deck).unwrap();
     let line = format!("stty cols {columns} rows 50 echo; trap : INT; \"$0\" {args}");

@@ -35,7 +35,7 @@ fn profiles_are_the_same_bytes() {
     agrees("profiles");
 }
 
-// A run cut inside an average goes on with it.
+// A run cut inside an average continues it.
 #[test]
 fn a_profile_of_a_run_cut_in_two_is_that_of_one() {
     let last = |runs: &str| {

@@ -174,7 +174,7 @@ fn a_packed_file_is_the_same() {
     let plain = world(folder.path(), "boundary p s p\nread_data x.data");
     let packed = world(folder.path(), "boundary p s p\nread_data x.data.gz");
     assert_eq!(plain.particles.x, packed.particles.x);
-    // By hand: 7.5 in a periodic edge 0 … 2 is 1.5 three boxes further.
+    // Calculated by hand: 7.5 in a periodic edge 0 … 2 is 1.5 three boxes further.
     assert_eq!(plain.particles.x[2], [1.5, 1.5, 1.5]);
     assert_eq!([0, 1, 2].map(|i| plain.particles.image[i]), [[0; 3], [1, 0, -2], [0, 0, 3]]);
     assert_eq!(plain.particles.v, [[1.0, 2.0, 3.0], [0.0, 0.0, 1e-3], [4.0, 5.0, 6.0]]);

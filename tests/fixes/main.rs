@@ -218,7 +218,7 @@ fn threads_leave_averages_and_springs_as_they_are() {
     assert_eq!(one, three);
 }
 
-// Averages go on across runs as if there were one.
+// Averages continue across runs as if there were one.
 #[test]
 fn averages_of_a_run_cut_in_three_are_those_of_one() {
     let deck = |runs: &str| {

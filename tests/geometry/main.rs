@@ -53,7 +53,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-13 * b.abs().max(1.0)
 }
 
-/// The bar of all meshes: 3 x 2 x 1, material 1 up to x = 2, then material 2; volumes and centres by hand.
+/// The bar of all meshes: 3 x 2 x 1, material 1 up to x = 2, then material 2; volumes and centres calculated by hand.
 fn is_the_bar(name: &str, w: &World) {
     for (kind, volume, x) in [(None, 6.0, 1.5), (Some(1), 4.0, 1.0), (Some(2), 2.0, 2.5)] {
         let (_, v, c) = moments(w, kind);
@@ -133,7 +133,7 @@ fn flat_meshes_have_a_thickness() {
     fs::write(folder.path().join("flat.msh"), text).unwrap();
     let deck = "units si\natom_style peri\ndimension 2\nboundary f f p\nregion b block -5 5 -5 5 -1 1\ncreate_box 1 b\n";
     let w = world(folder.path(), &format!("{deck}read_mesh flat.msh thickness 0.5 scale 2"));
-    // Areas 2 and 2 by hand, times 2² for the scale.
+    // Areas 2 and 2, calculated by hand, times 2² for the scale.
     assert_eq!(w.particles.volume, [4.0, 4.0]);
     assert!(near(w.particles.x[1][1], 2.0 * 5.0 / 3.0) && w.particles.x.iter().all(|x| x[2] == 0.0));
     let (_, outcome) = outcome(folder.path(), &format!("{deck}read_mesh flat.msh"), Mode::Run);
@@ -150,7 +150,7 @@ fn what_is_outside_is_left_out_and_said() {
     assert_eq!(note.message, "2 of 6 cells lie outside of the box and are left out");
 }
 
-/// What is refused: the line and column in the file that is underlined, or 0 for the deck's, and what is said; the same by a check.
+/// A refusal: the line and column in the file that is underlined, or 0 for the deck's, and the message; the same by a check.
 fn refused(folder: &Path, head: &str, line: &str) -> (usize, usize, String) {
     let mut first = None;
     for mode in [Mode::Run, Mode::Check] {
@@ -401,7 +401,7 @@ fn blocks_keep_the_volume_of_each_material() {
     assert_eq!(w.particles.volume[0], 1.0);
     for (kind, count) in [(1, 319), (2, 518), (3, 123)] {
         let (n, _, _) = moments(w, Some(kind));
-        // Ten blocks at most, as the page says; here it is one.
+        // Ten blocks at most, as the page states; here it is one.
         assert!((n as f64 - f64::from(count) / 8.0).abs() < 1.5, "{kind}: {n}");
     }
 }

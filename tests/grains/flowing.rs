@@ -1,9 +1,9 @@
-//! A flow in which neighbours stay neighbours: lists of grains outlast rebuilds, and nothing else tells of it.
+//! A flow in which neighbours stay neighbours: lists of grains outlast rebuilds, which shows in no result.
 
 use super::scene::Scene;
 use perigrain::par;
 
-/// How fast the flow is: in 400 steps everybody goes once around the box.
+/// How fast the flow is: in 400 steps every grain goes once around the box.
 const FAST: f64 = 20.0;
 const EDGE: f64 = 8.0;
 

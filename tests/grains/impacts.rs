@@ -80,7 +80,7 @@ fn test_1_two_spheres_in_elastic_impact() {
         let model =
             format!("hertz/material {young} 0 {nu} tangential mindlin NULL 1.0 0.35 damping velocity");
         let i = head_on([0.01, density], 10.0, &model, exact[2] / 400.0);
-        // The issue asks for 0.1 %; a step of 1/400 of the contact time leaves about 1e-5.
+        // The target is 0.1 %; a step of 1/400 of the contact time leaves about 1e-5.
         for (what, got, exact) in
             [("overlap", i.overlap, exact[0]), ("force", i.force, exact[1]), ("time", i.time, exact[2])]
         {
@@ -114,7 +114,7 @@ fn test_2_a_sphere_on_a_rigid_plane() {
 
 #[test]
 fn test_3_restitution_on_a_plane() {
-    // Radius 2.5 mm, 3.9 m/s (test-cases.md, T3): what is asked for comes out, whatever the velocity.
+    // Radius 2.5 mm, 3.9 m/s (test-cases.md, T3): the wanted restitution comes out, whatever the velocity.
     let cases = [
         ("alumina", 380e9, 0.23, 4000.0, [8.0888e-6, 615.35, 6.1045e-6]),
         ("cast iron", 100e9, 0.25, 7000.0, [17.189e-6, 506.76, 12.972e-6]),

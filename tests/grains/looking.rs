@@ -1,4 +1,4 @@
-//! Whether and when somebody looks changes nothing: steps that run into each other have the bits of steps made one by one.
+//! Reading the scene never changes results: steps that run into each other have the bits of steps made one by one.
 
 use super::scene::Scene;
 

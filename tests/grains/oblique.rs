@@ -247,7 +247,7 @@ fn test_5_from_sticking_to_sliding() {
     }
 }
 
-/// The e to ask of `coeff_restitution` where `limit_damping` lets 0.5 come out: its α is 0.57082 (test-cases.md 2c).
+/// The e for `coeff_restitution` where `limit_damping` gives 0.5: its α is 0.57082 (test-cases.md 2c).
 const HALF: f64 = 0.436_27;
 
 /// The part of friction's impulse that a spring without a dashpot owes while it is stretched first, for ω r/v_n = `ratio`.

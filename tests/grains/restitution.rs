@@ -3,8 +3,8 @@
 use super::scene::{Scene, close, empty, law, mass, sphere};
 use std::f64::consts::PI;
 
-/// e asked for, and got by a force δ^1.5 or δ with exact damping: 1, without the cut of attraction; with it, the same
-/// for both. Integrated with Runge-Kutta steps of 2e-4 of √(m/k) for k = m = v = 1 (test-cases.md 2c, to its digits).
+/// e wanted, and obtained by a force δ^1.5 or δ with exact damping: 1, without the cut of attraction; with it, the same for both.
+/// Integrated with Runge-Kutta steps of 2e-4 of √(m/k) for k = m = v = 1 (test-cases.md 2c, to its digits).
 const CUT: [[f64; 2]; 9] = [
     [0.1, 0.2527],
     [0.2, 0.3249],
@@ -38,8 +38,8 @@ fn measured(model: &str, v: f64, dt: f64) -> f64 {
 /// Step of about 1/1500 of the contact time for the stiffnesses below, at 1 m/s.
 const DT: f64 = 2e-7;
 
-/// The e that tsuji's polynomial stands for: √2 α_T(e) = √5 β, e = exp(−π β/√(1 − β²)). It strays from the e asked for by
-/// 0.52 % at 0.1, by less than 0.18 % from 0.2 on; nothing of that is the program's.
+/// The e that tsuji's polynomial stands for: √2 α_T(e) = √5 β, e = exp(−π β/√(1 − β²)). It differs from the e wanted by 0.52 % at
+/// 0.1, by less than 0.18 % from 0.2 on; none of that is the program's.
 fn of_tsuji(e: f64) -> f64 {
     let powers = [1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218];
     let alpha: f64 = powers.iter().enumerate().map(|(k, c)| c * e.powi(k as i32)).sum();

@@ -13,7 +13,7 @@ pub struct Scene {
     screen: Buffer,
 }
 
-/// Looks at the scene after each step.
+/// Reads the scene after each step.
 struct Looks<T, L, E> {
     look: L,
     ends: E,
@@ -29,7 +29,7 @@ impl<T: Send, L: Fn(&World) -> T + Send, E: FnMut(&T) -> bool + Send> Watch for 
     }
 
     fn scene(&mut self, w: &World) {
-        // The run makes one more step once it is asked to end.
+        // The run makes one more step after a request to end.
         if self.stop.load(Ordering::Relaxed) {
             return;
         }
@@ -40,7 +40,7 @@ impl<T: Send, L: Fn(&World) -> T + Send, E: FnMut(&T) -> bool + Send> Watch for 
 }
 
 impl Scene {
-    /// Works off the lines that make the scene.
+    /// Executes the lines that make the scene.
     pub fn new(deck: &str) -> Self {
         let screen = Buffer::default();
         let options = Options { log: Log::new(Some(Box::new(screen.clone()))), ..Options::default() };
@@ -60,8 +60,8 @@ impl Scene {
         self.say(&format!("run {steps} post no"));
     }
 
-    /// What `look` sees after each step of one run, which `ends` with the first look that it says so of or after `most` steps. Such a
-    /// run is fifty times as quick as one for each step; the scene is over then.
+    /// The results of `look` after each step of one run, which ends with the first result that `ends` accepts or after `most`
+    /// steps. Such a run is fifty times as quick as one for each step; the scene is over then.
     pub fn watched<T: Send + 'static>(
         &mut self,
         most: usize,

@@ -167,7 +167,7 @@ fn chute() -> Option<PathBuf> {
     found
 }
 
-/// The deck up to its first run, shortened, and what is asked at its end.
+/// The deck up to its first run, shortened, with the query at its end.
 fn beginning(text: &str, steps: usize) -> String {
     let before: Vec<&str> = text.lines().take_while(|l| l.split_whitespace().next() != Some("run")).collect();
     let every = steps / 20;
@@ -330,7 +330,7 @@ const LONG: [(&str, &[Leg]); 4] = [
     ),
 ];
 
-/// Seeds of `fix pour` for the box, its own first: its grains are too few for one seed to say much. In its third run sixteen
+/// Seeds of `fix pour` for the box, its own first: its grains are too few for conclusions from one seed. In its third run sixteen
 /// seeds of LAMMPS scatter by 0.0041, more than three times what six of them had.
 const SEEDS: [&str; 8] = ["4767548", "1234", "777", "31415", "27182", "999331", "5551", "80808"];
 

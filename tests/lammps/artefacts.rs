@@ -137,7 +137,7 @@ fn least_and_mean_of_absolute_values_are_what_they_say() {
         let rows = run("reduced", switches);
         ["c_least", "c_mean[1]", "c_mean[2]"].map(|c| rows[0][c])
     };
-    // Of x = 1, 4 and y = 2, 5 by hand.
+    // Of x = 1, 4 and y = 2, 5, calculated by hand.
     assert_eq!(row(&[]), [1.0, 2.5, 3.5]);
     // LAMMPS 22Jul2025, this deck.
     assert_eq!(row(&lammps(&[])), [1e20, 5.0, 7.0]);

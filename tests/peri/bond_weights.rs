@@ -6,7 +6,7 @@ use perigrain::par::set_threads;
 use perigrain::session::{Options, Session};
 use perigrain::world::World;
 
-/// Works off a deck; the world at its end and what was said.
+/// Executes a deck; the world at its end and its output.
 fn run(deck: &str, force_list: bool) -> (World, String) {
     let screen = Buffer::default();
     let log = Log::new(Some(Box::new(screen.clone())));
@@ -30,7 +30,7 @@ fn graded(law: &str, options: &str) -> String {
     )
 }
 
-/// What the log says behind a word.
+/// The number in the log after a word.
 fn told(text: &str, word: &str) -> f64 {
     let (_, rest) = text.split_once(word).unwrap_or_else(|| panic!("no {word}\n{text}"));
     rest.split_whitespace().next().unwrap().parse().unwrap()

@@ -6,7 +6,7 @@ use perigrain::par::set_threads;
 use perigrain::session::{Options, Session};
 use perigrain::world::World;
 
-/// Works off a deck; the world at its end and what was said.
+/// Executes a deck; the world at its end and its output.
 fn run(deck: &str, force_list: bool) -> (World, String) {
     let screen = Buffer::default();
     let log = Log::new(Some(Box::new(screen.clone())));
@@ -93,7 +93,7 @@ fn factors_of_one_change_no_bit() {
     assert!(bits(&plain) == bits(&ones));
 }
 
-/// Runs a deck that must be refused; what was said.
+/// Runs a deck that must be refused; the message.
 fn refused(deck: &str) -> String {
     let mut session = Session::new(Options::default()).unwrap();
     session.run_text("scatter.in", deck).map(drop).unwrap_err().to_string()

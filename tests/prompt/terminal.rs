@@ -1,21 +1,21 @@
-//! The prompt on a terminal: what stands there byte by byte.
+//! The prompt on a terminal, byte by byte.
 //!
 //! | claim | test |
 //! |---|---|
 //! | `?`, `exit`, `%time LINE` work | `habits_work_or_are_told` |
-//! | habits that mean nothing here are told what to write | the same |
+//! | shell habits without meaning here get a hint what to write | the same |
 //! | Tab knows files of materials | `tab_knows_what_the_syntax_wants` |
 //! | Tab knows colours | the same |
-//! | Tab knows groups wherever the syntax wants them | the same |
+//! | Tab knows groups wherever the syntax has them | the same |
 //! | Tab knows `INF` and `EDGE` | the same |
-//! | Tab knows regions wherever the syntax wants them | the same |
+//! | Tab knows regions wherever the syntax has them | the same |
 //! | Tab knows fixes (and computes) | the same |
-//! | what `howto/prompt.md` shows works as typed, in order, from nothing | `what_the_guide_shows_works_as_typed` |
+//! | the decks of `howto/prompt.md` work as typed, in order, from nothing | `what_the_guide_shows_works_as_typed` |
 //! | an interrupted run stays in `:graph` as far as it went | `a_session_through_a_terminal` |
 //! | the last table stays in sight | `a_saved_session_stands_alone_and_keeps_its_last_table_in_sight` |
 //! | `:save` writes a deck that stands alone | the same; stopped runs: `a_session_through_a_terminal` |
 //! | `:plot`, `:slice`, `:show` fit the screen | `pictures_and_curves_are_no_wider_than_the_screen` |
-//! | a second Ctrl-C is told beside the live line | `interrupts::at_the_prompt_the_second_is_told_on_a_line_of_its_own` |
+//! | a second Ctrl-C is confirmed beside the live line | `interrupts::at_the_prompt_the_second_is_told_on_a_line_of_its_own` |
 
 use super::{SCENE, err, lines_with, out, program, settle};
 use crate::pty::width;

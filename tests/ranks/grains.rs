@@ -72,7 +72,7 @@ fn sums_are_known_where_they_are_read_within_steps() {
     same(&alone, &left_by_bowl(&deck, &["-ranks", "3", "-threads", "1"]), "grains that grow");
 }
 
-/// A variable that something looks at in every step is of the forces of that step on all ranks' grains.
+/// A variable that is read in every step has the forces of that step on all ranks' grains.
 #[test]
 fn forces_on_walls_are_those_of_all_ranks_where_every_step_reads_them() {
     let reads = "variable push equal f_sides[3]\nfix most all extremes 1 v_push\n\

@@ -26,7 +26,7 @@ const CLUMPS: &str = "units lj\natom_style sphere\nboundary p f f\nnewton off\nc
 const MOVES: &str =
     "fix g all gravity 1.0 vector 0.1 0 -1\nfix 1 free nve/sphere\nfix r clumps rigid/small molecule\n";
 
-/// What is written of them: sums, what is known of bodies and what the fix says, dumps of particles and bodies, restart files.
+/// Everything written about them: sums, properties of bodies and the fix's values, dumps of particles and bodies, restart files.
 const WRITES: &str = "compute s all stress/atom NULL\ncompute b clumps rigid/local r mass x vy fz tqx omegaz quatw\n\
     compute ke all ke/rigid r\ncompute er all erotate/rigid r\ncompute z all reduce sum c_s[1] c_s[5]\n\
     compute_modify thermo_temp extra/dof -100000\n\

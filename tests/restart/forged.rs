@@ -1,4 +1,4 @@
-//! Restart files whose checksum fits and whose contents do not: refused by name, or gone on with; never a panic.
+//! Restart files with a right checksum and wrong contents: refused by name, or continued; never a panic.
 
 use super::{run, scenes::*};
 use crate::fuzz_loop::bodies::forged::Case;
@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A change of a scene, and what is said of it.
+/// A change of a scene, and the message about it.
 type Forgery = (fn(&mut World), &'static str, &'static str);
 
 /// Writes a file in the middle of a scene and forges it in all these ways.
@@ -218,7 +218,7 @@ fn another_style_does_not_find_what_it_remembers() {
     assert!(said.contains("were made under another style"), "{said}");
 }
 
-/// Particles may have come since the last step: forces are computed anew then, whatever the file says.
+/// Particles may have joined since the last step: forces are computed anew then, regardless of the file.
 #[test]
 fn what_is_not_of_all_particles_does_not_stand() {
     let folder = tempfile::tempdir().unwrap();
@@ -242,7 +242,7 @@ fn what_is_not_of_all_particles_does_not_stand() {
     assert_eq!(run(folder.path(), &format!("read_restart DIR/b\n{BLOCK_AGAIN}run 2"), false).0.n(), n);
 }
 
-/// Lists of a file stand until they are made anew; what looks at contacts before that makes some of its own.
+/// Lists of a file are valid until they are rebuilt; an evaluation of contacts before that makes lists of its own.
 #[test]
 fn a_giant_that_stands_is_refused_by_who_first_looks_for_its_pairs() {
     let folder = tempfile::tempdir().unwrap();
@@ -277,8 +277,8 @@ fn regions_are_no_deeper_than_a_file_may_say() {
 /// So many forged files in the ordinary tests.
 const FORGED: u64 = 500;
 
-/// Files of all scenes with a few bytes changed and the checksum mended: refused or gone on with. As many as stand above from a
-/// seed that stays; with `PERIGRAIN_FUZZ_SECONDS` for that long, from `PERIGRAIN_FUZZ_SEED` on.
+/// Files of all scenes with a few bytes changed and the checksum corrected: refused or continued. As many as above from a fixed
+/// seed; with `PERIGRAIN_FUZZ_SECONDS` for that long, from `PERIGRAIN_FUZZ_SEED` on.
 #[test]
 fn bytes_changed_at_random_never_make_it_panic() {
     let number = |name: &str| std::env::var(name).ok().and_then(|s| s.parse::<u64>().ok());
@@ -311,7 +311,7 @@ fn bytes_changed_at_random_never_make_it_panic() {
     assert!(failed.is_empty(), "cases {failed:?} of seed {seed} panic");
 }
 
-/// Leaves a file that makes it panic where `PERIGRAIN_FUZZ_KEEP` says.
+/// Writes a file that causes a panic into the folder `PERIGRAIN_FUZZ_KEEP`.
 fn keep(case: &Case, recipe: &[u8], seed: u64, count: u64) {
     if let Ok(folder) = std::env::var("PERIGRAIN_FUZZ_KEEP") {
         let name = format!("{seed}.{count}.restart");

@@ -1,4 +1,4 @@
-//! A run killed at arbitrary times: what is left is whole, and what goes on from it ends with the same bits.
+//! A run killed at arbitrary times: its files are whole, and a run that continues from them ends with the same bits.
 //!
 //! Eight kills by default; `PERIGRAIN_KILLS=100` for more.
 
@@ -94,8 +94,8 @@ fn what_a_killed_run_leaves_is_whole_and_goes_on() {
         finish(folder.path(), &format!("from.{file}"), "log.rest");
         resumed += 1;
         assert_eq!(fs::read_to_string(folder.path().join("last.txt")).unwrap(), last, "from {file}");
-        // What the killed run said, and what the rest said: every row is one of the whole run's; a line cut short is not
-        // read as a row of the same length.
+        // The rows of the killed run, and of the rest: every row is one of the whole run's; a line cut short is not read as a row
+        // of the same length.
         let wanted: Vec<&String> = whole_rows.iter().collect();
         for row in rows(&folder.path().join("log.rest")) {
             assert!(wanted.contains(&&row), "from {file}: {row}");
@@ -109,7 +109,7 @@ fn what_a_killed_run_leaves_is_whole_and_goes_on() {
         }
     }
     println!(
-        "{kills} kills within {time} ms: {files} restart files, all whole; {resumed} runs went on to the same bits, {early} had none yet"
+        "{kills} kills within {time} ms: {files} restart files, all whole; {resumed} runs continued to the same bits, {early} had none yet"
     );
     assert!(early < kills, "every run was killed before its first restart file");
 }

@@ -11,7 +11,7 @@ use perigrain::world::World;
 use scenes::*;
 use std::path::Path;
 
-/// Works off a deck, `DIR` being the folder; the world at the end and everything said.
+/// Executes a deck, `DIR` being the folder; the world at the end and all output.
 fn run(folder: &Path, deck: &str, list: bool) -> (World, String) {
     let screen = Buffer::default();
     let options =
@@ -151,7 +151,7 @@ fn other_declarations_compute_forces_anew_and_say_so() {
         "group left id 1 2 3\nregion r block 0 1 0 1 0 1\ncompute e all ke\nvariable a equal ke\nthermo 1\n";
     let (_, said) = run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{harmless}run 1"), false);
     assert!(!said.contains("computed anew"), "{said}");
-    // Nor does a lattice that came after the pair's lines, which are said again behind the file that has it.
+    // Nor does a lattice that came after the pair's lines, which are repeated behind the file that has it.
     let later = format!("{BLOCK}{BLOCK_AGAIN}lattice sc 0.002\nrun 10\nwrite_restart DIR/b");
     run(folder.path(), &later, false);
     let (_, said) = run(folder.path(), &format!("read_restart DIR/b\n{BLOCK_AGAIN}run 1"), false);
@@ -218,6 +218,6 @@ fn state_that_nobody_claims_is_forgotten_with_a_note() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{PILE}{PILE_AGAIN}run 10\nwrite_restart DIR/a"), false);
     let (world, said) = run(folder.path(), "read_restart DIR/a\nfix 9 all nve/sphere\nrun 1", false);
-    assert!(said.contains("holds state of move/3, which nobody claims"), "{said}");
+    assert!(said.contains("holds state of move/3, which no fix or compute has claimed"), "{said}");
     assert!(world.memo.is_empty() && world.columns.names().is_empty());
 }

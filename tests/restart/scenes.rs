@@ -1,6 +1,6 @@
-//! The scenes that are cut in two and gone on with: bodies, grains, bonded grains, with all that remembers.
+//! The scenes that are cut in two and continued: bodies, grains, bonded grains, with all kinds of history.
 
-/// A scene: what makes it, what is said again after read_restart, and the steps of the whole run.
+/// A scene: the lines that make it, the lines repeated after read_restart, and the steps of the whole run.
 pub struct Scene {
     pub name: &'static str,
     pub make: &'static str,
@@ -42,7 +42,7 @@ pub const PILE_AGAIN: &str = "pair_style granular\n\
     compute er all erotate/sphere\nthermo_style custom step time ke c_er press\n\
     thermo_modify format float %24.17g norm no\nthermo 5\n";
 
-/// The same pile under laws that remember other things: contact radius, rolling and twisting; an older style.
+/// The same pile under laws with other history: contact radius, rolling and twisting; an older style.
 pub const STIFF_AGAIN: &str = "pair_style granular\n\
     pair_coeff * * hertz 5000.0 20.0 tangential mindlin_rescale 4000.0 0.7 0.5 rolling sds 2000.0 5.0 0.2 twisting marshall\n\
     neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\n\
@@ -53,7 +53,7 @@ pub const OLDER_AGAIN: &str = "pair_style gran/hertz/history 5000.0 NULL 20.0 NU
     fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
     thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
 
-/// The same pile of grains that flow and stick, between walls: contacts remember their largest overlap and adhesion.
+/// The same pile of grains that flow and stick, between walls: contacts keep their largest overlap and adhesion.
 pub const STICKY_AGAIN: &str = "pair_style granular\n\
     pair_coeff * * eepa 9000.0 0.5 0.3 0.6 0.01 0.5 1.5 1.5 damping coeff_restitution tangential mindlin NULL 0.7 0.5 rolling sds 2000.0 5.0 0.2\n\
     region floor plane 0 0 0.6 0 0 1 units box\n\
@@ -73,7 +73,7 @@ pub const LEVELS_AGAIN: &str = "pair_style gran/hooke/history 5000.0 NULL 20.0 N
     compute er all erotate/sphere\ncompute kept all reduce sum f_3[*]\nthermo_style custom step time ke c_er press c_kept[3]\n\
     thermo_modify format float %24.17g norm no\nthermo 5\n";
 
-/// The same pile in a bath whose stream goes on, between walls.
+/// The same pile in a bath whose stream continues, between walls.
 pub const BATH_AGAIN: &str = "pair_style granular\npair_coeff * * hertz 5000.0 20.0 tangential mindlin 4000.0 0.7 0.5\n\
     neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\n\
     variable t atom 2.0+0.1*x\nfix 2 all langevin v_t 0 0.5 48279 omega yes tally yes\n\
@@ -82,7 +82,7 @@ pub const BATH_AGAIN: &str = "pair_style granular\npair_coeff * * hertz 5000.0 2
     compute er all erotate/sphere\nthermo_style custom step time ke pe c_er press ecouple f_2 f_4[1]\n\
     thermo_modify format float %24.17g norm no\nthermo 5\n";
 
-/// Plastic grains pressed between two planes: they grow, and remember each contact on both sides.
+/// Plastic grains pressed between two planes: they grow, and keep the history of each contact on both sides.
 pub const POWDER: &str = "units si\natom_style sphere\nboundary f f f\nregion world block -0.02 0.02 -0.02 0.02 -0.02 0.02 units box\n\
     create_box 1 world\ncreate_atoms 1 single 0 0 -0.0079 units box\ncreate_atoms 1 single 0.001 0 0.0019 units box\n\
     create_atoms 1 single 0 0.001 0.0118 units box\nset group all diameter 0.01\nset group all density 2000\n\
@@ -145,7 +145,7 @@ pub const DECAYING_AGAIN: &str = "pair_style peri/pmb/softening exponential\npai
     compute e all energy/ledger\nthermo_style custom step time pe ke press c_dsum c_e[7]\n\
     thermo_modify format float %24.17g\nthermo 5\n";
 
-/// The block with everything that averages, keeps a list or remembers where particles were.
+/// The block with everything that averages, keeps a list or keeps former positions.
 pub const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
     fix 1 all nve\ntimestep 5.0e-8\ncompute m all msd com yes\ncompute mav all msd\n\
     compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n\

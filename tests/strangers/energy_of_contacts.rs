@@ -89,7 +89,7 @@ fn the_ledger_of_a_pair_closes_in_second_order() {
 fn the_ledger_of_a_heap_closes_with_the_step() {
     let residual = |dt| said("ledger_heap.in", "RESIDUAL", &[("dt", dt)])[0].abs();
     let [coarse, fine] = ["1e-4", "5e-5"].map(residual);
-    // A share of the work of gravity: -2.3e-2 and -1.5e-2 it was; -1.15e-3 and -2.9e-4. First order asks for a half.
+    // A share of the work of gravity: -2.3e-2 and -1.5e-2 it was; -1.15e-3 and -2.9e-4. First order requires a half.
     assert!(coarse < 2e-3 && fine < 0.5 * coarse, "{coarse} {fine}");
 }
 
@@ -126,7 +126,7 @@ fn energy_from_nothing_ends_a_run_of_grains() {
     assert!(!output.status.success() && text.contains("PG0206"), "{text}");
     assert!(text.contains("times all there was when the run began"), "{text}");
     assert!(!text.contains("stiffer grains"), "{text}");
-    // Within the limit the run goes on.
+    // Within the limit the run continues.
     let output = run("granular_explodes.in", &["-var", "dt", "0.005", "-var", "N", "2000"]);
     assert!(output.status.success());
 }

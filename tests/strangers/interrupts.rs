@@ -27,8 +27,8 @@ impl Watch for At {
     }
 }
 
-/// Executes a deck, `DIR` being the folder, and interrupts it at the first whole step from a step on. The scene it leaves, what
-/// it said, and whether it was interrupted.
+/// Executes a deck, `DIR` being the folder, and interrupts it at the first whole step from a step on. The scene at its end, its
+/// output, and whether it was interrupted.
 fn work(folder: &Path, deck: &str, list: bool, interrupt: Option<i64>) -> (World, String, bool) {
     let screen = Buffer::default();
     let log = Log::new(Some(Box::new(screen.clone())));
@@ -94,8 +94,8 @@ const MORE: [Scene; 5] = [
     Scene { name: "staggered", make: scenes::IMPACT, again: STAGGERED, steps: 60, list: false },
 ];
 
-/// The file is that of `write_restart` at this step, byte by byte; what goes on from it has the bits of a run that nothing
-/// interrupted, in all columns, contacts, bonds and rows.
+/// The file is that of `write_restart` at this step, byte by byte; a run that continues from it has the bits of an uninterrupted
+/// run, in all columns, contacts, bonds and rows.
 fn is_whole(s: &Scene) {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
@@ -133,7 +133,7 @@ fn the_file_of_an_interrupt_is_that_of_write_restart_in_every_family() {
     SCENES.iter().chain(&MORE).for_each(is_whole);
 }
 
-/// Beads whose bonds along edges and diagonals cannot all have the length they want.
+/// Beads whose bonds along edges and diagonals cannot all have their length at rest.
 const FRUSTRATED: &str = "atom_style bond\nlattice sc 1.0\nregion world block -3 7 -3 7 -3 7\nregion f block 0 3.1 0 3.1 0 3.1\n\
     create_box 1 world bond/types 1 extra/bond/per/atom 20 extra/special/per/atom 60\ncreate_atoms 1 region f\nmass 1 1\n\
     pair_style zero 3\npair_coeff * *\nbond_style harmonic\nbond_coeff 1 50 1.0\ncreate_bonds many all all 1 0.5 1.5\n\
@@ -222,7 +222,7 @@ fn a_signal_or_a_limit_of_time_leaves_the_springs_of_pairs() {
             format!("{STICK}{STICK_AGAIN}thermo 1000\nrestart 1000000000 r.*.restart\nrun 4000000000\n");
         let child = program(folder, &deck, arguments);
         if arguments.len() == 2 {
-            // Rows are in the log while the run goes on.
+            // Rows are in the log during the run.
             await_row(folder, "log.lammps", "5000");
             terminate(&child);
         }
@@ -246,7 +246,7 @@ fn a_signal_or_a_limit_of_time_leaves_the_springs_of_pairs() {
     }
 }
 
-/// Asks a process to end, as `kill` does.
+/// Requests a process to end, as `kill` does.
 #[cfg(unix)]
 fn terminate(child: &Child) {
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
@@ -358,7 +358,7 @@ fn a_limit_of_time_ends_lines_too() {
     }
 }
 
-/// What the program says about a deck under some arguments.
+/// The program's output for a deck under some arguments.
 fn told(deck: &str, arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().unwrap();
     program(folder.path(), deck, &[&["-log", "none"], arguments].concat()).wait_with_output().unwrap()

@@ -17,8 +17,8 @@ fn a_torn_plate_has_the_same_sums_in_one_run_in_two_and_in_a_loop() {
     let one = of("one");
     assert!(one[2] > 5e-5, "nothing broke: {one:?}");
     assert_eq!(of("two"), one);
-    // A variable that only `if` asks is no force: with a setup before each run the sums differed, and energies of the last run's end
-    // were unknown behind it.
+    // A variable that only `if` reads is no force: with a setup before each run the sums differed, and energies of the last run's
+    // end were unknown behind it.
     assert_eq!(of("loop"), one);
 }
 

@@ -4,7 +4,7 @@
 use super::processor;
 use super::{numbers, run, text};
 
-/// Hertz by hand: 4/3 E*/2 √(R δ) δ with E* = 1e6/(1 - 0.3²), R = 0.5 and δ = 0.01.
+/// Hertz, calculated by hand: 4/3 E*/2 √(R δ) δ with E* = 1e6/(1 - 0.3²), R = 0.5 and δ = 0.01.
 const HERTZ: f64 = 518.027;
 
 fn force(file: &str, x: f64, y: f64) -> [f64; 3] {
@@ -24,7 +24,7 @@ fn seams_count_once() {
     ] {
         for [x, y] in places {
             let [fx, fy, fz] = force(file, *x, *y);
-            // Six digits of the value by hand; normals lean by the gap over the radius at most.
+            // Six digits of the calculated value; normals lean by the gap over the radius at most.
             assert!((fz / HERTZ - 1.0).abs() < 1e-6, "{file} {x} {y}: {fz}");
             assert!(fx.abs() < 1e-5 && fy.abs() < 1e-5, "{file} {x} {y}: {fx} {fy}");
         }

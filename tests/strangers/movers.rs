@@ -60,7 +60,7 @@ fn springs_of_contacts_turn_with_their_grains() {
     assert!(near(&numbers(&out, "AFTER"), [-fy, fx, fz, -ty, tx, tz]), "{out}");
 }
 
-/// What a row of spheres with bonds that bend says of its integrators.
+/// The warnings of a row of spheres with bonds that bend about its integrators.
 fn warned(fixes: &str, check: bool) -> String {
     let folder = tempfile::tempdir().unwrap();
     let deck = folder.path().join("in.row");
@@ -392,7 +392,7 @@ fn wrong(name: &str, under: Under, before: &World, now: &World, lines: &str) -> 
     (!right).then(|| format!("`{name}`, which is {under:?}, is wrong after `{lines}`"))
 }
 
-/// Whether all contacts remember what they did, turned.
+/// Whether the history of all contacts is the former one, turned.
 fn springs_turned(before: &World, now: &World, q: Quat) -> bool {
     before.contacts.iter().all(|(key, old)| {
         let Some(new) = now.contacts.get(key) else { return false };
@@ -405,7 +405,7 @@ fn springs_turned(before: &World, now: &World, q: Quat) -> bool {
     })
 }
 
-/// Whether columns hold what their line of the table says. Nothing is known to keep vectors that matter carries so far.
+/// Whether columns hold what their line of the table states. No column is known to keep vectors that matter carries so far.
 fn columns_right(before: &World, now: &World) -> bool {
     let (mut old, new) = (before.columns.clone(), &now.columns);
     let mut seen = 0;

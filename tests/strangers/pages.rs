@@ -7,7 +7,7 @@ use super::{decks, text};
 use std::fs;
 use std::process::Command;
 
-/// The deck of the README breaks the plate and leaves the picture that it speaks of.
+/// The deck of the README breaks the plate and writes the picture that the page names.
 #[test]
 fn the_deck_of_the_readme_breaks_and_draws() {
     let readme = fs::read_to_string(decks().join("../../../README.md")).unwrap();

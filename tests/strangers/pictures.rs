@@ -77,7 +77,7 @@ fn walls_are_drawn_where_they_are_and_can_be_left_out() {
     assert!(moved.len() > grain.len() + 50, "{} {}", moved.len(), grain.len());
 }
 
-/// How many pictures an animated PNG says it has.
+/// The number of pictures in an animated PNG's header.
 fn frames(path: &Path) -> u32 {
     let bytes = fs::read(path).unwrap();
     assert!(bytes.starts_with(b"\x89PNG") && &bytes[37..41] == b"acTL" && bytes.ends_with(b"IEND\xaeB`\x82"));

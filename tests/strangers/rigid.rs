@@ -104,7 +104,7 @@ fn gravity_on_particles_of_bodies_is_lammps_and_warned_about() {
             assert!(text.contains("warning[PG0117]") && text.contains("`disable`"), "{text}");
         }
     }
-    // Gravity that acts twice is said by default as well.
+    // Gravity that acts twice is reported by default as well.
     let (found, text) = said(deck, "@", &[("how", "twice"), ("inf", "off.inf")], &[]);
     close(&found[2..], &lammps[2].2[2..], 2e-14);
     assert!(text.contains("pulls these bodies twice"), "{text}");
@@ -113,7 +113,7 @@ fn gravity_on_particles_of_bodies_is_lammps_and_warned_about() {
     assert!(refused.contains("there is no fix gravity `down`"), "{refused}");
 }
 
-/// What a run of a small scene says with one more line.
+/// The output of a run of a small scene with one more line.
 fn text_of_check(line: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("in.scene");

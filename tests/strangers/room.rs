@@ -1,4 +1,4 @@
-//! K5: memory that input can ask for goes through one door.
+//! K5: memory whose size the input determines is allocated through one function.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -22,7 +22,7 @@ const SOLID: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 1e-3\
 const EMPTY: &str =
     "units si\natom_style hybrid sphere peri\nboundary f f f\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\n";
 
-/// Every count that input can ask for: what it counts, the scene before, and the lines that ask for an absurd one.
+/// Every count that input can set: what it counts, the scene before, and the lines with an absurd one.
 const ASKED: &[(&str, &str, &str)] = &[
     ("columns of property/atom", GRAINS, "fix p all property/atom d2_x 1000000000"),
     ("whole columns of property/atom", GRAINS, "fix p all property/atom i2_x 9000000000000000000"),
@@ -122,7 +122,7 @@ const ASKED: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// The same of packed files: how large they are nothing tells before.
+/// The same for packed files: their size is unknown before.
 const PACKED: &[(&str, &str, &str)] = &[
     ("bytes of a packed data file", EMPTY, "read_data b.data.gz add append"),
     ("bytes of a packed dump", GRAINS, "read_dump b.dump.gz 1 x y z"),
@@ -132,7 +132,7 @@ const PACKED: &[(&str, &str, &str)] = &[
     ("bytes of a packed table", EMPTY, "read_points b.csv.gz type 1"),
 ];
 
-/// Counts that may be said, though they are absurd: nothing of their size is made.
+/// Counts that are allowed, though they are absurd: nothing of their size is made.
 const HARMLESS: &[(&str, &str, &str)] = &[
     ("values kept", GRAINS, "variable t equal step\nfix v all vector 1 v_t nmax 9000000000000000000\nrun 1"),
     (
@@ -259,7 +259,7 @@ fn ended(folder: &Path, deck: &str, arguments: &[&str]) -> Ended {
         libc::getrusage(libc::RUSAGE_SELF, own.as_mut_ptr());
         own.assume_init()
     };
-    // A process that is started inherits the peak of the one that starts it: what is not above that of the tests says nothing.
+    // A started process inherits the peak of its parent: a value not above that of the tests means nothing.
     let most = if usage.ru_maxrss > own.ru_maxrss { usage.ru_maxrss } else { 0 };
     let text = fs::read(folder.join(format!("{deck}.said"))).unwrap();
     Ended {
@@ -290,7 +290,7 @@ fn all(cases: &[(&str, &str, &str)], arguments: &[&str], wrong: impl Fn(&Ended) 
     assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), cases.len(), faults.join("\n"));
 }
 
-/// Whether an error with a code and its line was said.
+/// Whether there was an error with a code and its line.
 fn refused(e: &Ended) -> bool {
     e.status.code() == Some(1) && e.text.contains("error[PG0") && e.text.contains("--> ")
 }

@@ -33,7 +33,7 @@ fn small_energies_are_minimized_too() {
     assert!((far(&["-compat", "lammps/2025"]) - 1.00001e-3).abs() < 1e-12);
 }
 
-/// What `check` and a run say of a deck in a folder, each by itself.
+/// The messages of `check` and of a run about a deck in a folder, each by itself.
 fn both(folder: &Path, deck: &str) -> [String; 2] {
     fs::write(folder.join("in.deck"), deck).unwrap();
     [&["check", "in.deck"][..], &["-in", "in.deck", "-log", "none"]].map(|words| {

@@ -1,4 +1,4 @@
-//! K6: decks and files as strangers write them, and messages that lead somewhere.
+//! K6: decks and files as users write them, and helpful messages.
 
 use super::{numbers, run, text};
 use std::process::{Command, Output, Stdio};
@@ -14,7 +14,7 @@ fn work(files: &[(&str, &str)], arguments: &[&str]) -> Output {
     command.output().unwrap()
 }
 
-/// What `perigrain check` says of a deck.
+/// The output of `perigrain check` for a deck.
 fn check(deck: &str) -> String {
     text(&work(&[("in.deck", deck)], &["check", "in.deck"]))
 }
@@ -78,7 +78,7 @@ fn other_files_may_have_such_characters_too() {
     }
 }
 
-/// Row 27: LAMMPS passes over the line under a heading, whatever it says; a row of numbers there would be lost.
+/// Row 27: LAMMPS skips the line under a heading, whatever it contains; a row of numbers there would be lost.
 #[test]
 fn text_under_headings_of_files_is_passed_over() {
     let data = |under: &str| {
@@ -107,7 +107,7 @@ fn text_under_headings_of_files_is_passed_over() {
     assert!(text(&output).contains("the line after the heading Atoms must be blank"), "{}", text(&output));
 }
 
-/// Rows 29 and 36: strengths that nothing asks for are any numbers; angles of 1e-8 bend a bond, which bears kb times them.
+/// Rows 29 and 36: strengths that are not needed may be any numbers; angles of 1e-8 bend a bond, which bears kb times them.
 #[test]
 fn bonds_that_do_not_break_need_no_strength_and_feel_the_smallest_angle() {
     for (degrees, angle) in
@@ -158,7 +158,7 @@ fn bonds_that_are_left_out_are_named() {
     assert!(said.contains("excluded by `neigh_modify exclude`"), "{said}");
 }
 
-/// Row 33: a loop without an end in sight is left after a bound, which is said; one with an end is followed to it.
+/// Row 33: a loop without an end in sight is left after a bound, with a note; one with an end is followed to it.
 #[test]
 fn endless_loops_are_left_and_named() {
     let scene = "clear\nunits si\natom_style sphere\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\n\
@@ -178,7 +178,7 @@ fn endless_loops_are_left_and_named() {
     assert!(check(finite).ends_with("in.deck: no problems found\n"), "{}", check(finite));
 }
 
-/// Row 34: what follows from a refused atom style is not told as well.
+/// Row 34: consequences of a refused atom style are not reported as well.
 #[test]
 fn only_the_atom_style_is_refused() {
     let dipoles = "units lj\natom_style hybrid sphere dipole/x\nregion b block 0 9 0 9 0 9\ncreate_box 1 b\n\
@@ -203,7 +203,7 @@ fn only_the_atom_style_is_refused() {
     assert!(said.contains("unknown command `fxi`") && lines(&said, "error") == 2, "{said}");
 }
 
-/// Row 34: words of LAMMPS that are not here are named as such, with what does the same.
+/// Row 34: words of LAMMPS that are missing here are named as such, with an alternative.
 #[test]
 fn words_of_lammps_lead_on() {
     for (line, message, help) in [
@@ -271,7 +271,7 @@ fn words_of_lammps_lead_on() {
 #[test]
 fn notes_name_the_year() {
     let said = |compat: &str| text(&run("hertz_history_wall.in", &["-compat", compat]));
-    let fault = "springs of walls with history that hang on the contact radius";
+    let fault = "springs of walls with history that depend on the contact radius";
     let old = said("lammps/2025");
     assert!(old.contains(&format!("note[PG0301]: compat lammps/2025: {fault}")), "{old}");
     for newest in ["lammps", "lammps/2026"] {

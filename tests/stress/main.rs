@@ -40,7 +40,7 @@ fn the_long_form_passes_and_is_the_page() {
     let program = std::env::var_os("PERIGRAIN_STRESS_PROGRAM");
     let program = program.map_or_else(|| PathBuf::from(env!("CARGO_BIN_EXE_perigrain")), PathBuf::from);
     let sections = table::sections(&wanted);
-    // A page of few steps says that it is one.
+    // A page of few steps states that it is one.
     let short = std::env::var("PERIGRAIN_STRESS_FORM").is_ok_and(|f| f == "short");
     let form = if short { Form::Short } else { Form::Long };
     let rows = run_all(&sections, form, &program);

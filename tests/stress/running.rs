@@ -21,7 +21,7 @@ pub struct Row {
     /// Nothing where a case is to be refused.
     pub figure: Option<Figure>,
     pub value: Option<f64>,
-    /// What was said, where it matters.
+    /// The output, where it matters.
     pub said: String,
     pub met: bool,
 }
@@ -77,7 +77,7 @@ impl Task<'_> {
         Outcome { code: output.status.code(), said, state }
     }
 
-    /// The state that a run has written, and all that was said.
+    /// The state that a run has written, and all output.
     fn state(&self, more: &[(&str, &str)], threads: usize) -> (String, String) {
         let folder = tempfile::tempdir().unwrap();
         let more = [&[("tail", "state")], more].concat();
@@ -85,7 +85,7 @@ impl Task<'_> {
         (o.state, o.said)
     }
 
-    /// The figures of a case, by name, and what was said last.
+    /// The figures of a case, by name, and the last output.
     fn measure(&self) -> (BTreeMap<String, f64>, Option<i32>, String) {
         let one = |name: &str, value: f64| BTreeMap::from([(name.to_string(), value)]);
         match self.case.how {
@@ -147,7 +147,7 @@ impl Task<'_> {
     }
 }
 
-/// The first error of a log without its numbers in brackets, or all that was said.
+/// The first error of a log without its numbers in brackets, or all output.
 fn message(said: &str) -> String {
     let first = said.lines().find_map(|l| Some(&l[l.find("error[")?..]));
     first.map_or(said, |l| l.split(" (the first").next().unwrap_or(l)).to_string()

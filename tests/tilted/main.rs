@@ -52,7 +52,7 @@ fn grains_in_a_sheared_box_agree_past_its_flips() {
 #[test]
 fn grains_whose_lists_outlast_rebuilds_of_a_sheared_box_agree() {
     agrees("flowing", &[]);
-    // Lists made 30 steps before this end have followed who was moved around the box since.
+    // Lists made 30 steps before this end have followed particles moved around the box since.
     let deck = include_str!("flowing.in").replace("run 300", "run 280");
     let (session, _) = run("flowing", &deck, true);
     let kept = &session.world.rebuild.kept;

@@ -134,6 +134,6 @@ pub struct Gone;
 
 /// A rank cannot be reached any more: says so and ends this one.
 fn lost(me: usize, other: usize) -> ! {
-    eprintln!("error: rank {me} on {}: rank {other} has ended without a word", host());
+    eprintln!("error: rank {me} on {}: rank {other} has ended without a message", host());
     std::process::exit(1)
 }

@@ -88,7 +88,7 @@ impl CommandStyle for AngleCoeff {
         };
         if angles.types == 0 {
             let d = Diagnostic::error(Code::CONFLICT, a.here(), "there are no angle types");
-            return Err(d.help("say how many: `create_box … angle/types N`").into());
+            return Err(d.help("set the number: `create_box … angle/types N`").into());
         }
         let (first, last) = a.type_range(angles.types)?;
         let angle = match (any, a.is_empty()) {

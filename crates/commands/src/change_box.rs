@@ -1,4 +1,4 @@
-//! `change_box`: size and faces of the box, particles along with it where asked.
+//! `change_box`: size and faces of the box, with particles moved along if requested.
 
 use super::boundary::pair_of_faces;
 use super::replicate::say_box;
@@ -50,7 +50,7 @@ enum Edge {
     Scale(f64),
 }
 
-/// One thing the line asks for.
+/// One change that the line requests.
 enum Step {
     /// An edge, and the edges that keep the volume for it.
     Edge {
@@ -162,7 +162,7 @@ fn edge(word: &Word, a: &mut Args, steps: &mut Vec<Step>) -> Result<()> {
 }
 
 fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span: Span) -> Result<()> {
-    // LAMMPS lets shrink-wrapped faces follow the particles before it looks at the box.
+    // LAMMPS lets shrink-wrapped faces follow the particles before it reads the box.
     common::settle(cx.world);
     let mut domain = cx.world.domain()?.clone();
     let mut saved = domain.clone();
@@ -321,7 +321,7 @@ mod tests {
             scene("units si\nregion b block 0 4 0 2 0 1\ncreate_box 1 b\ncreate_atoms 1 single 1 1 0.5");
         more(&mut w, "change_box all x scale 2 y volume");
         let domain = w.domain.clone().into_inner().unwrap();
-        // By hand: x about 2 from -2 to 6; y halves about 1.
+        // Calculated by hand: x about 2 from -2 to 6; y halves about 1.
         assert_eq!((domain.lo, domain.hi), ([-2.0, 0.5, 0.0], [6.0, 1.5, 1.0]));
         assert_eq!(w.particles.x[0], [1.0, 1.0, 0.5]);
         more(&mut w, "change_box all x final 0 4 remap");

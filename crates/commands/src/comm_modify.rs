@@ -1,4 +1,4 @@
-//! `comm_modify`: what LAMMPS' processes tell each other; one process here.
+//! `comm_modify`: what LAMMPS' processes send each other; one process here.
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};

@@ -49,7 +49,7 @@ impl Style for CreateAtoms {
             summary: "Creates particles on lattice sites, at one place, at random places, on a surface, or densely packed.",
             text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in \
                    lo ≤ x < hi of the box; along periodic dimensions both faces move down by about 1e-6 of the edge \
-                   length, so that exactly one of two equivalent sites is taken. `region` also asks the region. `single` \
+                   length, so that exactly one of two equivalent sites is taken. `region` also tests the region. `single` \
                    takes lattice spacings unless `units box` is said; `remap yes` wraps its place into a periodic box. \
                    `random` draws from LAMMPS' Park–Miller stream; `overlap D` keeps new particles D away from all \
                    others, in lattice spacings (along x) unless `units box` is said, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
@@ -84,12 +84,12 @@ impl Style for CreateAtoms {
                    spheres at random places, which then push each other away until they overlap by less than a thousandth of \
                    their diameters on average, or by `overlap` O at most, a part of the distance of touching spheres; in at \
                    most `rounds` N (1000). Shares up to 0.6 come out easily, 0.63 nearly. `overlap 0` makes all diameters \
-                   smaller in the end, by what is needed for no overlap at all. The log tells the number, the share, the \
+                   smaller in the end, by what is needed for no overlap at all. The log has the number, the share, the \
                    overlaps and the rounds; what was not reached is a warning. Same seed, same bits for any number of threads. \
                    Diameters are all alike (`mono`, 1 by default), uniform between two, `lognormal` with median D and \
                    standard deviation S of the logarithm (up to 0.5), cut at 2.5 deviations, or a `mix` of two and more with their parts \
                    of the number or of the mass, however these add up; behind `types` each of them has a type of its own. In the place of SHARE \
-                   `number N` asks for so many spheres, of all sizes together. Boxes may lean: a region that is the whole box goes on through \
+                   `number N` sets the number of spheres, of all sizes together. Boxes may lean: a region that is the whole box continues through \
                    faces that repeat, any other has walls all round there. Spheres keep inside of the region \
                    by their radius; along periodic edges that a region spans they lie across the face. The region may be \
                    any shape at rest, inside or outside, or an intersection. Density is 1, as for all spheres: `set` changes it. \
@@ -106,7 +106,7 @@ impl Style for CreateAtoms {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Creation {
     kind: u16,
     place: Place,
@@ -116,9 +116,9 @@ struct Creation {
     test: Option<Test>,
     mol: Option<Copies>,
     group: Option<String>,
-    /// Where `volumes cut` is said.
+    /// The place of `volumes cut`.
     cut: Option<Span>,
-    /// Said before the particles are made.
+    /// Lines for the log before the particles are made.
     note: Vec<String>,
 }
 
@@ -158,7 +158,11 @@ impl CommandStyle for CreateAtoms {
             _ => {}
         }
         if matches!(c.place, Place::Mesh(_)) && c.lattice_units {
-            let d = Diagnostic::error(Code::INCOMPLETE, style.span, "triangles are in box units: say so");
+            let d = Diagnostic::error(
+                Code::INCOMPLETE,
+                style.span,
+                "triangles are in box units: write `units box`",
+            );
             return Err(d.help("add `units box` to this line").into());
         }
         let packed = matches!(c.place, Place::Pack(_));
@@ -169,7 +173,7 @@ impl CommandStyle for CreateAtoms {
     }
 }
 
-/// Where particles are made, and what is said about it.
+/// Where particles are made, and the lines for the log about it.
 fn place(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
     let place = match style.text.as_str() {
         "box" => Place::Lattice { region: None, subset: None },

@@ -31,11 +31,11 @@ impl Style for CreateBonds {
                    take the pair out of neighbour lists: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
                    the default weights particles two or three bonds apart are left out, too: a warning says how many and what would bond them. LAMMPS also needs a pair style that \
                    reaches as far; perigrain does not. `single/bond`: one bond between two ids; `single/angle`: an angle at the second of three ids, which exerts nothing (`angle_style zero`).\n\n\
-                   `special no` leaves open for now which pairs count as bonded: say `yes` with the last of many such lines. \
+                   `special no` leaves open for now which pairs count as bonded: use `yes` with the last of many such lines. \
                    `single/dihedral` and `single/improper` are refused.\n\n\
                    `gap` is perigrain's own: as `many`, for spheres whose surfaces are GMIN to GMAX apart (distance less both \
                    radii, both ends included). A negative GMIN takes in spheres that overlap so far, as packings leave them; a \
-                   warning tells of how many a larger one leaves out. `mix` gives a part SHARE of the bonds TYPE2, drawn from the two \
+                   warning counts those that a larger one leaves out. `mix` gives a part SHARE of the bonds TYPE2, drawn from the two \
                    ids and SEED alone: the same pairs whatever the order, and whichever other bonds there are.",
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
@@ -166,7 +166,7 @@ fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<(
     Ok(())
 }
 
-/// Adds bonds and says how many.
+/// Adds bonds and logs their number.
 fn add(cx: &mut ActCx, new: impl Iterator<Item = Bond>) {
     let before = cx.world.bonds.len();
     new.for_each(|bond| cx.world.bonds.push(bond));

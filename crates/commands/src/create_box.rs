@@ -100,7 +100,7 @@ impl CommandStyle for CreateBox {
     }
 }
 
-/// While a deck is only checked: a box of some size where variables will say how large it is.
+/// While a deck is only checked: a box of some size where variables determine how large it is.
 fn guessed_box(region: &Region, types: usize, [bond_types, angle_types]: [usize; 2]) -> Box<dyn Act> {
     let (mut lo, mut hi) = match &region.shape {
         Shape::Block { lo, hi } | Shape::Prism { lo, hi, .. } => (*lo, *hi),
@@ -162,7 +162,7 @@ mod tests {
     fn box_is_lammps_box() {
         let mut w = scene("units si\nlattice sc 0.5\nboundary s p f\nregion b block 0 4 0 3 0 3 units box");
         let said = act(&mut w, "create_box 2 b", &[]).unwrap();
-        // Oracle: the same deck says this, and shows xlo = -0.0004 and xhi = 4.0004 afterwards.
+        // Oracle: the same deck prints this, and shows xlo = -0.0004 and xhi = 4.0004 afterwards.
         assert_eq!(said[0], "Created orthogonal box = (0 0 0) to (4 3 3)");
         let domain = w.domain.as_ref().unwrap();
         assert_eq!((domain.lo, domain.hi), ([-0.0004, 0.0, 0.0], [4.0004, 3.0, 3.0]));

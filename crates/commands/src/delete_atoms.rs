@@ -37,7 +37,7 @@ impl Style for DeleteAtoms {
     }
 }
 
-/// What else a line says.
+/// The options of a line.
 #[derive(Clone, Copy)]
 struct How {
     compress: bool,

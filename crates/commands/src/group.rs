@@ -32,7 +32,7 @@ impl Style for Group {
             text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the \
                    particles named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. `variable` takes \
                    those for which the atom-style variable is not zero. `subtract` takes members of the first group that \
-                   are in none of the others. At most 32 groups, `all` among them. `molecule` asks for molecule IDs as `id` \
+                   are in none of the others. At most 32 groups, `all` among them. `molecule` selects molecule IDs as `id` \
                    for ids; `include molecule` takes all molecules of which some particle is in the group already.\n\n\
                    `dynamic` chooses the members anew at the start of each run and at every step that is a multiple of N \
                    (default 1): those of PARENT that are inside the region and for which the atom-style variable is not \
@@ -52,7 +52,7 @@ impl Style for Group {
     }
 }
 
-/// Who joins.
+/// Which particles join.
 enum Choice {
     Nobody,
     Kind(Numbers),
@@ -260,7 +260,7 @@ fn surface(a: &mut Args, cx: &BuildCx, style: &Word, name: String) -> Result<Box
     }))
 }
 
-/// Says how many particles a group has now.
+/// Logs how many particles a group has now.
 fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
     let count = cx.world.particles.mask.iter().filter(|m| **m & group.bit() != 0).count();
     cx.say(format!("{count} atoms in group {name}"));
@@ -412,7 +412,7 @@ mod tests {
         w.particles.mask.iter().filter(|m| **m & bit != 0).count()
     }
 
-    // Oracle: the same lines on the same 324 particles; LAMMPS says 50, 12, 9, 56, 44, 6.
+    // Oracle: the same lines on the same 324 particles; LAMMPS prints 50, 12, 9, 56, 44, 6.
     #[test]
     fn counts_are_lammps_counts() {
         let mut w = bar();

@@ -48,7 +48,7 @@ impl CommandStyle for MaterialStyle {
     }
 }
 
-/// Reads `key value …` over what a file said.
+/// Reads `key value …` over the values of a file.
 fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
     let mut missing = if base.is_some() { vec![] } else { vec!["E", "nu", "rho"] };
     let mut m = base.unwrap_or_else(|| blank(id));
@@ -58,7 +58,7 @@ fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
             return Err(Diagnostic::error(
                 Code::NOT_SUPPORTED,
                 word.span,
-                "a material has no syc: the stretch at which bonds flow is said in pair_coeff",
+                "a material has no syc: the stretch at which bonds flow is set in pair_coeff",
             )
             .help("write `pair_style peri/pmb/plastic` and `pair_coeff … material ID horizon H syc V`")
             .into());
@@ -69,7 +69,7 @@ fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
         }
         let rival = if key == "Gc" { "s00" } else { "Gc" };
         if matches!(key, "Gc" | "s00") && seen.contains(&rival) {
-            let text = "Gc and s00 both say when a bond breaks: give one";
+            let text = "Gc and s00 both set when a bond breaks: give one";
             return fail(Code::CONFLICT, word.span, text);
         }
         seen.push(key);
@@ -100,7 +100,7 @@ fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
     }
 }
 
-/// A material about which nothing has been said; its numbers are harmless.
+/// A material without given properties; its numbers are harmless.
 fn blank(id: &str) -> Material {
     Material {
         name: id.to_owned(),

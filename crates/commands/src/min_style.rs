@@ -52,7 +52,7 @@ impl CommandStyle for MinStyleCommand {
                 let text = "min_style puts all numbers back to their defaults: those of a `min_modify` before it are lost";
                 cx.note(
                     Diagnostic::warning(Code::SUSPICIOUS, span, text)
-                        .help("say `min_modify` after `min_style`"),
+                        .help("use `min_modify` after `min_style`"),
                 );
             }
             cx.world.settings.minimizer = Minimizer { style, ..Minimizer::default() };

@@ -38,7 +38,7 @@ impl Style for Molecule {
     }
 }
 
-/// A file and what its keywords say.
+/// A file and its keywords.
 #[derive(Clone)]
 struct Asked {
     file: Word,

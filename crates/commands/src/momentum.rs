@@ -91,10 +91,11 @@ pub fn temperature(w: &World, members: &Members, v: &[Vec3]) -> f64 {
     sum * (c.mvv2e / (freedom * c.boltz))
 }
 
-/// Angular velocity ω with I ω = L. A body on a line has no rotation about it: moments below a millionth of the largest are left out.
+/// Angular velocity ω with I ω = L. A body on a line has no rotation about it: moments below a millionth of the largest are left
+/// out.
 ///
-/// LAMMPS (`lammps`) asks for that where the determinant is below 1e-6 alone, whatever the unit, and inverts what heavy bodies on a line leave
-/// of it by rounding.
+/// LAMMPS (`lammps`) does so only where the determinant is below 1e-6, whatever the unit, and inverts what rounding leaves of it
+/// for heavy bodies on a line.
 pub fn rotation(inertia: [[f64; 3]; 3], l: Vec3, lammps: bool) -> Vec3 {
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia;
     let determinant = xx * yy * zz + xy * yz * xz + xz * xy * yz - xx * yz * yz - xy * xy * zz - xz * yy * xz;

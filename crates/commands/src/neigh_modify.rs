@@ -195,7 +195,7 @@ fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()>
     Ok(())
 }
 
-/// A rule that stands already is not a second one: decks say it again behind `read_restart`, which brings it along.
+/// Adds a rule unless it exists: decks repeat rules behind `read_restart`, which brings them along.
 fn add<T: PartialEq>(rules: &mut Vec<T>, rule: T) {
     if !rules.contains(&rule) {
         rules.push(rule);

@@ -1,4 +1,4 @@
-//! `newton`: LAMMPS' choice who computes a pair at a processor's border; accepted, without effect.
+//! `newton`: LAMMPS' choice of the process that computes a pair at a processor's border; accepted, without effect.
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};

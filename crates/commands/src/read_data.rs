@@ -73,7 +73,7 @@ impl Style for ReadData {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     ids: Ids,
@@ -277,7 +277,7 @@ impl Reading {
             p.image.set(k, image);
             let at = domain.upright(&p.x[k]);
             let within = |d: usize| at[d] >= domain.lo[d] && at[d] < domain.hi[d];
-            // Rounding may leave one who was wrapped on the upper face of a leaning box.
+            // Rounding may leave a wrapped particle on the upper face of a leaning box.
             let settled = |d: usize| domain.tilted() && periodic[d];
             if let Some(d) = (0..3).find(|&d| !within(d) && !settled(d)) {
                 return Err(outside(&domain, d, &at, span(k, Column::X(d)), p.tag[k]));
@@ -319,7 +319,7 @@ impl Reading {
             }
         }
         let flat = world.settings.two_dimensional;
-        // The first box says how all lean, as its faces do what `boundary` says.
+        // The first box defines how all lean, as `boundary` defines its faces.
         let tilt = world.domain.as_ref().map_or(data.header.tilt, |old| old.tilt);
         let mut domain = Domain { flat, tilt, ..Domain::new(lo, hi, world.settings.boundary) };
         domain.open_shrinking_faces();

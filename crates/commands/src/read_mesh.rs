@@ -32,7 +32,7 @@ impl Style for ReadMesh {
             summary: "Makes a particle for each cell of a volume mesh, at its centroid, with its volume.",
             text: "Cells are tetrahedra, pyramids, wedges and hexahedra; with `thickness` H, and always in a flat scene (`dimension 2`), \
                    triangles and quads, whose area times H is the volume. What a file has besides (faces of a solid, lines, points) is \
-                   left out, and the log counts it. The ending tells the format, `.gz` behind it a packed file:\n\n\
+                   left out, and the log counts it. The extension selects the format, `.gz` behind it a packed file:\n\n\
                    - `.msh`: Gmsh, versions 2.2 and 4.1 as text;\n\
                    - `.inp`: Abaqus: `*NODE`, `*ELEMENT`, `*ELSET` of one part that stands where it is;\n\
                    - `.vtk`: legacy VTK with an unstructured grid, text or binary;\n\
@@ -46,7 +46,7 @@ impl Style for ReadMesh {
                    The file's numbers are multiplied by `scale`, then turned by THETA degrees about the axis R through the origin, then shifted, \
                    in whichever order the line says it (`move` is another word for `shift`). Only particles inside of the box are made; a warning counts the others. Peridynamic \
                    particles get the volume, spheres the diameter of a ball of the same volume, both the `density`, as `set` would give it; \
-                   without one spheres have density 1, as those of create_atoms, and the others none yet. Ids go on behind the largest one.\n\n\
+                   without one spheres have density 1, as those of create_atoms, and the others none yet. Ids continue behind the largest one.\n\n\
                    For peridynamics `lattice sc` is the mean spacing V^⅓ of its cells, which is what the partial volumes at the horizon and \
                    `horizon` of a material go by; where cells are not alike in size `peri_modify horizon own` lets them go by the spacing around each particle. \
                    With `peri_modify volume full surface tensor` bars of tetrahedra and hexahedra, nine and eight cells across, that are pulled have Young's modulus within 2 % of the \
@@ -56,7 +56,7 @@ impl Style for ReadMesh {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     making: Making,

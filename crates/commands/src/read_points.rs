@@ -34,7 +34,7 @@ impl Style for ReadPoints {
                    `columns` takes a column of another name for a property: `columns x X_mm volume \"cell volume\"`, and then it must be there. Columns of \
                    other names are left out, and the log names them.\n\n\
                    What has no column comes from the line: `type`, `volume`, `diameter`, `density`, alike for all. Peridynamic particles need a volume, \
-                   spheres a diameter, a radius or a volume (that of the ball); mass follows from the density as with `set`. Without `id` ids go on \
+                   spheres a diameter, a radius or a volume (that of the ball); mass follows from the density as with `set`. Without `id` ids continue \
                    behind the largest one.\n\n\
                    Lengths are multiplied by `scale`, volumes by its third power, then places, velocities and angular velocities are turned, then places shifted; \
                    speeds stay. Only particles inside of the box are made; a warning counts the others. Refused with line and column: two \
@@ -45,14 +45,14 @@ impl Style for ReadPoints {
     }
 }
 
-/// Columns to be read with what they say, and the names of others.
+/// Columns to be read with their properties, and the names of others.
 type Found = (Vec<(usize, Property)>, Vec<String>);
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     making: Making,
-    /// Property and column, as said.
+    /// Property and column, as given.
     columns: Vec<(Word, Word, Property)>,
     volume: Option<f64>,
     diameter: Option<f64>,
@@ -116,13 +116,13 @@ impl Reading {
         Ok(())
     }
 
-    /// The columns to be read with what they say, and the names of others.
+    /// The columns to be read with their properties, and the names of others.
     fn wanted(&self, cx: &ActCx, names: &[String], head: Span) -> Result<Found> {
         let (mut wanted, mut others): (Vec<(usize, Property)>, Vec<String>) = (vec![], vec![]);
         for (name, column, p) in &self.columns {
             let Some(k) = names.iter().position(|n| *n == column.text) else {
                 let d = no_column(names, head, &name.text, &column.text);
-                return Err(d.label(column.span, "asked for here").into());
+                return Err(d.label(column.span, "requested here").into());
             };
             wanted.push((k, p.clone()));
         }
@@ -190,7 +190,7 @@ impl Body for Reading {
 
     fn settles(&self) -> Vec<&'static str> {
         let mut settles = self.making.settles();
-        // A column may hold it: who reads the file knows.
+        // A column may hold it; this is known once the file is read.
         settles.extend(["density", "mass"]);
         settles
     }

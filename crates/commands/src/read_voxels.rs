@@ -32,7 +32,7 @@ impl Style for ReadVoxels {
             syntax: "read_voxels FILE types LO:HI T … [spacing S|SX SY SZ] [resample H] [array NAME] [density ρ] [group ID] \
                      [scale S] [rotate THETA RX RY RZ] [shift X Y Z]",
             summary: "Makes particles of the voxels of an image, as a tomograph gives it: ranges of grey values become types.",
-            text: "`types` gives ranges of grey values, both ends in them (`7` alone is a range, too), the types of their particles; other values are empty. The ending tells the format:\n\n\
+            text: "`types` gives ranges of grey values, both ends in them (`7` alone is a range, too), the types of their particles; other values are empty. The extension selects the format:\n\n\
                    - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;\n\
                    - `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;\n\
                    - `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;\n\
@@ -51,7 +51,7 @@ impl Style for ReadVoxels {
     }
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Reading {
     file: Word,
     making: Making,
@@ -151,7 +151,7 @@ impl Reading {
     fn enter(&self, cx: &mut ActCx, image: &mut dyn Image) -> Result<()> {
         let info = image.info().clone();
         let Some(spacing) = self.spacing.or(info.spacing) else {
-            let text = format!("the image `{}` does not say how large its voxels are", self.file.text);
+            let text = format!("the image `{}` does not state the size of its voxels", self.file.text);
             let d = Diagnostic::error(Code::INCOMPLETE, self.file.span, text);
             return Err(d.help("add `spacing S`, the edge of a voxel").into());
         };
@@ -257,7 +257,7 @@ impl Reading {
         }
     }
 
-    /// Says how the volume of each material has come through.
+    /// Logs the volume of each material in the image and in the particles made.
     fn compare(&self, cx: &mut ActCx, grid: &Grid, [image, made]: [&[f64]; 2]) {
         for (k, kind) in grid.types.iter().enumerate() {
             let (before, after) = (image[k + 1], made[k + 1]);

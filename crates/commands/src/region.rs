@@ -61,7 +61,7 @@ impl Style for RegionCommand {
                    into fans around their first corner and should be convex. The file's numbers are multiplied by `scale`, \
                    `shift`ed, and then in lattice spacings or box units as all distances are; `move` and `rotate` follow \
                    variables as for other shapes. The surface must be closed: each edge borders two triangles (corners are \
-                   shared where their numbers are the same), and no two triangles cross or touch elsewhere; what is wrong is told with \
+                   shared where their numbers are the same), and no two triangles cross or touch elsewhere; errors are reported with \
                    the number of edges and the place of the first one. Triangles in the wrong order of corners are turned, and the \
                    log says how many. A surface within another one is a hole. What is inside is exact for the \
                    numbers of the file, wherever edges and corners lie; binary STL has seven digits, so that sites meant to lie on a \
@@ -70,7 +70,7 @@ impl Style for RegionCommand {
                    `union` and `intersect` combine regions as they are declared now, their motions included, at most 10,000 of them in all and nested at \
                    most 100 deep; they cannot \
                    move by themselves. `open` names faces that walls made of the region leave open: for a block or prism 1 \
-                   to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle). Whatever asks \
+                   to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle). Every use that queries \
                    which particles are in a region takes it as if it were closed, as LAMMPS' manual says; LAMMPS 22Jul2025 takes \
                    all particles there are, and so does `compat lammps`.",
             example: "variable lift equal 0.001*step\n\
@@ -80,7 +80,7 @@ impl Style for RegionCommand {
     }
 }
 
-/// What the keywords after the shape say.
+/// The keywords after the shape.
 struct Options {
     outside: bool,
     lattice: bool,
@@ -202,7 +202,7 @@ fn keywords(style: &Word) -> &'static [&'static str] {
     if style.text == "mesh" { &MESH_KEYWORDS } else { &KEYWORDS }
 }
 
-/// What `units` says further on: it counts for a `rotate` before it too.
+/// The value of a later `units`: it counts for a `rotate` before it too.
 fn units_of(mut a: Args) -> Result<bool> {
     while let Some(word) = a.next() {
         if word.text == "units" {
@@ -279,7 +279,7 @@ fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
                 )
             };
             let d = Diagnostic::error(Code::TOO_LARGE, word.span, text);
-            return Err(d.help("say one union or intersection of all its parts, each of them once").into());
+            return Err(d.help("write one union or intersection of all its parts, each of them once").into());
         }
         parts.push(part.clone());
     }

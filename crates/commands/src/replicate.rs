@@ -25,7 +25,7 @@ impl Style for Replicate {
                    everything that belongs to it, places that it is held to or counts its way from moved along (`fix move`, `fix spring/self`, \
                    `compute displace/atom`); contacts begin anew, and rigid bodies too; bonds join the copies of one repetition, and molecules get new IDs. \
                    Bonds through a periodic face then span a whole repetition, which a warning counts: with `bond/periodic` each joins the nearest copies, so that \
-                   a bonded crystal goes on through all repetitions. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
+                   a bonded crystal continues through all repetitions. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
                    fastest in ids). It must come before the first run of a scene with peridynamic bonds.",
             example: "units lj\nlattice sc 0.5\nregion cell block 0 2 0 2 0 2\ncreate_box 1 cell\ncreate_atoms 1 box\n\
                       mass 1 1.0\nreplicate 2 2 1\nprint \"$(atoms) particles\"",
@@ -207,7 +207,7 @@ fn larger(old: &Domain, count: [i64; 3]) -> Domain {
     Domain { flat: old.flat, tilt, ..Domain::new(old.lo, hi, old.boundary) }
 }
 
-/// Says where the box is, as LAMMPS does.
+/// Logs where the box is, as LAMMPS does.
 pub fn say_box(cx: &mut ActCx) -> Result<()> {
     let domain = cx.world.domain()?;
     let line = format!("  {}", domain.told(domain.lo, domain.hi));

@@ -19,7 +19,7 @@ impl Style for ResetTimestep {
             syntax: "reset_timestep N [time T]",
             summary: "Sets the step counter; elapsed time becomes N times the step size, or T.",
             text: "The scene is left alone. N is a whole number from 0. Refused while a fix counts steps: `ave/atom`, `ave/chunk`, \
-                   `ave/time`, `dt/reset`, `pour` or `vector`; and while a dump has written snapshots into a file that goes on growing.",
+                   `ave/time`, `dt/reset`, `pour` or `vector`; and while a dump has written snapshots into a file that keeps growing.",
             example: "reset_timestep 0",
         }
     }
@@ -42,7 +42,7 @@ impl CommandStyle for ResetTimestep {
         }
         if let Some(id) = cx.names.growing_dump() {
             let text = format!(
-                "the step cannot be reset while dump `{id}` goes on: its file would have steps twice"
+                "the step cannot be reset while dump `{id}` is writing: its file would have steps twice"
             );
             let help = format!("put `undump {id}` before this line, and the dump again after it");
             return Err(Diagnostic::error(Code::CONFLICT, cx.span, text).help(help).into());

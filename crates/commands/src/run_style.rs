@@ -103,7 +103,7 @@ impl CommandStyle for RunStyleCommand {
     }
 }
 
-/// Puts a style in force; what another one has kept between steps is forgotten.
+/// Puts a style in force; what another one has kept between steps is dropped.
 fn put(w: &mut World, style: RunStyle) {
     if w.settings.run_style != style {
         w.settings.run_style = style;
@@ -152,7 +152,7 @@ fn staggered(a: &mut Args, cx: &BuildCx) -> Result<RunStyle> {
         return fail(
             Code::MISSING_ARGUMENT,
             a.name_span(),
-            "with `faster grains` say how rarely bonds act: `m N`",
+            "with `faster grains` give the interval of bonds: `m N`",
         );
     }
     if rare && twice.is_some() {

@@ -99,7 +99,7 @@ impl Style for Set {
     }
 }
 
-/// Who is meant.
+/// Which particles are set.
 enum Choice {
     Tags(i64, i64),
     Kinds(u16, u16),

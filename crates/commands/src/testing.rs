@@ -62,7 +62,7 @@ pub fn command(line: &str) -> Command {
     Command { name: words.remove(0), args: words, span, text: line.to_string() }
 }
 
-/// Acts one line on the world; what it said comes back.
+/// Executes one line on the world; returns its log lines.
 pub fn act(world: &mut World, line: &str, variables: &[AtomVariable]) -> Result<Vec<String>> {
     let command = command(line);
     let Some(style) = COMMANDS.iter().find(|c| c.name() == command.name.text) else {

@@ -31,8 +31,8 @@ impl Style for BondLocal {
                    `engpot force fx fy fz`: energy and force of the bond (0 while it is turned off; negative pulls the ends \
                    together); of the ends' motion against their centre of mass: `engvib` kinetic energy along the bond, `engrot` \
                    across it, `velvib` the speed of lengthening, `omega` angular velocity; `engtrans`: kinetic energy of the \
-                   centre. `b1 b2 …` and other names are what the bond style tells besides, as its page says; 0 of bonds that are turned off. \
-                   Energies and forces are not told of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
+                   centre. `b1 b2 …` and other names are additional values of the bond style, listed on its page; 0 of bonds that are turned off. \
+                   There are no energies and forces of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
@@ -168,7 +168,7 @@ impl Declared {
         for value in &self.values {
             let Value::Extra(wanted) = value else { continue };
             let Some(place) = told.iter().position(|t| t == wanted) else {
-                let text = format!("bond_style {name} tells no `{wanted}` of its bonds");
+                let text = format!("bond_style {name} has no `{wanted}` of its bonds");
                 let d = Diagnostic::error(Code::WRONG_KIND, span, text);
                 let told = told.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
                 return Err(if told.is_empty() { d } else { d.help(format!("it tells {told}")) }.into());

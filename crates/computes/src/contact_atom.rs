@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(b.evaluate(&*c).unwrap().atom, [1.0, 2.0, 1.0, 0.0]);
         b.world.settings.neighbor.exclude_types.push((1, 1));
         assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0; 4]);
-        assert!(b.compute(&ContactAtom, "nobody").is_err());
+        assert!(b.compute(&ContactAtom, "missing").is_err());
         b.world.particles.style.sphere = false;
         assert!(b.compute(&ContactAtom, "").is_err());
     }

@@ -42,7 +42,7 @@ impl Style for EnergyLedger {
                    counts as held. The heat of bonds is 2/τ times the energy of relaxing springs, and for plastic bonds what they lose when they \
                    flow, of first order in the step; under `compat lammps`, whose forces of such bonds have no energy, it is in \
                    the residual.\n\n\
-                   Contacts tell what they did as they act; solids that relax or flow are evaluated a second time.",
+                   Contacts book their work as they act; solids that relax or flow are evaluated a second time.",
             example: "compute e all energy/ledger",
         }
     }

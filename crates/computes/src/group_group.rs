@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn words() {
         let b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
-        for words in ["", "nobody", "all kspace yes", "all molecule inter", "all pair maybe", "all tail yes"]
+        for words in ["", "missing", "all kspace yes", "all molecule inter", "all pair maybe", "all tail yes"]
         {
             assert!(b.compute(&GroupGroup, words).is_err(), "{words}");
         }

@@ -24,7 +24,7 @@ impl Style for NbondAtom {
             summary: "How many bonds each particle has.",
             text: "Per-atom vector: the bonds of which a particle is an end, of one type or of all; those that have broken or are turned off \
                    (`delete_bonds`) do not count. 0 outside the group; the other end may be outside. Bonds of `pair_style peri/…` are \
-                   another matter: `compute damage/atom` tells of them.",
+                   another matter: `compute damage/atom` counts them.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\ncreate_bonds single/bond 1 1 2\n\
                       bond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\ncompute n all nbond/atom\n\

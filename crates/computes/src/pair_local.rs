@@ -200,7 +200,7 @@ pub(super) fn answering(id: &str, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Pro
     if !probes.is_empty() {
         return Ok(probes);
     }
-    let text = format!("compute {id}: no pair style of this scene can be asked about single pairs");
+    let text = format!("compute {id}: no pair style of this scene can compute single pairs");
     Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
         .help("granular pair styles can, and `peri/pmb`: `pair_style granular`, `gran/hooke/history` …")
         .into())

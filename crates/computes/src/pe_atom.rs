@@ -21,7 +21,7 @@ impl Style for PeAtom {
             syntax: "compute ID group pe/atom [pair fix bond angle dihedral improper kspace …]",
             summary: "Potential energy of each particle.",
             text: "Per-atom vector, in energy units (energy density for peridynamic particles in LAMMPS' convention): \
-                   half of the energy of each pair goes to either particle. `fix` is what `fix external` was told of each \
+                   half of the energy of each pair goes to either particle. `fix` is what the host of `fix external` has set for each \
                    particle; no other fix has energies per particle. 0 outside the group.",
             example: "compute w all pe/atom",
         }

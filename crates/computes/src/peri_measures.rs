@@ -36,7 +36,7 @@ impl Style for DefgradAtom {
                    the pair style. Exact for every family when the body deforms evenly, at surfaces too. All columns are 0, J \
                    among them, where no three bonds have independent directions (one layer of particles), \
                    before the first run, for particles without a family, and outside the group.\n\n\
-                   The few bonds of a torn family are a mechanism: its F tells how hinges turn, not how a solid is strained, and \
+                   The few bonds of a torn family are a mechanism: its F shows how hinges turn, not how a solid is strained, and \
                    its stress may be hundreds of times what a bond ever bears. All columns are NaN, or 0 with `torn zero`, \
                    where more than `damage PHI` of the family's volume is broken (default 0.7), or where the least eigenvalue of K \
                    is below 0.05 of that of the whole family. `compute reduce` with min and max passes over NaN; means and sums of \

@@ -300,7 +300,7 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
     if ["i_", "d_", "i2_", "d2_"].iter().any(|p| name.starts_with(p)) {
         let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, format!("there is no property `{name}`"));
         return Err(d
-            .help("`fix ID all property/atom NAME` makes one; of several columns say which, as `d2_x[1]`")
+            .help("`fix ID all property/atom NAME` makes one; of several columns choose one, as `d2_x[1]`")
             .into());
     }
     if [TEMPERATURE.text(), HEATFLOW.text()].contains(&name) {

@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn only_fixes_of_bodies() {
         let b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
-        for words in ["", "nobody"] {
+        for words in ["", "missing"] {
             assert!(b.compute(&KeRigid, words).is_err() && b.compute(&ErotateRigid, words).is_err());
         }
     }

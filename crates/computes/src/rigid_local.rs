@@ -84,7 +84,7 @@ impl ComputeStyle for RigidLocal {
         if !fix.style.ends_with("/small") {
             let text = format!("fix `{}` (style {}) is not of style rigid/small", fix.id, fix.style);
             let d = Diagnostic::error(Code::WRONG_KIND, at, text);
-            return Err(d.help("its array says the same of its bodies").into());
+            return Err(d.help("its array holds the same for its bodies").into());
         }
         let names: Vec<&'static str> = ATTRIBUTES.iter().map(|a| a.0).collect();
         let mut list = vec![];

@@ -28,7 +28,7 @@ impl Style for Xyz {
             text: "Each snapshot is the number of particles, a line of comment with the step, and a row `name x y z` per \
                    particle. The name is the type's number unless `dump_modify ID element A B …` names types. \
                    `dump_modify` understands what all dumps do (see `dump custom`), `format line \"%s %g %g %g\"` and \
-                   `time yes` (the time in the comment). Rows are sorted by id unless told otherwise.",
+                   `time yes` (the time in the comment). Rows are sorted by id unless set otherwise.",
             example: "dump 1 all xyz 100 grains.xyz",
         }
     }

@@ -23,7 +23,7 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     with box crossings undone `xu yu zu xsu ysu zsu`, box crossings `ix iy iz`, velocities `vx vy vz`, forces \
     `fx fy fz`, the type's name `element`, for spheres `radius diameter omegax omegay omegaz tqx tqy tqz`, for peridynamic particles `volume`, and \
     per-atom values `c_ID c_ID[k] c_ID[*] f_ID f_ID[k] v_name`.\n\n\
-    `dump_modify ID keyword value …` understands, for every text dump: `append yes|no` (go on behind an existing file), \
+    `dump_modify ID keyword value …` understands, for every text dump: `append yes|no` (append to an existing file), \
     `delay N` (nothing before step N), `element A B …` (one name per type, for the attribute `element`), `every N` or \
     `every v_name` (a variable that names the next step), `every/time T|v_name` (multiples of a time, or a variable that names the next time when a run begins and after each snapshot), `first yes|no` (also the \
     first step of the first run), `maxfiles N` (keep the last N of the files of single snapshots), `pad N` (digits of the \
@@ -35,7 +35,7 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     `balance buffer flush` and `types numeric` are read and without effect; `at sfactor tfactor precision \
     unwrap triclinic/general` are refused by name.\n\n\
     Of a triclinic box the header has the faces of the upright box around it, with a tilt behind each pair (`BOX BOUNDS xy xz yz …`).\n\n\
-    Rows are sorted by id unless told otherwise (LAMMPS: unsorted). The file is made, or emptied, when the first run begins. \
+    Rows are sorted by id unless set otherwise (LAMMPS: unsorted). The file is made, or emptied, when the first run begins. \
     A `*` in the file name becomes the step, and each \
     snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed \
     (`dump custom/gz` and its kin also know `compression_level N`). One that ends in `.bin` or `.lammpsbin` is LAMMPS' binary form, here and for `dump atom`, \

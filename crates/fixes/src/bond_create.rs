@@ -239,7 +239,7 @@ impl Fix for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         if self.changes_types() && cx.world().families.is_some() {
-            let text = "points of peridynamic solids keep their types while a run goes on";
+            let text = "points of peridynamic solids keep their types during a run";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, self.span, text);
             return Err(d.help("let `newtype` be the type they have").into());
         }

@@ -28,7 +28,7 @@ impl Style for Deform {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group deform N x|y|z|xy|xz|yz STYLE … [x|y|z|xy|xz|yz STYLE …] [remap x|v|none] [flip yes|no] [units lattice|box]",
-            summary: "Changes the lengths and tilts of the box while a run goes on.",
+            summary: "Changes the lengths and tilts of the box during a run.",
             text: "Every N steps, at the end of the step. The styles of a dimension, of which the start is the box at the run's \
                    beginning (with `run … start`, that at this line):\n\n\
                    - `final lo hi`: these faces at the end of the run; `delta dlo dhi`: faces moved by this much at its end; \
@@ -46,7 +46,7 @@ impl Style for Deform {
                    edge less, at the next rebuild of lists: another box of the same lattice, in which all particles are where they were. `remap x` (default) stretches the positions of the group's \
                    particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
                    of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
-                   In a flat scene `z` changes the length that the box has along z, and no particle; it must go on holding the plane z = 0. (LAMMPS, \
+                   In a flat scene `z` changes the length that the box has along z, and no particle; it must still hold the plane z = 0. (LAMMPS, \
                    and perigrain under `-compat lammps`, lets `remap x` move particles out of the plane where its faces do not lie alike on both sides of it.) \
                    A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Where peridynamic bonds \
                    cross a periodic face, its edge may change with `remap x` and `flip no` alone: the body is strained evenly with the box, \

@@ -37,7 +37,7 @@ impl Style for Deposit {
                    points them to a place. `rate` moves the region up. The new particle is of LAMMPS' default size, for spheres diameter 1 and density 1, and \
                    belongs to `all` and the fix's group. `id max` continues from the largest id in use, `next` from the \
                    last one given (under `compat lammps` some twice where `create_atoms` makes particles in between, as in LAMMPS). Distances and velocities are in lattice spacings unless `units box`.\n\n\
-                   Random numbers and their order are LAMMPS'. A second run goes on where the first one ended, also after a restart. \
+                   Random numbers and their order are LAMMPS'. A second run continues where the first one ended, also after a restart. \
                    Steps whose particle found no place are made up for by later ones and warned about at the end of the run. \
                    \n\n\
                    `mol` puts in copies of a molecule template with their bonds, about their geometric centre and turned at random, \
@@ -200,7 +200,7 @@ impl Depositing {
         let text =
             format!("new spheres may overlap others: `near {}` is less than {}", self.near, own + widest);
         let d = Diagnostic::warning(Code::SUSPICIOUS, span, text);
-        w.parts.notes.push(d.help(format!("say `near {}` (box units)", own + widest)));
+        w.parts.notes.push(d.help(format!("use `near {}` (box units)", own + widest)));
     }
 }
 

@@ -19,7 +19,7 @@ impl Style for DtGuard {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID all dt/guard N tolerance [shrink F] [min T] [recover K]",
-            summary: "Takes back blocks of steps in which energy was made, and goes on in shorter steps.",
+            summary: "Takes back blocks of steps in which energy was made, and continues in shorter steps.",
             text: "A run is made in blocks of N steps, and every step at which a fix or output acts ends one. At its end, before \
                    anything is put out, the residual of compute energy/ledger is compared with that at the block's beginning: if \
                    it has changed by more than `tolerance` times the energy that was held then plus what went in and out since, \

@@ -34,7 +34,7 @@ impl FixStyle for Enforce2d {
         if !cx.world.settings.two_dimensional {
             let text = "fix enforce2d belongs to two-dimensional scenes";
             return Err(Diagnostic::error(Code::CONFLICT, cx.span, text)
-                .help("say `dimension 2` before the box is created, or leave this fix out")
+                .help("use `dimension 2` before the box is created, or leave this fix out")
                 .into());
         }
         args.finish()?;

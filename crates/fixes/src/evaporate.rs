@@ -26,7 +26,7 @@ impl Style for Evaporate {
             summary: "Deletes M particles of a region every N steps, chosen at random.",
             text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of them \
                    where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both programs keep \
-                   particles in the same order (`atom_modify sort 0 0` there). Ids of the others stay. A second run goes on where the first \
+                   particles in the same order (`atom_modify sort 0 0` there). Ids of the others stay. A second run continues where the first \
                    one ended, also after a restart. `molecule yes`, by which whole molecules go, is refused. Scalar (intensive): how many are gone so far.",
             example: "fix dry grains evaporate 5 1 ball 4711",
         }

@@ -41,7 +41,7 @@ impl Kept {
         let n = w.n();
         let lengths = [each.energy.as_ref().map(Vec::len), each.virial.as_ref().map(Vec::len)];
         if let Some(few) = lengths.into_iter().flatten().find(|length| *length < n) {
-            let text = format!("fix external `{id}` was told of {few} particles, and there are {n}");
+            let text = format!("fix external `{id}` has values for {few} particles, and there are {n}");
             return Err(Diagnostic::error(Code::OUTSIDE, None, text).into());
         }
         if let Some(energy) = each.energy {
@@ -95,7 +95,7 @@ impl Style for External {
                    (`fix_external_set_energy_peratom`, `fix_external_set_virial_peratom`) count in `compute pe/atom` and \
                    `stress/atom`, in no sum; they stay with their particles as forces do (LAMMPS forgets them with every step). The virial it says (`fix_external_set_virial_global`) counts in \
                    pressures, unless `fix_modify ID virial no`. `fix_modify ID vector N`: the fix offers N values of the program (intensive), which \
-                   `fix_external_set_vector` sets. Forces and functions do not come back from a restart file. In a terminal nobody hosts the run: \
+                   `fix_external_set_vector` sets. Forces and functions do not come back from a restart file. In a terminal no program hosts the run: \
                    `pf/array` adds nothing there, and `pf/callback` is refused where it would be called.",
             example: "fix probe grains external pf/array 1",
         }
@@ -333,7 +333,7 @@ mod tests {
         b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
         let kept = Kept::new("f");
         let few = kept.keep(&mut b.world, "f", Each { energy: Some(vec![1.0]), virial: None }).unwrap_err();
-        assert!(few.to_string().contains("told of 1 particles, and there are 2"), "{few}");
+        assert!(few.to_string().contains("values for 1 particles, and there are 2"), "{few}");
         kept.keep(&mut b.world, "f", Program.each()).unwrap();
         b.world.tally.clear(0, true, true, 2);
         b.world.tally.clear_atom_virial(true, 2);

@@ -60,7 +60,7 @@ const OPERATORS: [(&str, Compare); 7] = [
 impl FixStyle for HaltFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let every = args.integer_from(1, "the number of steps N")?;
-        let word = args.expect("what to look at")?;
+        let word = args.expect("the quantity to check")?;
         let mut attribute = match (word.text.as_str(), ValueRef::parse(&word.text, word.span)?) {
             ("bondmax", _) => Attribute::Bonds,
             ("tlimit", _) => Attribute::Seconds,
@@ -82,7 +82,7 @@ impl FixStyle for HaltFix {
                 // One process is the whole universe.
                 "universe" => drop(args.flag("universe")?),
                 "path" => {
-                    let name = args.expect("the path to look at")?;
+                    let name = args.expect("the path to check")?;
                     path_span = Some(name.span);
                     if let Attribute::Disk(path) = &mut attribute {
                         *path = PathBuf::from(&name.text);
@@ -127,7 +127,7 @@ impl Declared {
 /// Free space of the file system that contains a path.
 fn free_megabytes(path: &Path) -> Result<f64> {
     perigrain_base::gate::pass(path).map_err(|e| {
-        let text = format!("the free space at `{}` is not told: {e}", path.display());
+        let text = format!("the free space at `{}` cannot be read: {e}", path.display());
         Diagnostic::error(perigrain_base::gate::code(&e), None::<Span>, text)
     })?;
     // Uses `df`, because the standard library has no function for this.

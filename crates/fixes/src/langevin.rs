@@ -37,7 +37,7 @@ impl Style for Langevin {
                    it is the thermo keyword `ecouple`, and `econserve` holds it. \
                    Not in minimizations.\n\n\
                    Random numbers are those of LAMMPS on one process: particles draw in the order of their creation (LAMMPS sorts them \
-                   now and then: `atom_modify sort 0 0`). The stream goes on from run to run, also through a restart file, and a run cut in \
+                   now and then: `atom_modify sort 0 0`). The stream continues from run to run, also through a restart file, and a run cut in \
                    two is one run; LAMMPS draws once more and begins to tally anew when a run begins (`-compat lammps`), and restart files do not \
                    hold its streams. Refused: `angmom` (no ellipsoids here), `gjf` (LAMMPS has a fix of its own for it), and \
                    `fix_modify ID temp` with a temperature that takes a flow away.",

@@ -64,7 +64,7 @@ impl FixStyle for Momentum {
                 args.here(),
                 "nothing would be taken away",
             )
-            .help("say `linear 1 1 1`, `angular` or both")
+            .help("use `linear 1 1 1`, `angular` or both")
             .into());
         }
         Ok(Box::new(fix))

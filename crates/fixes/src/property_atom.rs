@@ -52,7 +52,7 @@ impl FixStyle for PropertyAtomFix {
                 }
                 "q" | "rmass" => {
                     let text =
-                        format!("`{}` cannot be added: atom styles say what particles have", word.text);
+                        format!("`{}` cannot be added: atom styles define what particles have", word.text);
                     return fail(Code::NOT_SUPPORTED, word.span, text);
                 }
                 _ => names.extend(columns(word, args, cx, &names)?),

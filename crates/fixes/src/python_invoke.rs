@@ -22,8 +22,8 @@ impl Style for PythonInvoke {
             syntax: "fix ID group python/invoke N (post_force | end_of_step) function",
             summary: "Calls a function in Python at every step that N divides, where Python hosts the run.",
             text: "The function is one of the program's `__main__`, defined by the script or by the command `python`. \
-                   `post_force`: after forces have been computed, as `function(ptr, vflag)`, where vflag is 1 in steps whose pressure somebody reads, 4 more where \
-                   somebody reads virials of particles; in the order of fixes, so that a `setforce` behind it has the last word. `end_of_step`: after the step, as \
+                   `post_force`: after forces have been computed, as `function(ptr, vflag)`, where vflag is 1 in steps whose pressure is read, 4 more where \
+                   virials of particles are read; in the order of fixes, so that a `setforce` behind it has the last word. `end_of_step`: after the step, as \
                    `function(ptr)`. Neither is called in the setup of a run, as in LAMMPS, nor in minimizations. The group decides nothing.\n\n\
                    `lammps(ptr=ptr)` gives the scene as it is in that moment: columns of particles (`extract_atom`, `numpy.extract_atom`, `gather…`, `scatter…`), the box, settings \
                    (`extract_global`), ids; what is written into columns counts when the function returns. Commands, computes, fixes and variables are refused there (LAMMPS: \

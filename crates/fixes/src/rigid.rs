@@ -67,7 +67,7 @@ impl Style for Rigid {
                    `rigid/small … mol`, a molecule template) gives the true mass, centre and inertia. `fix gravity` then acts on such a body by M g at its \
                    centre, if all its particles are in the group of that fix; LAMMPS pulls the particles, so that the body falls at another rate and \
                    turns about its centre. `gravity ID` here with `disable` at the end of that `fix gravity` gives the right motion in both. Computes of particles (`com`, `ke`, \
-                   `vcm` …, the pressure) go on with the particles' masses; `ke/rigid`, `erotate/rigid`, `rigid/local` and `energy/ledger` know the body's.\n\n\
+                   `vcm` …, the pressure) keep the particles' masses; `ke/rigid`, `erotate/rigid`, `rigid/local` and `energy/ledger` know the body's.\n\n\
                    Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) of components that are on, over as many degrees of freedom and Boltzmann's constant (torques by the body's own axes). Array, a row for each body: centre, \
                    velocity, force, torque, image counts (3 columns each). The forces that hold bodies together count in \
                    pressures, unless `fix_modify ID virial no`. In the setup of a run LAMMPS leaves out the forces of fixes that stand below this \

@@ -27,9 +27,9 @@ impl Style for WallReflect {
                    as far inside, and its velocity across the wall changes sign. Up to six walls, each named by the face on whose side it \
                    stands: `xlo` holds x above its place, `xhi` below. The place is `EDGE` (the face of the box when the fix is \
                    declared: it does not move with the box), a number, or `v_name` of an equal-style variable, evaluated each step; numbers and variables \
-                   are in lattice spacings unless `units box`. A wall that moves gives no velocity to whom it throws back. Sizes of spheres do not count, nor does \
+                   are in lattice spacings unless `units box`. A moving wall gives no velocity to the particles it reflects. Sizes of spheres do not count, nor does \
                    their spin change. Faces of that direction must not be periodic. Energy is kept to first order in the time step only. \
-                   Not in minimizations, and not under `run_style respa`, in which LAMMPS reflects nobody without a word.",
+                   Not in minimizations, and not under `run_style respa`, in which LAMMPS silently reflects no particle.",
             example: "fix floor grains wall/reflect zlo -0.001 zhi EDGE units box",
         }
     }
@@ -109,7 +109,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { needs_whole_steps: Some("in LAMMPS it throws nobody back in them"), ..Facts::default() }
+        Facts { needs_whole_steps: Some("in LAMMPS it reflects no particle in them"), ..Facts::default() }
     }
 }
 

@@ -17,7 +17,7 @@ const DEPTH: usize = 100;
 enum Item<'a> {
     Number(f64),
     Text(&'a str),
-    /// Only a run can tell.
+    /// Only a run determines it.
     Unknown,
 }
 
@@ -34,7 +34,7 @@ enum Op {
     GreaterEqual,
 }
 
-/// Whether a condition (values put in) holds; `None` if that hangs on a value that only a run can tell.
+/// Whether a condition (with values inserted) holds; `None` if it depends on a value that only a run determines.
 pub(super) fn holds(text: &Mapped) -> Result<Option<bool>> {
     let reader = Reader { line: text, text: &text.text };
     let (rest, item) = reader.binary(&text.text, 1, 0)?;

@@ -45,7 +45,7 @@ pub enum Flow {
     NotMine,
     /// It is done.
     Done,
-    /// The deck asks to end with this exit status.
+    /// The deck ends the program with this exit status.
     Quit(i32),
 }
 
@@ -100,7 +100,7 @@ impl Script {
         let Some(name) = command.args.first().filter(|_| self.speculative) else {
             return vars.define(command, env, files);
         };
-        // One that may be gone still has a value that a later line may ask for.
+        // A variable that may be gone still has a value that a later line may read.
         if command.args.get(1).is_none_or(|style| style.text != "delete") {
             vars.define(command, env, files)?;
         }
@@ -145,7 +145,7 @@ impl Script {
         let label = args.next();
         args.finish()?;
         let skip = std::mem::take(&mut self.skip_jump);
-        // Whether only a run can tell that the jump is passed over.
+        // Whether only a run determines if the jump is passed over.
         let maybe = std::mem::take(&mut self.unsure) || self.speculative;
         if skip && !maybe {
             return Ok(());
@@ -311,7 +311,7 @@ fn until_next<'a>(args: &mut Args<'a>) -> &'a [Word] {
     &all[..n]
 }
 
-/// Whether a condition holds; `None` if only a run can tell.
+/// Whether a condition holds; `None` if only a run determines it.
 fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>> {
     let text = Mapped::whole(&word.text, word.span, word.origin, word.unknown);
     let full = expand(&text, vars, env, None)?;
@@ -341,7 +341,7 @@ pub(super) fn unreadable(path: &Word, e: &std::io::Error) -> Diagnostic {
     blame(path, perigrain_base::gate::code(e), format!("the file `{}` {reason}", path.text))
 }
 
-/// Reads a file into the sources, once per content; `None` if only a run can tell its name.
+/// Reads a file into the sources, once per content; `None` if only a run determines its name.
 fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<Option<FileId>> {
     let text = match files.read(&path.text) {
         Ok(text) => text,

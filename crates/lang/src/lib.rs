@@ -1,7 +1,7 @@
 //! Decks as text: words with places, formulas, variables, flow control.
 //!
-//! The types that matter most: [`Command`], a line with its words; [`Args`], which takes words and says what is wrong with them;
-//! [`ValueRef`], a reference such as `c_ID[2]`. It knows no particles and no style: what a name means is asked of an environment.
+//! The main types: [`Command`], a line with its words; [`Args`], which takes words and reports errors in them; [`ValueRef`], a
+//! reference such as `c_ID[2]`. This crate knows no particles and no style: an environment resolves names.
 
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]

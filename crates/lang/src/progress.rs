@@ -3,7 +3,7 @@
 use perigrain_base::diag::FileId;
 use std::collections::BTreeMap;
 
-/// What is known of one jump.
+/// The record of one jump.
 #[derive(Clone, Copy, Debug, Default)]
 struct Turns {
     count: u64,

@@ -17,7 +17,7 @@ pub enum RefKind {
     FixAtom,
 }
 
-/// A reference to somebody's value, with its place.
+/// A reference to a value of a compute, fix or variable, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValueRef {
     /// Whose.
@@ -92,7 +92,7 @@ impl std::fmt::Display for ValueRef {
     }
 }
 
-/// A parameter that may be a number or somebody's value.
+/// A parameter that may be a number or a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Param {
     /// A constant.

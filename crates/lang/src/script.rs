@@ -62,9 +62,9 @@ pub struct Script {
     pub(super) frames: Vec<Frame>,
     /// `next` has run out: the next `jump` is passed over.
     pub(super) skip_jump: bool,
-    /// Only a run can tell whether that `next` has run out.
+    /// Only a run determines whether that `next` has run out.
     pub(super) unsure: bool,
-    /// Only a run can tell whether the command at hand is reached.
+    /// Only a run determines whether the current command is reached.
     pub(super) speculative: bool,
     /// The command at hand stands in another branch than the first one that a run may take.
     pub(super) aside: bool,
@@ -106,8 +106,8 @@ impl Script {
         Self::with(Frame::Commands { queue, speculative: false, aside: false })
     }
 
-    /// The same cursor, which takes only the first of several branches of an `if` whose condition only a run can tell.
-    /// Of the others it yields the commands with [`Script::is_aside`] set.
+    /// The same cursor, which takes only the first of several branches of an `if` whose condition only a run determines. Of the
+    /// others it yields the commands with [`Script::is_aside`] set.
     pub fn first_branches(self) -> Self {
         Self { first_only: true, ..self }
     }
@@ -144,7 +144,7 @@ impl Script {
         }
     }
 
-    /// Whether only a run can tell if the command at hand is reached.
+    /// Whether only a run determines if the current command is reached.
     pub fn is_speculative(&self) -> bool {
         self.speculative
     }
@@ -164,14 +164,14 @@ impl Script {
         self.aside
     }
 
-    /// Tells the cursor that a command has changed something outside the variables.
+    /// Notes that a command has changed something outside the variables.
     pub fn changed(&mut self) {
         self.progress.outside();
     }
 
     /// The next logical line, blank ones and comments included; `None` at the end.
     ///
-    /// After an error the cursor stands behind the line at fault and can go on.
+    /// After an error the cursor stands behind the wrong line and can continue.
     pub fn next(&mut self, sources: &mut Sources, vars: &Vars, env: &mut dyn Env) -> Result<Option<Line>> {
         let Some(line) = self.pull(sources)? else { return Ok(None) };
         self.raw = line.raw.clone();

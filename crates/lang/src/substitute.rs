@@ -43,7 +43,7 @@ pub fn substitute(text: &str, span: Span, vars: &Vars, env: &mut dyn Env) -> Res
     Ok(substitute_known(text, span, vars, env)?.text)
 }
 
-/// As [`substitute`], and says whether all values were known.
+/// As [`substitute`], and returns whether all values were known.
 pub fn substitute_known(text: &str, span: Span, vars: &Vars, env: &mut dyn Env) -> Result<Substituted> {
     let line = expand(&Mapped::whole(text, span, None, false), vars, env, None)?;
     let unknown = line.unknown(0..line.text.len().max(1));

@@ -1,4 +1,4 @@
-//! A text that remembers where each of its bytes came from, through joins and substitutions.
+//! A text that keeps the origin of each of its bytes, through joins and substitutions.
 
 use perigrain_base::diag::{FileId, Span};
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Values of formulas, and what a formula asks of the world around it.
+//! Values of formulas, and the environment that formulas are evaluated in.
 
 use super::command::Word;
 use super::reference::ValueRef;
@@ -16,14 +16,14 @@ pub struct Clock {
     pub end: i64,
     /// The time step.
     pub dt: f64,
-    /// Whether a run is going on; `ramp` rests at its first value otherwise.
+    /// Whether a run is in progress; `ramp` stays at its first value otherwise.
     pub running: bool,
 }
 
 /// What a formula yields.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// What only a run can tell, where a deck is looked at without one; whatever is computed from it is unknown too.
+    /// A value that only a run determines, where a deck is checked without one; every result computed from it is unknown too.
     Unknown,
     /// One number.
     Number(f64),
@@ -78,7 +78,7 @@ pub trait Env {
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>>;
     /// `count(group)`, `xcm(group,dim[,region])` …; number and form of the arguments have been checked.
     fn group_function(&mut self, name: &str, args: &[Word], span: Span, vars: &Vars) -> Result<Value>;
-    /// Whether columns tell of the particles as they are in a run.
+    /// Whether columns hold the particles as they are in a run.
     fn sees_particles(&self) -> bool {
         true
     }
@@ -102,7 +102,7 @@ pub trait Env {
     fn answer(&self, _question: Question, category: &Word, _name: &Word) -> Result<bool> {
         fail(Code::UNKNOWN_NAME, category.span, "there is no scene here")
     }
-    /// What a fix has set an internal-style variable to in the run going on.
+    /// The value to which a fix has set an internal-style variable in the present run.
     fn control(&self, _name: &str) -> Option<f64> {
         None
     }

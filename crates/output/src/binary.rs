@@ -151,10 +151,10 @@ fn odd(text: String) -> Error {
     Error::new(ErrorKind::InvalidData, text)
 }
 
-/// A binary dump as the text dump that says the same, numbers to the last bit.
+/// A binary dump as the text dump with the same content, numbers to the last bit.
 ///
 /// # Errors
-/// What is no such file, breaks off, or comes from a machine of the other byte order.
+/// Other files, truncated files, files from a machine of the other byte order.
 pub fn as_text(all: &[u8]) -> Result<String> {
     let (mut bytes, mut text) = (Bytes { all, at: 0 }, String::new());
     while bytes.at < all.len() {

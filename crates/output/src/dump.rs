@@ -227,7 +227,7 @@ pub struct Target {
     pub pattern: Pattern,
     /// Whether a growing file keeps what it held before.
     pub append: bool,
-    /// How tightly a packed file is packed, from 0 to 9; the usual level if not said.
+    /// The level of compression, from 0 to 9; the usual level if not set.
     pub level: Option<u32>,
     file: Option<Open>,
     started: bool,
@@ -316,7 +316,7 @@ impl Target {
         outcome.map_err(|e| file::trouble("write", &path, &e).into())
     }
 
-    /// Closes a growing file; the next snapshot goes on behind it.
+    /// Closes a growing file; the next snapshot is appended.
     pub fn close(&mut self) {
         if self.file.take().is_some() {
             self.append = true;

@@ -122,7 +122,7 @@ pub fn claim(path: &Path, append: bool) -> Result<(BufWriter<File>, bool)> {
     let claimed = gate::written(|| {
         gate::pass_written(path)?;
         let file = File::options().create(true).write(true).append(append).truncate(false).open(path)?;
-        // Elsewhere a lock would keep readers away; where a file system knows none, nobody is told.
+        // Elsewhere a lock would keep readers away; a file system without locks gives no warning.
         shared = cfg!(unix) && matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if !append && file.metadata()?.is_file() {
             file.set_len(0)?;

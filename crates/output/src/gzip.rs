@@ -94,7 +94,7 @@ impl Growing {
         let outcome = self.written(end, write);
         if outcome.is_err() {
             (self.sum, self.length, self.end) = (sum, length, Some(end));
-            // That the disk is full or gone is told already.
+            // A full or missing disk has been reported already.
             let _ = self
                 .file
                 .set_len(end)
@@ -130,7 +130,7 @@ impl Growing {
     }
 }
 
-/// Checksum and length of the member a file ends with, if it can be gone on with: its last block is empty and begins with a byte.
+/// Checksum and length of the member a file ends with, if it can be continued: its last block is empty and begins with a byte.
 fn ending(file: &mut File, size: u64) -> Option<(u32, u32)> {
     let mut tail = [0; FLUSHED.len() + ENDING];
     let fresh = size == (HEAD.len() + ENDING) as u64;

@@ -1,4 +1,4 @@
-//! The log: one handle for everything a run says, to the screen and to the log file.
+//! The log: one handle for all text of a run, to the screen and to the log file.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -46,21 +46,21 @@ struct Inner {
     file: Option<(PathBuf, BufWriter<File>)>,
     /// When the file was last handed to the system.
     handed: Instant,
-    /// The file, if another process was writing it when it was opened and nobody has been told.
+    /// The file, if another process was writing it when it was opened and no warning has been given yet.
     shared: Option<PathBuf>,
     echo: Echo,
-    /// Rows of step tables, once somebody wants them kept.
+    /// Rows of step tables, once they are to be kept.
     tables: Option<Tables>,
     /// Only the last of them is wanted.
     last_row: bool,
-    /// Set where the screen wants few words: how many characters fit beside each other.
+    /// Set for a brief screen: the number of characters per line.
     width: Option<Width>,
 }
 
 /// Lines that come faster than this are handed to the system together.
 const RARELY: Duration = Duration::from_millis(100);
 
-/// How many characters fit beside each other on a screen, asked each time.
+/// The number of characters per line of a screen, read each time.
 type Width = Box<dyn Fn() -> usize + Send>;
 
 impl std::fmt::Debug for Log {
@@ -104,7 +104,7 @@ impl Log {
         self.inner().width = Some(Box::new(width));
     }
 
-    /// How many characters fit on a screen that wants few words; `None` for one that wants all.
+    /// The number of characters per line of a brief screen; `None` for one that shows everything.
     pub fn brief(&self) -> Option<usize> {
         let inner = self.inner();
         inner.screen.as_ref().and(inner.width.as_ref()).map(|width| width())
@@ -120,7 +120,7 @@ impl Log {
         Ok(())
     }
 
-    /// The log file, if another process writes it too: told once.
+    /// The log file, if another process writes it too: returned once.
     pub fn take_shared(&self) -> Option<PathBuf> {
         self.inner().shared.take()
     }
@@ -140,7 +140,7 @@ impl Log {
         self.inner().echo = echo;
     }
 
-    /// Repeats a line of a deck where [`Log::set_echo`] said.
+    /// Echoes a line of a deck as [`Log::set_echo`] chose.
     pub fn echo(&self, line: &str) -> Result<()> {
         let mut inner = self.inner();
         let echo = inner.echo;
@@ -160,7 +160,7 @@ impl Log {
         inner.record(line)
     }
 
-    /// A line for screen and file, of which a screen that wants few words gets others, or none.
+    /// A line for screen and file; a brief screen gets another line, or none.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -174,7 +174,7 @@ impl Log {
         inner.record(line)
     }
 
-    /// A line for the screen alone; one that wants few words breaks it where it ends.
+    /// A line for the screen alone; a brief screen breaks it at its width.
     pub fn to_screen(&self, line: &str) {
         self.inner().say_within(line);
     }
@@ -195,7 +195,7 @@ impl Log {
         self.inner().last_row = true;
     }
 
-    /// A row of a step table, kept if [`Log::keep_rows`] asked for it.
+    /// A row of a step table, kept after [`Log::keep_rows`].
     pub fn row(&self, make: impl FnOnce() -> (Vec<String>, Row)) {
         let mut inner = self.inner();
         let last_row = inner.last_row;
@@ -208,7 +208,7 @@ impl Log {
         }
     }
 
-    /// Looks at the rows kept, and may change them.
+    /// Gives access to the rows kept.
     pub fn tables<T>(&self, look: impl FnOnce(&mut Tables) -> T) -> T {
         look(self.inner().tables.get_or_insert_default())
     }
@@ -240,7 +240,7 @@ impl Inner {
         }
     }
 
-    /// Lines that are wider than a screen that wants few words go on below, broken between words.
+    /// Writes lines that are wider than a brief screen on several lines, broken between words.
     fn say_within(&mut self, text: &str) {
         match self.width.as_ref().map(|width| width()) {
             Some(width) => self.say(&within(text, width)),
@@ -285,7 +285,7 @@ impl Inner {
     }
 }
 
-/// The text with lines of at most so many columns, where words are no longer; what goes on below is set in.
+/// The text with lines of at most so many columns, where no word is longer; continuation lines are indented.
 fn within(text: &str, width: usize) -> String {
     let line = |line: &str| {
         let words = line.trim_start();
@@ -300,7 +300,7 @@ fn within(text: &str, width: usize) -> String {
     text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// A screen that keeps what it is told, for tests and bindings.
+/// A screen that keeps its text, for tests and bindings.
 #[derive(Clone, Debug, Default)]
 pub struct Buffer(Arc<Mutex<Vec<u8>>>);
 
@@ -401,7 +401,7 @@ mod tests {
             log.line("x").unwrap();
             let problem = log.flush().unwrap_err().to_string();
             assert!(problem.contains("/dev/full"), "{problem}");
-            log.line("goes on").unwrap();
+            log.line("continues").unwrap();
             log.flush().unwrap();
         }
     }

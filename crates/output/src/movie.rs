@@ -104,7 +104,7 @@ impl Movie {
             To::Program(..) => {
                 let text = format!("ffmpeg ended before `{}` was whole: {e}", self.path.display());
                 Diagnostic::error(Code::NO_FILE, None, text)
-                    .help("what it said stands above; an ending such as `.mp4` or `.gif` tells it the format")
+                    .help("its output stands above; an ending such as `.mp4` or `.gif` selects the format")
                     .into()
             }
         })
@@ -134,7 +134,7 @@ impl To {
                 "-i",
                 "-",
             ]);
-            // What most players show; it wants even numbers of pixels, and a GIF has colours of its own.
+            // Most players show this format; it needs even numbers of pixels, and a GIF has colours of its own.
             let even = size.iter().all(|n| n.is_multiple_of(2));
             if even && path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("gif")) {
                 command.args(["-pix_fmt", "yuv420p"]);
@@ -158,7 +158,7 @@ impl To {
 impl Drop for To {
     fn drop(&mut self) {
         let Self::Program(child, pipe) = self else { return };
-        // The program ends where its input does; what it has to say about that stands on the screen.
+        // The program ends with its input; its messages are on the screen.
         drop(pipe.take());
         let _ = child.wait();
     }

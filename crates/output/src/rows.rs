@@ -1,4 +1,4 @@
-//! The rows of step tables, kept as numbers for whoever wants to plot them.
+//! The rows of step tables, kept as numbers for plots.
 
 /// One printed row.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +51,7 @@ impl Tables {
         Mark { tables: self.0.len(), rows: self.0.last().map_or(0, |t| t.rows.len()) }
     }
 
-    /// Forgets what came after a mark.
+    /// Drops the rows after a mark.
     pub fn back_to(&mut self, mark: Mark) {
         self.0.truncate(mark.tables);
         if let Some(table) = self.0.last_mut() {

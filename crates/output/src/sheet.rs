@@ -17,8 +17,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Starts a file, or goes on behind an existing one, with this header (which ends with a newline); returns its length
-    /// so far, behind which a file of the latest block keeps that.
+    /// Starts a file, or appends to an existing one, with this header (which ends with a newline); returns its length so far,
+    /// which a file of the latest block keeps.
     ///
     /// # Errors
     /// The file cannot be written.

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::marker::PhantomData;
 pub use table::Table;
 
-/// What the two types of a pair say of its law: the cutoff and two numbers more.
+/// Coefficients of a pair of types: the cutoff and two numbers of the law.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coeff {
     /// Where the force ends [length].
@@ -36,7 +36,7 @@ pub trait Law: Send + Sync + 'static {
     const NUMBERS: &'static [&'static str];
     /// Fields that it reads besides places.
     const READS: Fields;
-    /// Whether computes can ask about single pairs; those pairs then say what they add to virials of particles.
+    /// Whether computes can probe single pairs; those pairs then report their part of the virials of particles.
     const SINGLE: bool;
 
     /// Reads the words of `pair_coeff`; `global` is the cutoff of the style's line.

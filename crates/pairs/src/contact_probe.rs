@@ -16,7 +16,7 @@ use perigrain_world::contacts::{Contacts, Rolls};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, World};
 
-/// So many pairs are evaluated at a time where nothing asks for all of them together; in test builds so few that small scenes have several
+/// Pairs evaluated at a time where they are not needed all together; fewer in test builds, so that small scenes have several
 /// blocks.
 const BLOCK: usize = if cfg!(debug_assertions) { 64 } else { 1 << 16 };
 
@@ -32,7 +32,7 @@ pub enum Own {
     Gran,
 }
 
-/// A look at contacts: nothing moves on.
+/// An evaluation of contacts without advancing them.
 fn still(w: &World) -> Advance {
     Advance { dt: w.clock.dt, history: false }
 }
@@ -63,7 +63,7 @@ impl ContactProbe {
     /// Pairs within reach plus `skin` at the positions `x`.
     fn within(&self, w: &World, x: &[Vec3], skin: f64) -> Result<Vec<Pair>> {
         let wanted = reaching(&self.rules, &self.wanted, w);
-        // Who goes on with the lists of a restart file asks before lists are made anew.
+        // With the lists of a restart file this check comes before lists are rebuilt.
         refuse_giants(w, &wanted, skin)?;
         Ok(near(w, x, &wanted, skin, &Allowed::felt(w)))
     }
@@ -150,7 +150,7 @@ impl ContactProbe {
         Ok(())
     }
 
-    /// What contacts remember, as it shrinks no more.
+    /// Contact history, with springs that shrink no more.
     fn keep_shrunk(&self, w: &World, memory: &mut Contacts) {
         let p = &w.particles;
         let (index, width) = (Index::new(&p.tag), memory.width.max(1));
@@ -161,7 +161,7 @@ impl ContactProbe {
         }
     }
 
-    /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
+    /// Pairs of spheres closer than the largest of their types, or than the explicit cutoff.
     fn within_cutoffs(&self, w: &World) -> Vec<Pair> {
         let touching = touching(w);
         let mut wanted = Wanted::new(w.types);
@@ -226,7 +226,7 @@ impl Probe for ContactProbe {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
             if own == Own::Mdr {
-                // The area stands before the energy at the end of what such contacts are told.
+                // In the evaluation data of such contacts the area stands before the energy at the end.
                 let rows = memory.history.chunks_exact(memory.width.max(1));
                 let area = |row: &[f64]| row.iter().rev().nth(1).copied().unwrap_or(0.0);
                 all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = area(row));

@@ -122,11 +122,11 @@ const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each othe
     `linear_history_classic` that forget the contact radius when they slide (until 2026); the shear stiffness of mixed types from E* \
     in the place of both moduli; springs of `…_rescale` that shrink twice, in the setup and in the first step, where grains have \
     been moved apart between two runs; springs of `mindlin`, `…_classic` and `…_rescale` that slide in young contacts and are set \
-    beyond rest by the drag, so that results hang on the step; friction up to mu |F_n| where a dashpot pulls; a sliding twist that takes the direction of the spin even where its \
+    beyond rest by the drag, so that results depend on the step; friction up to mu |F_n| where a dashpot pulls; a sliding twist that takes the direction of the spin even where its \
     spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
     neither yielding nor (of new contacts) damping in the setup of a run.";
 
-/// Syntax and text of the page, with what normal models say of themselves.
+/// Syntax and text of the page, with the paragraphs of the normal models.
 static PAGE: LazyLock<[String; 2]> = LazyLock::new(|| {
     let line = |style: &&Normal| {
         [style.name].into_iter().chain(style.numbers.iter().map(|n| n.word)).collect::<Vec<_>>().join(" ")

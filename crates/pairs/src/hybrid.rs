@@ -90,7 +90,9 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
         if let Some(first) = subs.iter().map(|s| s.facts().name).find(|name| solid(name) && solid(sub)) {
             let text = format!("`{sub}` beside `{first}`: one scene has one peridynamic style");
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, text)
-                .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
+                .help(
+                    "coefficients may differ for every pair of types; LAMMPS crashes here without a message",
+                )
                 .into());
         }
         let mut own = args.until(|word| known.contains(&plain(word)));
@@ -208,7 +210,7 @@ impl Pair for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let types = cx.world().types;
-        // Solids first: contacts ask which particles belong to one.
+        // Solids first: contacts need to know which particles belong to one.
         let mut order: Vec<usize> = (0..self.subs.len()).collect();
         order.sort_by_key(|&k| self.subs[k].facts().true_forces.is_none());
         let mut all = vec![];
@@ -229,7 +231,7 @@ impl Pair for Declared {
     fn scales(&self, w: &World, deck: Deck) -> Scales {
         let cutoff = |k| self.limited(k, w.types).scales(w, deck).cutoff;
         let cutoff = (0..self.subs.len()).filter_map(cutoff).reduce(f64::max);
-        // Those who look for times ask each sub-style.
+        // Callers that need times query each sub-style.
         Scales { cutoff, ..Scales::default() }
     }
 

@@ -1,6 +1,7 @@
-//! Forces between particles: pair styles, bond styles and the words of contact models, one line each in [`PAIRS`] and [`bond::BONDS`].
+//! Forces between particles: pair styles, bond styles and the words of contact models, one line each in [`PAIRS`] and
+//! [`bond::BONDS`].
 //!
-//! They join the kernels of `peri` and `contact` to decks; they know no fix and no compute.
+//! They connect the kernels of `peri` and `contact` to decks; this crate knows no fix and no compute.
 
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]

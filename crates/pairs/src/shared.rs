@@ -1,4 +1,4 @@
-//! What pair styles share: who was near whom at the last rebuild, whom fix freeze holds, what a pair adds to sums.
+//! What pair styles share: neighbours at the last rebuild, particles held by fix freeze, a pair's part of sums.
 
 use perigrain_base::math::vec3::{Vec3, add, sub};
 use perigrain_neigh::list::{Pair, View, Wanted, insert, pairs};

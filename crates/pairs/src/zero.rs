@@ -20,7 +20,7 @@ impl Style for ZeroStyle {
             syntax: "pair_style zero CUTOFF [nocoeff] [full]\npair_coeff I J [CUTOFF]",
             summary: "No forces between particles.",
             text: "Says that pairs are meant to exert no forces, as in scenes of bonds alone. LAMMPS builds neighbour lists up to \
-                   the cutoff; here nobody needs them. With `nocoeff` whatever stands in pair_coeff is taken.",
+                   the cutoff; here they are not needed. With `nocoeff` pair_coeff accepts any words.",
             example: "pair_style zero 0.002\npair_coeff * *",
         }
     }

@@ -1,4 +1,4 @@
-//! What ops do to blocks of particles, where that stands from step to step, and in which passes it is done.
+//! What ops do to blocks of particles, where each action is stored between steps, and which passes run them.
 
 use perigrain_base::math::body::Quat;
 use perigrain_base::math::vec3::Vec3;
@@ -50,7 +50,7 @@ pub struct Known<'a> {
     pub type_mass: &'a Tracked<Vec<Option<f64>>>,
 }
 
-/// What came of a block: sums, and a largest value.
+/// The result of one block: sums, and a largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlockSums {
     /// Sums over particles.
@@ -69,9 +69,9 @@ impl BlockSums {
 struct Act(Does);
 
 enum Does {
-    /// In a pass of its own, but for what a motion can take into its pass.
+    /// Runs in a pass of its own, unless a motion can take it into its pass.
     Alone(Box<dyn Alone>, Kind),
-    /// Moves particles, with what stands beside it.
+    /// Moves particles, together with the actions beside it.
     Move(Box<dyn Together>),
 }
 
@@ -86,7 +86,7 @@ impl<F: Fn(&mut ParticleBlock) -> BlockSums + Send + Sync + 'static> Alone for F
     }
 }
 
-/// Moves the particles of a block: what came of a pull and a hold before, and of the motion itself.
+/// Moves the particles of a block. Returns the results of the pull, the hold and the motion itself.
 pub(super) trait Together: Any + Send + Sync {
     fn act(&self, block: &mut ParticleBlock, beside: &Beside) -> [BlockSums; 3];
 }
@@ -97,9 +97,9 @@ impl<F: Fn(&mut ParticleBlock, &Beside) -> [BlockSums; 3] + Send + Sync + 'stati
     }
 }
 
-/// What a motion has to know of an act to take it into its pass.
+/// What a motion needs to know about an action to take it into its pass.
 enum Kind {
-    /// Nothing: it stays alone.
+    /// Nothing: the action runs alone.
     Other,
     /// Adds forces m a.
     Pull(Pull),
@@ -134,7 +134,7 @@ pub struct Beside {
 }
 
 impl Act {
-    /// What a motion has to know of it; nothing of a motion.
+    /// What a motion needs to know about this action; `Other` for a motion.
     fn kind(&self) -> &Kind {
         match &self.0 {
             Does::Alone(_, kind) => kind,
@@ -143,17 +143,17 @@ impl Act {
     }
 }
 
-/// Where an op's act stands from step to step: the next one of its kind takes its place, and no memory is asked for.
+/// Storage for an op's action between steps: the next action of the same kind reuses it, so no memory is allocated.
 #[derive(Default)]
 pub struct Room(Option<Act>);
 
 impl Room {
-    /// An act of whatever kind.
+    /// Stores an action of any kind.
     pub fn act(&mut self, alone: impl Fn(&mut ParticleBlock) -> BlockSums + Send + Sync + 'static) {
         self.alone(Kind::Other, alone);
     }
 
-    /// One that adds forces m a.
+    /// Stores an action that adds forces m a.
     pub fn pull(
         &mut self,
         pull: Pull,
@@ -162,7 +162,7 @@ impl Room {
         self.alone(Kind::Pull(pull), alone);
     }
 
-    /// One that sets forces and torques of a group to zero.
+    /// Stores an action that sets forces and torques of a group to zero.
     pub fn hold(
         &mut self,
         bit: u32,
@@ -171,7 +171,7 @@ impl Room {
         self.alone(Kind::Hold(bit), alone);
     }
 
-    /// One that keeps a group in the plane: no velocities and forces along z, no spins and torques across it.
+    /// Stores an action that keeps a group in the plane: no velocities and forces along z, no spins and torques across it.
     pub fn flatten(
         &mut self,
         bit: u32,
@@ -180,7 +180,7 @@ impl Room {
         self.alone(Kind::Flatten(bit), alone);
     }
 
-    /// One that sets all forces and torques to zero.
+    /// Stores an action that sets all forces and torques to zero.
     pub fn clear(&mut self) {
         self.alone(Kind::Clear, |s: &mut ParticleBlock<'_>| {
             s.f.fill([0.0; 3]);
@@ -189,7 +189,7 @@ impl Room {
         });
     }
 
-    /// One that moves particles, and in the same pass does what stands beside it, with the bits that this has alone.
+    /// Stores a motion that performs the actions beside it in the same pass. The bits are the same as in passes of their own.
     pub fn moving<A>(&mut self, act: A)
     where
         A: Fn(&mut ParticleBlock, &Beside) -> [BlockSums; 3] + Send + Sync + 'static,
@@ -214,7 +214,7 @@ impl Room {
     }
 }
 
-/// Acts one after the other, in the rooms where they stand.
+/// Actions in order, by the rooms they are stored in.
 #[derive(Clone, Copy)]
 pub struct Acts<'a> {
     pub(super) rooms: &'a [Room],
@@ -222,7 +222,7 @@ pub struct Acts<'a> {
 }
 
 impl<'a> Acts<'a> {
-    /// Those in these rooms, which must not be empty.
+    /// The actions stored in these rooms, which must not be empty.
     pub fn new(rooms: &'a [Room], which: &'a [usize]) -> Self {
         Self { rooms, which }
     }
@@ -244,14 +244,14 @@ impl<'a> Acts<'a> {
 
 /// One pass over a block.
 pub(super) enum Pass<'a> {
-    /// An act alone, which is at this place.
+    /// A single action and its place.
     Alone(usize, &'a dyn Alone),
-    /// What moves particles with what stands beside it, and the places of pull, hold and motion.
+    /// A motion with the actions beside it, and the places of pull, hold and motion.
     Together(&'a dyn Together, Beside, [Option<usize>; 3]),
 }
 
-/// Acts in as few passes as can be: a motion takes a pull, then a hold and then a flattening right before it, and a clearing right
-/// behind.
+/// Actions in as few passes as possible: a motion takes in a pull, a hold and a flattening right before it, in this order, and a
+/// clearing right behind it.
 pub(super) struct Passes<'a> {
     acts: Acts<'a>,
     at: usize,
@@ -277,7 +277,7 @@ impl<'a> Iterator for Passes<'a> {
             k += 1;
         }
         if let Some(Kind::Flatten(bit)) = acts.get(k).map(Act::kind) {
-            // Nothing comes of it.
+            // A flattening has no result.
             beside.flat = *bit;
             k += 1;
         }
@@ -325,7 +325,7 @@ mod tests {
         assert_eq!(place(&rooms), at);
         fuse(&mut w, Acts::new(&rooms, &[0]), &mut came);
         assert_eq!((w.particles.f[0][0], came[0].most), (2.0, 2.0));
-        // One of another kind has a place of its own.
+        // An action of another kind has a place of its own.
         let other = [3.0; 4];
         rooms[0].moving(move |_, _| [BlockSums { most: other[3], ..BlockSums::default() }; 3]);
         fuse(&mut w, Acts::new(&rooms, &[0]), &mut came);

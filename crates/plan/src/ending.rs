@@ -1,4 +1,4 @@
-//! What acts in a step, without asking everybody in every step.
+//! Which ops act in a step, found without querying every op in every step.
 
 use super::{Placed, Stage, StepPlan, Tick, When};
 use perigrain_world::field::{F, TORQUE};
@@ -6,21 +6,21 @@ use std::ops::Range;
 
 /// Forces and what follows them in a step.
 pub struct Ending {
-    /// The op that adds forces, if it is one alone.
+    /// The op that adds forces, if there is exactly one.
     pub force: Option<usize>,
-    /// Ops in order; behind the last kick what clears forces, if the next step begins there.
+    /// Ops in order; behind the last kick the op that clears forces, if the next step begins there.
     pub order: Vec<usize>,
     /// The last kick, if the next step can begin there.
     pub last: Option<usize>,
-    /// What clears forces then.
+    /// The op that clears forces in that case.
     pub clears: Option<usize>,
 }
 
-/// What acts in every step, stage by stage.
+/// The ops that act in every step, stage by stage.
 #[derive(Default)]
 pub struct Usually {
     ops: Vec<usize>,
-    /// Where each stage ends among them.
+    /// The end of each stage in `ops`.
     ends: [usize; Stage::ALL.len()],
 }
 
@@ -34,7 +34,7 @@ impl Usually {
         }
     }
 
-    /// Where those of some stages, which are in order, stand among them; others may stand in between.
+    /// The range of these stages in `ops`. Stages must be in order; others may lie in between.
     pub fn of(&self, stages: &[Stage]) -> Range<usize> {
         let [Some(first), Some(last)] = [stages.first(), stages.last()] else { return 0..0 };
         let begin = (*first as usize).checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -48,8 +48,8 @@ impl Usually {
 }
 
 impl StepPlan {
-    /// Finds out until when only what acts in every step acts: to ask everybody in every step takes longer than the motion of a
-    /// few particles.
+    /// Finds the step up to which only the ops of every step act: querying all ops in each step takes longer than moving a few
+    /// particles.
     pub(super) fn look_ahead(&mut self, t: &Tick) {
         if self.quiet.1 == t.last && self.quiet.0.contains(&t.step) {
             return;
@@ -62,17 +62,17 @@ impl StepPlan {
         self.asked = self.asked_by(When::is_always);
     }
 
-    /// Whether what acts at such steps acts at this tick.
+    /// Whether ops with these times act at this tick.
     pub(super) fn fires(&self, when: &When, t: &Tick) -> bool {
         when.is_always() || (!self.is_quiet(t) && when.fires(t))
     }
 
-    /// Whether only what acts in every step acts at this tick.
+    /// Whether only the ops of every step act at this tick.
     pub(super) fn is_quiet(&self, t: &Tick) -> bool {
         !t.setup && self.quiet.1 == t.last && self.quiet.0.contains(&t.step)
     }
 
-    /// Whether this is a quiet step before a quiet step, of which all end alike.
+    /// Whether this step and the next one are quiet: such steps all end alike.
     fn ends_as_usual(&self, t: &Tick) -> bool {
         t.phase.levels == 1 && self.is_quiet(t) && self.quiet.0.contains(&(t.step + 1))
     }
@@ -107,7 +107,7 @@ impl StepPlan {
         Ending { force, order, last, clears }
     }
 
-    /// The op that clears forces, if nobody reads them between the beginning of a step and there.
+    /// The op that clears forces, if nothing reads them between the beginning of a step and that op.
     fn clears_early(&mut self) -> Option<usize> {
         let first = self.ops.iter().position(|p| p.about.stage >= Stage::PreForce)?;
         let clears = self.ops[first].about.stage == Stage::PreForce && self.ops[first].about.when.is_always();
@@ -117,7 +117,8 @@ impl StepPlan {
         (clears && unread).then_some(first)
     }
 
-    /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
+    /// The op that ends the motion of this step, if its fix is the only one that moves particles and nothing reads the scene
+    /// before the next step.
     fn last_kick(&self, t: &Tick) -> Option<usize> {
         let fires = |p: &Placed| self.fires(&p.about.when, t);
         let acts = |p: &Placed, stage| p.about.stage == stage && p.about.level.acts(&t.phase);
@@ -130,8 +131,8 @@ impl StepPlan {
             return None;
         };
         let one = a.from == b.from && a.about.when.is_always() && b.about.when.is_always();
-        // The virial of constraints comes from what the first half of a step does to velocities. Short steps that others follow
-        // have the number of the long one, in which nobody looks at them.
+        // The virial of constraints depends on how the first half of a step changes velocities. Short steps followed by others
+        // keep the number of the long step, in which nothing reads the virial.
         let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };
         let asked = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| self.fires(w, &next));
         let looks = t.phase.outermost() && (looks(Stage::EndOfStep) || looks(Stage::Output));

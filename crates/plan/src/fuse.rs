@@ -1,4 +1,4 @@
-//! Ops that act on each particle by itself, one after the other on each block of particles while that is in fast memory.
+//! Ops that act on each particle separately, run one after the other on each block of particles while it is in the cache.
 
 use super::acts::{Acts, BlockSums, Known, ParticleBlock, Pass, passes};
 use perigrain_base::math::body::Quat;
@@ -11,10 +11,10 @@ use std::sync::{Mutex, PoisonError};
 
 /// Most ops of one fused pass.
 const MOST: usize = 6;
-/// Particles of a block: what ops read and write of them fits the fastest memory.
+/// Particles of a block: what ops read and write of them fits the fastest cache.
 const BLOCK: usize = 256;
 
-/// Lets ops act on all blocks in fused passes; `came` becomes what came of each of them. Every particle sees the same as if the ops
+/// Runs the ops on all blocks in fused passes; `came` receives the result of each op. Every particle sees the same as if the ops
 /// acted one after the other.
 pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     came.clear();
@@ -26,7 +26,7 @@ pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
         let acts = Acts { which, ..acts };
         let n = columns.rows();
         if n <= CHUNK {
-            // Not through the hands of those who share out, and one block not through those who cut.
+            // A few particles need neither threads nor cutting into chunks.
             let mut sums = [BlockSums::default(); MOST];
             match n {
                 0 => {}
@@ -46,7 +46,8 @@ pub fn fuse(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     }
 }
 
-/// [`fuse`] on the rows of this rank, where others have the rest. What came is the largest value of all ranks; no op reads sums then.
+/// [`fuse`] on the rows of this rank, where other ranks have the rest. The result is the largest value of all ranks; no op reads
+/// sums then.
 fn fuse_own(w: &mut World, acts: Acts, came: &mut Vec<BlockSums>) {
     let Some(share) = w.share.take() else { return };
     for which in acts.which.chunks(MOST) {
@@ -101,7 +102,7 @@ fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
     (all, (p.x.lend(), p.v.lend(), p.f.lend(), turned))
 }
 
-/// All passes over one block after the other; what comes of each act is added.
+/// Runs all passes over one block after the other and adds the results of each action.
 fn chunk(acts: Acts, all: Known<'_>, mut start: usize, mut rest: Columns<'_>, sums: &mut [BlockSums; MOST]) {
     while rest.rows() > 0 {
         let n = rest.rows().min(BLOCK);
@@ -111,7 +112,7 @@ fn chunk(acts: Acts, all: Known<'_>, mut start: usize, mut rest: Columns<'_>, su
     }
 }
 
-/// All passes over a block; what comes of each act is added.
+/// Runs all passes over a block and adds the results of each action.
 #[inline(always)]
 fn block(
     acts: Acts,
@@ -141,21 +142,21 @@ fn join(a: [BlockSums; MOST], b: [BlockSums; MOST]) -> [BlockSums; MOST] {
     std::array::from_fn(|k| a[k].join(b[k]))
 }
 
-/// Those of a chunk that are among these rows.
+/// The rows of a chunk that lie in this range.
 fn chunk_of(k: usize, own: &Range<usize>) -> Range<usize> {
     let start = own.start.max(k * CHUNK);
     start..own.end.min((k + 1) * CHUNK).max(start)
 }
 
-/// Room for who waits for forces, used again from step to step.
+/// Room for the particles that wait for forces, used again from step to step.
 #[derive(Default)]
 pub struct Waiting {
-    /// Of each chunk, how many particles wait for forces.
+    /// How many particles of each chunk wait for forces.
     left: Vec<usize>,
     came: Vec<[BlockSums; MOST]>,
 }
 
-/// [`fuse`] by and by, as particles get all their forces.
+/// [`fuse`] piece by piece, as particles get all their forces.
 pub struct FusedPass<'a> {
     acts: Acts<'a>,
     /// Rows that wait for forces: all, or those of this rank.
@@ -164,7 +165,7 @@ pub struct FusedPass<'a> {
 }
 
 impl<'a> FusedPass<'a> {
-    /// With particles of these rows that wait for forces; `None` if there are too many ops for one pass.
+    /// Begins with the particles of these rows waiting for forces; `None` if there are too many ops for one pass.
     pub fn new(acts: Acts<'a>, own: Range<usize>, waiting: &'a mut Waiting) -> Option<Self> {
         if acts.len() > MOST {
             return None;
@@ -176,7 +177,7 @@ impl<'a> FusedPass<'a> {
         Some(Self { acts, own, waiting })
     }
 
-    /// These particles have all their forces; each is told once. Ops act on chunks in which nobody waits any more.
+    /// Marks particles that have all their forces, each once. Ops act on chunks in which no particle waits any more.
     pub fn ready(&mut self, w: &mut World, particles: Range<usize>) {
         let particles = particles.start.max(self.own.start)..particles.end.min(self.own.end);
         let end = if particles.is_empty() { 0 } else { particles.end.div_ceil(CHUNK) };
@@ -192,9 +193,9 @@ impl<'a> FusedPass<'a> {
         }
     }
 
-    /// When all particles have been told, `came` becomes what came of each op, as [`fuse`] has it.
+    /// Once all particles are ready, puts the result of each op into `came`, as [`fuse`] does.
     pub fn finish(self, w: &World, came: &mut Vec<BlockSums>) {
-        debug_assert!(self.waiting.left.iter().all(|n| *n == 0), "somebody waits for forces still");
+        debug_assert!(self.waiting.left.iter().all(|n| *n == 0), "particles still wait for forces");
         let all = par::along_tree(&self.waiting.came, join).unwrap_or_default();
         came.clear();
         came.extend_from_slice(&all[..self.acts.len()]);
@@ -220,7 +221,7 @@ mod tests {
         fill.iter().map(room).collect()
     }
 
-    /// Passes in a word each: the acts' places in a pass of a motion, `c` if it clears.
+    /// One word per pass: the places of the actions in a pass of a motion, `c` if it clears.
     fn told(fill: &[&dyn Fn(&mut Room)]) -> Vec<String> {
         let told = |pass: Pass| match pass {
             Pass::Alone(at, _) => format!("{at}"),
@@ -243,7 +244,7 @@ mod tests {
         let clear: &dyn Fn(&mut Room) = &Room::clear;
         assert_eq!(told(&[pull, hold, moving, clear]), ["0+1+2+c"]);
         assert_eq!(told(&[hold, pull, moving, clear]), ["0", "1+2+c"]);
-        // What a flattening does has no sum of its own.
+        // A flattening has no sum of its own.
         assert_eq!(told(&[pull, hold, flat, moving, clear]), ["0+1+3+c"]);
         assert_eq!(told(&[flat, moving, clear]), ["1+c"]);
         assert_eq!(told(&[flat, hold, moving]), ["0", "1+2+"]);
@@ -274,7 +275,7 @@ mod tests {
         let (mut came, mut later, mut waiting) = (vec![], vec![], Waiting::default());
         fuse(&mut once, acts, &mut came);
         let mut pass = FusedPass::new(acts, 0..n, &mut waiting).unwrap();
-        // In pieces that end anywhere, from the middle on, and with nobody.
+        // In pieces that end anywhere, from the middle on, one of them empty.
         for piece in [5000..n, 5..5000, 7..7, 0..5] {
             let early = piece.start > 0;
             pass.ready(&mut by_and_by, piece);

@@ -1,4 +1,4 @@
-//! A watch over the energy of a run: how far it may be off, and what happens when it is.
+//! A watch over the energy of a run: the error it allows, and what happens beyond that.
 
 use super::When;
 use perigrain_base::diag::Result;
@@ -7,7 +7,7 @@ use perigrain_world::World;
 /// Reads the world's energy.
 pub type Look = Box<dyn FnMut(&World) -> Result<Energy> + Send>;
 
-/// Says a line in the log.
+/// Writes a line to the log.
 pub type Say = Box<dyn FnMut(&str) -> Result<()> + Send>;
 
 /// The energy of a scene.
@@ -21,31 +21,31 @@ pub struct Energy {
     pub turnover: f64,
 }
 
-/// What may be off and what to do then.
+/// What error is allowed and what happens beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     /// Steps per block.
     pub every: i64,
-    /// The change of the residual in a block, over what is held, that is still good.
+    /// The largest change of the residual in a block, relative to what is held, that passes.
     pub tolerance: f64,
-    /// What a bad block's step is multiplied with.
+    /// The factor for the step size of a bad block.
     pub shrink: f64,
     /// The shortest step [time].
     pub shortest: f64,
-    /// After so many good blocks the step becomes longer again, up to the deck's; never for 0.
+    /// After this many good blocks the step becomes longer again, up to the deck's; 0: never.
     pub recover: i64,
 }
 
 /// A guard over a run.
 pub struct Guard {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its rule.
     pub rule: Rule,
-    /// At which steps it looks: the ends of blocks, and wherever outputs are made.
+    /// The steps at which it checks the energy: the ends of blocks, and wherever outputs are made.
     pub when: When,
     /// Reads the energy.
     pub look: Look,
-    /// Says a line.
+    /// Writes a line.
     pub say: Say,
 }

@@ -1,19 +1,21 @@
-//! Levels of steps within each other: which one the present step is, and in which an op acts.
+//! Levels of nested steps: the level of the present step, and the level in which an op acts.
 
 use perigrain_world::{Vectors, World};
 use std::sync::Arc;
 
-/// Which of several levels of steps this is (`run_style respa`, `run_style staggered`): each step of a level holds some
-/// of the level below.
+/// The level of a step among several (`run_style respa`, `run_style staggered`): each step of a level holds some of the level
+/// below.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     /// The level, from 0: the one of the shortest steps.
     pub level: usize,
     /// How many levels there are; 1: the step has one length.
     pub levels: usize,
-    /// Who alone moves in the short ones of two, and only there; `None`: everybody moves in the shortest steps.
+    /// Of two levels: the particles that move in the short steps, and only there; `None`: all particles move in the shortest
+    /// steps.
     pub solids: Option<Arc<Solids>>,
-    /// Where the paths of the step and mean spins stand, each over its length, if it held shorter ones and something remembers them.
+    /// The columns of the step's paths and mean spins, each over its length, if it holds shorter steps and an op keeps contact
+    /// history.
     pub path: [Option<Vectors>; 2],
 }
 
@@ -29,13 +31,13 @@ impl Phase {
         self.level + 1 == self.levels
     }
 
-    /// Whether everybody moves in the shortest of several levels.
+    /// Whether all particles move in the shortest of several levels.
     pub fn nested(&self) -> bool {
         self.levels > 1 && self.solids.is_none()
     }
 
-    /// Velocities and spins as contacts see them. Springs grow by what has passed since they were looked at last: in a step that
-    /// holds shorter ones that is the path of the step, not its length times a velocity at its end.
+    /// Velocities and spins as contacts see them. Springs grow by the displacement since they were evaluated last: in a step that
+    /// holds shorter ones that is the path of the step, not its length times the velocity at its end.
     pub fn motion<'a>(&self, w: &'a World) -> [&'a [[f64; 3]]; 2] {
         let (p, n) = (&w.particles, w.n());
         let mean = |key: Option<Vectors>| w.columns.get_vector(key?).filter(|c| c.len() == n);
@@ -44,7 +46,7 @@ impl Phase {
     }
 }
 
-/// Who moves in short steps.
+/// The particles that move in short steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solids {
     /// Whether particles of a type (from 1) belong to peridynamic solids.
@@ -61,19 +63,19 @@ impl Solids {
     }
 }
 
-/// In which of several levels of steps an op acts.
+/// The level in which an op acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// In the longest ones.
     Outermost,
-    /// In this one, from 0, or the outermost if there are fewer.
+    /// In this one, from 0, or in the outermost if there are fewer.
     At(usize),
-    /// In all: what moves particles, and what takes components of forces away.
+    /// In all: ops that move particles, and ops that take components of forces away.
     Every,
 }
 
 impl Level {
-    /// The level in a user's words, of so many.
+    /// The level in a user's words, of `levels`.
     pub fn told(self, levels: usize) -> String {
         match self {
             Level::Outermost => format!("level {levels}"),
@@ -82,7 +84,7 @@ impl Level {
         }
     }
 
-    /// Whether who acts in this level acts in that phase.
+    /// Whether an op of this level acts in that phase.
     pub fn acts(self, phase: &Phase) -> bool {
         match self {
             Level::Outermost => phase.outermost(),

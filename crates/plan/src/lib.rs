@@ -1,7 +1,7 @@
 //! The step as data: ops with stages, reads, writes and times; and the loops over steps.
 //!
-//! The types that matter most: [`Op`], one thing a step does; [`StepPlan`], the ops of a run in their order; [`Tick`], what an op may know of
-//! the present step. It knows no style and no deck.
+//! The main types: [`Op`], one thing a step does; [`StepPlan`], the ops of a run in order; [`Tick`], the present step as ops see
+//! it. This crate knows no style and no deck.
 
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]

@@ -38,31 +38,31 @@ impl Meter {
     }
 }
 
-/// Steps that are all timed, to see how long they take.
+/// Steps at the start that are all timed, to learn how long a step takes.
 const TRIAL: u32 = 64;
-/// After so many more steps that is judged anew: scenes grow.
+/// After this many more steps the choice is made again, since scenes grow.
 const ANEW: u32 = 1024;
-/// Steps that take longer are all timed.
+/// Steps that take longer than this are all timed.
 const SHORT: Duration = Duration::from_micros(40);
-/// Of shorter steps one in so many is.
+/// Of shorter steps, one in this many is timed.
 const ONE_IN: u32 = 16;
-/// And of those that take less than this one in so many: there to look at the clock takes a fourth of a step.
+/// Of steps shorter than this, one in this many: there, reading the clock takes a quarter of a step.
 const TINY: (Duration, u32) = (Duration::from_micros(4), 64);
 
-/// In which steps of a run ops are timed: to look at the clock before and after each op takes a sixth of a step of five grains.
+/// In which steps of a run ops are timed: reading the clock before and after each op takes a sixth of a step of five grains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
     steps: u32,
-    /// Of so many steps one is timed; 0: all are.
+    /// One step in this many is timed; 0: all are.
     one_in: u32,
-    /// What ops had taken when that was judged last.
+    /// The time ops had taken at the last choice.
     spent: Duration,
-    /// Nobody wants to know.
+    /// Times are not needed.
     off: bool,
 }
 
 impl Timing {
-    /// For a run whose times nobody wants to know.
+    /// For a run whose times are not needed.
     pub fn off() -> Self {
         Self { off: true, ..Self::default() }
     }
@@ -84,17 +84,17 @@ impl Timing {
         (self.spent, self.steps) = (spent, TRIAL);
     }
 
-    /// A clock that runs now, unless nobody wants to know.
+    /// A running clock, unless times are not needed.
     pub fn now(&self) -> Stopwatch {
         if self.off { Stopwatch { last: None, counts: 1 } } else { Stopwatch::all() }
     }
 
-    /// The clock for this step: it stands in most short ones, and what passes in the others counts for those.
+    /// The clock for this step: it stands still in most short steps, and a timed step counts for them.
     pub fn clock(&self, t: &Tick) -> Stopwatch {
         if self.off || self.one_in == 0 || t.setup {
             return self.now();
         }
-        // Fibonacci hashing: no period of what acts now and then falls in with it.
+        // Fibonacci hashing: the sample does not fall in with the period of any op.
         let place = (t.step as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         let chosen = place * u64::from(self.one_in) < 1 << 32;
         Stopwatch { last: chosen.then(Instant::now), counts: self.one_in }

@@ -63,7 +63,7 @@ impl Needs {
         self
     }
 
-    /// Keeps its own state in these: what it writes there is nobody else's.
+    /// The op keeps its own state in these fields; no other op uses what it writes there.
     #[must_use]
     pub fn keep(mut self, fields: Fields) -> Self {
         self.keeps |= fields;
@@ -136,7 +136,7 @@ pub struct Account {
     pub stated: [Fields; 2],
     /// Read and written.
     pub touched: [Fields; 2],
-    /// Who read and who changed what it did not state.
+    /// By op: the fields it read, and those it changed, without stating them.
     pub unstated: BTreeMap<String, [Fields; 2]>,
 }
 
@@ -149,17 +149,17 @@ impl Account {
 
 type Accounts = BTreeMap<(&'static str, u32), Account>;
 
-/// Accounts by the place of the statement, while somebody collects them.
+/// Accounts by the place of the statement, while they are collected.
 static ACCOUNTS: Mutex<Accounts> = Mutex::new(BTreeMap::new());
 static COLLECTING: AtomicBool = AtomicBool::new(false);
 
-/// From now on what ops state and touch is noted, each op by itself and none in a pass with others; nobody is stopped for what
-/// is not true, as debug builds are otherwise.
+/// From now on the fields that ops state and touch are noted, for each op by itself and never for a fused pass. An op with a
+/// wrong statement is not stopped, as debug builds do otherwise.
 pub fn collect() {
     COLLECTING.store(true, Ordering::Relaxed);
 }
 
-/// Whether somebody collects.
+/// Whether accounts are collected.
 pub fn collecting() -> bool {
     cfg!(debug_assertions) && COLLECTING.load(Ordering::Relaxed)
 }
@@ -240,7 +240,7 @@ mod tests {
         acts(Needs::new().read(X).add(F), |w| w.particles.f[0][0] += w.particles.x[0][0]);
         acts(Needs::new().write(V), |w| w.particles.v[0] = w.particles.v[0].map(|v| -v));
         acts(Needs::all(), |w| w.particles.push(2, 1, [1.0; 3]));
-        // How many there are, and what time it is, everybody may know.
+        // The number of particles and the clock need no statement.
         acts(Needs::new(), |w| assert!(w.n() == 1 && w.clock.step == 0));
     }
 
@@ -264,7 +264,7 @@ mod tests {
         let stated = needs.named();
         let account = Account { stated, touched: [X | F, Fields::NONE], ..Account::default() };
         assert_eq!(account.idle(), [V, F]);
-        assert_eq!(Needs::all().named(), [Fields::NONE; 2], "who takes everything says nothing by name");
+        assert_eq!(Needs::all().named(), [Fields::NONE; 2], "a statement of everything names no fields");
         assert_eq!(needs.to_string(), "reads x v; adds to f");
         assert_eq!(Needs::new().write(Fields::ALL).keep(V).to_string(), "writes everything; keeps v");
     }

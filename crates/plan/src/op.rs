@@ -47,7 +47,7 @@ impl Stage {
         Stage::Output,
     ];
 
-    /// Whether ops of this stage also act in a run's setup unless they say otherwise.
+    /// Whether ops of this stage also act in a run's setup by default.
     pub fn in_setup(self) -> bool {
         !matches!(
             self,
@@ -100,7 +100,7 @@ pub enum When {
     At(Arc<[i64]>),
     /// Whenever one of these does.
     Any(Vec<When>),
-    /// Only when asked between runs.
+    /// Only on request between runs.
     Never,
 }
 
@@ -191,7 +191,7 @@ impl std::fmt::Display for When {
     }
 }
 
-/// What an op may know of the present step.
+/// The present step as ops see it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     /// Present step.
@@ -208,30 +208,31 @@ pub struct Tick {
     pub unchanged: bool,
     /// The end has come early (a minimization has converged): all outputs show it, whatever their intervals.
     pub ending: bool,
-    /// A place that a line search tries: no bond breaks or flows there, and none remembers it.
+    /// A place that a line search tries: no bond breaks or flows there, and no history is kept of it.
     pub trial: bool,
-    /// Somebody reads the energy at this step.
+    /// The energy is read at this step.
     pub energy: bool,
-    /// Somebody reads the virial at this step.
+    /// The virial is read at this step.
     pub virial: bool,
-    /// Somebody reads per-particle energies at this step.
+    /// Per-particle energies are read at this step.
     pub atom_energy: bool,
-    /// Which of several levels of steps.
+    /// The level of this step among several.
     pub phase: Phase,
-    /// Somebody reads the world's contacts at this step.
+    /// The world's contacts are read at this step.
     pub contacts: bool,
-    /// Somebody reads per-particle virials at this step.
+    /// Per-particle virials are read at this step.
     pub atom_virial: bool,
-    /// Who ends this step begins the next one in the same pass, as its fix (or it itself) does: nobody looks in between.
+    /// The op that ends this step also begins the next one in the same pass, if it (or its fix) does so; nothing reads the scene
+    /// in between.
     pub on: bool,
-    /// What ops make of all particles together (sums of forces and the like) may be read after this step.
+    /// The collective results of ops (sums of forces and the like) may be read after this step.
     pub told: bool,
-    /// Only what acts in every step acts.
+    /// Only the ops of every step act.
     pub quiet: bool,
 }
 
 impl Tick {
-    /// The same, and nobody reads sums.
+    /// The same tick without any sums.
     pub fn silent(&self) -> Tick {
         let none = (false, false, false, false);
         let mut t = self.clone();
@@ -279,30 +280,30 @@ pub enum OpClass {
     Other,
 }
 
-/// What an op tells once, when it is placed in a plan.
+/// What an op declares once, when it is placed in a plan.
 #[derive(Clone, Debug)]
 pub struct About {
     /// A name for plan and timing, as `fix ball indent`.
     pub name: String,
-    /// Where in the step.
+    /// The stage of the step.
     pub stage: Stage,
-    /// Which fields it touches, and how.
+    /// The fields it touches, and how.
     pub needs: Needs,
-    /// At which steps. Providers of values get the union of their consumers' times instead.
+    /// The steps at which it acts. Providers of values get the union of their consumers' times instead.
     pub when: When,
     /// Whether it acts in the setup of a run too.
     pub in_setup: bool,
-    /// In which of several levels of steps it acts.
+    /// The level of steps in which it acts.
     pub level: Level,
-    /// Whether it tells the world's account ([`Travel`](perigrain_world::Travel)) how far it moves particles in whole steps.
+    /// Whether it reports to the world's account ([`Travel`](perigrain_world::Travel)) how far it moves particles in whole steps.
     pub reports_travel: bool,
     /// Whether it may act on blocks of particles ([`Way::Blocks`]); it never rests then.
     pub fuses: bool,
-    /// Whether it makes something of all particles together, which others may read ([`Tick::told`]).
+    /// Whether it computes a collective result of all particles that others may read ([`Tick::told`]).
     pub tells: bool,
-    /// Whether `run` can begin the next step as well, where [`Tick::on`] asks for it.
+    /// Whether `run` can begin the next step as well, where [`Tick::on`] is set.
     pub goes_on: bool,
-    /// Whether it acts too, once the run is over, where that ended before its last step ([`Tick::ending`]): what saves the run.
+    /// Whether it also acts once the run is over, if that ended before its last step ([`Tick::ending`]): ops that save the run.
     pub at_parting: bool,
     /// The row of the timing table.
     pub class: OpClass,
@@ -344,23 +345,24 @@ pub enum Way {
     Alone,
     /// On each particle by itself: such ops are fused into one pass over blocks of particles.
     Blocks,
-    /// Not at all, as it knows without looking at particles; what it tells stands. It is left out.
+    /// Not at all, as it knows without reading particles; its last result stays valid. It is left out.
     Rests,
 }
 
 /// One thing a step does. Ops own scratch only; whatever outlives a step lives in `World`.
 pub trait Op: Send {
-    /// What the plan asks once.
+    /// What the plan has to know about it, queried once.
     fn about(&self) -> About;
-    /// Told once all ops of a plan are known: which fields some of them change by name.
+    /// Called once all ops of a plan are known, with the fields that some of them change by name.
     fn settle(&mut self, _changed: Fields) {}
     /// Acts.
     ///
     /// # Errors
     /// Failures of the physics (lost particles, numbers out of control) and of files.
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()>;
-    /// As `run`, for the last op that adds forces: it may tell which particles have all of theirs while these are in fast memory,
-    /// each once, and reads and writes nothing of those any more; they may be moved at once. `false` if it did not tell.
+    /// As `run`, for the last op that adds forces: it may call `ready` with the particles that have all of theirs while these are
+    /// in the cache, each once, and must not read or write them afterwards; they may be moved at once. `false` if it did not call
+    /// `ready`.
     ///
     /// # Errors
     /// As `run`.
@@ -372,12 +374,12 @@ pub trait Op: Send {
     ) -> Result<bool> {
         self.run(w, t).map(|()| false)
     }
-    /// How it acts at this tick. What it does to blocks of particles goes into the room, where it says [`Way::Blocks`].
+    /// How it acts at this tick. With [`Way::Blocks`] it puts its action on blocks of particles into the room.
     fn way(&mut self, _w: &mut World, _t: &Tick, _room: &mut Room) -> Way {
         Way::Alone
     }
-    /// Of which rows it needs values at this tick, where particles are shared out to ranks; all rows where its sums may be read, see
-    /// [`About::tells`].
+    /// The rows whose values it needs at this tick, where particles are distributed over ranks; all rows where its sums may be
+    /// read, see [`About::tells`].
     fn span(&mut self, _w: &mut World, _t: &Tick) -> Span {
         Span::All
     }

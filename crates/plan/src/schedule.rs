@@ -19,7 +19,7 @@ use std::time::Duration;
 pub struct Placed {
     /// The op.
     pub op: Box<dyn Op>,
-    /// What it tells of itself; `when` may be the union of its readers' times, `level` what `run_style` and `fix_modify` say.
+    /// Its declaration; `when` may be the union of its readers' times, `level` what `run_style` and `fix_modify` set.
     pub about: About,
     /// The command that created it, for messages.
     pub from: Option<Span>,
@@ -52,7 +52,7 @@ impl Placed {
         share::before(w, span, std::iter::once(self.about.needs));
         begin_watch(w);
         let outcome = self.timed(w, t, clock, act);
-        // Who fails may look around for words that help.
+        // A failing op may read more of the scene to explain the failure.
         if outcome.is_ok() {
             end_watch(w, std::iter::once(self.stated()));
         }
@@ -97,14 +97,15 @@ impl Placed {
     }
 }
 
-/// Forgets what has been touched so far.
+/// Clears the record of touched fields.
 pub(super) fn begin_watch(w: &World) {
     #[cfg(debug_assertions)]
     w.touched();
     let _ = w;
 }
 
-/// What ops have touched since is what they state, together: a debug build ends where that is not so, a release does not ask.
+/// Checks that the fields touched since are those that the ops state together: a debug build panics otherwise, a release build
+/// does not check.
 pub(super) fn end_watch<'a>(w: &World, ops: impl Iterator<Item = (&'a str, Needs)> + Clone) {
     #[cfg(debug_assertions)]
     if let Some(lie) = needs::lie(ops, w.touched()) {
@@ -130,19 +131,19 @@ pub struct StepPlan {
     pub ops: Vec<Placed>,
     /// What was left out.
     pub left_out: Vec<LeftOut>,
-    /// When somebody reads the energy.
+    /// When the energy is read.
     pub energy: Vec<When>,
-    /// When somebody reads the virial.
+    /// When the virial is read.
     pub virial: Vec<When>,
-    /// When somebody reads per-particle energies.
+    /// When per-particle energies are read.
     pub atom_energy: Vec<When>,
-    /// When somebody reads per-particle virials.
+    /// When per-particle virials are read.
     pub atom_virial: Vec<When>,
     /// Fixes whose values something reads in every step, or within some steps.
     pub watched: Vec<String>,
     /// By how many quiet steps of a run more have gathered rows from all ranks than have not.
     pub(super) gathering: u32,
-    /// Who watches the energy.
+    /// The watch over the energy.
     pub guard: Option<Guard>,
     /// How many levels of steps there are (`run_style respa`), if more than one.
     pub levels: Option<usize>,
@@ -150,11 +151,11 @@ pub struct StepPlan {
     pub(super) begun: bool,
     /// In which steps ops are timed.
     pub(super) timing: Timing,
-    /// Whether nobody reads forces between the drift and the next ones; unknown at first.
+    /// Whether nothing reads forces between the drift and the next ones; unknown at first.
     pub(super) unread: Option<bool>,
     /// Steps in which only what acts in every step acts, in a run up to the step beside it.
     pub(super) quiet: (Range<i64>, i64),
-    /// What acts in those steps, and which sums are asked for.
+    /// The ops of those steps, and the sums they request.
     pub(super) usually: Usually,
     pub(super) asked: Asked,
     /// The ending of quiet steps before quiet steps.
@@ -163,7 +164,7 @@ pub struct StepPlan {
     pub(super) rooms: Rooms,
 }
 
-/// Which sums are asked for at a tick.
+/// Which sums are requested at a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Asked {
     energy: bool,
@@ -183,13 +184,13 @@ impl StepPlan {
         self.rooms = Rooms::default();
     }
 
-    /// Tells every op what all of them write, now that they are known.
+    /// Gives every op the fields that all of them write, now that they are known.
     pub fn settle(&mut self) {
         let changed = self.ops.iter().fold(Fields::NONE, |all, p| all | p.about.needs.written_by_name());
         self.ops.iter_mut().for_each(|p| p.op.settle(changed));
     }
 
-    /// Fills in which sums are asked for at this tick.
+    /// Fills in which sums are requested at this tick.
     pub fn ask(&mut self, t: &mut Tick) {
         self.look_ahead(t);
         let asked = match self.is_quiet(t) && !t.ending {
@@ -205,12 +206,12 @@ impl StepPlan {
         t.contacts = asked.contacts;
     }
 
-    /// Which sums are asked for by those that act.
+    /// Which sums the ops that act request.
     pub(super) fn asked_by(&self, acts: impl Fn(&When) -> bool) -> Asked {
         let any = |list: &[When]| list.iter().any(&acts);
         let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
         let atom_virial = any(&self.atom_virial);
-        // Those of this step are there when all forces are.
+        // The contacts of this step exist once all forces do.
         let reads = |p: &Placed| {
             p.about.stage != Stage::Force && p.about.needs.reads(CONTACTS) && acts(&p.about.when)
         };
@@ -311,14 +312,15 @@ impl StepPlan {
         Ok(())
     }
 
-    /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
+    /// Whether all ops that move particles report how far, and none makes them grow; ops that add or wrap particles rebuild lists
+    /// anyway.
     pub fn reports_travel(&self) -> bool {
         let moves = |p: &&Placed| p.about.needs.changes(X | RADIUS);
         let anew = |p: &Placed| matches!(p.about.stage, Stage::Exchange | Stage::Neighbor);
         self.ops.iter().filter(moves).all(|p| anew(p) || p.about.reports_travel)
     }
 
-    /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.
+    /// Makes force ops give the parts of the scene they hold back to the world; they take them again at their next step.
     ///
     /// # Errors
     /// As `finish`.
@@ -326,7 +328,7 @@ impl StepPlan {
         self.ops.iter_mut().filter(|p| p.about.stage == Stage::Force).try_for_each(|p| p.op.finish(w))
     }
 
-    /// Tells every op that the run is over.
+    /// Ends the run for every op.
     ///
     /// # Errors
     /// All that went wrong.

@@ -14,7 +14,7 @@ use std::time::Duration;
 /// So many particles are moved without looking at the clock.
 const FEW: usize = 200;
 
-/// Room that steps use again: a quiet one asks for no memory.
+/// Buffers that steps use again: a quiet step allocates no memory.
 #[derive(Default)]
 pub(super) struct Rooms {
     /// Each op's.
@@ -36,8 +36,9 @@ impl StepPlan {
         std::mem::take(&mut self.begun)
     }
 
-    /// Makes one step up to its outputs. Ops that act on each particle by itself are fused after the forces, of more than a chunk of
-    /// particles while forces are added up. Where `more` steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
+    /// Makes one step up to its outputs. Ops that act on each particle separately are fused after the forces; with more than a
+    /// chunk of particles they run while forces are added up. Where `more` steps are sure to follow and nothing reads the scene
+    /// in between, the last kick is made together with the first one of the next step.
     ///
     /// # Errors
     /// The first op's that fails.
@@ -67,9 +68,9 @@ impl StepPlan {
         Ok(())
     }
 
-    /// Where one op alone adds forces and all that follows acts on each particle by itself: particles that have all their forces
-    /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
-    /// that is not so, and nothing has been done.
+    /// For steps with a single force op that is followed only by ops on separate particles: if that op reports which particles
+    /// have all their forces, these are moved while they are in the cache. Every particle sees the same as otherwise. `false`
+    /// where this does not apply; nothing has been done then.
     fn force_and_end(
         &mut self,
         w: &mut World,
@@ -99,7 +100,7 @@ impl StepPlan {
         share::before(w, span, std::iter::once(p.about.needs));
         let told = p.timed(w, t, &mut clock, |op, w| {
             op.run_streaming(w, t, &mut |w, particles| {
-                // To look at the clock takes longer than to move a few particles.
+                // Reading the clock takes longer than moving a few particles.
                 match particles.len() > FEW {
                     true => moving += looks.of(|| pass.ready(w, particles)),
                     false => pass.ready(w, particles),
@@ -149,7 +150,7 @@ impl StepPlan {
         }
     }
 
-    /// Tells ops what came of a fused pass, which took so long if somebody has looked.
+    /// Passes the results of a fused pass to its ops, and its duration if it was timed.
     fn fused(&mut self, w: &mut World, t: &Tick, last: Option<usize>, elapsed: Option<Duration>) {
         let Self { rooms, ops: all, begun, .. } = self;
         for (&k, sum) in rooms.ops.iter().zip(&rooms.came) {
@@ -169,9 +170,9 @@ impl StepPlan {
         self.ops[k].op.way(w, t, &mut Room::default()) == Way::Rests
     }
 
-    /// Collects what these ops, from the first on, do to blocks of particles; who rests is passed over. The last kick of the step
-    /// goes on into the next one, and what clears forces then, if there is one. How many ops that are, and the last kick if it goes
-    /// on.
+    /// Collects the actions of these ops, from the first on, on blocks of particles; ops that rest are skipped. The last kick and
+    /// the clearing of forces extend into the next step where the plan allows it. Returns the number of ops, and the last kick if
+    /// it extends.
     fn offer(
         &mut self,
         w: &mut World,
@@ -196,7 +197,7 @@ impl StepPlan {
                     let on = on.get_or_insert_with(|| Tick { on: true, ..t.clone() });
                     p.op.way(w, on, room)
                 }
-                // Who says what it does is asked for all of it.
+                // While accounts are collected, only ops that may fuse are queried: the others run alone.
                 false if collecting && !p.about.fuses => Way::Alone,
                 false => p.op.way(w, t, room),
             };
@@ -250,7 +251,7 @@ impl StepPlan {
                     all[k].note(w, t, (span, if k == first { before } else { w.traffic() }));
                 }
                 self.fused(w, t, last, clock.runs().then(|| clock.lap()));
-                // Who comes next may have been asked too.
+                // The next op may have been queried too.
                 let asked = &order[at..order.len().min(at + passed + 1)];
                 end_watch(w, asked.iter().map(|&k| self.ops[k].stated()));
             }

@@ -18,7 +18,7 @@ pub fn busy(py: Python<'_>) -> PyErr {
     raised(
         py,
         "BusyError",
-        ("the scene is at work: another thread or a callback asks in the middle of a command",),
+        ("the scene is at work: another thread or a callback has called in the middle of a command",),
     )
 }
 

@@ -132,7 +132,7 @@ def test_mistakes_are_named(make):
     ]:
         with pytest.raises(perigrain.DataError, match=words):
             call()
-    with pytest.raises(perigrain.DeckError, match="told of 1 particles, and there are 2"):
+    with pytest.raises(perigrain.DeckError, match="values for 1 particles, and there are 2"):
         lmp.fix_external_set_energy_peratom("pull", [1.0])
     with pytest.raises(perigrain.DeckError, match="has 0 values"):
         lmp.fix_external_set_vector("pull", 1, 1.0)

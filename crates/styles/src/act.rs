@@ -36,7 +36,7 @@ pub trait Values {
     /// # Errors
     /// Other fixes, and bodies that cannot be.
     fn stop(&mut self, w: &mut World, fix: &Word, what: Motion) -> Result<()>;
-    /// What the pair style in force can be asked about single pairs.
+    /// Probes of the pair style in force for single pairs.
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -49,7 +49,7 @@ pub trait Values {
     }
 }
 
-/// What a temperature takes away from velocities before it looks at them.
+/// What a temperature subtracts from velocities before it uses them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flow {
     /// From each particle; nothing from those outside of the group.
@@ -58,7 +58,7 @@ pub struct Flow {
     pub group: GroupId,
     /// Components that are taken away whole.
     pub whole: [bool; 3],
-    /// Who is left out with all its freedom; nobody if empty.
+    /// Particles that are left out together with their degrees of freedom; empty: none.
     pub apart: Vec<bool>,
 }
 
@@ -81,7 +81,7 @@ pub struct ActCx<'a> {
     pub span: Span,
     /// Lines for screen and log, as `Created 64 atoms`.
     pub said: &'a mut Vec<String>,
-    /// Declaring lines that a file held, with its text: worked off right after the act.
+    /// Declaring lines that a file held, with its text: executed right after the act.
     pub then: &'a mut Vec<(Command, Arc<Source>)>,
     /// Warnings.
     pub notes: &'a RefCell<Diagnostics>,
@@ -95,7 +95,7 @@ pub fn no_number(of: impl std::fmt::Display, value: f64, tag: Option<u32>, at: S
 }
 
 impl ActCx<'_> {
-    /// Says a line on screen and log.
+    /// Writes a line to screen and log.
     pub fn say(&mut self, line: impl Into<String>) {
         self.said.push(line.into());
     }

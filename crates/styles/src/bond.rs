@@ -19,7 +19,7 @@ pub trait BondStyle: Style {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>>;
 }
 
-/// A bond as it stands, of which is asked how fast its ends may swing.
+/// A bond in its present state, whose fastest oscillation is wanted.
 #[derive(Clone, Copy, Debug)]
 pub struct Standing {
     /// Type.
@@ -32,7 +32,7 @@ pub struct Standing {
     pub masses: [f64; 2],
 }
 
-/// A bond that bears something, of which is asked how near it is to its strength.
+/// A loaded bond, whose distance from its strength is wanted.
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded {
     /// Type.
@@ -84,7 +84,7 @@ pub trait BondForce: DynClone + Send + Sync {
         vec![]
     }
 
-    /// The names of further numbers that it tells of a bond, for `compute bond/local`.
+    /// The names of additional numbers per bond, for `compute bond/local`.
     fn extras(&self) -> &'static [&'static str] {
         &[]
     }
@@ -151,7 +151,7 @@ pub trait BondForce: DynClone + Send + Sync {
         &[]
     }
 
-    /// What the deck's lines said of one of them.
+    /// The value of a coefficient as the deck's lines set it.
     fn coefficient(&self, _name: &str, _kind: u16) -> Option<f64> {
         None
     }

@@ -44,11 +44,11 @@ pub struct Use {
 pub struct Shape {
     /// A single number.
     pub scalar: bool,
-    /// Length of the global vector; 0 for none, [`Shape::OPEN`] if only a run can tell.
+    /// Length of the global vector; 0 for none, [`Shape::OPEN`] if only a run determines it.
     pub vector: usize,
     /// Columns of the global array; 0 for none.
     pub array: usize,
-    /// Rows of the global array, if it has one; [`Shape::OPEN`] if only a run can tell.
+    /// Rows of the global array, if it has one; [`Shape::OPEN`] if only a run determines them.
     pub array_rows: usize,
     /// Columns of local values (of pairs, bonds …); 0 for none, 1 is a local vector.
     pub local: usize,
@@ -98,7 +98,7 @@ impl Shape {
         [self.scalar_extensive, self.vector_extensive, self.array_extensive][index.len().min(2)]
     }
 
-    /// A length that only a run can tell, and that may change from step to step.
+    /// A length that only a run determines, and that may change from step to step.
     pub const OPEN: usize = usize::MAX;
 
     /// The kinds of values, for the slot.
@@ -154,11 +154,11 @@ pub trait Names {
     fn fix_style(&self, _id: &str) -> Option<&'static str> {
         None
     }
-    /// The first fix that counts on the steps going on, and its style.
+    /// The first fix that relies on consecutive steps, and its style.
     fn counting_fix(&self, _w: &World) -> Option<(&str, &'static str)> {
         None
     }
-    /// The first dump that has written snapshots into a file that goes on growing.
+    /// The first dump that has written snapshots into a file that keeps growing.
     fn growing_dump(&self) -> Option<&str> {
         None
     }
@@ -230,7 +230,7 @@ impl BuildCx<'_> {
     /// Checks that no fix, compute or dump in force needs what is about to be deleted.
     ///
     /// # Errors
-    /// Somebody does.
+    /// One of them does.
     pub fn unused(&self, kind: UseKind, word: &Word) -> Result<()> {
         let users = self.names.users(&Use { kind, name: word.text.clone() });
         if users.is_empty() {
@@ -276,8 +276,8 @@ impl BuildCx<'_> {
         .into())
     }
 
-    /// Checks that a value reference names something that exists and offers what is asked of it:
-    /// a per-particle value where `per_atom`, else one number.
+    /// Checks that a value reference names something that exists and offers the requested kind of value: a per-particle value
+    /// where `per_atom`, else one number.
     ///
     /// # Errors
     /// Unknown names, missing or superfluous indices.
@@ -318,11 +318,11 @@ impl BuildCx<'_> {
         }
     }
 
-    /// The words that a reference with a wildcard stands for, as `c_ID[*]` or `f_ID[2*4]`: one for each element of a
-    /// vector where one number is wanted, else one for each column. Any other word stands for itself.
+    /// The words that a reference with a wildcard stands for, as `c_ID[*]` or `f_ID[2*4]`: one for each element of a vector where
+    /// one number is wanted, else one for each column. Any other word stands for itself.
     ///
     /// # Errors
-    /// Bounds outside the vector or array, and lengths that only a run can tell.
+    /// Bounds outside the vector or array, and lengths that only a run determines.
     pub fn expand(&self, word: &Word, wants: Wants) -> Result<Vec<Word>> {
         let whole = || Ok(vec![word.clone()]);
         let Some((head, rest)) = word.text.split_once('[') else { return whole() };
@@ -345,10 +345,10 @@ impl BuildCx<'_> {
         };
         if hi == Shape::OPEN {
             return wrong(format!(
-                "how many values `{head}` has is only known in a run: say up to which, as `[1*4]`"
+                "how many values `{head}` has is only known in a run: give the last one, as `[1*4]`"
             ));
         }
-        // What has a single column is named without an index, and nothing has no columns: the reader says so.
+        // A single column is named without an index, and a value without columns is the reader's error to report.
         if all == 0 || (all == 1 && wants != Wants::Number) {
             return Ok(vec![Word { text: format!("{head}{tail}"), ..word.clone() }]);
         }
@@ -368,7 +368,7 @@ impl BuildCx<'_> {
     pub fn param(&self, p: &Param, per_atom: bool) -> Result<()> {
         match p {
             Param::Number(_) => Ok(()),
-            // An atom-style parameter may be an equal-style variable: the same number for everyone.
+            // An atom-style parameter may be an equal-style variable: the same number for all particles.
             Param::Ref(r) if per_atom && r.kind == RefKind::Variable => {
                 self.value(r, self.names.variable(&r.name).unwrap_or(true))
             }
@@ -405,7 +405,7 @@ fn check_columns(r: &ValueRef, what: &str, columns: usize, values: &str, one: &s
         (0, _) => wrong(format!("{what} `{name}` has no {values}")),
         (1, []) => Ok(()),
         (1, [_]) => wrong(format!("{what} `{name}` has one {one}: write it without an index")),
-        (c, []) => wrong(format!("{what} `{name}` has {c} columns: say which, as `[1]`")),
+        (c, []) => wrong(format!("{what} `{name}` has {c} columns: choose one, as `[1]`")),
         (c, [k]) if *k >= 1 && *k <= c => Ok(()),
         (c, _) => wrong(format!("{what} `{name}` has columns 1 to {c}")),
     }
@@ -418,7 +418,7 @@ fn check_vector(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
     match r.index.as_slice() {
         [] if shape.vector > 0 => Ok(()),
         [] if shape.array > 0 => {
-            wrong(format!("{what} `{name}` has an array of {} columns: say which, as `[1]`", shape.array))
+            wrong(format!("{what} `{name}` has an array of {} columns: choose one, as `[1]`", shape.array))
         }
         [] => wrong(format!("{what} `{name}` has no global vector")),
         [k] if *k >= 1 && *k <= shape.array => Ok(()),
@@ -439,11 +439,11 @@ fn check_number(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
     match r.index.as_slice() {
         [] if shape.scalar => Ok(()),
         [] if shape.vector > 0 && shape.vector < Shape::OPEN => wrong(format!(
-            "{what} `{name}` has no single value here: say which of {}, as `[1]`",
+            "{what} `{name}` has no single value here: choose one of {}, as `[1]`",
             shape.vector
         )),
         [] if shape.array > 0 => {
-            wrong(format!("{what} `{name}` has no single value here: say row and column, as `[1][1]`"))
+            wrong(format!("{what} `{name}` has no single value here: give row and column, as `[1][1]`"))
         }
         [] => wrong(format!("{what} `{name}` has no single value here")),
         [k] if *k >= 1 && *k <= shape.vector => Ok(()),
@@ -459,7 +459,7 @@ fn check_number(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
             wrong(format!("the array of {what} `{name}` has columns 1 to {}", shape.array))
         }
         [_] if shape.array > 0 => {
-            wrong(format!("{what} `{name}` has an array: say row and column, as `[1][1]`"))
+            wrong(format!("{what} `{name}` has an array: give row and column, as `[1][1]`"))
         }
         [_, _] => wrong(format!("{what} `{name}` has no global array")),
         _ => wrong(format!("{what} `{name}` has no global vector")),

@@ -275,7 +275,7 @@ pub fn bond_type(a: &mut Args, types: usize) -> Result<u16> {
         Ok(t) if k >= 1 && k as usize <= types => Ok(t),
         _ if types == 0 => {
             let d = Diagnostic::error(Code::BAD_VALUE, span, "there are no bond types");
-            Err(d.help("say how many: `create_box … bond/types N`").into())
+            Err(d.help("set the number: `create_box … bond/types N`").into())
         }
         _ => fail(Code::BAD_VALUE, span, format!("there are bond types 1 to {types}, not {k}")),
     }

@@ -32,7 +32,7 @@ pub trait Compute: DynClone + Send {
     /// What is missing in the scene.
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>>;
 
-    /// Captures what it must know of the moment it is declared (positions).
+    /// Captures what it needs from the scene when it is declared (positions).
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -43,16 +43,16 @@ pub trait Compute: DynClone + Send {
     /// Captures the same for particles made since, when a run begins.
     fn welcome(&self, _w: &mut World) {}
 
-    /// Forgets what `declare` captured.
+    /// Discards what `declare` captured.
     fn remove(&self, _w: &mut World) {}
 
-    /// Whether it takes note of how the first run begins, even if nobody asks for it then.
+    /// Whether it captures how the first run begins, even if no output reads it then.
     fn begins(&self) -> bool {
         false
     }
 
-    /// Whether it reads what forces add up only in steps that are asked for it: energies, stresses. They are asked for in the last
-    /// step of every run, so that the compute has values until the scene changes.
+    /// Whether it reads sums that forces add up only in steps where they are requested: energies, stresses. They are requested in
+    /// the last step of every run, so that the compute has values until the scene changes.
     fn tallied(&self) -> bool {
         false
     }
@@ -81,7 +81,7 @@ pub trait Compute: DynClone + Send {
         Ok(())
     }
 
-    /// What a temperature takes away from velocities before it looks at them, if it does (`Shape::flow`).
+    /// What a temperature subtracts from velocities before it uses them, if anything (`Shape::flow`).
     fn flow(&self, _w: &World) -> Option<Flow> {
         None
     }

@@ -58,7 +58,7 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
     Ok(step.unwrap_or(f64::INFINITY))
 }
 
-/// Asks walls for the springs of their contacts, from the next step on.
+/// Makes walls report the springs of their contacts, from the next step on.
 pub fn ask_walls(w: &mut World) {
     if !w.parts.wall_springs.always {
         w.parts.wall_springs.always = true;
@@ -66,7 +66,7 @@ pub fn ask_walls(w: &mut World) {
     }
 }
 
-/// Goes through the contacts with walls, as they were told last; only those that `fresh` takes by their step.
+/// Visits the contacts with walls, as reported last; only those whose step `fresh` accepts.
 pub(crate) fn add_walls(w: &World, fresh: impl Fn(i64) -> bool, mut each: impl FnMut(usize, &WallSpring)) {
     let told = || w.parts.wall_springs.lists.values().filter(|told| fresh(told.step));
     let springs = || told().flat_map(|told| &told.list);

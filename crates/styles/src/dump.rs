@@ -18,10 +18,9 @@ pub trait DumpStyle: Style {
 
 /// A declared dump.
 pub trait Dump: DynClone + Send {
-    /// The op that writes a snapshot each time it runs; `every` is the interval in steps (0: `write_dump`,
-    /// which runs the op once between runs). Its name is `dump ID style`, its stage `Output`, its times
-    /// those of the dump: multiples of `every`, and the first step of a run when it is such a multiple or
-    /// `dump_modify first yes` was said.
+    /// The op that writes a snapshot each time it runs; `every` is the interval in steps (0: `write_dump`, which runs the op once
+    /// between runs). Its name is `dump ID style`, its stage `Output`, its times those of the dump: multiples of `every`, and the
+    /// first step of a run when it is such a multiple or with `dump_modify first yes`.
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -33,18 +32,19 @@ pub trait Dump: DynClone + Send {
     /// Unknown keywords.
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()>;
 
-    /// What its snapshots would show other than is meant, told before any is made; `w` may be a scene that is only looked at.
+    /// A warning about snapshots that would not show what is meant, given before any is made; `w` may be a scene that is only
+    /// checked.
     fn doubts(&self, w: &World) -> Option<Diagnostic> {
         let _ = w;
         None
     }
 
-    /// The interval a `dump_modify … every N` asked for, if it did.
+    /// The interval that `dump_modify … every N` set, if it did.
     fn every(&self) -> Option<i64> {
         None
     }
 
-    /// Whether it has written snapshots into a file that goes on growing.
+    /// Whether it has written snapshots into a file that keeps growing.
     fn growing(&self) -> bool {
         false
     }

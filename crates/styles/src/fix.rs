@@ -21,10 +21,10 @@ pub trait FixStyle: Style {
 /// What becomes of a fix while `minimize` moves the particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Minimizing {
-    /// Nothing: it integrates, averages or speaks in runs.
+    /// Nothing: it integrates, averages or writes in runs.
     #[default]
     Idle,
-    /// It changes forces in runs, but not here, which the user is told.
+    /// It changes forces in runs, but not here, which a warning states.
     Absent,
     /// It acts at every evaluation of forces.
     Acts,
@@ -36,20 +36,20 @@ pub enum Moves {
     /// It moves none.
     #[default]
     None,
-    /// As forces want, with orientations that follow spins.
+    /// As forces require, with orientations that follow spins.
     Turns,
-    /// As forces want, while orientations stay: not for ends of bonds that bend and twist.
+    /// As forces require, while orientations stay: not for ends of bonds that bend and twist.
     Freely,
     /// On a path of its own, without turning them.
     Prescribed,
 }
 
-/// What a fix tells of itself.
+/// What a fix declares about itself.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     /// How it moves the particles of its group (two fixes that move one particle draw a warning).
     pub moves: Moves,
-    /// It counts on the steps going on one by one, so that `reset_timestep` is refused beside it, as in LAMMPS.
+    /// It relies on consecutive steps, so that `reset_timestep` is refused beside it, as in LAMMPS.
     pub counts_steps: bool,
     /// It works in orthogonal boxes alone.
     pub orthogonal: bool,
@@ -63,7 +63,7 @@ pub struct Facts {
     pub needs_whole_steps: Option<&'static str>,
     /// Its scalar is an energy that `fix_modify energy yes` may add to the potential energy.
     pub has_energy: bool,
-    /// It is added unless `fix_modify energy no` says otherwise.
+    /// It is added unless `fix_modify energy no` disables it.
     pub adds_energy: bool,
     /// It makes particles during a run.
     pub makes_particles: bool,
@@ -73,7 +73,7 @@ pub struct Facts {
     pub file: Option<PathBuf>,
     /// How it watches the energy of a run.
     pub guard: Option<Rule>,
-    /// The acceleration it gives to everyone.
+    /// The acceleration it gives to all particles.
     pub pull: Option<Pull>,
     /// It does not act by itself: its acceleration is there for others.
     pub disabled: bool,
@@ -88,7 +88,7 @@ impl Facts {
 
 /// A declared fix. A failing `fix_modify` changes nothing: it works on a copy.
 pub trait Fix: DynClone + Send {
-    /// What it tells of itself, in the present scene.
+    /// Its declaration, in the present scene.
     fn facts(&self, _w: &World) -> Facts {
         Facts::default()
     }
@@ -109,7 +109,7 @@ pub trait Fix: DynClone + Send {
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
 
-    /// Captures what it must know of the moment it is declared (positions, the present step).
+    /// Captures what it needs from the scene when it is declared (positions, the present step).
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -122,7 +122,7 @@ pub trait Fix: DynClone + Send {
         vec![]
     }
 
-    /// Forgets what `declare` captured.
+    /// Discards what `declare` captured.
     fn remove(&self, _w: &mut World) {}
 
     /// Takes note of particles that another fix has made during a run.
@@ -136,8 +136,8 @@ pub trait Fix: DynClone + Send {
         fail(Code::WRONG_KIND, span, "this fix has no rigid bodies")
     }
 
-    /// How long the shortest contacts with it last, if it is a wall for grains; `deck`: what the deck says of particles that are not
-    /// there yet.
+    /// The duration of the shortest contacts with it, if it is a wall for grains; `deck`: what the deck states about particles
+    /// that do not exist yet.
     fn contact_time(&self, _w: &World, _deck: Deck) -> Option<f64> {
         None
     }
@@ -177,7 +177,7 @@ pub fn no_option(args: &mut Args) -> Result<()> {
         "press" => "this fix uses no pressure",
         "bodyforces" => "this fix moves no rigid bodies",
         "respa" => {
-            "this fix has no level of steps to choose: its page and that of run_style tell in which it acts"
+            "this fix has no level of steps to choose: its page and that of run_style state in which it acts"
         }
         _ => {
             let text = format!("this fix has no option `{}`", w.text);

@@ -35,7 +35,7 @@ pub fn instead(kind: &str, name: &str) -> Option<&'static str> {
     words_for(INSTEAD, kind, name)
 }
 
-/// What a table says in the place of a name.
+/// The table's text for a name.
 fn words_for(table: &'static str, kind: &str, name: &str) -> Option<&'static str> {
     let meant = |n: &str| n.strip_suffix('*').map_or(n == name, |begin| name.starts_with(begin));
     of_kind(table, kind)

@@ -41,8 +41,8 @@ static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 const POWERS: usize = 7;
 /// How many numbers the book has.
 const NUMBERS: usize = 2 * POWERS + 17;
-/// How many those of older restart files: before a ledger knew what was missing at the end of a run, and before contacts of particles
-/// told what they do.
+/// How many numbers older restart files hold: before the ledger kept what was missing at the end of a run, and before it booked
+/// the work of contacts between particles.
 const FORMER_NUMBERS: [usize; 2] = [NUMBERS - 1, NUMBERS - 5];
 
 /// The channels' sums.
@@ -55,7 +55,7 @@ struct Book {
     work: [f64; POWERS],
     /// Kinetic energy of driven particles at the last step, and what has come in besides forces.
     driven: [f64; 2],
-    /// What the residual is to be, less what the sums say, when the last run began.
+    /// The wanted residual minus the sums, when the last run began.
     base: f64,
     /// What flow has taken so far, and what laws that flow held at the last opening less what had gone into them.
     flow: [f64; 2],
@@ -63,7 +63,7 @@ struct Book {
     walls: Walls,
     /// What contacts of particles do.
     pairs: Pairs,
-    /// The residual at the end of the last run, from which the next one goes on.
+    /// The residual at the end of the last run, from which the next one continues.
     left: f64,
 }
 
@@ -194,7 +194,7 @@ impl Book {
     }
 }
 
-/// The next run's setup opens the ledger, or goes on with the one that came with a restart file.
+/// The next run's setup opens the ledger, or continues the one that came with a restart file.
 ///
 /// # Errors
 /// None of its own.
@@ -226,7 +226,7 @@ fn of_bodies(w: &World) -> [f64; 3] {
     all.fold([0.0; 3], |sum, own| par::add(sum, *own))
 }
 
-/// Forgets the ledger: the next run opens a new one.
+/// Discards the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
     w.parts.wall_touches = None;
@@ -335,7 +335,7 @@ pub fn account(w: &mut World, t: &Tick, free: u32) {
     let driven = powers.driven + weight;
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();
-    // Where nothing has changed since the last run contacts have nothing new to tell.
+    // Where nothing has changed since the last run contacts have nothing new to report.
     if !t.unchanged || known.is_none() {
         (book.walls, book.pairs) = (Walls::now(w), Pairs::now(w, t.step));
     }

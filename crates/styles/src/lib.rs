@@ -1,9 +1,9 @@
-//! What everything that a deck can name has in common, and what styles of several kinds need.
+//! What all styles that a deck can name have in common, and what styles of several kinds need.
 //!
-//! A style is one file and one line in the table of its crate. It parses its own words, says what it needs,
-//! and hands ops to the step plan when a run is sealed. The types that matter most: [`Style`] with one trait for each kind ([`Fix`],
-//! [`Pair`], [`Compute`], [`Dump`], [`CommandStyle`]); [`BuildCx`], what a line may know while it is read; [`SealCx`], what may be asked for
-//! while a run is sealed. It knows no style by name.
+//! A style is one file and one line in the table of its crate. It parses its own words, declares what it needs, and hands ops to
+//! the step plan when a run is sealed. The main types: [`Style`] with one trait for each kind ([`Fix`], [`Pair`], [`Compute`],
+//! [`Dump`], [`CommandStyle`]); [`BuildCx`], the scene as a line sees it while it is read; [`SealCx`], the scene while a run is
+//! sealed. This crate knows no style by name.
 
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]

@@ -1,4 +1,4 @@
-//! What many styles ask of the particles: who belongs to a group, what it weighs, where it is unwrapped.
+//! What many styles need to know about particles: the members of a group, their masses, their unwrapped places.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::par::{self, add};
@@ -135,8 +135,8 @@ pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
     std::array::from_fn(|k| x[k] + by[k])
 }
 
-/// Keeps `what` of every particle of a group in a vector column, for those it does not hold yet; a scalar column of the
-/// same name says who they are.
+/// Keeps `what` of every particle of a group in a vector column, for those it does not hold yet; a scalar column of the same name
+/// marks which particles these are.
 pub fn keep_places(w: &mut World, key: Vectors, group: GroupId, what: impl Fn(&World, usize) -> [f64; 3]) {
     let (n, bit) = (w.n(), group.bit());
     w.columns.vector(key, n);
@@ -151,7 +151,7 @@ pub fn keep_places(w: &mut World, key: Vectors, group: GroupId, what: impl Fn(&W
     *w.columns.scalar(key.of(), n) = known;
 }
 
-/// Who a force acts on: a group, or its members inside a region.
+/// The particles a force acts on: a group, or its members inside a region.
 #[derive(Clone)]
 pub struct Chosen {
     bit: u32,

@@ -107,7 +107,7 @@ pub struct Molecules {
 /// Keywords that [`Words::take`] knows.
 pub const KEYWORDS: [&str; 4] = ["mol", "molfrac", "rigid", "shake"];
 
-/// What a line said about molecules so far.
+/// The molecule keywords read so far.
 #[derive(Default)]
 pub struct Words {
     mol: Option<(Word, Arc<[Template]>)>,
@@ -178,10 +178,10 @@ impl Words {
         }
     }
 
-    /// What is put in: nothing where `mol` was not said, for which `kind`, a type, must exist.
+    /// What is inserted: nothing without `mol`, in which case `kind`, a type, must exist.
     ///
     /// # Errors
-    /// Templates that do not go with the scene, words that lack `mol`.
+    /// Templates that do not fit the scene, words that lack `mol`.
     pub fn finish(self, kind: u16, at: Span, cx: &BuildCx) -> Result<Option<Molecules>> {
         let Some((word, set)) = self.mol else {
             if let Some((_, span)) = self.orient {
@@ -191,7 +191,7 @@ impl Words {
             return match &self.rigid {
                 Some(word) => {
                     let d = Diagnostic::error(Code::INCOMPLETE, word.span, "`rigid` is for molecules");
-                    Err(d.help("say with `mol TEMPLATE` which").into())
+                    Err(d.help("choose one with `mol TEMPLATE`").into())
                 }
                 None if kind == 0 => {
                     let types = cx.world.types;
@@ -216,7 +216,7 @@ impl Words {
     }
 }
 
-/// A new particle of a type as LAMMPS makes it where nothing is said of its size, a sphere of diameter and density 1; nothing where
+/// A new particle of a type as LAMMPS makes it where its size is not set, a sphere of diameter and density 1; nothing where
 /// particles have no size.
 pub fn default_sphere(w: &World, kind: u16, mask: u32) -> Option<ToCome> {
     let sphere = ToCome { kind, mask, mass: PI / 6.0, radius: 0.5 };

@@ -217,7 +217,7 @@ pub fn bonds_across(w: &World, changes: [bool; 3], along: bool) -> Result<Option
         "peridynamic bonds cross this periodic face (of particles {a} and {b}): particles must move along where its length changes"
     );
     Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text)
-        .help("say `remap` (`change_box`) or `remap x` (`fix deform`), which strains the body evenly with the box")
+        .help("use `remap` (`change_box`) or `remap x` (`fix deform`), which strains the body evenly with the box")
         .into())
 }
 

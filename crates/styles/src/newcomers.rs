@@ -1,4 +1,4 @@
-//! Particles that fixes make in the middle of a run: how they join, and what such a fix remembers between runs.
+//! Particles that fixes create in the middle of a run: how they join, and the state such a fix keeps between runs.
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
@@ -83,7 +83,7 @@ impl Ids {
     }
 }
 
-/// What a fix that makes or takes particles remembers from step to step.
+/// The state that a fix which creates or removes particles keeps from step to step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Account {
     /// How many particles so far.

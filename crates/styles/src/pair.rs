@@ -8,7 +8,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_world::World;
 
-/// Type pairs (i ≤ j, from 1) that a `pair_coeff` line speaks of.
+/// Type pairs (i ≤ j, from 1) that a `pair_coeff` line covers.
 pub type TypePairs = [(u16, u16)];
 
 /// What sub-styles contribute, each with the number of its sub-style, from 0.
@@ -28,7 +28,7 @@ pub trait PairStyle: Style {
     }
 }
 
-/// What a pair style tells of itself.
+/// What a pair style declares about itself.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     /// The style's name.
@@ -41,11 +41,11 @@ pub struct Facts {
     pub elastic_grains: bool,
     /// Types whose particles belong to peridynamic solids.
     pub solids: Vec<u16>,
-    /// A type whose material says nothing of when its bonds break.
+    /// A type whose material does not define when its bonds break.
     pub unbreakable: Option<u16>,
     /// The coefficients that `fix adapt` may change, by name.
     pub coefficients: &'static [&'static str],
-    /// Whether `pair_modify mix` says how it mixes types.
+    /// Whether `pair_modify mix` chooses how it mixes types.
     pub mixes: bool,
 }
 
@@ -94,7 +94,7 @@ impl Mix {
     }
 }
 
-/// What the deck has said of particles, for a check without particles.
+/// What the deck states about particles, for a check without particles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deck<'a> {
     /// The density.
@@ -130,7 +130,7 @@ pub struct ToCome {
 pub struct Scales {
     /// The largest cutoff [length], as LAMMPS has it; `None` without any.
     pub cutoff: Option<f64>,
-    /// The longest time step that is stable, by the style's own estimate [time units]; `None` if it cannot tell.
+    /// The longest stable time step by the style's own estimate [time units]; `None` if it has none.
     pub stable_step: Option<f64>,
     /// The same, no longer than the limit of any body of such particles, whatever its shape.
     pub sure_step: Option<f64>,
@@ -140,7 +140,7 @@ pub struct Scales {
 
 /// A declared pair style with its coefficients. A failing line changes nothing: it works on a copy.
 pub trait Pair: DynClone + Send {
-    /// What it tells of itself.
+    /// Its declaration.
     fn facts(&self) -> Facts;
 
     /// Reads the words of `pair_coeff` after the two types.
@@ -149,7 +149,7 @@ pub trait Pair: DynClone + Send {
     /// Every mistake in the line.
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()>;
 
-    /// What the deck's lines said of a coefficient that `fix adapt` may change.
+    /// The value of a coefficient that `fix adapt` may change, as the deck's lines set it.
     fn coefficient(&self, _name: &str, _types: (u16, u16)) -> Option<f64> {
         None
     }
@@ -174,8 +174,8 @@ pub trait Pair: DynClone + Send {
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>>;
 
-    /// What can be asked about single pairs of particles; with `bonds` also a solid that is no sub-style and whose bonds depend
-    /// on nothing but their ends.
+    /// Probes for single pairs of particles; with `bonds` also a solid that is no sub-style and whose bonds depend on nothing but
+    /// their ends.
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -213,7 +213,7 @@ dyn_clone::clone_trait_object!(Pair);
 mod tests {
     use super::Mix;
 
-    // By hand for 1 and 2; of equal numbers each rule gives the same.
+    // Calculated by hand for 1 and 2; for equal numbers each rule gives the same.
     #[test]
     fn rules_of_mixing() {
         let of = Mix::NAMES.map(|(_, rule)| rule.distance(1.0, 2.0));

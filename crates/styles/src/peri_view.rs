@@ -4,7 +4,7 @@ use perigrain_base::diag::Result;
 use perigrain_peri::families::{Bounds, PeriView};
 use perigrain_world::{Domain, World, excluded};
 
-/// What families need to know of particles.
+/// The particle data that families need.
 ///
 /// # Errors
 /// Without a box.

@@ -80,9 +80,10 @@ type Roots = [[f64; 2]];
 /// Calls a function with each contact there is.
 type Each<'a> = dyn FnMut(&mut dyn FnMut(Contact)) -> Result<()> + 'a;
 
-/// The longest stable step of the contacts as they are pressed now, if `dt` is longer: 2/ω with the largest ω of all motions, less where
-/// dashpots resist them. Walls are those whose contacts were booked at this step; `moves` says whether a particle goes and turns as
-/// forces want. Contacts are not kept where each particle's neighbourhood shows that the step is short enough.
+/// The longest stable step of the contacts as they are pressed now, if `dt` is longer: 2/ω with the largest ω of all motions,
+/// less where dashpots resist them. Walls are those whose contacts were booked at this step; `moves` returns whether a particle
+/// moves and turns as forces require. Contacts are not kept where each particle's neighbourhood shows that the step is short
+/// enough.
 ///
 /// # Errors
 /// What is missing in the scene.
@@ -147,8 +148,9 @@ fn nearest(w: &World, centre: usize, most: usize) -> Vec<u32> {
     all
 }
 
-/// The particle whose neighbourhood lets the fastest motion be expected, where some motion may have a Δt² ω² + 4 ζ ω Δt beyond 4 as far as
-/// neighbourhoods tell: a contact's energy is a square of the sum of what its two ends do, so that K ≤ 2 diag(K_ii), where walls do nothing.
+/// The particle whose neighbourhood suggests the fastest motion, if some motion may have a Δt² ω² + 4 ζ ω Δt beyond 4 by the
+/// neighbourhood estimate: a contact's energy is the square of a sum over its two ends, so that K ≤ 2 diag(K_ii), where walls do
+/// not move.
 fn perhaps_unstable(roots: &Roots, dt: f64, each: &mut Each) -> Result<Option<usize>> {
     let sums = sums(roots, dt, each)?;
     let mut places = vec![NO_BLOCK; sums.len()];
@@ -314,7 +316,7 @@ mod tests {
         // Sliding while turning: k_t (1/m + R²/I) of each end, 7/2 k_t/m for a sphere.
         near(square(&pressed(None, [0.0, 3.0])), 10.5);
         near(square(&pressed(Some(1), [0.0, 3.0])), 21.0);
-        // Nobody moves.
+        // No particle moves.
         let still = Pressed { roots: vec![[0.0; 2]; 2], ..pressed(Some(1), [3.0, 1.0]) };
         assert_eq!(still.exceeded_by(1e9), None);
         // Exact on both sides: ω = √6.
@@ -424,7 +426,7 @@ mod tests {
                     assert!((found - wanted[row]).abs() < 1e-12, "{row} {column}: {found} {}", wanted[row]);
                 }
             }
-            // No eigenvalue is above the bound, and blocks say more than sums.
+            // No eigenvalue is above the bound, and blocks give a sharper bound than sums.
             let dt = |factor: f64| factor * p.exceeded_by(1e9).unwrap();
             assert!(!p.is_stable(dt(1.001)));
             let sums_say = (1..1000)

@@ -1,4 +1,4 @@
-//! What pairs of particles do to each other at a moment, asked of any pair style.
+//! The interaction of single pairs of particles at a moment, for any pair style.
 
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{SIX, Vec3, dot, length, scale, sub};
@@ -21,7 +21,7 @@ pub struct Interaction {
     pub force: Vec3,
     /// Energy of the pair [energy].
     pub energy: f64,
-    /// What the style says of it besides (`p1`, `p2` … of compute pair/local).
+    /// Additional numbers of the style (`p1`, `p2` … of compute pair/local).
     pub own: [f64; OWN],
 }
 
@@ -47,7 +47,7 @@ impl Interaction {
     }
 }
 
-/// What a probe is asked.
+/// A request to a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
     /// Every pair that acts, with the forces that the particles felt in the evaluation just made; `setup`: it was that
@@ -56,8 +56,8 @@ pub enum Ask {
         /// See above.
         setup: bool,
     },
-    /// Every pair that acts, with the forces that another evaluation gives. They are those felt, but for springs that
-    /// LAMMPS shortens wrongly: its pair styles give these numbers when they are asked about single pairs.
+    /// Every pair that acts, with the forces that another evaluation gives. They are the acting forces, except for springs that
+    /// LAMMPS shortens wrongly: its pair styles give these numbers for single pairs.
     Acting,
     /// The same, and pairs that do not touch but are within the cutoff of their types.
     Idle,
@@ -73,7 +73,7 @@ impl Ask {
 /// The springs of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Springs {
-    /// Who touch.
+    /// The touching pair.
     pub ends: [u32; 2],
     /// Unit vector between the centres.
     pub normal: Vec3,
@@ -105,7 +105,7 @@ pub trait Probe: Send {
     /// What cannot be listed.
     fn listed(&self, w: &World) -> Result<Vec<[u32; 2]>>;
 
-    /// The pairs that are asked for, in the order of the two tags.
+    /// The requested pairs, in the order of the two tags.
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -119,13 +119,13 @@ pub trait Probe: Send {
         Ok(())
     }
 
-    /// The elastic force of a new contact between grains of two types at an overlap, its stiffness across the normal, and the work that
-    /// the force can give back; `None` where the style says nothing of it.
+    /// The elastic force of a new contact between grains of two types at an overlap, its stiffness across the normal, and the
+    /// work that the force can give back; `None` where the style does not define them.
     fn pressed(&self, _types: [u16; 2], _overlap: f64, _curvature: f64) -> Option<[f64; 3]> {
         None
     }
 
-    /// Where contacts keep what they remember of rolling.
+    /// Where contacts keep their rolling history.
     fn rolls(&self) -> Vec<Rolls> {
         vec![]
     }
@@ -139,7 +139,7 @@ pub trait Probe: Send {
     }
 }
 
-/// What several styles say, pair by pair: forces, energies and numbers of their own of one pair add up.
+/// The interactions of several styles, pair by pair: forces, energies and own numbers of a pair add up.
 ///
 /// # Errors
 /// As [`Probe::look`].

@@ -54,11 +54,11 @@ pub struct Found {
     pub ends: [usize; 2],
 }
 
-/// All bonds that act and that `wants` wants, with the places of their ends; without those that have lost one where the
-/// deck allows it.
+/// All active bonds that `wants` accepts, with the places of their ends; without those that have lost an end where the deck
+/// allows it.
 ///
 /// # Errors
-/// An end that is gone.
+/// A missing end.
 pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<(usize, Found)>> {
     let tags = &w.particles.tag;
     let index = Index::new(tags);
@@ -71,7 +71,7 @@ pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<
             let text =
                 format!("an end of the bond between particles {} and {} is gone", bond.ends[0], bond.ends[1]);
             return Err(Diagnostic::error(Code::LOST, span, text)
-                .help("`delete_atoms … bond yes` takes bonds of deleted particles along; `thermo_modify lost/bond ignore` goes on without their forces")
+                .help("`delete_atoms … bond yes` takes bonds of deleted particles along; `thermo_modify lost/bond ignore` continues without their forces")
                 .into());
         };
         list.push((k, Found { kind: bond.kind as u16, ends: [a, b] }));

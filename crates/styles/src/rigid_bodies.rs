@@ -74,7 +74,7 @@ pub fn bodies(w: &World, key: Numbers) -> Vec<Body> {
     kept.map_or(vec![], |m| m.chunks_exact(WIDTH).map(Body::of).collect())
 }
 
-/// Forgets all bodies: the next run makes them anew of the particles that there are.
+/// Discards all bodies: the next run builds them from the particles that exist then.
 pub fn forget(w: &mut World) {
     let own = |name: &str| name.starts_with("rigid");
     w.memo.retain(|key| !own(key.text()));

@@ -1,4 +1,4 @@
-//! What styles may ask for while a run is sealed into a plan.
+//! What styles may request while a run is sealed into a plan.
 
 use crate::BondForce;
 use crate::probe::Probe;
@@ -64,7 +64,7 @@ impl Reading {
         (wanted >= there).then_some(there)
     }
 
-    /// The number of particle `i`: its own, or the same for everyone.
+    /// The number of particle `i`: its own, or the common one.
     pub fn atom(&self, w: &World, i: usize) -> f64 {
         match *self {
             Reading::Atom(s, c) => {
@@ -115,7 +115,7 @@ impl Reading {
     }
 }
 
-/// What kind of value a reader wants of a reference.
+/// The kind of value a reader needs from a reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wants {
     /// One number: `c_ID`, `c_ID[k]` of a vector, `c_ID[i][j]` of an array.
@@ -147,18 +147,18 @@ pub const FORMULAS: Fields = X
     .and(REGIONS)
     .and(SLOTS);
 
-/// A text whose values are put in anew at each call; who has one reads what [`FORMULAS`] may.
+/// A text whose values are inserted at each call; an op that holds one may read what [`FORMULAS`] allows.
 pub type Text = Box<dyn FnMut(&World) -> Result<String> + Send>;
 
 /// Decides about a place: whether a variable is not zero there.
 pub type PlaceTest = Box<dyn FnMut(&World, [f64; 3]) -> Result<bool> + Send>;
 
-/// The acceleration that a fix gives to everyone.
+/// The acceleration that a fix gives to all particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pull {
     /// Always the same [acceleration in force/mass units].
     Constant([f64; 3]),
-    /// As variables say.
+    /// Given by variables.
     Varying,
 }
 
@@ -175,7 +175,7 @@ pub struct Gravity {
     pub slot: SlotId,
 }
 
-/// What a style may ask for while a run is sealed.
+/// What a style may request while a run is sealed.
 pub trait SealCx {
     /// The world as the run starts: columns may be made here.
     fn world(&mut self) -> &mut World;
@@ -192,8 +192,8 @@ pub trait SealCx {
     /// # Errors
     /// Unknown names, wrong kinds, circles.
     fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading>;
-    /// As `value`, for a reader that wants this kind and no other: `c_ID` is a number, a whole vector or a value per
-    /// particle, and `c_ID[2]` an element, a column of an array, of per-particle or of local values.
+    /// As `value`, for a reader that needs exactly this kind: `c_ID` is a number, a whole vector or a value per particle, and
+    /// `c_ID[2]` an element, a column of an array, of per-particle or of local values.
     ///
     /// # Errors
     /// As `value`.
@@ -244,7 +244,7 @@ pub trait SealCx {
     fn adopts(&self, _id: &str) -> Option<Option<String>> {
         None
     }
-    /// Where a run speaks.
+    /// The log of the run.
     fn log(&self) -> Log;
     /// The op that gives a compute a new beginning after a snapshot (`dump_modify refresh`); `None` if it has none.
     ///
@@ -257,7 +257,7 @@ pub trait SealCx {
     fn pair_styles(&self) -> Vec<&'static str> {
         vec![]
     }
-    /// What the deck's lines said of a coefficient of the pair or bond style in force.
+    /// The value of a coefficient of the pair or bond style in force, as the deck's lines set it.
     fn coefficient(&self, _of: &Coefficient) -> Option<f64> {
         None
     }
@@ -275,12 +275,12 @@ pub trait SealCx {
     fn ask_atom_energy(&mut self, when: &When);
     /// Per-particle virials must be tallied whenever `when` fires.
     fn ask_atom_virial(&mut self, when: &When);
-    /// What the pair styles can be asked about single pairs. Whoever asks reads `contacts`.
+    /// Probes of the pair styles for single pairs. The caller's op reads `contacts`.
     ///
     /// # Errors
     /// What is missing in the scene.
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>>;
-    /// Whom computes can ask about single pairs, as `probes` and where a solid can be asked.
+    /// Probes for computes: as `probes`, and those of a solid that has some.
     ///
     /// # Errors
     /// What is missing in the scene.
@@ -293,6 +293,6 @@ pub trait SealCx {
     }
     /// Slots of fixes whose energy counts (`fix_modify ID energy yes`), for the potential energy.
     fn energy_fixes(&self) -> Vec<String>;
-    /// Says what this scene does without, and why.
+    /// Records what this scene does without, and why.
     fn leave_out(&mut self, what: &str, why: &str);
 }

@@ -75,7 +75,7 @@ where
         self
     }
 
-    /// Begins the next step as well where [`Tick::on`] asks for it.
+    /// Begins the next step as well where [`Tick::on`] is set.
     #[must_use]
     pub fn going_on(mut self) -> Self {
         self.about.goes_on = true;
@@ -110,7 +110,7 @@ where
         self.spanning(|w, _| if w.sums_by_leaves() { Span::Own } else { Span::All })
     }
 
-    /// Asks for the rows it needs by [`World::whole`], on all ranks alike.
+    /// Requests the rows it needs by [`World::whole`], on all ranks alike.
     #[must_use]
     pub fn asking(mut self) -> Self {
         self.span = Span::Asks;

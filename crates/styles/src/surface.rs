@@ -18,7 +18,7 @@ struct Around {
     weight: f64,
 }
 
-/// Refuses particles whose volume nobody has set: it is 1 then, far from that of a cell of the lattice.
+/// Refuses particles whose volume is not set: it is 1 then, far from that of a cell of the lattice.
 ///
 /// # Errors
 /// The first such particle.
@@ -105,7 +105,7 @@ fn placed(w: &World, of_solid: &[bool], weigh: bool) -> Vec<Around> {
     around
 }
 
-/// Gives the group its present members; whether that changed anybody.
+/// Gives the group its present members; whether that changed any.
 pub fn choose(w: &mut World, bit: u32, s: &Surface) -> bool {
     let members = members(w, s);
     let mut changed = false;

@@ -49,7 +49,7 @@ impl Estimate {
     }
 }
 
-/// A bond with what the style says of it.
+/// A bond with the style's numbers for it.
 struct Known {
     ends: [usize; 2],
     /// From its first end to the second [length].

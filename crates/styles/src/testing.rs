@@ -102,7 +102,7 @@ impl Bench {
         ops.iter_mut().filter(|o| o.about().stage == stage).try_for_each(|o| o.run(&mut self.world, &t))
     }
 
-    /// What an op is told at the present step.
+    /// The tick of the present step.
     pub fn tick(&self) -> Tick {
         let clock = &self.world.clock;
         Tick {

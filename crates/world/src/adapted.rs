@@ -1,4 +1,4 @@
-//! Coefficients of pair and bond styles that `fix adapt` has changed: they differ from what the deck's lines said.
+//! Coefficients of pair and bond styles that `fix adapt` has changed: they differ from the values in the deck's lines.
 
 use super::World;
 use super::named::{Constant, Key, Numbers};

@@ -11,7 +11,7 @@ pub struct Angle {
     pub ends: [u32; 3],
 }
 
-/// `angle_style zero` and what `angle_coeff` has said.
+/// `angle_style zero` and the values of `angle_coeff`.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct AngleZero {
     /// Whatever stands in `angle_coeff` is taken.

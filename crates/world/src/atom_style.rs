@@ -57,13 +57,13 @@ impl AtomStyle {
         self.sphere || self.peri
     }
 
-    /// Whether types may be given masses that nothing uses: LAMMPS asks for them where spheres or peridynamic particles are in a
+    /// Whether types may have masses that nothing uses: LAMMPS requires them where spheres or peridynamic particles are in a
     /// hybrid with bonds or charges.
     pub fn idle_type_mass(&self) -> bool {
         self.own_mass() && self.hybrid && (self.bonded || self.charged)
     }
 
-    /// Whether particles turn as torques want and carry something that turns with them.
+    /// Whether particles turn under torques and carry something that turns with them.
     pub fn turns(&self) -> bool {
         self.oriented || self.dipole
     }

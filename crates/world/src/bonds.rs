@@ -21,7 +21,7 @@ pub struct Bond {
 }
 
 impl Bond {
-    /// A bond that nobody has measured.
+    /// A bond without a measured length.
     pub fn new(kind: i32, ends: [u32; 2]) -> Self {
         Self { kind, ends, length: 0.0, axis: [0.0; 3] }
     }
@@ -37,7 +37,7 @@ impl Bond {
 pub struct Weights {
     /// Of all pair styles here.
     pub lj: [f64; 3],
-    /// Of electric forces, which nobody has: only `create_bonds` and bond styles look at them.
+    /// For electric forces, which do not exist here: only `create_bonds` and bond styles read them.
     pub coul: [f64; 3],
 }
 
@@ -47,7 +47,7 @@ pub enum LostBond {
     /// It ends.
     #[default]
     Error,
-    /// The bond exerts no force, which is told once.
+    /// The bond exerts no force; a warning is given once.
     Warn,
     /// The bond exerts no force.
     Ignore,
@@ -68,7 +68,7 @@ pub struct Bonds {
     /// Of bonds whose ends were turned against each other when a bond style first saw them: the turn from the end with the lower
     /// ID to the other, by the ids of the ends, the lower first.
     pub turned: BTreeMap<[u32; 2], Quat>,
-    /// Of bonds that remember a number besides (the length at rest of those that have yielded [length]), by the ids of their ends,
+    /// For bonds that keep one more number (the length at rest of those that have yielded [length]), by the ids of their ends,
     /// the lower first.
     #[serde(default)]
     pub memory: BTreeMap<[u32; 2], f64>,
@@ -84,7 +84,7 @@ pub struct Bonds {
     /// The forces of peridynamic bonds are true ones, not such per volume (`bond_style bpm/peri force newton`).
     #[serde(default)]
     pub newton: bool,
-    /// Somebody keeps a ledger of energy, and wants to know the next two.
+    /// A ledger of energy is kept, which needs the next two.
     #[serde(default)]
     pub counts_losses: bool,
     /// The energy of bonds that have broken since then [energy].
@@ -98,7 +98,7 @@ pub struct Bonds {
     pub angles: Angles,
     /// Grows with every change of the list or of what is special, so that others notice.
     pub changes: u64,
-    /// How many have gone with both ends through a face, which LAMMPS goes on counting until atoms are deleted by a command.
+    /// How many have gone with both ends through a face: LAMMPS counts these until a command deletes atoms.
     #[serde(skip)]
     pub left: usize,
 }
@@ -127,8 +127,8 @@ impl Bonds {
         self.changes += 1;
     }
 
-    /// Bonds have broken, told by the ids of their ends, the lower first, and their type, ascending: they are gone, and pair forces
-    /// act between their ends.
+    /// Removes broken bonds, given by the ids of their ends, the lower first, and their type, ascending. Pair forces act between
+    /// their ends from then on.
     pub fn lose(&mut self, broken: &[([u32; 2], i32)]) {
         let place = |ends: &[u32; 2]| broken.partition_point(|(b, _)| b < ends);
         let parted = |ends: &[u32; 2]| broken.get(place(ends)).is_some_and(|(b, _)| b == ends);
@@ -151,7 +151,7 @@ impl Bonds {
         self.changes += 1;
     }
 
-    /// Forgets what belongs to bonds that are gone.
+    /// Removes the entries of bonds that are gone.
     fn forget_memory(&mut self) {
         if self.turned.is_empty() && self.memory.is_empty() {
             return;
@@ -181,7 +181,7 @@ impl Bonds {
         self.changes += 1;
     }
 
-    /// Forgets bonds of which both ends are gone; those with one end left are an error of the next run.
+    /// Removes bonds of which both ends are gone; those with one end left are an error of the next run.
     pub fn forget_lone(&mut self, tags: &[u32]) {
         let (there, before): (BTreeSet<u32>, _) = (tags.iter().copied().collect(), self.len());
         self.list.retain(|b| b.ends.iter().any(|t| there.contains(t)));
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn pairs_at_one_two_and_three_bonds() {
         let mut b = chain();
-        // By hand: a chain of five.
+        // Counted by hand: a chain of five.
         let near = b.apart(2);
         assert_eq!(near.iter().filter(|p| p.1 == 1).count(), 4);
         assert_eq!(

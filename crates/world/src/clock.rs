@@ -24,13 +24,13 @@ pub struct Clock {
     pub stop: i64,
     /// When the present run's steps began, for the keyword `cpu`.
     pub began: Option<std::time::Instant>,
-    /// Whether a run is going on.
+    /// Whether a run is in progress.
     pub running: bool,
     /// The steps since `time_step` were iterations of a minimization: the next run does not count their time.
     pub minimizing: bool,
     /// The step size that the deck named, while a minimization has one of its own [time].
     pub named_dt: Option<f64>,
-    /// The run goes on without a setup of its own (`pre no`).
+    /// The run continues without a setup of its own (`pre no`).
     pub onward: bool,
     /// Whether a fix has ended the run.
     pub halt: Halt,
@@ -91,7 +91,7 @@ impl From<Stored> for Clock {
     }
 }
 
-/// What `fix halt` has said.
+/// The request of `fix halt`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Halt {
     /// Nothing.

@@ -96,13 +96,10 @@ impl Columns {
     ///
     /// # Panics
     ///
-    /// Debug builds panic where nothing says what becomes of a column of this name as particles are moved.
+    /// Debug builds panic where no rule defines what becomes of a column of this name when particles are moved.
     pub fn vector(&mut self, key: Vectors, n: usize) -> &mut Vec<[f64; 3]> {
         self.vectors.get_or(key, || {
-            debug_assert!(
-                under(key.text()).is_some(),
-                "columns::UNDER does not say what a turn does to `{key}`"
-            );
+            debug_assert!(under(key.text()).is_some(), "columns::UNDER has no rule for a turn of `{key}`");
             vec![[0.0; 3]; n]
         })
     }
@@ -153,7 +150,7 @@ impl Columns {
         self.scalars.get(key).map(Vec::as_slice)
     }
 
-    /// Forgets a column of either kind.
+    /// Removes a column of either kind.
     pub fn remove<T>(&mut self, key: Key<T>) {
         self.scalars.remove(key.of());
         self.vectors.remove(key.of());
@@ -166,7 +163,7 @@ impl Columns {
         *self.scalar(a, n) = of_b;
     }
 
-    /// Forgets the forces, torques and heat flows of levels of steps.
+    /// Removes the forces, torques and heat flows of levels of steps.
     pub fn forget_levels(&mut self) {
         drop(self.split_off(|name| !name.starts_with(LEVEL)));
     }

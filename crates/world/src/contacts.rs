@@ -1,17 +1,17 @@
-//! Contact history by pair: what grains remember while they touch each other or a wall.
+//! Contact history by pair: the state of grains that touch each other or a wall.
 
 use super::named::{Constant, Key, Named};
 use perigrain_base::math::vec3::Vec3;
 
-/// Contacts of the last step in the order of their keys, with what each remembers.
+/// Contacts of the last step in the order of their keys, with the history of each.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     /// Tags of both grains, the smaller one first; of a wall's contacts the grain's tag and the part of the wall.
     /// Sorted.
     pub keys: Vec<[u32; 2]>,
-    /// How many numbers a contact remembers.
+    /// How many numbers the history of a contact has.
     pub width: usize,
-    /// What each contact remembers, of the first grain against the second: `width` numbers each.
+    /// The history of each contact, of the first grain against the second: `width` numbers each.
     pub history: Vec<f64>,
 }
 
@@ -24,12 +24,12 @@ pub struct Deep {
     pub ids: [u32; 2],
     /// Overlap over the smaller radius.
     pub part: f64,
-    /// Whether the user has been told.
+    /// Whether the warning has been given.
     pub told: bool,
 }
 
-/// What one grain remembers of a contact, from what the other remembers: displacements across the normal, the first
-/// three numbers, are negative; rolling displacements and angles of twisting are the same.
+/// Turns a contact's history around, from one grain's view to the other's: displacements across the normal, the first three
+/// numbers, change sign; rolling displacements and angles of twisting are the same.
 pub fn mirror(history: &mut [f64]) {
     history.iter_mut().take(3).for_each(|a| *a = -*a);
 }
@@ -37,7 +37,7 @@ pub fn mirror(history: &mut [f64]) {
 /// Under this name contacts of plastic grains are kept (normal model `mdr`), besides those of their pair style.
 pub static PLASTIC: Constant<Contacts> = Constant::new("mdr");
 
-/// What one grain remembers of a contact of plastic grains, from what the other remembers: first its own side, then the
+/// Turns the history of a contact of plastic grains around, from one grain's view to the other's: first its own side, then the
 /// other's, then what they have in common.
 pub fn turn_plastic(history: &mut [f64]) {
     let half = history.len() / 2;
@@ -65,8 +65,8 @@ impl Contacts {
         Self { keys: self.keys[from..end].to_vec(), width: self.width, history }
     }
 
-    /// Turns what contacts remember as vectors of space: the displacement (or force) across the normal, the first three numbers, and the
-    /// rolling displacement. `types` are those of both particles, if both are turned.
+    /// Rotates the vectors of space in the history: the displacement (or force) across the normal, the first three numbers, and
+    /// the rolling displacement. `types` are those of both particles, if both are turned.
     pub fn turn(
         &mut self,
         own: Key<Contacts>,
@@ -74,7 +74,7 @@ impl Contacts {
         types: impl Fn([u32; 2]) -> Option<[u16; 2]>,
         turn: impl Fn(Vec3) -> Vec3,
     ) {
-        // What plastic grains remember has no direction.
+        // The history of plastic grains has no direction.
         if own == *PLASTIC || self.width < 3 {
             return;
         }
@@ -90,8 +90,8 @@ impl Contacts {
         }
     }
 
-    /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: those that were there keep their
-    /// history, new ones start with zeros, others are forgotten. `spare` is room that is used again.
+    /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: existing ones keep their history, new ones start
+    /// with zeros, others are dropped. `spare` is a buffer that is used again.
     pub fn carry(&mut self, keys: &[[u32; 2]], width: usize, spare: &mut Vec<f64>) {
         if self.width == width && self.keys == keys {
             return;
@@ -127,7 +127,7 @@ impl Contacts {
         self.keys.is_empty()
     }
 
-    /// What the contact with this key remembers, if there is one.
+    /// The history of the contact with this key, if there is one.
     pub fn get(&self, key: [u32; 2]) -> Option<&[f64]> {
         let at = self.keys.binary_search(&key).ok()?;
         Some(&self.history[at * self.width..][..self.width])
@@ -138,8 +138,8 @@ impl Contacts {
         self.keys.len().checked_mul(self.width) == Some(self.history.len())
     }
 
-    /// Renames grains (LAMMPS gives new ids when some are deleted); `new(key)` is the new key, `None` for those gone,
-    /// and whether it is seen from the other side now, which `turn` makes of what it remembers.
+    /// Renames grains (LAMMPS gives new ids when some are deleted); `new(key)` is the new key, `None` for those gone, and whether
+    /// the contact is now seen from the other side: `turn` converts its history then.
     pub fn rename(&mut self, new: impl Fn([u32; 2]) -> Option<([u32; 2], bool)>, turn: impl Fn(&mut [f64])) {
         let mut list: Vec<([u32; 2], Vec<f64>)> = vec![];
         for (k, key) in self.keys.iter().enumerate() {
@@ -156,20 +156,20 @@ impl Contacts {
     }
 }
 
-/// Every so many steps contacts are looked at: whether the time step is within what they stand as they are pressed. Walls tell the
+/// Interval in steps at which contacts are examined: whether the time step is within their present limit. Walls report the
 /// springs of their contacts then.
 pub const LOOK: i64 = 1000;
 
-/// What walls have told of the springs of their contacts.
+/// The springs of wall contacts, as walls have reported them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WallSprings {
-    /// Whether they tell at each step (compute and fix dt/critical).
+    /// Whether walls report at each step (compute and fix dt/critical).
     pub always: bool,
     /// By the fix's ID.
     pub lists: Named<ToldSprings>,
 }
 
-/// What a wall has told.
+/// The report of one wall.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ToldSprings {
     /// When.
@@ -179,7 +179,7 @@ pub struct ToldSprings {
 }
 
 impl WallSprings {
-    /// Whether a wall tells at this step: before a run's first step, now and then, and at its last one at least.
+    /// Whether a wall reports at this step: before a run's first step, now and then, and at least at its last one.
     pub fn wanted(&self, step: i64, setup: bool, last: i64) -> bool {
         self.always || setup || step == last || step % LOOK == 0
     }
@@ -238,14 +238,14 @@ impl PairDeeds {
     }
 }
 
-/// The last look at how contacts are pressed, and at the step they stand.
+/// The last examination of pressed contacts, and the step they allow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pressed {
     /// When.
     pub step: i64,
     /// The time step then.
     pub dt: f64,
-    /// Whether the user has been told that it is too long.
+    /// Whether the warning that it is too long has been given.
     pub told: bool,
 }
 
@@ -289,7 +289,7 @@ mod tests {
         c.carry(&[[1, 3], [1, 5], [2, 9], [3, 4]], 2, &mut spare);
         assert_eq!(c.history, [0.0, 0.0, 15.0, 1.5, 0.0, 0.0, 34.0, 2.5]);
         assert_eq!(c.get([3, 4]), Some(&[34.0, 2.5][..]));
-        // A law with more memory goes on from what there is.
+        // A law with a longer history continues from the numbers there are.
         c.carry(&[[1, 5]], 3, &mut spare);
         assert_eq!(c.history, [15.0, 1.5, 0.0]);
         c.carry(&[], 3, &mut spare);

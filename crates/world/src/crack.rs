@@ -1,4 +1,4 @@
-//! Cracks that a deck makes by hand.
+//! Cracks that a deck cuts explicitly.
 
 use crate::Region;
 use perigrain_base::diag::{Code, Diagnostic};
@@ -21,7 +21,7 @@ pub struct Crack {
 const POINTS: usize = 33;
 
 impl Crack {
-    /// What is said of a crack that meets no bond.
+    /// The warning about a crack that meets no bond.
     pub fn missed(&self) -> Diagnostic {
         let text = format!("`{}` meets no living bond", self.line);
         Diagnostic::error(Code::BAD_VALUE, None, text)

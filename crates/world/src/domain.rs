@@ -194,13 +194,13 @@ impl Domain {
         std::array::from_fn(|k| self.at([k & 1, k >> 1 & 1, k >> 2 & 1].map(|n| n as f64)))
     }
 
-    /// A place unwrapped: so many edges away as its image counts say.
+    /// A place unwrapped: moved by as many edges as its image counts.
     pub fn unwrapped(&self, x: &[f64; 3], image: &[i32; 3]) -> [f64; 3] {
         let by = self.edges().shift(image.map(f64::from));
         [0, 1, 2].map(|d| x[d] + by[d])
     }
 
-    /// This box with these corners, as LAMMPS tells of it.
+    /// This box with these corners, as LAMMPS prints it.
     pub fn told(&self, lo: [f64; 3], hi: [f64; 3]) -> String {
         let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
         match self.tilt {
@@ -263,7 +263,7 @@ impl Domain {
             if !self.boundary.periodic(d) {
                 continue;
             }
-            // Who was just below the lower face may by rounding arrive at the upper one, and goes back.
+            // A particle just below the lower face may by rounding arrive at the upper one, and goes back.
             for _ in 0..2 {
                 let turns = self.fractions(x)[d].floor();
                 if turns == 0.0 || !turns.is_finite() {

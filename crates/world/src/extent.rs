@@ -1,22 +1,23 @@
-//! One look at all positions: how far they reach, who is nowhere, who has left a box that repeats, and how far they have come.
+//! One pass over all positions: their bounds, particles with no finite place, particles outside a periodic box, and the longest
+//! displacement.
 
 use super::Domain;
 use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_base::par;
 
-/// What a look at all positions finds.
+/// The result of a pass over all positions.
 #[derive(Clone, Debug)]
 pub struct Extent {
     /// The corners of a box around all of them [length]; of a tilted box, around their [`Domain::upright`] places.
     pub corners: [Vec3; 2],
     /// The first one that is not finite.
     pub bad: Option<usize>,
-    /// Who is beyond faces that repeat, in order.
+    /// Particles beyond periodic faces, in order.
     pub out: Vec<usize>,
 }
 
 impl Extent {
-    /// Looks at positions; `None` if there are none.
+    /// Makes the pass; `None` if there are no positions.
     pub fn of(x: &[Vec3], domain: &Domain) -> Option<Self> {
         let periodic = [0, 1, 2].map(|d| domain.boundary.periodic(d));
         let away = |x: &Vec3| (0..3).any(|d| periodic[d] && (x[d] < domain.lo[d] || x[d] >= domain.hi[d]));
@@ -68,8 +69,8 @@ fn corners(x: &[Vec3]) -> ([Vec3; 2], bool) {
     ([lo, hi], zero == [0.0; 3])
 }
 
-/// The square of the longest way from positions `held` to positions `x`, a row for each particle in both [length²]: 0 for nobody,
-/// infinite where some way is no finite number.
+/// The square of the longest displacement from positions `held` to positions `x`, a row for each particle in both [length²]: 0
+/// without particles, infinite where a displacement is no finite number.
 pub fn farthest(x: &[Vec3], held: &[Vec3]) -> f64 {
     let of = |range: std::ops::Range<usize>| {
         x[range.clone()].iter().zip(&held[range]).fold(0.0, |most, (x, held)| {
@@ -101,7 +102,7 @@ mod tests {
             (quiet.corners, quiet.bad, quiet.out),
             ([[0.0, 5.0, 0.0], [9.0, 5.0, 49.99]], None, vec![])
         );
-        // Beyond a face that does not repeat nobody is wrapped.
+        // Beyond a face that does not repeat no particle is wrapped.
         (x[7][0], x[4100][0], x[12][1]) = (-0.5, 10.0, 77.0);
         let found = Extent::of(&x, &domain).unwrap();
         assert_eq!((found.corners, found.bad), ([[-0.5, 5.0, 0.0], [10.0, 77.0, 49.99]], None));

@@ -82,17 +82,17 @@ fields! {
     SITES "sites" Nothing;
     /// How rigid bodies stand and move, as their fixes keep it in the memo. An op that reads it reads `MEMO` too.
     RIGID "rigid" Nothing;
-    /// What touching grains remember; owned by the pair style of grains.
+    /// The history of contacts between grains; owned by the pair style of grains.
     CONTACTS "contacts" Springs;
-    /// What grains touching walls remember; owned by the walls.
+    /// The history of contacts with walls; owned by the walls.
     WALL_CONTACTS "wall_contacts" Anchor;
     /// Energy and virial of the present step.
     TALLY "tally" Anew;
-    /// When neighbour lists were made anew, and where everybody was then.
+    /// When neighbour lists were last rebuilt, and the positions then.
     LISTS "lists" Anew;
     /// How far particles may have gone in this run [length].
     TRAVEL "travel" Nothing;
-    /// Step, time and step size; whoever acts may read it.
+    /// Step, time and step size; any op may read it.
     CLOCK "clock" Nothing;
     /// Facts that styles leave for each other and for the log.
     FACTS "facts" Nothing;

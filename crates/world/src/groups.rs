@@ -15,7 +15,7 @@ const MOST: usize = 32;
 pub struct GroupId(pub u8);
 
 impl GroupId {
-    /// Everyone.
+    /// All particles.
     pub const ALL: GroupId = GroupId(0);
 
     /// The mask bit.
@@ -24,7 +24,7 @@ impl GroupId {
     }
 }
 
-/// Whom a dynamic group takes, again and again during runs.
+/// The members of a dynamic group, selected again and again during runs.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Dynamic {
     /// Only members of this group.
@@ -109,7 +109,7 @@ impl Groups {
         Some(GroupId(k as u8))
     }
 
-    /// Forgets a group (its bit must be cleared in the masks by the caller).
+    /// Removes a group (its bit must be cleared in the masks by the caller).
     pub fn remove(&mut self, id: GroupId) {
         self.names[id.0 as usize] = None;
         self.dynamic[id.0 as usize] = None;
@@ -148,7 +148,7 @@ impl Groups {
         (0..32).zip(&self.dynamic).filter_map(|(k, d)| d.as_ref().map(|d| (GroupId(k), d)))
     }
 
-    /// The name of a dynamic group that asks this region.
+    /// The name of a dynamic group that uses this region.
     pub fn follower(&self, region: &str) -> Option<&str> {
         let (id, _) = self.dynamics().find(|(_, d)| d.region.as_deref() == Some(region))?;
         Some(self.name(id))

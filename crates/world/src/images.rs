@@ -55,7 +55,7 @@ impl Images {
         self.particles = old.len();
     }
 
-    /// Wraps those who are `out` of the box into it and counts their crossings.
+    /// Wraps the particles `out` of the box into it and counts their crossings.
     pub fn wrap(&mut self, domain: &Domain, x: &mut [[f64; 3]], out: &[usize]) {
         for &i in out {
             let mut image = self[i];

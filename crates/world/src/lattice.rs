@@ -60,7 +60,7 @@ impl Cell {
     }
 }
 
-/// What a `lattice` command says besides its cell.
+/// The options of a `lattice` command besides its cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placing {
     /// Lattice constant in length units, or reduced density ρ* when `reduced`.

@@ -110,7 +110,7 @@ pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
 pub struct World {
     /// Time, step and step size.
     pub clock: Tracked<Clock>,
-    /// Choices of the deck that concern everybody: units, skin, compatibility.
+    /// Global choices of the deck: units, skin, compatibility.
     pub settings: Settings,
     /// The box; `None` before `create_box` or `read_data`.
     pub domain: Tracked<Option<Domain>>,
@@ -151,13 +151,14 @@ pub struct World {
     pub families: Tracked<Option<Families>>,
     /// Cracks that wait for bonds to be there.
     pub cracks: Vec<Crack>,
-    /// What touching grains remember, by pair style.
+    /// Contact history between grains, by pair style.
     pub contacts: Tracked<Named<contacts::Contacts>>,
-    /// What grains touching a wall remember, by the wall's fix.
+    /// Contact history with walls, by the wall's fix.
     pub wall_contacts: Tracked<Named<contacts::Contacts>>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
-    /// What fixes property/atom give particles, in the order in which data files name it; the deck says it again after a restart.
+    /// The columns of fixes property/atom, in the order in which data files name them; after a restart the deck declares them
+    /// again.
     #[serde(skip)]
     pub properties: Vec<Properties>,
     /// What the deck's folder is, for files beside it.
@@ -188,9 +189,9 @@ pub struct Parts {
     pub deep: Option<contacts::Deep>,
     /// Where a plan is measured, a line for each op that keeps the times of its tiles, as the last run left them.
     pub tiles: Option<Vec<String>>,
-    /// Springs of the contacts with each wall, when they were told last.
+    /// Springs of the contacts with each wall, as reported last.
     pub wall_springs: contacts::WallSprings,
-    /// Contacts with each wall at the last step, by the fix's ID; nothing where nobody keeps a ledger of energy.
+    /// Contacts with each wall at the last step, by the fix's ID; empty without a ledger of energy.
     pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
     /// The same of the contacts of each pair style.
     pub pair_deeds: Option<Named<contacts::PairDeeds>>,
@@ -198,24 +199,24 @@ pub struct Parts {
     pub budget: Option<f64>,
     /// What walls look like, by the fix's ID.
     pub outlines: Named<Outline>,
-    /// The last look at the step that contacts stand.
+    /// The last examination of the step that contacts allow.
     pub pressed: Option<contacts::Pressed>,
     /// Every fix freeze in force by its ID, and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Vec<(String, GroupId)>,
     /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.
     pub plastic: Option<[f64; 5]>,
-    /// What ops have to say about the deck; told when the run is over.
+    /// Remarks of ops about the deck; printed when the run is over.
     pub notes: perigrain_base::diag::Diagnostics,
     /// While a deck is only looked at: files that its lines so far would have written.
     pub promised: Promises,
-    /// What only a run could tell, while a deck is only looked at.
+    /// What only a run determines, while a deck is only checked.
     pub unseen: Unseen,
-    /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
-    /// computes as `STYLE/ID`.
+    /// Parts that came from a restart file and that the deck may declare again: `region/ID`, `material/ID`, and state of fixes
+    /// and computes as `STYLE/ID`.
     pub restored: BTreeSet<String>,
     /// The latest row of the step table, for dumps that repeat it.
     pub row: Option<Arc<TableRow>>,
-    /// What a restart file said about the scene, until the first run after it.
+    /// The scene as a restart file describes it, until the first run after it.
     pub resume: Option<Arc<Resume>>,
     /// The program that hosts the session, as each fix external sees it, by the fix's ID.
     pub outside: Named<Arc<dyn Outside>>,
@@ -297,7 +298,7 @@ impl World {
         if !kept.is_empty() && kept.len() == self.n() { kept } else { self.held() }
     }
 
-    /// The box that those positions were in: its lower corner, and its edges as [`World::periods`] tells them.
+    /// The box that those positions were in: its lower corner, and its edges as [`World::periods`] returns them.
     pub fn made_in(&self) -> ([f64; 3], Periods) {
         let Some(now) = &*self.domain else { return Default::default() };
         let kept = &self.rebuild.kept;

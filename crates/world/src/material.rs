@@ -28,7 +28,7 @@ pub struct Material {
     pub date: String,
 }
 
-/// The two ways to say when a bond breaks.
+/// The two ways to define when a bond breaks.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Strength {
     /// Fracture energy G_c, J/m² in SI; the critical stretch depends on the horizon.
@@ -90,7 +90,7 @@ impl Material {
                 return Err(Diagnostic::error(
                     Code::CONFLICT,
                     at(s.span()),
-                    "Gc and s00 both say when a bond breaks",
+                    "Gc and s00 both set when a bond breaks",
                 )
                 .help("keep one of them")
                 .into());
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn the_brittle_plate_is_the_paper_s() {
-        // Walayat et al. 2023, Table 3; 10.06 J/m^2 is assumed (potentials/brittle-plate.toml says why).
+        // Walayat et al. 2023, Table 3; 10.06 J/m^2 is assumed (see potentials/brittle-plate.toml).
         let m = parse(potentials::embedded("brittle-plate.toml").unwrap()).unwrap();
         assert_eq!((m.young, m.nu, m.density, m.alpha), (22.35e9, 0.25, 2200.0, 0.25));
         assert_eq!(m.strength, Some(Strength::FractureEnergy(10.06)));

@@ -42,7 +42,7 @@ pub fn bytes(w: &World) -> u64 {
 
 /// Bytes a particle of a solid needs besides its columns once forces act: rows of the lattice layout.
 const FORCES_PER_PARTICLE: f64 = 110.0;
-/// The same for a grain in a dense bed: lists of pairs, what contacts remember, and both once more while lists are made anew
+/// The same for a grain in a dense bed: lists of pairs, contact history, and both once more while lists are rebuilt
 /// (`benches/decks/dem_bed.in` with 10⁶ grains, alone and on three ranks).
 const FORCES_PER_GRAIN: f64 = 560.0;
 /// Particles from which a forecast is worth a line.
@@ -97,7 +97,7 @@ pub fn lacking_for_types(types: usize) -> Option<Diagnostic> {
     lacking((types as f64).powi(2) * BYTES_PER_PAIR, &format!("tables of {types} types"))
 }
 
-/// Entries of full neighbour lists (peridynamic families) if there are any. Nobody counts the lists of grains.
+/// Entries of full neighbour lists (peridynamic families) if there are any. The lists of grains are not counted.
 pub fn neighbors(w: &World) -> Option<u64> {
     w.families.as_ref().map(|f| f.bonds() as u64)
 }

@@ -118,7 +118,7 @@ impl Default for Fire {
 pub struct Minimizer {
     /// The algorithm.
     pub style: MinStyle,
-    /// How far a coordinate may change in one line search or step [length], where a line says so.
+    /// How far a coordinate may change in one line search or step [length], if a line sets it.
     pub dmax: Option<f64>,
     /// The line search of `cg` and `sd`.
     pub line: LineSearch,

@@ -1,9 +1,9 @@
-//! What becomes of each field where particles are moved as one piece, and the functions that move them by that rule.
+//! How each field changes when particles are moved as one piece, and the functions that move them by that rule.
 //!
-//! [`field`](super::field) says of each field, [`columns::under`] of each named column, what a motion of matter does to it. Whatever moves
-//! particles as a whole keeps to that: [`World::carry`] where they are put elsewhere between two runs, [`Grip`] where something holds
-//! them while it moves, [`World::lay`] where they are made, [`World::shift_copies`] where a scene is repeated. `docs/decisions/movers.md` has the
-//! table.
+//! [`field`](super::field) states for each field, [`columns::under`] for each named column, what a motion of matter does to it.
+//! All code that moves particles as a whole follows these rules: [`World::carry`] where they are placed elsewhere between two
+//! runs, [`Grip`] where something holds them while it moves, [`World::lay`] where they are created, [`World::shift_copies`] where
+//! a scene is replicated. `docs/decisions/movers.md` has the table.
 
 use super::columns::{self, Columns};
 use super::contacts::{Contacts, Rolls};
@@ -23,7 +23,7 @@ pub enum Under {
     Place,
     /// How the matter of a particle lies in space: turned.
     Orientation,
-    /// What pairs remember as vectors of space: turned where both particles are moved.
+    /// History of pairs that is a vector of space: turned where both particles are moved.
     Springs,
     /// How fast a particle moves and spins: whatever moves particles step by step sets it, and where they are put elsewhere between two
     /// runs it stays as the deck has it.
@@ -78,7 +78,7 @@ impl World {
         let members: Vec<usize> = (0..self.n()).filter(|&i| moved(i)).collect();
         let edges = self.edges();
         let turns = !self.settings.lammps();
-        // Every part of a scene is named here, so that none can be added without a word about what a turn does to it.
+        // Every part of a scene is named here, so that none can be added without a decision on how a turn changes it.
         let World {
             particles,
             columns,
@@ -265,8 +265,8 @@ impl Grip {
         w.columns.remove(self.moment);
     }
 
-    /// Turns the particles that are held with what holds them, as `holder` says of each: orientations, and dipole moments where these are
-    /// `moments`.
+    /// Turns the particles that are held together with their holder, as `holder` defines for each: orientations, and dipole
+    /// moments where these are `moments`.
     pub fn turn(
         self,
         particles: &mut Particles,

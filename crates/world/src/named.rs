@@ -8,7 +8,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// A name that the program knows from now on, and its number. Names are as few as the words of decks: they stay.
+/// A registered name and its number. Names are as few as the words of decks: they stay.
 struct Name {
     number: usize,
     text: &'static str,

@@ -15,8 +15,8 @@ impl World {
         }
     }
 
-    /// Lets particle `old[k]` stand at each new index `k`, for as long as [`World::fall_back`] is not called: a run of
-    /// grains keeps neighbours near each other in memory. Nobody comes or goes.
+    /// Moves particle `old[k]` to index `k`, for as long as [`World::fall_back`] is not called: a run of grains keeps neighbours
+    /// near each other in memory. No particle is added or removed.
     pub fn line_up(&mut self, old: &[usize]) {
         if old.iter().enumerate().all(|(new, k)| new == *k) {
             return;
@@ -49,7 +49,7 @@ impl World {
         *self.particles.rank = Vec::new();
     }
 
-    /// Makes contacts of particles that have gone forgotten, between runs: who comes later with the id of one of them is somebody else.
+    /// Drops the contacts of particles that have gone, between runs: a later particle with the same id is another one.
     pub fn forget_touches(&mut self) {
         let (contacts, walls) = (&mut self.contacts, &mut self.wall_contacts);
         if contacts.is_empty() && walls.is_empty() {
@@ -100,7 +100,7 @@ fn gather_all<T: Copy>(list: &mut Vec<T>, old: &[usize]) {
     }
 }
 
-/// Who stands where after the marked ones are gone and each hole was filled from the end.
+/// The particle at each place after the marked ones are gone and each hole was filled from the end.
 fn left_after(marked: &[bool]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..marked.len()).collect();
     let mut k = 0;
@@ -164,7 +164,7 @@ mod tests {
         less.gather(&[0, 2, 3]);
         less.fall_back();
         assert_eq!(less.particles.tag, [10, 20, 40]);
-        // Who joins meanwhile comes last.
+        // A particle that joins meanwhile comes last.
         let mut more = w.clone();
         more.particles.push(50, 1, [5.0; 3]);
         more.columns.resize(5);

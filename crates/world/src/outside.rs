@@ -1,4 +1,4 @@
-//! What a program that hosts the session does and says while steps are made (`fix external`, `fix python/invoke`).
+//! The interface to a program that hosts the session and acts while steps are made (`fix external`, `fix python/invoke`).
 
 use super::World;
 use perigrain_base::math::vec3::Vec3;
@@ -16,7 +16,7 @@ pub struct Asked<'a> {
     pub f: &'a mut [Vec3],
 }
 
-/// What the program says besides forces; it holds until it says otherwise.
+/// Values the program sets besides forces; they hold until it sets others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Told {
     /// The potential energy of its forces [energy].
@@ -27,7 +27,7 @@ pub struct Told {
     pub vector: Vec<f64>,
 }
 
-/// What the program says of each particle, in the order in which they stand; what stays unsaid stays as it was.
+/// Values the program sets for each particle, in the order of the particles; values not set stay as they were.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Each {
     /// Potential energies [energy].
@@ -40,16 +40,16 @@ pub struct Each {
 ///
 /// It is no state of the scene: copies of a scene talk to the same program, and no file holds it.
 pub trait Outside: Debug + Send + Sync {
-    /// Asks for forces; `None` where the program has given no function that could be called.
+    /// Calls the program's function; `None` where it has given none.
     ///
     /// # Errors
     /// The program's own words on why it failed.
     fn call(&self, asked: Asked<'_>) -> Option<Result<(), String>>;
 
-    /// What it says at the moment.
+    /// The present values.
     fn told(&self) -> Told;
 
-    /// What it has said of each particle since this was asked last.
+    /// The per-particle values set since the last call.
     fn each(&self) -> Each {
         Each::default()
     }
@@ -58,7 +58,7 @@ pub trait Outside: Debug + Send + Sync {
 /// When a function of the program is called within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Invoked {
-    /// After forces have been computed: which virials somebody reads, in LAMMPS' numbers (1 of all, 4 of each particle).
+    /// After forces have been computed: the virials that are read, in LAMMPS' numbers (1 of all, 4 of each particle).
     PostForce(i32),
     /// After the step.
     EndOfStep,

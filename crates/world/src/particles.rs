@@ -133,7 +133,7 @@ impl Particles {
         if self.style.molecules {
             self.molecule.push(0);
         }
-        // Whoever comes while the others are lined up was created last.
+        // A particle that joins while the others are lined up was created last.
         if let Some(last) = self.rank.iter().max().copied() {
             self.rank.push(last + 1);
         }

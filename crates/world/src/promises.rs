@@ -11,7 +11,7 @@ pub enum Promise {
     Text(String),
     /// This scene, which holds no particles, and the lines of its pair style.
     Scene(Arc<World>, Vec<Said>),
-    /// What only a run can tell.
+    /// Known only in a run.
     Unseen,
 }
 

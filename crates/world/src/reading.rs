@@ -16,7 +16,7 @@ pub struct ReadFiles(Arc<Found>);
 struct Found {
     paths: Mutex<BTreeSet<PathBuf>>,
     notes: Mutex<Vec<Diagnostic>>,
-    /// Whether there are notes: it is asked for behind each line of a deck.
+    /// Whether there are notes: checked after each line of a deck.
     noted: AtomicBool,
 }
 
@@ -51,7 +51,7 @@ impl ReadFiles {
         }
     }
 
-    /// The notes since they were asked for last.
+    /// The notes since the last call.
     pub fn take_notes(&self) -> Vec<Diagnostic> {
         if !self.0.noted.load(Ordering::Relaxed) {
             return vec![];

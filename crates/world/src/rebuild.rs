@@ -1,4 +1,4 @@
-//! When neighbour lists were last rebuilt, and where everybody was then.
+//! When neighbour lists were last rebuilt, and the positions then.
 
 use super::share::Tiling;
 use super::travel::Seen;
@@ -19,7 +19,7 @@ pub struct Rebuild {
     /// How it leaned then.
     #[serde(default)]
     pub tilt: [f64; 3],
-    /// Everybody was where it was created, and `held` is empty.
+    /// Particles were where they were created, and `held` is empty.
     pub unmoved: bool,
     /// Rebuilds in the present run, setup not counted.
     pub builds: u64,
@@ -28,7 +28,7 @@ pub struct Rebuild {
     /// By how much radii have grown at most since lists were made for them, where something makes them grow [length].
     #[serde(default)]
     pub grown: Option<f64>,
-    /// Particles deleted beyond fixed faces that thermo output has not told of.
+    /// Particles deleted beyond fixed faces that thermo output has not reported.
     #[serde(default)]
     pub lost: u64,
     /// Particles have come or gone in this step: everything is rebuilt.
@@ -67,7 +67,7 @@ pub struct Kept {
     /// See `corners`.
     #[serde(default)]
     pub tilt: [f64; 3],
-    /// How many periods each particle has been moved since then to be in the box; empty where nobody was.
+    /// How many periods each particle has been moved since then to be in the box; empty where none was.
     pub turns: Vec<[i8; 3]>,
     /// Whether lists reach twice as far as one rebuild needs.
     pub ample: bool,

@@ -44,7 +44,7 @@ pub struct Given {
     pub scale: f64,
 }
 
-/// Tells a variable's present value; nothing where it is not known (`perigrain check`).
+/// Returns a variable's present value; `None` where it is not known (`perigrain check`).
 pub type Ask<'a> = dyn FnMut(&Variable) -> Result<Option<f64>> + 'a;
 
 impl Region {
@@ -122,7 +122,7 @@ impl Region {
         (count + 1, depth + 1)
     }
 
-    /// Puts the region where its variables say.
+    /// Puts the region where its variables place it.
     ///
     /// # Errors
     /// Variables that have no value, and values that make no shape.

@@ -1,9 +1,9 @@
-//! What passes from one run of the program to the next: lines that were said, state that waits for its fix.
+//! What passes from one run of the program to the next: declarations, and state that waits for its fix.
 
 use super::{Lattice, World};
 use perigrain_base::diag::Result;
 
-/// What a restart file said about its scene: as long as all of it still holds, its forces stand.
+/// The scene as a restart file describes it: as long as all of it still holds, its forces are valid.
 #[derive(Clone, Debug, Default)]
 pub struct Resume {
     /// All lines that decide about forces.
@@ -16,7 +16,7 @@ pub struct Resume {
     pub names: Vec<String>,
 }
 
-/// A line of a deck and the lattice in force when it was said: its distances may be in spacings.
+/// A line of a deck and the lattice in force at that line: its distances may be in spacings.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Said {
     /// The words, the first being the command.

@@ -1,4 +1,4 @@
-//! Choices of a deck that concern everybody.
+//! Global choices of a deck.
 
 use perigrain_base::comm;
 use perigrain_base::units::UnitSystem;
@@ -19,8 +19,7 @@ pub enum Compat {
 }
 
 impl Compat {
-    /// The words of decks and command lines with their meaning; the first one of each is what is told. `lammps` is the newest
-    /// version.
+    /// The words of decks and command lines with their meaning; the first one of each is printed. `lammps` is the newest version.
     pub const NAMES: [(&'static str, Compat); 4] = [
         ("none", Compat::Perigrain),
         ("lammps/2025", Compat::Lammps2025),
@@ -28,7 +27,7 @@ impl Compat {
         ("lammps", Compat::Lammps2026),
     ];
 
-    /// What a word means.
+    /// The meaning of a word.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|n| n.0 == name).map(|n| n.1)
     }
@@ -43,13 +42,13 @@ impl Compat {
         self != Self::Perigrain
     }
 
-    /// What the first line of a log says of it behind the number of threads.
+    /// The words of a log's first line about it, after the number of threads.
     pub fn told(self) -> String {
         if self.lammps() { format!(", compat {}", self.name()) } else { String::new() }
     }
 }
 
-/// What `newton` has said; it changes nothing but the answers to formulas.
+/// The setting of `newton`; it changes nothing but the answers to formulas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Newton {
     /// For pairs.
@@ -69,7 +68,7 @@ impl Default for Newton {
 pub struct NeighborSettings {
     /// Extra reach of the lists [length].
     pub skin: f64,
-    /// The deck has said how far that is.
+    /// The deck has set that distance.
     pub said: bool,
     /// The deck has chosen `multi`, which changes nothing but which words may follow.
     #[serde(skip)]
@@ -143,7 +142,7 @@ pub enum RunStyle {
     Verlet,
     /// Short steps for peridynamic solids, or rare ones where grains are the faster.
     Staggered {
-        /// Short steps per long one; `None`: as many as the solids' stability asks for.
+        /// Short steps per long one; `None`: as many as the solids' stability requires.
         ratio: Option<i64>,
         /// Grains are the faster ones: bonds act at each `ratio`-th step.
         rare: bool,
@@ -174,7 +173,7 @@ impl RunStyle {
     }
 }
 
-/// Choices of a deck that concern everybody.
+/// Global choices of a deck.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     /// The deck's units.
@@ -198,10 +197,10 @@ pub struct Settings {
     /// The portable kernels even where faster ones would run.
     #[serde(skip)]
     pub portable: bool,
-    /// `newton` of pairs and bonds, as formulas ask for it.
+    /// `newton` of pairs and bonds, as formulas read it.
     #[serde(skip)]
     pub newton: Newton,
-    /// `comm_style tiled`, as formulas ask for it.
+    /// `comm_style tiled`, as formulas read it.
     #[serde(skip)]
     pub tiled: bool,
     /// What `min_style` and `min_modify` have chosen.
@@ -213,7 +212,7 @@ pub struct Settings {
     /// When runs have to end (`timer timeout`).
     #[serde(skip)]
     pub deadline: Option<Instant>,
-    /// Steps between two looks at the clock for that; 0 stands for 10, LAMMPS' own.
+    /// Steps between two readings of the clock for that; 0 stands for 10, LAMMPS' own.
     #[serde(skip)]
     pub limit_every: i64,
     /// What several ranks have agreed upon of both.
@@ -221,7 +220,7 @@ pub struct Settings {
     pub agreed: Agreed,
 }
 
-/// What several ranks know alike about an end that is asked for at one of them.
+/// What all ranks have agreed about an end that one of them requests.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Agreed {
     stop: bool,
@@ -292,7 +291,7 @@ impl Settings {
         self.deadline.is_some() && step % every == 0 && late()
     }
 
-    /// Whether something outside asks for an end (Ctrl-C). Of several ranks: as they have agreed.
+    /// Whether something outside requests an end (Ctrl-C). With several ranks: as they have agreed.
     pub fn stops(&self) -> bool {
         if comm::several() { self.agreed.stop } else { self.stop.load(Ordering::Relaxed) }
     }

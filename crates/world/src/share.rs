@@ -211,7 +211,8 @@ impl World {
         nowhere == 0.0
     }
 
-    /// Whether all particles with one of these group bits were moved by all ranks alike when this was asked for in the present deal first.
+    /// Whether all particles with one of these group bits were moved by all ranks alike at the first such query in the present
+    /// deal.
     pub fn is_common(&mut self, bits: u32) -> bool {
         let Some(share) = &mut self.share else { return true };
         if let Some((_, common)) = share.common.iter().find(|(of, _)| *of == bits) {

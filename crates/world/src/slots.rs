@@ -1,4 +1,4 @@
-//! Values that computes, fixes and variables have produced, ready for whoever reads them.
+//! Values that computes, fixes and variables have produced, ready for their readers.
 
 use super::Numbers;
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// Forgets the values and gives their memory back.
+    /// Drops the values and frees their memory.
     pub fn empty(&mut self) {
         *self = Self { name: std::mem::take(&mut self.name), ..Self::default() };
     }
@@ -200,7 +200,7 @@ impl Slots {
         }
     }
 
-    /// Forgets which step every value belongs to (the scene has changed).
+    /// Marks every value as out of date (the scene has changed).
     pub fn invalidate(&mut self) {
         for s in &mut self.slots {
             s.step = None;

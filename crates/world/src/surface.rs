@@ -7,7 +7,7 @@ use super::GroupId;
 pub struct Surface {
     /// The solids.
     pub parent: GroupId,
-    /// Who lies at the surface.
+    /// Which particles lie at the surface.
     pub rule: Rule,
     /// How many layers count.
     pub shells: usize,
@@ -15,7 +15,7 @@ pub struct Surface {
     pub every: Option<i64>,
 }
 
-/// Who lies at the surface.
+/// Which particles lie at the surface.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Rule {
     /// Those with fewer nearest neighbours.

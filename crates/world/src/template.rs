@@ -1,4 +1,4 @@
-//! Templates of molecules: what one file of the `molecule` command says.
+//! Templates of molecules: the content of one file of the `molecule` command.
 
 use super::{Angle, Bond, World};
 use perigrain_base::math::body::{Quat, apply, matrix};
@@ -11,26 +11,26 @@ pub struct Template {
     pub title: String,
     /// Number of particles.
     pub count: usize,
-    /// Where they are [length]; empty if the file does not say.
+    /// Where they are [length]; empty if the file lacks them.
     pub places: Vec<[f64; 3]>,
-    /// Their types, from 1, offsets added; empty if the file does not say.
+    /// Their types, from 1, offsets added; empty if the file lacks them.
     pub kinds: Vec<u16>,
-    /// Their radii [length]; empty if the file does not say.
+    /// Their radii [length]; empty if the file lacks them.
     pub radii: Vec<f64>,
-    /// Their masses; empty if the file does not say.
+    /// Their masses; empty if the file lacks them.
     pub masses: Vec<f64>,
-    /// Numbers from 1 of the molecules they belong to; empty if the file does not say.
+    /// Numbers from 1 of the molecules they belong to; empty if the file lacks them.
     pub molecules: Vec<u32>,
     /// Bonds: type and the numbers of both ends, from 1.
     pub bonds: Vec<(u16, [u32; 2])>,
     /// Angles: type and the numbers of their particles, from 1, the one at the corner in the middle.
     #[serde(default)]
     pub angles: Vec<(u16, [u32; 3])>,
-    /// Mass of all, if the file says so.
+    /// Mass of all, if the file has it.
     pub mass: Option<f64>,
-    /// Centre of mass, if the file says so [length].
+    /// Centre of mass, if the file has it [length].
     pub com: Option<[f64; 3]>,
-    /// Moments of inertia about the centre of mass xx yy zz xy xz yz, if the file says so.
+    /// Moments of inertia about the centre of mass xx yy zz xy xz yz, if the file has them.
     pub inertia: Option<[f64; 6]>,
 }
 
@@ -61,7 +61,7 @@ impl Template {
         self.places.iter().enumerate().map(reach).fold(0.0, f64::max)
     }
 
-    /// The mass of each sphere: as the file says, or of density 1; `None` where masses go by type.
+    /// The mass of each sphere: from the file, or of density 1; `None` where masses go by type.
     pub fn sphere_masses(&self) -> Option<Vec<f64>> {
         if !self.masses.is_empty() {
             return Some(self.masses.clone());
@@ -70,7 +70,7 @@ impl Template {
         (!self.radii.is_empty()).then(|| self.radii.iter().map(volume).collect())
     }
 
-    /// The largest molecule number in it; 1 where the file does not say.
+    /// The largest molecule number in it; 1 where the file has none.
     pub fn last_molecule(&self) -> u32 {
         self.molecules.iter().copied().max().unwrap_or(1)
     }

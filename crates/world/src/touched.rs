@@ -1,4 +1,4 @@
-//! Which fields of a scene were read and written since somebody asked last; debug builds know, release builds do not ask.
+//! Which fields of a scene were read and written since the last query; only debug builds record this.
 
 use super::World;
 #[cfg(debug_assertions)]
@@ -15,7 +15,7 @@ pub struct Touched {
 }
 
 impl World {
-    /// What was touched since this was asked last.
+    /// The fields touched since the last call.
     #[cfg(debug_assertions)]
     pub fn touched(&self) -> Touched {
         let p = &self.particles;

@@ -10,7 +10,7 @@ const READ: u8 = 1;
 #[cfg(debug_assertions)]
 const WRITTEN: u8 = 2;
 
-/// A part of the scene that knows who touches it. Its length may be asked for without a trace; so may all of it, by
+/// A part of the scene that records accesses to it. Its length may be read without a trace; so may all of it, by
 /// [`Tracked::past`].
 #[cfg_attr(not(debug_assertions), repr(transparent))]
 pub struct Tracked<T> {
@@ -51,7 +51,7 @@ impl<T> Tracked<T> {
     /// Whether it was read and written since the marks were cleared; they are clear then.
     #[cfg(debug_assertions)]
     pub fn take_marks(&self) -> (bool, bool) {
-        // Between ops nobody else marks: to swap takes far longer than to look, and most have nothing to clear.
+        // Between ops nothing else marks: a swap takes far longer than a load, and most have nothing to clear.
         let marks = self.marks.load(Ordering::Relaxed);
         if marks != 0 {
             self.marks.store(0, Ordering::Relaxed);
@@ -74,7 +74,7 @@ impl<T> Tracked<Vec<T>> {
     }
 }
 
-/// A column on loan, to be cut in pieces for many threads: who reads or writes a piece leaves the mark on the column.
+/// A column on loan, to be cut in pieces for many threads: an access to a piece leaves its mark on the column.
 pub struct Lent<'a, T> {
     rows: &'a mut [T],
     #[cfg(debug_assertions)]
@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn what_is_looked_at_is_marked_and_lengths_are_free() {
         let mut x = Tracked::new(vec![1.0, 2.0]);
-        assert_eq!(x.take_marks(), (false, true), "who puts a new one there has written");
+        assert_eq!(x.take_marks(), (false, true), "a new value counts as written");
         assert_eq!((x.len(), x.past()[0], x.take_marks()), (2, 1.0, (false, false)));
         assert_eq!((x[1], x.take_marks()), (2.0, (true, false)));
         x[0] = 3.0;

@@ -1,11 +1,11 @@
 //! An account of how far particles may have gone, so that not every step has to compare all positions with former ones.
 
-/// The way that nobody has gone beyond since a run began, kept where all that move particles report to it.
+/// The longest distance that any particle has moved since a run began, kept where all ops that move particles report to it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Travel {
     /// Which run it is.
     run: u64,
-    /// The way [length]; `None` where somebody moves particles without a word.
+    /// The distance [length]; `None` where an op moves particles without reporting.
     way: Option<f64>,
 }
 
@@ -13,19 +13,19 @@ pub struct Travel {
 const SURE: f64 = 0.999;
 
 impl Travel {
-    /// A new run, in which all who move particles report, or not.
+    /// A new run, in which all ops that move particles report, or not.
     pub fn begin(&mut self, reported: bool) {
         *self = Self { run: self.run + 1, way: reported.then_some(0.0) };
     }
 
-    /// Nobody has gone farther than this in a step [length]; a NaN is as far as can be.
+    /// No particle has moved farther than this in a step [length]; a NaN counts as infinitely far.
     pub fn went(&mut self, at_most: f64) {
         let far = if at_most.is_nan() { f64::INFINITY } else { at_most };
         self.way = self.way.map(|way| way + far);
     }
 }
 
-/// How far anybody is from where it was at some moment, as of the last time somebody looked.
+/// How far any particle is from its place at some moment, as of the last measurement.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
     account: Travel,
@@ -39,10 +39,10 @@ impl Seen {
         Self { account, moved }
     }
 
-    /// Whether, by the account, everybody is certainly less than `limit` [length] away still.
+    /// Whether, by the account, all particles are certainly less than `limit` [length] away still.
     pub fn within(&self, account: Travel, limit: f64) -> bool {
         let (Some(now), Some(then)) = (account.way, self.account.way) else { return false };
-        // Back at a former state (a guard's) the account of what came after says nothing.
+        // Back at a former state (a guard's) the account of later steps does not count.
         account.run == self.account.run && now >= then && self.moved + (now - then) < SURE * limit
     }
 }

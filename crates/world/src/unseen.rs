@@ -1,4 +1,4 @@
-//! What nobody sees of a scene that is only looked at, because only a run can tell.
+//! The parts of a scene that are unknown while a deck is only checked, because only a run determines them.
 
 /// Parts of the scene that a check or a plan does not know. A run sees everything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,8 +11,8 @@ pub struct Unseen {
     pub time: bool,
     /// Place and lengths of the box.
     pub space: bool,
-    /// The particles are not even those with which a run would begin: a line that makes or changes them hangs on a value
-    /// that only a run can tell.
+    /// The particles are not even those with which a run would begin: a line that makes or changes them depends on a value that
+    /// only a run determines.
     pub vague: bool,
 }
 

@@ -9,7 +9,7 @@ use crate::session::axes::Axis;
 use perigrain_base::diag::nearest;
 use std::path::PathBuf;
 
-/// What `perigrain bench` is asked for; nothing here has been acted upon.
+/// The parsed words of `perigrain bench`; none has been applied yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// The deck, its knobs, and what all sweeps have.
@@ -28,7 +28,7 @@ pub struct Request {
     pub typed: String,
 }
 
-/// What `-against` says.
+/// The value of `-against`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reference {
     /// The finest run, along these knobs.
@@ -85,7 +85,7 @@ impl Request {
             );
         }
         if rest.iter().any(|w| w == "-report") {
-            return Err(Usage::new("a bench reports what it measures").help("say `-measure WORD…`"));
+            return Err(Usage::new("a bench reports what it measures").help("use `-measure WORD…`"));
         }
         request.sweep = Sweep::parse(rest)?;
         request.check()?;
@@ -126,7 +126,7 @@ impl Request {
         }
         if self.measures.is_empty() {
             return Err(Usage::new("a bench needs something to measure")
-                .help("say `-measure WORD…`, as `-measure pe c_ID v_name`"));
+                .help("use `-measure WORD…`, as `-measure pe c_ID v_name`"));
         }
         if let Reference::Forms(forms) = &self.against
             && forms.len() != self.measures.len()

@@ -28,7 +28,8 @@ const SHOWN: usize = 60;
 /// Characters of its lines.
 const WIDTH: usize = 160;
 
-/// Makes the runs and shows what they say; the exit code. Of several ranks the first one does so, and the others make runs for it.
+/// Makes the runs and shows their results; the exit code. Of several ranks the first one does so, and the others make runs for
+/// it.
 ///
 /// # Errors
 /// Lists of values that make no sense, ranks that cannot be joined.
@@ -91,7 +92,7 @@ fn bench(request: &Request, mut swept: Swept, text: String) -> Result<Bench> {
     Bench::new(sweep, axes, request.repeat, measures)
 }
 
-/// Leaves out knobs that the deck does not read and measures that it does not have, and says so; whether there were any.
+/// Leaves out knobs that the deck does not read and measures that it does not have, with a note; whether there were any.
 ///
 /// # Errors
 /// A deck that is refused.
@@ -109,7 +110,7 @@ fn leave_out(request: &Request, bench: &mut Bench) -> std::result::Result<bool, 
         let word = format!("{name} ");
         let place = request.typed.find(&format!(" -each {word}")).map(|at| at + " -each ".len());
         d.span = place.map(|at| Span::new(typed, at, at + name.len()));
-        d.help.push("this knob is left out, the others go on".into());
+        d.help.push("this knob is left out, the others stay".into());
     }
     deck::print(&ahead.problems, &ahead.sources);
     for axis in &mut bench.axes {
@@ -128,7 +129,7 @@ fn leave_out(request: &Request, bench: &mut Bench) -> std::result::Result<bool, 
     Ok(true)
 }
 
-/// Has the runs made, one after the other, and shows what they say.
+/// Makes the runs, one after the other, and shows their results.
 fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     let quiet = request.sweep.options.screen == Target::None;
     let stop = Arc::new(AtomicBool::new(false));
@@ -153,7 +154,7 @@ fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     Ok(if found.is_whole() && results.all_ok() && !left_out { OK } else { FAILED })
 }
 
-/// The runs of a bench, short ones again and again, and what they say: nothing if they were interrupted.
+/// The runs of a bench, short ones repeated, and their results: `None` if they were interrupted.
 ///
 /// # Errors
 /// Folders and journals that cannot be read or written.
@@ -189,13 +190,13 @@ fn measured(
     Ok((results, Some(found)))
 }
 
-/// Says what is missing.
+/// Prints what is missing.
 fn complain(found: &Found) {
     deck::print(&found.problems, &Sources::default());
     found.failures.iter().for_each(|text| eprintln!("failed: {text}"));
 }
 
-/// What was going on beside a run while its time was taken.
+/// The other load on the machine while a run was timed.
 fn beside(runs: &sweep::Sweep) -> String {
     let at_once = runs.at_once;
     match &runs.ranks {

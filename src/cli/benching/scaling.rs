@@ -9,7 +9,7 @@ use std::io::Write;
 use std::process::Stdio;
 use std::time::Duration;
 
-/// What is asked of the forecast.
+/// The words of the forecast.
 #[derive(Clone, Debug, PartialEq, clap::Parser)]
 #[command(name = "perigrain bench")]
 pub struct Wanted {
@@ -107,7 +107,7 @@ pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
     Ok(OK)
 }
 
-/// What a run of a kind's deck told.
+/// The measurements of a run of a kind's deck.
 struct Run {
     particles: f64,
     /// Time of a step for each particle [s], on the wall and of the processor.
@@ -122,7 +122,7 @@ fn run(kind: &Kind, repeat: usize, switches: &[&str]) -> Result<Run, Usage> {
     let once = || {
         let (said, memory) = said(switches, Some(kind.deck))?;
         read(&said, memory)
-            .ok_or_else(|| Usage::new(format!("a run of `{}` does not tell its time", kind.name)))
+            .ok_or_else(|| Usage::new(format!("a run of `{}` does not report its time", kind.name)))
     };
     let runs: Result<Vec<Run>, Usage> = (0..repeat).map(|_| once()).collect();
     let fastest = runs?.into_iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds));
@@ -138,7 +138,7 @@ fn said(words: &[&str], deck: Option<&str>) -> Result<(String, f64), Usage> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().map_err(|e| failed(&e))?;
     if let (Some(mut pipe), Some(deck)) = (child.stdin.take(), deck) {
-        // One that does not listen has failed, and says why.
+        // A process that does not read has failed, and prints why.
         let _ = pipe.write_all(deck.as_bytes());
     }
     let mut memory = 0.0;
@@ -153,7 +153,7 @@ fn said(words: &[&str], deck: Option<&str>) -> Result<(String, f64), Usage> {
     }
 }
 
-/// The most memory that a process has had, where the system tells [byte].
+/// The peak memory of a process, where the system reports it [byte].
 fn most(process: u32) -> Option<f64> {
     let text = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -180,7 +180,7 @@ fn wires() -> Result<Machine, Usage> {
         line.split_whitespace().nth(1)?.parse::<f64>().ok()
     };
     let (Some(short), Some(long)) = (microseconds(" for 8 bytes"), microseconds(" for 1048576 bytes")) else {
-        return Err(Usage::new("two ranks of this machine do not tell their times"));
+        return Err(Usage::new("two ranks of this machine do not report their times"));
     };
     let bandwidth = f64::from(1 << 20) / (1e-6 * (long - short).max(1.0));
     Ok(Machine { cores: 1, bandwidth, latency: 1e-6 * short, memory: f64::INFINITY })

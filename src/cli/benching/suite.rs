@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// What is asked of the suite.
+/// The words of the suite.
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Parser)]
 #[command(name = "perigrain bench")]
 pub struct Wanted {
@@ -43,7 +43,7 @@ pub struct Wanted {
     /// Where the runs are (bench.suite)
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Forget earlier runs there
+    /// Discard earlier runs there
     #[arg(long)]
     pub anew: bool,
     /// Share the runs out to N processes of this machine, as `mpirun -n N` does
@@ -54,10 +54,10 @@ pub struct Wanted {
     pub markdown: Option<PathBuf>,
 }
 
-/// Runs what is wanted; the exit code says whether every run went well.
+/// Runs the chosen cases; the exit code shows whether every run went well.
 ///
 /// # Errors
-/// A pattern that no case has, a LAMMPS that is not there, a file that cannot be written, ranks that cannot be joined.
+/// A pattern that no case has, a missing LAMMPS, a file that cannot be written, ranks that cannot be joined.
 pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
     let options = Options { ranks: wanted.ranks, ..Options::default() };
     ranks::shared_out(&options, |ranks| first(wanted, ranks), serve)
@@ -87,7 +87,7 @@ fn first(wanted: &Wanted, ranks: Option<Ranks>) -> Result<u8, Usage> {
         show(&format!("\n{} of {n}  {}: {}\n", k + 1, case.name, case.title));
         match one(&case, &manner, wanted.anew, &stop) {
             Ok(None) => {
-                show("interrupted: the same command goes on\n");
+                show("interrupted: the same command continues\n");
                 return Ok(INTERRUPTED);
             }
             Ok(Some((bench, found, fine))) => {
@@ -130,7 +130,7 @@ fn manner(wanted: &Wanted) -> Result<Manner, Usage> {
 
 type Ran = Option<(Bench, crate::bench::Found, bool)>;
 
-/// Runs a case and shows its table; nothing if it was interrupted. The last word says whether all went well.
+/// Runs a case and shows its table; `None` if it was interrupted. The last value is whether all went well.
 fn one(case: &Case, manner: &Manner, anew: bool, stop: &AtomicBool) -> perigrain_base::diag::Result<Ran> {
     let bench = case.bench(manner)?;
     let (results, found) = super::measured(&bench, anew, false, stop)?;

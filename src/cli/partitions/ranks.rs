@@ -12,7 +12,7 @@ use std::process::Child;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often letters, processes and what they ask are looked at.
+/// Interval at which letters, processes and their requests are polled.
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Runs every partition; the exit code is that of the worst.
@@ -60,7 +60,7 @@ pub fn first(o: &Options, ranks: &Ranks) -> std::io::Result<u8> {
                     let making: Vec<String> = making.map(|n| format!("partition {}", n + 1)).collect();
                     let what =
                         if making.is_empty() { "none was left to it".into() } else { making.join(", ") };
-                    eprintln!("error: {} has ended without a word: {what}", ranks.name(rank));
+                    eprintln!("error: {} has ended without a message: {what}", ranks.name(rank));
                     return Ok(FAILED);
                 }
             }
@@ -151,7 +151,7 @@ impl Turns {
     }
 }
 
-/// The processes of this rank, and the socket where they ask for turns.
+/// The processes of this rank, and the socket where they request turns.
 struct Team {
     path: PathBuf,
     listener: UnixListener,
@@ -184,7 +184,7 @@ impl Team {
         Ok(())
     }
 
-    /// Partitions that want a turn, each with the round and where it waits for the answer.
+    /// Partitions that wait for a turn, each with the round and the stream for the answer.
     fn asked(&self) -> Vec<(UnixStream, usize, usize)> {
         let one = |mut desk: UnixStream| {
             let mut words = [0; 16];
@@ -223,11 +223,11 @@ impl Drop for Team {
 }
 
 fn answer(mut desk: UnixStream, turn: usize) {
-    // A partition that has ended meanwhile wants none.
+    // A partition that has ended meanwhile needs none.
     let _ = desk.write_all(&(turn as u64).to_le_bytes());
 }
 
-/// Asks this partition's rank for the next turn of a round.
+/// Requests the next turn of a round from this partition's rank.
 pub fn ask(path: &Path, world: &World, round: u64) -> std::io::Result<usize> {
     let mut desk = UnixStream::connect(path)?;
     desk.write_all(&(world.number as u64).to_le_bytes())?;

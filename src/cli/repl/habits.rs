@@ -17,7 +17,7 @@ pub enum Meant {
     Told(String),
 }
 
-/// Programs that somebody who types them wants from the shell.
+/// Programs that a user types from habit of the shell.
 const PROGRAMS: [&str; 9] = ["ls", "cd", "pwd", "cat", "less", "head", "tail", "mkdir", "grep"];
 
 /// What a typed line means that begins with no command of the prompt.

@@ -1,4 +1,4 @@
-//! The interactive session: lines are read, worked off, looked at and taken back.
+//! The interactive session: lines are read, executed, inspected and taken back.
 
 mod alone;
 mod colon;
@@ -27,8 +27,8 @@ use std::rc::Rc;
 use std::time::Instant;
 use undoing::Undo;
 
-/// What the prompt says first.
-const GREETING: &str = "Lines of a deck are worked off as you type them. Tab completes, `help` (or `?`) and `:help` tell more, \
+/// The greeting of the prompt.
+const GREETING: &str = "Lines of a deck are executed as you type them. Tab completes, `help` (or `?`) and `:help` explain more, \
                         Ctrl-C stops a run, Ctrl-D leaves.";
 
 /// An interactive session.
@@ -110,7 +110,7 @@ fn begin(o: &Options, log: &Log, known: Rc<RefCell<Known>>) -> Result<Repl> {
 }
 
 impl Repl {
-    /// Works off what was typed or pasted, one logical line after the other; the exit status once it is over.
+    /// Executes typed or pasted text, one logical line after the other; the exit status once it is over.
     fn text(&mut self, text: &str) -> Option<i32> {
         let mut rest = text.trim_end_matches('\n');
         while !rest.is_empty() {

@@ -26,7 +26,7 @@ const REMEMBERED: usize = 2000;
 pub enum Read {
     /// Here it is, with its line breaks if it has several lines.
     Text(String),
-    /// Ctrl-C: the line is forgotten.
+    /// Ctrl-C: the line is dropped.
     Again,
     /// Ctrl-D or the end of the pipe.
     End,
@@ -34,7 +34,7 @@ pub enum Read {
 
 /// Where lines come from.
 pub enum Reader {
-    /// Somebody types.
+    /// A user at a terminal.
     Terminal(Box<Editor<Assistant, FileHistory>>, Option<PathBuf>),
     /// A file or another program.
     Pipe(Stdin),
@@ -64,7 +64,7 @@ impl Reader {
         Self::Terminal(Box::new(editor), history)
     }
 
-    /// Whether somebody types.
+    /// Whether the input is a terminal.
     pub fn is_terminal(&self) -> bool {
         matches!(self, Self::Terminal(..))
     }
@@ -109,7 +109,7 @@ fn history_file() -> Option<PathBuf> {
     Some(folder.join("history"))
 }
 
-/// What stands beside the one who types.
+/// Completion, hints and colours while a line is typed.
 pub struct Assistant {
     known: Rc<RefCell<Known>>,
     folder: PathBuf,

@@ -3,7 +3,7 @@
 use super::alone::Alone;
 use std::fmt::Write;
 
-/// A line that was worked off and not taken back.
+/// A line that was executed and not taken back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
     /// As it was typed.

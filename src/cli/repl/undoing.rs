@@ -26,7 +26,7 @@ impl Undo {
         Self { limit, steps: VecDeque::new() }
     }
 
-    /// The state before a line that is about to be worked off; `None` where the scene is larger than the limit.
+    /// The state before a line that is about to be executed; `None` where the scene is larger than the limit.
     pub fn look(&self, session: &Session) -> Option<Snapshot> {
         (session.bytes() <= self.limit).then(|| session.snapshot(self.steps.back().map(|b| &b.state)))
     }

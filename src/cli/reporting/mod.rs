@@ -44,7 +44,7 @@ pub struct Told<'a> {
 }
 
 impl Sheet {
-    /// Opens the file that a command line asks for. What stands in it stays there until the page is written.
+    /// Opens the file of a command line. Its content stays there until the page is written.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -84,7 +84,7 @@ impl Sheet {
         outcome.map_err(|e| trouble("write the report", &self.path, &e).into())
     }
 
-    /// What is said once it is written.
+    /// The message once it is written.
     pub fn said(&self) -> String {
         format!("Report in {}", self.path.display())
     }
@@ -100,7 +100,7 @@ pub(super) fn title(deck: &Deck) -> String {
     }
 }
 
-/// What there is to say about a run.
+/// The report about a run.
 fn of_run(told: Told, wall: Duration, since: SystemTime) -> Report {
     let (o, s) = (told.options, told.session);
     let name = deck::name(&o.deck);

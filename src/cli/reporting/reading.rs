@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// What is asked of `report`.
+/// The words of `report`.
 #[derive(Clone, Debug, PartialEq, Eq, clap::Args)]
 pub struct Wanted {
     /// The run's log, and its text dumps
@@ -56,7 +56,7 @@ fn made(wanted: &Wanted) -> Result<()> {
     Ok(())
 }
 
-/// What these files tell.
+/// The report of these files.
 fn told(files: &[PathBuf]) -> Result<Report> {
     let name = files[0].file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
     let mut r = Report::new(name);
@@ -93,7 +93,7 @@ fn told(files: &[PathBuf]) -> Result<Report> {
         );
     }
     if dumps.is_empty() {
-        r.remarks.push("No dump was given: there are no particles to look at.".into());
+        r.remarks.push("No dump was given: there are no particles to show.".into());
     }
     r.facts.push(("page made".into(), day(SystemTime::now())));
     Ok(r)

@@ -1,4 +1,4 @@
-//! Snapshots while a run goes on: the scene is read at even intervals, and nothing of the run depends on it.
+//! Snapshots during a run: the scene is read at even intervals, and nothing of the run depends on it.
 
 use crate::cli::progress::Progress;
 use crate::cli::viewing::Live;
@@ -19,7 +19,7 @@ pub struct Recorder {
     /// Ends the run.
     stop: Arc<AtomicBool>,
     born: Instant,
-    /// The live page wants the step that is being made.
+    /// The live page requests the step that is being made.
     shown: bool,
     /// Steps of earlier runs, and of this one.
     before: u64,

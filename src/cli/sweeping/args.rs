@@ -13,7 +13,7 @@ pub enum List {
     Table(PathBuf),
 }
 
-/// What `perigrain sweep` is asked for; nothing here has been acted upon.
+/// The parsed words of `perigrain sweep`; none has been applied yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// The deck and LAMMPS' switches.
@@ -30,9 +30,9 @@ pub struct Request {
     pub out: Option<PathBuf>,
     /// How often a failed run is tried again.
     pub retry: usize,
-    /// An earlier sweep there is forgotten.
+    /// An earlier sweep there is discarded.
     pub anew: bool,
-    /// Only tell where the sweep stands.
+    /// Only print the state of the sweep.
     pub status: bool,
 }
 
@@ -112,7 +112,7 @@ impl Request {
         }
         if !o.partition.is_empty() {
             let usage = Usage::new(
-                "`-partition` wants several processes for one deck, and each run of a sweep is one",
+                "`-partition` needs several processes for one deck, and each run of a sweep is one",
             );
             return Err(usage.help(
                 "give the values of `world` variables by `-each NAME VALUE…`; `-jobs N` makes N runs at once",
@@ -121,7 +121,7 @@ impl Request {
         if o.timeout.is_some() {
             let usage = Usage::new("`-timeout` has no meaning for a sweep");
             return Err(
-                usage.help("end it with Ctrl-C: started again, it goes on with the runs that are left")
+                usage.help("end it with Ctrl-C: started again, it continues with the runs that are left")
             );
         }
         if o.report.is_some() {

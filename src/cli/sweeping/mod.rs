@@ -30,7 +30,7 @@ const SHOWN: usize = 40;
 /// Characters of its lines where no terminal has fewer.
 const WIDTH: usize = 160;
 
-/// Makes the runs, or tells where they stand; the exit code. Of several ranks the first one does so, and the others make runs for it.
+/// Makes the runs, or prints their state; the exit code. Of several ranks the first one does so, and the others make runs for it.
 ///
 /// # Errors
 /// Lists of values that make no sense, ranks that cannot be joined.
@@ -99,7 +99,7 @@ pub(super) fn said(outcome: Result<u8>, sources: &Sources) -> u8 {
     })
 }
 
-/// The lists of values, tied as `-zip` says.
+/// The lists of values, tied by `-zip`.
 pub(super) fn axes(request: &Request, sources: &mut Sources) -> Result<Vec<Axis>> {
     let mut axes = vec![];
     for list in &request.lists {
@@ -231,7 +231,7 @@ fn ending(sweep: &Sweep, results: &Results) -> String {
     let place = sweep.folder.join(table::TABLE);
     text += &format!("{}: {}\n", place.display(), counts(results));
     if results.interrupted {
-        text += "interrupted: the same command goes on\n";
+        text += "interrupted: the same command continues\n";
     }
     text
 }
@@ -250,7 +250,7 @@ pub(super) fn counts(results: &Results) -> String {
     text
 }
 
-/// Tells where the sweep in a folder stands.
+/// Prints the state of the sweep in a folder.
 pub(super) fn status(folder: &Path) -> Result<u8> {
     let Standing { deck, jobs, report, results, running, left } = sweep::look(folder)?;
     let mut work = running.map_or("not at work".into(), |n| format!("at work on {n}"));

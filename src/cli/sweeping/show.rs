@@ -11,7 +11,7 @@ use std::io::Write;
 pub struct Show<'a> {
     /// The runs.
     pub jobs: &'a [Job],
-    /// Say nothing.
+    /// Print nothing.
     pub quiet: bool,
     /// The line for all.
     pub tally: Tally,
@@ -28,7 +28,7 @@ impl Show<'_> {
 
 impl Watch for Show<'_> {
     fn resumed(&mut self, done: usize, state: &State) {
-        self.say(&format!("going on: {done} of {} runs are done", state.jobs));
+        self.say(&format!("continuing: {done} of {} runs are done", state.jobs));
     }
 
     fn note(&mut self, note: &Diagnostics) {

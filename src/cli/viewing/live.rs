@@ -1,4 +1,4 @@
-//! What the run and its reader tell each other.
+//! The state that the run and the reader of its page share.
 
 use crate::json::quoted;
 use crate::report::film::{Frame, taken};
@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A reader who has not asked for so long is gone.
+/// A reader without a request for so long is gone.
 const GONE: Duration = Duration::from_secs(4);
 
-/// What the reader wants of the run.
+/// The reader's request to the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Wish {
     #[default]
@@ -34,7 +34,7 @@ pub struct Live {
     latest: Mutex<(usize, Option<Arc<Frame>>)>,
     done: AtomicU64,
     total: AtomicU64,
-    /// Whether a run goes on, and whether the deck is over.
+    /// Whether a run is in progress, and whether the deck is over.
     running: AtomicBool,
     over: AtomicBool,
     /// The reader knows that it is over, and has all of it.
@@ -47,12 +47,12 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Live {
-    /// A reader has asked for something.
+    /// Notes a request of a reader.
     pub fn heard(&self) {
         *lock(&self.heard) = Some(Instant::now());
     }
 
-    /// Does what a reader wants; `false` if that is nothing known.
+    /// Performs a reader's request; `false` if it is unknown.
     pub fn act(&self, path: &str) -> bool {
         let mut wish = lock(&self.wish);
         *wish = match (path, *wish) {
@@ -107,7 +107,7 @@ impl Live {
         }
     }
 
-    /// Whether the reader wants to see the step that comes now. While the run is to pause, it waits here.
+    /// Whether the reader requests the next step. While the run is paused, it waits here.
     pub fn looks(&self, stop: &AtomicBool) -> bool {
         let mut wish = lock(&self.wish);
         loop {
@@ -144,7 +144,7 @@ impl Live {
         self.over.store(true, Ordering::Relaxed);
     }
 
-    /// Whether a reader is there who does not know yet that it is over.
+    /// Whether there is a reader and the end has not been shown yet.
     pub fn is_awaited(&self) -> bool {
         !self.told.load(Ordering::Relaxed) && lock(&self.heard).is_some_and(|t| t.elapsed() < GONE)
     }
@@ -157,9 +157,9 @@ mod tests {
     #[test]
     fn a_run_pauses_steps_goes_on_and_stops() {
         let (live, stop) = (Live::default(), AtomicBool::new(false));
-        assert!(!live.looks(&stop), "nobody is there");
+        assert!(!live.looks(&stop), "there is no reader");
         assert_eq!(live.frame(0).map(|f| f.0), None);
-        assert!(live.looks(&stop), "somebody has asked for a snapshot");
+        assert!(live.looks(&stop), "a snapshot has been requested");
         assert!(!live.act("/dance") && live.act("/pause"));
         assert!(live.looks(&stop), "the step before the pause is shown");
         std::thread::scope(|s| {

@@ -1,4 +1,4 @@
-//! `-view [PORT]`: the page of a run on the loopback address while it goes on, with pause, step and stop.
+//! `-view [PORT]`: the page of a run on the loopback address during the run, with pause, step and stop.
 
 mod live;
 mod server;
@@ -23,10 +23,10 @@ const FAREWELL: Duration = Duration::from_secs(3);
 /// Rows that one answer holds at most.
 const ROWS: usize = 2000;
 
-/// Opens the page that a command line asks for, and prints where it is.
+/// Opens the page of a command line, and prints its address.
 ///
 /// # Errors
-/// A port that cannot be had.
+/// A port that is not available.
 pub fn open(o: &Options, text: &str, log: &Log) -> Result<Option<Arc<Live>>> {
     let Some(port) = o.view else { return Ok(None) };
     let server = Server::on(port, token()).map_err(|e| refused(port, &e))?;
@@ -36,7 +36,7 @@ pub fn open(o: &Options, text: &str, log: &Log) -> Result<Option<Arc<Live>>> {
     report.live = true;
     let page = report::html(&report);
     log.keep_rows();
-    eprintln!("Look at it at {}", server.url());
+    eprintln!("It is shown at {}", server.url());
     let (shared, log) = (live.clone(), log.clone());
     std::thread::spawn(move || server.serve(|question| answer(question, &shared, &page, &log)));
     Ok(Some(live))
@@ -78,11 +78,11 @@ fn state(live: &Live, log: &Log, since: usize) -> String {
         let all = tables.0.iter().flat_map(|t| t.rows.iter().map(move |row| (&t.columns, row)));
         all.skip(since).take(ROWS).map(|(columns, row)| report::row_json(columns, row)).collect()
     });
-    // Looked at after the rows, so that a run that is over has told all of them.
+    // Read after the rows, so that a run that is over has delivered all of them.
     format!("{{{},\"rows\":[{}]}}", live.state_json(), rows.join(","))
 }
 
-/// Shows how it ended, and lets a reader who is there see it.
+/// Shows how it ended, and waits until a present reader has seen it.
 pub fn farewell(live: &Live, session: &Session) {
     live.end(taken(&session.world, None));
     let begin = Instant::now();

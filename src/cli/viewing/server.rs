@@ -1,4 +1,4 @@
-//! A page on the loopback address while a run goes on: what its reader asks, if it is the reader that was given the address.
+//! A page on the loopback address during a run: answers to its reader, if the request has the token of the address.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -9,30 +9,30 @@ use std::time::Duration;
 const LONGEST: u64 = 16 * 1024;
 /// So many connections at a time.
 const MOST: usize = 32;
-/// Who is slower than this is not waited for.
+/// A slower client is not waited for.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// A question that has the token and comes from the page itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
-    /// Whether it asks for something to be done.
+    /// Whether it requests an action.
     pub acts: bool,
-    /// What it asks for: `/`, `/state`, …
+    /// What it requests: `/`, `/state`, …
     pub path: String,
     /// The value behind `since=`.
     pub since: usize,
 }
 
-/// What is said to a question.
+/// The answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// The kind of what is said.
+    /// Its content type.
     pub kind: &'static str,
-    /// What is said.
+    /// Its content.
     pub body: Vec<u8>,
 }
 
-/// A listener on the loopback address alone, and what is known of those who may ask.
+/// A listener on the loopback address alone, and the rules for requests.
 pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
@@ -114,11 +114,11 @@ fn allowed(head: &[String], port: u16, token: &str) -> Result<Question, (&'stati
     };
     let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
     if !value("host").is_some_and(|host| own.iter().any(|o| o == host)) {
-        return Err((FORBIDDEN, "another host was asked for\n"));
+        return Err((FORBIDDEN, "the request names another host\n"));
     }
     let foreign = |origin: &str| !own.iter().any(|o| origin == format!("http://{o}"));
     if value("origin").is_some_and(foreign) {
-        return Err((FORBIDDEN, "another page asks\n"));
+        return Err((FORBIDDEN, "the request comes from another page\n"));
     }
     let mut words = head.first().map_or("", |l| l).split(' ');
     let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
@@ -136,7 +136,7 @@ fn allowed(head: &[String], port: u16, token: &str) -> Result<Question, (&'stati
     Ok(Question { acts, path: path.to_string(), since })
 }
 
-/// Whether two texts are the same, in a time that does not tell where they differ.
+/// Whether two texts are the same, in a time that does not depend on where they differ.
 fn same(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |d, (a, b)| d | (a ^ b)) == 0
 }
@@ -152,7 +152,7 @@ fn say(mut stream: &TcpStream, status: &str, kind: &str, body: &[u8]) -> std::io
     stream.flush()
 }
 
-/// 128 bits that nobody can guess: the seeds of the standard library's hash maps come from the system.
+/// 128 bits that cannot be guessed: the seeds of the standard library's hash maps come from the system.
 pub fn token() -> String {
     use std::hash::{BuildHasher, Hasher, RandomState};
     (0..2).map(|_| format!("{:016x}", RandomState::new().build_hasher().finish())).collect()

@@ -1,4 +1,4 @@
-//! What ops can ask for while a plan is made.
+//! What ops can request while a plan is made.
 
 use super::Sealer;
 use crate::graph::said;

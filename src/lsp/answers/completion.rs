@@ -19,7 +19,7 @@ pub fn complete(server: &mut Server, file: &Arc<File>, byte: usize) -> Value {
     let typed: Vec<&str> = line[..start].split_whitespace().filter(|w| *w != "&").collect();
     let found = found.into_iter().filter(|c| c.what != What::Prompt);
     let items: Vec<Value> = found.map(|c| item(&c, &typed, &range)).collect();
-    // What is typed next may ask for other names, as behind `v_`.
+    // The next letters may call for other names, as behind `v_`.
     json!({"isIncomplete": true, "items": items})
 }
 
@@ -71,7 +71,7 @@ fn summary(title: &str) -> String {
     knowing::page(title).map(|page| page.doc.summary.to_string()).unwrap_or_default()
 }
 
-/// An item with its documentation: the page of a command or style, or what the page says of a keyword.
+/// An item with its documentation: the page of a command or style, or the page's sentence on a keyword.
 pub fn resolve(mut item: Value) -> Value {
     let text = |key: &str| {
         item.pointer(&format!("/data/{key}")).and_then(Value::as_str).unwrap_or_default().to_string()

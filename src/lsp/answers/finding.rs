@@ -102,7 +102,7 @@ pub fn rename(server: &mut Server, file: &Arc<File>, byte: usize, new: &str) -> 
     }
     let mut changes: Map<String, Value> = Map::new();
     for (file, m) in all {
-        // `$x` takes one letter; a longer name wants braces.
+        // `$x` takes one letter; a longer name needs braces.
         let bare = m.bytes.start > 0 && file.text.as_str().as_bytes()[m.bytes.start - 1] == b'$';
         let text = if bare && new.len() > 1 { format!("{{{new}}}") } else { new.to_string() };
         let edit = json!({"range": file.text.range(m.bytes.clone()), "newText": text});

@@ -1,4 +1,4 @@
-//! Quick fixes: what the help of a message says to write instead.
+//! Quick fixes: the replacements that the help of a message suggests.
 
 use crate::lsp::server::{File, Server};
 use serde_json::{Value, json};
@@ -29,15 +29,15 @@ pub fn actions(server: &Server, file: &File, range: &std::ops::Range<usize>) -> 
     Value::Array(all)
 }
 
-/// The word in a help that says "did you mean `word`?".
+/// The word in a help of the form "did you mean `word`?".
 fn meant(help: &str) -> Option<&str> {
     let (_, rest) = help.split_once("did you mean ")?;
     let (_, quoted) = rest.split_once('`')?;
     quoted.split_once('`').map(|(word, _)| word).filter(|word| !word.is_empty())
 }
 
-/// The new text of a word: what stands around its name stays. Of a formula or a line only one word is wrong, and which one
-/// only its own place tells.
+/// The new text of a word, with the surroundings of its name kept. In a formula or a line only one word is wrong; its place
+/// determines which.
 fn replacement(old: &str, new: &str) -> Option<String> {
     if old.is_empty() || old.contains(char::is_whitespace) {
         return None;

@@ -1,4 +1,4 @@
-//! Hover and signature help: what the manual says of the word at the cursor.
+//! Hover and signature help: the manual's text on the word at the cursor.
 
 use super::{completion, page_markdown};
 use crate::lsp::checks::explained;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Definitions of a name that are shown at most.
 const MOST: usize = 5;
 
-/// What there is to say about the word at a byte, and about the problems there.
+/// The text on the word at a byte, and on the problems there.
 pub fn hover(server: &mut Server, file: &Arc<File>, byte: usize) -> Value {
     let mut parts = problems_at(server, file, byte);
     let mut range = None;

@@ -130,7 +130,7 @@ pub(super) const COMPUTE: Entry = (
         syntax: "compute ID group STYLE word …",
         summary: "Declares a quantity to be computed from the particles.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc compute reduce`. A compute \
-            costs nothing until something asks for it, and is computed at most once in a step. `c_ID` is its number or its \
+            costs nothing until something reads it, and is computed at most once in a step. `c_ID` is its number or its \
             value per particle, `c_ID[i]` an element of its vector or a column of values per particle. An ID that exists \
             is refused.\n\n\
             Three are there by themselves once there is a box: `thermo_temp` (temp), `thermo_press` (pressure) and \
@@ -182,7 +182,7 @@ pub(super) const DUMP_MODIFY: Entry = (
         text: "All dumps understand `append`, `every`, `first`, `pad`, `region`, `sort` and `thresh`, explained on the page \
             of `dump custom`; `flush` and `buffer` are read, snapshots are handed over whole anyway. The other keywords \
             stand on the page of the style. LAMMPS' further keywords are refused by name. In LAMMPS one dump is unsorted \
-            unless told otherwise; here rows are sorted by id.",
+            unless set otherwise; here rows are sorted by id.",
         example: "dump 1 all custom 2 plate.*.txt id type x y z c_dmg\n\
             dump_modify 1 region half sort -1 pad 6 first yes format float %.8g thresh c_dmg >= 0",
     },

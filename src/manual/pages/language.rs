@@ -8,7 +8,7 @@ pub(super) const DECKS: Entry = (
     Doc {
         syntax: "# decks hold one command per line\ncommand word word …\ncommand word $x ${name} $(formula) \"words in quotes\" &\n    word",
         summary: "How a deck is written: lines, words, quotes, values put in.",
-        text: "A deck is worked off line by line from the top; a line that is refused changes nothing and ends the \
+        text: "A deck is executed line by line from the top; a line that is refused changes nothing and ends the \
             deck. `#` outside quotes starts a comment. `&` at the end of a line joins the next one to it. Words are \
             separated by blanks. `'…'` and `\"…\"` keep blanks together, `\"\"\"…\"\"\"` also line breaks and the other two \
             kinds of quotes; a closing quote must be followed by a blank.\n\n\
@@ -20,7 +20,7 @@ pub(super) const DECKS: Entry = (
             text. Numbers are written like `5`, `-0.25` or `1.5e-8`; `inf`, `nan` and anything with letters left over is \
             refused.\n\n\
             A mistake is shown with its file and line, the word underlined, and what was expected. `perigrain check` \
-            shows all mistakes of a deck at once, `perigrain explain PG0102` tells more about the code of a message.\n\n\
+            shows all mistakes of a deck at once, `perigrain explain PG0102` explains the code of a message.\n\n\
             As in LAMMPS, with one difference: a word that is not understood is always an error, and so is a command of \
             LAMMPS that is not there yet.",
         example: "variable dx equal 0.001     # a comment\n\
@@ -103,7 +103,7 @@ pub(super) const IF: Entry = (
             condition first. It knows no arithmetic: write `$(v_a+1) > 2`.\n\n\
             Every command is one word, so put quotes around it; inside `\"…\"` use `'…'` or `\"\"\"…\"\"\"`. The commands of \
             the first branch whose condition holds are carried out as if they stood in the deck, `jump` included.\n\n\
-            Where a deck is only looked at, a condition may hang on what only a run can tell; `0 && …` is false all the             same. `perigrain check` then looks at every branch that may be taken, `perigrain plan` carries out the first of them.             Variables that any of them sets are unknown behind it, a `jump` or `quit` in them is passed over, and `clear` is left out.",
+            Where a deck is only checked, a condition may depend on what only a run determines; `0 && …` is false all the             same. `perigrain check` then checks every branch that may be taken, `perigrain plan` executes the first of them.             Variables that any of them sets are unknown behind it, a `jump` or `quit` in them is passed over, and `clear` is left out.",
         example: "variable v index 35\n\
             if \"$v > 100 && $(count(plate)) > 0\" then &\n    \"print 'fast'\" &\n  elif \"$v == 35\" &\n    \"print 'slow'\" \
             \"variable slow index yes\" &\n  else \"print 'neither'\"",
@@ -125,14 +125,14 @@ pub(super) const JUMP: Entry = (
     "jump",
     Doc {
         syntax: "jump FILE|SELF [LABEL]",
-        summary: "Goes on reading in another file, or at a label.",
-        text: "Reading goes on at the top of `FILE` (`SELF`: the present one), with `LABEL` at the first `label LABEL` \
+        summary: "Continues in another file, or at a label.",
+        text: "Reading continues at the top of `FILE` (`SELF`: the present one), with `LABEL` at the first `label LABEL` \
             after that. There is no way back: `include` is the command that returns. A `jump` right after a `next` that \
             ran out is passed over, which is how loops end. From an included file it leaves the rest of that file only. \
             A file is looked for in the working folder, then beside the deck. As in LAMMPS no values are put into `label` lines while they are \
             searched.\n\n\
             A loop that can never end is refused: when a jump is made again and no variable, file or scene has changed \
-            since. `perigrain check` and `perigrain plan` follow a loop for 10,000 turns, and one that ends by something only a             run can tell for one turn: what its lines set is unknown behind it.\n\n\
+            since. `perigrain check` and `perigrain plan` follow a loop for 10,000 turns, and one that ends by something only a             run determines for one turn: what its lines set is unknown behind it.\n\n\
             `jump SELF` also works for a deck on standard input. Inside `run … every` it is refused.",
         example: "jump SELF later\nprint \"this line is passed over\"\nlabel later",
     },
@@ -154,7 +154,7 @@ pub(super) const INCLUDE: Entry = (
     "include",
     Doc {
         syntax: "include FILE",
-        summary: "Works off another file, then goes on.",
+        summary: "Executes another file, then continues.",
         text: "The file is looked for in the working folder, then beside the deck. Files and then-commands may nest 100 deep, so a file that \
             includes itself is refused. `if … then \"include FILE\"` includes under a condition.",
         example: "include plate.inc",

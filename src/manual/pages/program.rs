@@ -50,7 +50,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     written: see [In your editor](../editor/README.md). `plan` prints what each step of \
     the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
-    particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--measure -ranks N` also which rows of particles each \
+    particles, and lines that depend on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--measure -ranks N` also which rows of particles each \
     part needs in a quiet step and what ranks send for it, with `--dot` it \
     prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
@@ -72,7 +72,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     `restart`; further runs are left out, the other lines are executed. What is still at work a tenth of TIME later (two seconds at least, a minute at most), and lines that follow then, \
     end with the error PG0209. A `timer timeout` in the deck has the last word, and ends runs alone;\n\
     - `-report FILE`: writes what the run was as one web page, see [Look at a run](../howto/report.md); the file is opened before the run begins;\n\
-    - `-view [PORT]`: shows the run in a browser on this machine while it goes on, at the address that it prints; with pause, step and stop;\n\
+    - `-view [PORT]`: shows the run in a browser on this machine while it runs, at the address that it prints; with pause, step and stop;\n\
     - `-compat lammps[/2025|/2026]`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md), and of which version (without one the newest, 2026; `lammps/2025` is LAMMPS 22Jul2025);\n\
     - `-ranks N`: N processes of this machine run the deck together, as `mpirun -n N perigrain -in DECK` does with any MPI on one machine or several (`perigrain ranks` says which library \
     connects them, and how fast); results are the same bits for any N, files are written by the first rank. `sweep`, `bench` and `-partition` share their runs out to ranks instead;\n\
@@ -90,7 +90,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     line that takes long within half a second, as not done; a second one (a second later, if it is no Ctrl-C) ends the program at once. With `-partition` it reaches all of them. A file that outgrows `ulimit -f` is an error, as on a full disk.\n\n\
     On a terminal few words are said: a line for each command that makes something, how much memory the particles are about to take, the step table as far as whole columns fit, and \
     behind a run three lines: time and speed; where results are; what would make it faster. LAMMPS' blocks stand in the log, in pipes and with `-screen full`. A live line shows \
-    how many steps of all the deck's runs are made (of the present run where only a run can tell), speed and time left as the runs so far teach them, step, time and thermo \
+    how many steps of all the deck's runs are made (of the present run where only a run determines it), speed and time left as estimated from the runs so far, step, time and thermo \
     columns; there is none where standard error is no terminal, or `TERM` is `dumb`. Messages have colours unless `NO_COLOR` is set.";
 
 #[cfg(test)]

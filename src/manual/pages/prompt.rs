@@ -16,7 +16,7 @@ pub(super) const PROMPT: Entry = (
             :undo [N]\n\
             :save FILE\n\
             :quit",
-        summary: "The interactive session: lines of a deck are worked off as they are typed.",
+        summary: "The interactive session: lines of a deck are executed as they are typed.",
         text: TEXT,
         example: "perigrain repl",
     },
@@ -25,13 +25,13 @@ pub(super) const PROMPT: Entry = (
 const TEXT: &str = "`perigrain` on a terminal, or `perigrain repl`, reads lines and works each off at once. Every command of \
     a deck works. A line counts wholly or not at all: if it is refused or fails, a run included, the scene is as it was \
     before it, only files that were written stay. `perigrain repl < FILE` does the same without a terminal: mistakes are \
-    shown, it goes on behind them, and the exit code is 1 if there was one.\n\n\
+    shown, it continues after them, and the exit code is 1 if there was one.\n\n\
     Tab completes commands, styles, keywords, IDs, variables, files (of materials those built in, too), colours and words such as `INF`; what comes next stands dim behind the cursor, and \
-    the right arrow takes a word that can only be one. A line goes on after `&` at its end and inside `\"\"\"`. The history is \
+    the right arrow takes a word that can only be one. A line continues after `&` at its end and inside `\"\"\"`. The history is \
     kept in `$XDG_STATE_HOME/perigrain/history` (`~/.local/state` without that). Ctrl-C stops a run at a whole step, \
-    Ctrl-D leaves. No log is written unless `-log FILE` asks for it.\n\n\
+    Ctrl-D leaves. No log is written without `-log FILE`.\n\n\
     - `help NAME` shows a page of this manual, as `help pair_style granular`; `?NAME` and `NAME?` do the same.\n\
-    - `%time LINE` works a line off and says how long it took; `exit` and `:q` leave. Other habits (`ls`, `!ls`, `plot`) are told what to write.\n\
+    - `%time LINE` executes a line and prints how long it took; `exit` and `:q` leave. Other habits (`ls`, `!ls`, `plot`) get a hint what to write.\n\
     - `:plan` prints what each step of a run now would do; `:graph` lists the lines that count (a run that was stopped as far as it went) and whose names they use, or \
     writes the graph for graphviz.\n\
     - `:plot pe ke` draws columns of the step tables over the step, in one plot if they are of one size.\n\

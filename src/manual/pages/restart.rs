@@ -7,10 +7,10 @@ pub(super) const RESTART: Entry = (
     "restart",
     Doc {
         syntax: "restart N ROOT\nrestart N FILE1 FILE2\nrestart 0",
-        summary: "Writes restart files while a run goes on.",
+        summary: "Writes restart files during a run.",
         text: "At steps that are multiples of `N`, but not where a run begins. With one name every step has a file of its \
             own: `*` in the name becomes the step, else `.` and the step are appended. With two names the files are \
-            written in turn; a restarted run goes on with the one it did not come from. Both kinds may be in force. \
+            written in turn; a restarted run continues with the one it did not come from. Both kinds may be in force. \
             `restart 0` ends both. A run or minimization that is ended before its last step (Ctrl-C, a signal, `timer timeout`) makes one step \
             more as its last one, with a row of the step table, and then writes one more file: byte by byte the one that \
             `write_restart` writes behind a run of so many steps. A run that an error ends (particles lost, energy out of \
@@ -38,13 +38,13 @@ pub(super) const READ_RESTART: Entry = (
     "read_restart",
     Doc {
         syntax: "read_restart FILE",
-        summary: "Goes on from a restart file: box, particles, bonds, contacts, settings.",
+        summary: "Continues from a restart file: box, particles, bonds, contacts, settings.",
         text: "It takes the place of `create_box` or `read_data`. A `*` in the name stands for the latest step. The file holds \
             the whole scene: clock and time step, units, boundary, box, lattice, types, particles with their forces, groups, \
             regions, materials, peridynamic bonds whole and broken, what contacts remember, neighbour settings and the \
             moment of the last rebuild, the pair style with its coefficients, and the state that fixes keep.\n\n\
             As in LAMMPS, the deck says fixes, computes, variables, dumps and thermo output again. A fix of the same ID and \
-            style goes on with its stored state; state that nobody claims is forgotten at the first run, with a note. \
+            style continues with its stored state; unclaimed state is dropped at the first run, with a note. \
             Regions and materials may be defined again. The pair style may be said again or not.\n\n\
             Where the scene is still that of the file and the lines of the pair style, of fixes and of their variables are \
             the same, the stored forces stand: a run cut in two by a restart file has the same bits as one run. Otherwise \

@@ -73,7 +73,7 @@ pub(super) const LOG: Entry = (
     Doc {
         syntax: "log FILE [append] | none",
         summary: "Changes the log file.",
-        text: "The present log is finished and `FILE` goes on from here, written anew or, with `append`, behind what it \
+        text: "The present log is finished and `FILE` continues from here, written anew or, with `append`, behind what it \
             holds. `none` ends logging. The first log is `log.lammps`, or what `-log` says.",
         example: "log second.log\nlog none",
     },
@@ -109,10 +109,10 @@ pub(super) const COMPAT: Entry = (
         syntax: "compat lammps[/2025|/2026]|none",
         summary: "Gives LAMMPS' numbers also where LAMMPS is wrong.",
         text: "The same as `-compat lammps` on the command line. [Coming from LAMMPS](../coming-from-lammps.md) lists what \
-            it changes and by how much; the log tells which of it a deck touches. `none` goes back. LAMMPS has no such \
+            it changes and by how much; the log lists what concerns the deck. `none` goes back. LAMMPS has no such \
             command.\n\n\
             `lammps/2025` is LAMMPS 22Jul2025, whose numbers have been compared. `lammps/2026`, which `lammps` alone stands for, is the same but \
-            for what LAMMPS has mended in 2026; that page tells what.",
+            for what LAMMPS has mended in 2026; that page lists it.",
         example: "compat lammps",
     },
 );
@@ -132,7 +132,7 @@ pub(super) const SHELL: Entry = (
             folders (empty ones), `mv` and `rm` rename and remove files; `putenv` sets environment variables for `variable \
             … getenv` and for commands. Anything else is one line for `sh`, its words joined by single blanks as LAMMPS \
             does; its output goes to the screen.\n\n\
-            What fails is a warning and the deck goes on, as in LAMMPS; `rm -f` says nothing. `perigrain check` and \
+            A failure is a warning and the deck continues, as in LAMMPS; `rm -f` prints nothing. `perigrain check` and \
             `perigrain plan` carry out nothing but `putenv`; files that are missing later are then not complained about.",
         example: "shell mkdir results\nshell putenv RUN=seven\nvariable run getenv RUN\nprint \"run ${run}\"\nshell rmdir results",
     },
@@ -159,7 +159,7 @@ pub(super) const TIMER: Entry = (
         summary: "Limits the time that runs may take; chooses how much is said about time.",
         text: "- `timeout`: runs end at the first step that is a multiple of `every` (10) after this much time, counted from \
             this line; further runs are passed over. `SS`, `MM:SS` or `H:MM:SS`; `off` takes the limit back. `is_timeout()` \
-            and the thermo keyword `timeremain` tell about it.\n\
+            and the thermo keyword `timeremain` depend on it.\n\
             - `off` and `loop` leave out the tables behind a run, `normal` and `full` (the same here) have them.\n\
             - `sync` and `nosync` are for LAMMPS' processes; there is one here.",
         example: "timer timeout 1:00:00 every 5\nrun 4\nif \"$(is_timeout())\" then \"print 'out of time'\"\ntimer timeout off",
@@ -196,18 +196,18 @@ pub(super) const SWEEP: Entry = (
 const SWEEP_TEXT: &str = "`each` gives a list of values for an index variable; several lists mean all combinations, the last one \
     fastest. `a..b` and `a..b:step` are whole numbers, `a:b:n` are n numbers evenly from a to b; anything else is a text. `zip` ties lists \
     together that are equally long, `table` reads one run per line below a line with the variables' names, between commas or blanks. \
-    `report` names what each run tells at its end, in the words of formulas: `c_ID`, `f_ID[2]`, `v_NAME`, words of thermo output.\n\n\
+    `report` names what each run reports at its end, in the words of formulas: `c_ID`, `f_ID[2]`, `v_NAME`, words of thermo output.\n\n\
     In a deck that is run by itself the line defines the variables that are not there yet with their first values, and says so. `perigrain sweep` makes \
     all runs; lists on its command line take the place of those in the deck, and `-report` adds to what the deck reports. `perigrain check` \
     checks all combinations, of more than 64 the first and the last.\n\n\
     - `-jobs N`: so many runs at once, on ranks on each of them (one per core); `-threads N`: threads of each (the cores shared out);\n\
     - `-out DIR`: the folder (`DECK.sweep`), with a folder for each run, `table.csv`, `times.csv` and the journal;\n\
     - `-retry N`: a run that fails is tried N times more;\n\
-    - `-anew`: forgets an earlier sweep there; without it the same command goes on where the earlier one ended;\n\
+    - `-anew`: discards an earlier sweep there; without it the same command continues where the earlier one ended;\n\
     - `-status`: only shows where a sweep stands;\n\
     - `-var`, `-compat`, `-screen none` and others hold for all runs.\n\n\
     `mpirun -n N perigrain sweep …` and `-ranks N` share the runs out to ranks, on one machine or several; all else is the same. [Make many runs of one deck](../howto/sweep.md) shows it. Exit codes: 0 all runs are done and well, 1 a run failed or the sweep is refused, 2 the \
-    command line is wrong, 130 interrupted: the same command goes on.";
+    command line is wrong, 130 interrupted: the same command continues.";
 
 pub(super) const SUFFIX: Entry = (
     "suffix",

@@ -35,7 +35,7 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
     - steps and time: `step`, `elapsed` (steps of this run), `elaplong` (steps since `run … start`), `dt`, `time`, `cpu` \
     (seconds of this run), `tpcpu` (simulated time per second), `spcpu` (steps per second), `cpuremain` (seconds left), \
     `timeremain` (seconds left by `timer timeout`, 0 without), `part` (0);\n\
-    - energy, over all particles: `pe` (potential, with that of fixes that were told so), `ke`, `etotal` (their sum), \
+    - energy, over all particles: `pe` (potential, with that of fixes with `fix_modify energy yes`), `ke`, `etotal` (their sum), \
     `ecouple` (taken by fixes langevin that tally it), `econserve` (etotal + ecouple), `enthalpy` (etotal + press·vol), `evdwl` and `epair` (of the pair style);\n\
     - `temp`, `press`, `pxx pyy pzz pxy pxz pyz`, by the computes `thermo_temp` and `thermo_press` or those `thermo_modify` \
     names;\n\
@@ -66,10 +66,10 @@ pub(super) const THERMO_MODIFY: Entry = (
             - `lost error` (default): a particle beyond a fixed face ends the run; `warn` and `ignore` delete it, with its \
             bonds and contacts, when neighbour lists are built, and `warn` says so once;\n\
             - `energy error` (default; `compat lammps`: `warn`): a run ends where energy has grown beyond reason, made from nothing, mostly by a \
-            time step that is too long. That is a mean speed beyond 10 times that of waves, which the stiffness of bonds and contacts \
-            tells, and 1000 times that at the run's beginning; among peridynamic solids on which no fix does work also a kinetic energy of 10⁶ \
+            time step that is too long. That is a mean speed beyond 10 times that of waves, by the stiffness of bonds and contacts, \
+            and 1000 times that at the run's beginning; among peridynamic solids on which no fix does work also a kinetic energy of 10⁶ \
             times all energy at the beginning, if a row has shown it. It is looked at with each row and every 1000 steps;\n\
-            - `lost/bond error` (default): a bond of which one end is lost ends the run; `ignore` and `warn` go on without its \
+            - `lost/bond error` (default): a bond of which one end is lost ends the run; `ignore` and `warn` continue without its \
             force;\n\
             - `warn` is read for LAMMPS' decks, and a note says that it has no effect.\n\n\
             Formats and names belong to the present columns: put the line behind `thermo_style`.",

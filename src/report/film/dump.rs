@@ -41,7 +41,7 @@ pub fn add(path: &Path, film: &mut Film) -> Result<Option<(Arc<Source>, Diagnost
     Ok(outcome.err().map(|e| (text, e)))
 }
 
-/// Columns that say where a particle is.
+/// Columns with the place of a particle.
 const PLACES: [[&str; 4]; 3] = [["x", "xu", "xs", "xsu"], ["y", "yu", "ys", "ysu"], ["z", "zu", "zs", "zsu"]];
 
 /// One snapshot with all its columns of numbers.

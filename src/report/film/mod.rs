@@ -24,7 +24,7 @@ const MEMORY: usize = 192 << 20;
 const FREE: Duration = Duration::from_millis(100);
 const SHARE: f64 = 0.015;
 
-/// What is known of particles at one moment, in few bits.
+/// The state of particles at one moment, in few bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The step.
@@ -221,7 +221,7 @@ impl Film {
         }
     }
 
-    /// Snapshots have taken so much time more, in a run that goes on for so long already: the interval doubles where that is too much.
+    /// Snapshots have taken so much more time, in a run that has lasted for so long: the interval doubles where that is too much.
     pub fn spend(&mut self, more: Duration, elapsed: Duration) {
         self.spent += more;
         if self.spent > FREE + elapsed.mul_f64(SHARE) && self.frames.len() > 1 {

@@ -23,7 +23,7 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// What the page says where snapshots are left out.
+    /// The page's remark where snapshots are left out.
     pub fn thinned(&self) -> Option<String> {
         let shown = self.frames.len();
         (shown < self.of).then(|| {
@@ -57,7 +57,7 @@ fn within(frames: &[Frame], room: usize) -> Packed {
     }
 }
 
-/// One snapshot by itself with its number, for a page that is open: the length of what is known of it, that, and its numbers.
+/// One snapshot by itself with its number, for an open page: the length of its header, the header, and its numbers.
 pub fn packed_one(id: usize, frame: &Frame) -> Vec<u8> {
     let head = format!("{{\"id\":{id},\"frame\":{}}}", head(&[frame], 0));
     let mut out = (head.len() as u32).to_le_bytes().to_vec();
@@ -85,7 +85,7 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().unwrap_or_default()
 }
 
-/// Whether one snapshot can be told by what has changed since another.
+/// Whether one snapshot can be stored as its difference from another.
 fn follows(frame: &Frame, before: &Frame) -> bool {
     let kind = |c: &Column| (c.name.clone(), bits(c));
     frame.len() == before.len()
@@ -137,7 +137,7 @@ fn walls(frame: &Frame, before: Option<&Frame>) -> String {
     quoted(&perigrain_base::base64::encode(&bytes))
 }
 
-/// What is known of a snapshot besides its numbers.
+/// The header of a snapshot.
 fn head(frames: &[&Frame], k: usize) -> String {
     let frame = frames[k];
     let before = k.checked_sub(1).map(|b| frames[b]);
@@ -176,7 +176,7 @@ mod tests {
     use crate::report::film::{Cell, Grid};
     use flate2::write::ZlibDecoder;
 
-    /// A snapshot read back from its bytes, by what is known of it and the one before: what the page's script does.
+    /// A snapshot decoded from its bytes, its header and the one before: what the page's script does.
     fn unpacked(bytes: &[u8], like: &Frame, before: Option<&Frame>) -> Option<Frame> {
         let mut decoder = ZlibDecoder::new(Vec::new());
         decoder.write_all(bytes).ok()?;

@@ -40,7 +40,7 @@ fn walls(w: &World, before: Option<&Frame>) -> Arc<[Triangle]> {
     }
 }
 
-/// What is known of each particle besides its place.
+/// The values of each particle besides its place.
 fn columns(w: &World, list: impl Fn(&dyn Fn(usize) -> f64) -> Vec<f64>) -> Vec<Column> {
     let p = &w.particles;
     let mut out = vec![Column::of("type", &list(&|i| f64::from(p.kind[i])))];

@@ -38,7 +38,7 @@ pub fn unpacked(image: i32) -> [i32; 3] {
 impl Session {
     /// The numbers of particles under this name, which may be changed in place; `None` if the scene has none.
     ///
-    /// Whoever changes some calls [`Session::changed_from_outside`].
+    /// A caller that changes some has to call [`Session::changed_from_outside`].
     pub fn column(&mut self, name: &str) -> Option<Column<'_>> {
         column(&mut self.world, name)
     }

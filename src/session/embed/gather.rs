@@ -26,11 +26,11 @@ pub enum Rows {
 }
 
 impl Session {
-    /// The numbers under a name, with how many each particle has; `image` has three where `apart` is said, else one.
-    /// Besides the columns of particles: `d2_NAME` and `i2_NAME`, `c_ID`, `f_ID`.
+    /// The numbers under a name, with how many each particle has; `image` has three with `apart`, else one. Besides the columns
+    /// of particles: `d2_NAME` and `i2_NAME`, `c_ID`, `f_ID`.
     ///
     /// # Errors
-    /// Unknown names, ids that are not there.
+    /// Unknown names, unknown ids.
     pub fn gathered(&mut self, name: &str, apart: bool, order: &Order) -> Result<(Rows, usize)> {
         let places = self.places(order)?;
         let pick = |list: &[f64], width: usize| {
@@ -78,7 +78,7 @@ impl Session {
         }
         let mut list = slot.atom.clone();
         let width = slot.cols;
-        // Who came since has none yet.
+        // Particles that have joined since have none yet.
         list.resize(n * width, 0.0);
         Ok(pick(&list, width))
     }
@@ -178,7 +178,7 @@ impl Session {
 /// Ids with holes have no place in a list by ids.
 fn gaps() -> perigrain_base::diag::Diagnostics {
     Diagnostic::error(Code::WRONG_KIND, None, "the ids of the particles are not 1, 2, 3 … without a gap")
-        .help("gather as they stand (`gather_atoms_concat`, with the ids beside it), or say `reset_atoms id` first")
+        .help("gather as they stand (`gather_atoms_concat`, with the ids beside it), or use `reset_atoms id` first")
         .into()
 }
 

@@ -118,7 +118,7 @@ impl Session {
         if self.world.n() > 0 {
             let d =
                 Diagnostic::error(Code::WRONG_ORDER, None, "the box holds particles and cannot be set anew");
-            return Err(d.help("use `change_box`, which says what becomes of them").into());
+            return Err(d.help("use `change_box`, which has an option for them").into());
         }
         let sound = (0..3).all(|k| lo[k].is_finite() && hi[k].is_finite() && lo[k] < hi[k]);
         if !sound {

@@ -27,7 +27,7 @@ impl Session {
         self.world.parts.outside.look_up(&external::name(id)).is_some_and(|now| Arc::ptr_eq(now, program))
     }
 
-    /// Tells a fix external of each particle, in the order in which they stand.
+    /// Sets the values of a fix external for each particle, in the order of the particles.
     ///
     /// # Errors
     /// No such fix, or fewer values than particles.
@@ -50,6 +50,6 @@ impl Session {
             None,
             format!("fix `{id}` has {length} values, and no value {index}"),
         );
-        Err(d.help("`fix_external_set_vector_length` says how many there are").into())
+        Err(d.help("`fix_external_set_vector_length` sets how many there are").into())
     }
 }

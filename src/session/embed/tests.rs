@@ -1,4 +1,4 @@
-//! What a host asks of a session, on two spheres and a chain.
+//! Requests of a host to a session, on two spheres and a chain.
 
 use super::columns::{packed, unpacked};
 use super::{Column, Global, Newcomers, Order, Rows, Told};

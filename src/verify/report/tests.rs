@@ -1,4 +1,4 @@
-//! Every form of the report says the same, with all signs escaped.
+//! Every form of the report has the same content, with all signs escaped.
 
 use super::*;
 use crate::heads::Headed;

@@ -58,19 +58,19 @@ codes! {
         "A brace or a parenthesis is not closed, a name is missing after `$`, or a closing quote is glued to the next word. The place that could not be read is underlined.",
         "print \"a\"b", "print \"a\" screen yes";
     UNKNOWN_COMMAND = 102, "unknown command",
-        "The first word of the line is no command of perigrain. If it is a LAMMPS command that perigrain does not have yet, the message says so by name.",
+        "The first word of the line is no command of perigrain. If it is a LAMMPS command that perigrain does not have yet, the message names it as one.",
         "pair_sytle none", "pair_style none";
     UNKNOWN_STYLE = 103, "unknown style",
         "The command exists, the style named in it does not. The message offers the nearest known style; `perigrain help` lists all.",
         "fix 2 all nve/spher", "fix 2 all nve";
     UNKNOWN_KEYWORD = 104, "unknown keyword",
-        "The word is not an option of this command or style. Its page says which there are.",
+        "The word is not an option of this command or style. Its page lists them.",
         "set group all diametre 1", "set group all volume 1e-9";
     MISSING_ARGUMENT = 105, "missing argument",
-        "The line ends before everything the command needs was said. The message says what comes next; at the prompt it stands behind the cursor.",
+        "The line ends before everything the command needs. The message names what comes next; at the prompt it stands behind the cursor.",
         "velocity all set 1 0", "velocity all set 1 0 0";
     EXTRA_ARGUMENT = 106, "unexpected argument",
-        "The line says more than the command understands; nothing is silently ignored.",
+        "The line has more words than the command understands; nothing is silently ignored.",
         "timestep 1e-8 s", "timestep 1e-8";
     BAD_NUMBER = 107, "not a number",
         "A number was expected here. A letter O for a zero, a comma for a point and a unit behind the number are the usual reasons.",
@@ -161,7 +161,7 @@ codes! {
         "Peridynamic coefficients given as numbers mean force densities, granular ones forces; in one scene momentum is then not conserved. `peri_modify force newton` makes all of them forces.",
         "", "";
     OPEN_QUOTE = 136, "a quote is not closed",
-        "A quoted text ends with the line unless `&` stands at its end; only `\"\"\"` goes on over lines.",
+        "A quoted text ends with the line unless `&` stands at its end; only text in `\"\"\"` may continue over lines.",
         "print \"never closed", "print \"closed\"";
     FORMULA = 137, "the formula cannot be read",
         "Something is missing or too much in a formula or condition: an operand, a parenthesis, a comma. The place is underlined.",
@@ -170,10 +170,10 @@ codes! {
         "A C format for one number is wanted: `%g`, `%.3f`, `%12.5e` and the like.",
         "print $(1/3:%d%d)", "print $(1/3:%.3f)";
     BAD_FILE = 139, "file damaged or of another kind",
-        "The file is not what its place in the deck asks for: a restart file that is cut off, damaged, of another program or of a newer version.",
+        "The file is not of the kind that its place in the deck requires: a restart file that is cut off, damaged, of another program or of a newer version.",
         "print \"no scene\" file old.restart\nclear\nread_restart old.restart", "write_restart old.restart\nclear\nread_restart old.restart";
     OTHER_SWEEP = 147, "the sweep in this folder is another",
-        "The journal in the folder of a sweep tells of another deck, other runs or another version of perigrain, a file that runs have read has changed since, or somebody is at work there. Results of both in one table would be of no use. `-anew` forgets the earlier runs, `-out DIR` puts the new ones elsewhere.",
+        "The journal in the folder of a sweep is of another deck, other runs or another version of perigrain, a file that runs have read has changed since, or another sweep is at work there. Results of both in one table would be of no use. `-anew` discards the earlier runs, `-out DIR` puts the new ones elsewhere.",
         "", "";
     LETTERS = 149, "a character that looks like another",
         "Web pages and word processors put in blanks that are none (U+00A0, U+200B and others), byte order marks, curly quotes and minus signs that are no ASCII. They are read as what they look like, as LAMMPS does, outside of comments; quotes and signs also outside of quoted texts. Type them anew where they are not meant.",
@@ -189,27 +189,27 @@ codes! {
         "A position, velocity or force is no longer finite: the time step is too long for the stiffness, or particles overlap heavily.",
 "velocity all set 1e10 0 0\ntimestep 1e300\nrun 3", "velocity all set 1 0 0\ntimestep 1e-8\nrun 3";
     TOO_LARGE = 203, "memory does not suffice",
-        "What a count asks for, in a deck, in a file or of a packed file, needs more memory than is free: on the machine, under the limits of the process (`ulimit -v`) or of its container, or by `-limit memory`. It is forecast where a forecast can be made, and refused before it is asked for.",
+        "A count in a deck or a file, or the size of a packed file, needs more memory than is free: on the machine, under the limits of the process (`ulimit -v`) or of its container, or by `-limit memory`. It is forecast where a forecast can be made, and refused before it is allocated.",
         "units si\natom_style sphere\nlattice sc 1e-6\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box", "units si\natom_style sphere\nlattice sc 0.1\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box";
     RUNAWAY = 206, "energy out of control",
-        "Particles move ten times as fast as waves with more than a million times the energy that the run began with, or no fix does work and there is a million times as much energy all the same: it was made from nothing, by a time step that is too long or by particles that overlap heavily. `thermo_modify energy ignore` lets such a run go on; under `compat lammps` it is a warning.",
+        "Particles move ten times as fast as waves with more than a million times the energy that the run began with, or no fix does work and there is a million times as much energy all the same: it was made from nothing, by a time step that is too long or by particles that overlap heavily. `thermo_modify energy ignore` lets such a run continue; under `compat lammps` it is a warning.",
         "", "";
     NOT_ALLOWED = 207, "not allowed by -safe",
-        "The program was started with `-safe`, which keeps a deck in its own folder: no `shell`, no environment, no file outside, and so much memory, so many steps, lines, files and pixels. `Decks of others` in the manual says what exactly, and how to allow more.",
+        "The program was started with `-safe`, which keeps a deck in its own folder: no `shell`, no environment, no file outside, and so much memory, so many steps, lines, files and pixels. `Decks of others` in the manual lists the limits, and how to allow more.",
         "", "";
     OUTSIDE = 208, "the hosting program failed",
-        "A `fix external pf/callback` asks the program that hosts the run for forces: that program has set no function, or the function ended in an exception. In a terminal nobody hosts the run; in Python `lmp.set_fix_external_callback` sets the function.",
+        "A `fix external pf/callback` calls the program that hosts the run for forces: that program has set no function, or the function ended in an exception. In a terminal no program hosts the run; in Python `lmp.set_fix_external_callback` sets the function.",
         "fix 2 all external pf/callback 1 1\nrun 1", "fix 2 all external pf/array 1\nrun 1";
     INTERRUPTED = 209, "ended before it was done",
         "A signal (Ctrl-C, SIGTERM) or the limit of `-timeout` came while a line was executed that takes long. The line is given up and no further one is executed; at the prompt the scene is as before the line. A run ends at a whole step instead, with a restart file where the deck has `restart`. `-timeout` gives lines behind its limit a tenth of it, two seconds at least and a minute at most.",
         "", "";
     HALTED = 205, "halted",
-        "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for. With `error soft` the run ends and the deck goes on.",
+        "A `fix halt … error hard` found its condition met: the deck ends here, as the line requests. With `error soft` the run ends and the deck continues.",
         "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";
     COMPAT = 301, "LAMMPS does otherwise",
         "A place where LAMMPS is wrong (22Jul2025, in part mended in 2026) and perigrain is not, unless `-compat lammps` is on. `Coming from LAMMPS` lists all of them.",
         "", "";
     MATERIAL = 302, "material questionable",
-        "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics. Where `form` says which modulus the bonds shall keep, this is a note, else a warning.",
+        "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics. Where `form` selects the modulus that bonds keep, this is a note, else a warning.",
         "material m E 7e10 nu 0.3 rho 2500\npair_style peri/pmb\npair_coeff * * material m horizon 3.015", "material m E 7e10 nu 0.25 rho 2500\npair_style peri/pmb\npair_coeff * * material m horizon 3.015";
 }

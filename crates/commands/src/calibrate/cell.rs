@@ -27,7 +27,7 @@ pub fn cell(w: &World, scene: &Scene, span: Span) -> Result<f64> {
     let letters = w.domain()?.boundary.letters();
     let text =
         format!("`calibrate periodic` needs a box that repeats in all directions, not `boundary {letters}`");
-    let help = "say `boundary p p p` before `create_box`, or take `calibrate dsm` for a body with ends";
+    let help = "use `boundary p p p` before `create_box`, or take `calibrate dsm` for a body with ends";
     Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into())
 }
 

@@ -31,7 +31,7 @@ pub fn refuse(words: &Words, kind: &str) -> Result<()> {
     if !words.by_parts() {
         let Some((_, at)) = words.parts else { return Ok(()) };
         let text = "`steps` is for displacements of any size: small ones are found at once";
-        return conflict(at, text, "say `large yes`, or `mu M` for contacts that slip");
+        return conflict(at, text, "use `large yes`, or `mu M` for contacts that slip");
     }
     if let Some(at) = words.bound {
         let text = "`bound yes` is for small displacements of bonds alone";

@@ -24,7 +24,7 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     let r = setup.solve(scene, words, words.tol, None);
     if !r.stiffness.is_finite() {
         let text = "no stiffness has been found: forces are beyond all numbers";
-        let help = "look at the coefficients of bonds and contacts, and at the strain";
+        let help = "check the coefficients of bonds and contacts, and the strain";
         return Err(Diagnostic::error(Code::UNSTABLE, cx.span, text).help(help).into());
     }
     if r.certain.is_some_and(|part| !part.is_finite()) {
@@ -108,7 +108,7 @@ fn warn_untouched(cx: &ActCx, words: &Words, r: &Response) {
         let text = format!("nothing touches the {} wall: the stiffness is zero", ["low", "high"][end]);
         cx.note(
             Diagnostic::warning(Code::NO_FORCES, words.wall, text)
-                .help("look at the bonds, or take a larger strain"),
+                .help("check the bonds, or take a larger strain"),
         );
     }
 }
@@ -125,11 +125,11 @@ fn refuse_bound(words: &Words, setup: &Setup) -> Result<()> {
                 at,
                 "`bound yes` is for bonds alone, and contacts act here",
             );
-            Err(d.help("say `contacts no`, or leave it out").into())
+            Err(d.help("use `contacts no`, or leave it out").into())
         }
         Some(at) if words.holds != [Hold::Grip; 2] => {
             let text = "`bound yes` needs both ends held wholly: forces must find their way to what is held";
-            let help = "say `low grip high grip`, or leave it out: the estimate stands without it";
+            let help = "use `low grip high grip`, or leave it out: the estimate stands without it";
             Err(Diagnostic::error(Code::NOT_SUPPORTED, at, text).help(help).into())
         }
         Some(at) if words.method != Method::Pcg => {

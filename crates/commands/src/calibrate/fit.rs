@@ -95,7 +95,7 @@ pub fn run(
                     Err(_) if solves > 1 => return Err(unreached(words, &model, cx.span)),
                     slopes => slopes?,
                 };
-                // Too few targets leave a direction open: the step is the shortest one, and the direction is told.
+                // Too few targets leave a direction open: the step is the shortest one, and a note names the direction.
                 let (step, open) = shortest(&slopes, &wrong);
                 if solves == 1 {
                     say_open(cx, words, &open);
@@ -298,7 +298,7 @@ fn slopes(
     Ok(out)
 }
 
-/// The shortest step that closes the misses as far as slopes tell, and the directions that change nothing.
+/// The shortest step that closes the misses by the slopes, and the directions that change nothing.
 fn shortest(slopes: &DMatrix<f64>, wrong: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = slopes.ncols();
     // SVD of SᵀS's size shows all directions of the coefficients.

@@ -53,7 +53,7 @@ impl Found {
         all.extend(tensor.into_iter().flatten().flatten());
         w.memo.insert(self.numbers(), all);
         (self.fields..MOST_FIELDS).for_each(|k| w.columns.remove(self.field(k)));
-        // Who has read the values of an earlier line in this step must not get them again.
+        // A reader of an earlier line's values in this step must not get them again.
         if let Some(slot) = w.slots.find(&format!("c_{}", self.id)) {
             w.slots.get_mut(slot).step = None;
         }

@@ -70,7 +70,7 @@ impl Model {
             _ if words.aims(Quantity::Strength) => {
                 let text = "`target strength` needs a body between ends";
                 let d = Diagnostic::error(Code::CONFLICT, span, text);
-                return Err(d.help("take `method dsm`, which is what a fit does if nothing is said").into());
+                return Err(d.help("take `method dsm`, the default of a fit").into());
             }
             Solver::Periodic => Kind::Periodic { volume: cell(w, scene, span)?, cell: None },
             Solver::Ste => {
@@ -90,7 +90,7 @@ impl Model {
         }
     }
 
-    /// Tells of contacts that bear much and cannot slip, and of an estimate where none holds.
+    /// Warns of contacts with high loads that cannot slip, and of an estimate where none holds.
     pub fn tell(&self, cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) {
         match &self.kind {
             Kind::Dsm { setup, solved: Some(r), .. } => warn_sticking(cx, &line.words, setup, r),
@@ -99,7 +99,7 @@ impl Model {
         }
     }
 
-    /// Solves at the present stiffnesses of the bonds, from the latest field. What the strength was is forgotten.
+    /// Solves at the present stiffnesses of the bonds, from the latest field. The former strength is dropped.
     ///
     /// # Errors
     /// What the solvers refuse.
@@ -281,7 +281,7 @@ fn refuse_contacts(setup: &Setup, target: &str, span: Span) -> Result<()> {
     }
     let text = format!("`target {target}` is for bonds alone, and contacts act here");
     let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
-    Err(d.help("say `contacts no`, or give K or E as the target").into())
+    Err(d.help("use `contacts no`, or give K or E as the target").into())
 }
 
 /// To which part of the energy a solution is to be known: an error of the field is the root of that of the energy, and Poisson's ratio is of

@@ -1,4 +1,4 @@
-//! The bonded particles of a group as a body: in the order of space, with the stiffnesses that the bond style tells.
+//! The bonded particles of a group as a body: in the order of space, with the stiffnesses of the bond style.
 
 use super::words::{Shape, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -21,13 +21,13 @@ pub struct Scene {
     pub radius: Vec<f64>,
     /// Its bonds.
     pub network: Network,
-    /// What a bond style is asked about each bond, in the order of the network; only where bonds are to be varied or to break.
+    /// Queries to the bond style, one per bond, in the order of the network; only where bonds are to be varied or to break.
     pub bonds: Vec<Said>,
     /// Edges of the box, zero where it does not repeat.
     pub period: Vec3,
 }
 
-/// What a bond style is asked about a bond.
+/// A query to a bond style about one bond.
 #[derive(Clone, Copy, Debug)]
 pub struct Said {
     /// Type.
@@ -90,7 +90,7 @@ impl Scene {
             check(w, &said(k), length(vector(k)), joined(k), style, span)?;
         }
         let mut network = Network::new(places.len(), &ends, |k| (vector(k), stiffness(style, &said(k))));
-        // Whose bond is whose matters no more once the style has been asked.
+        // The origin of bonds no longer matters once the style has been queried.
         let origin = std::mem::take(&mut network.pairs.origin);
         let bonds = origin.into_iter().filter(|_| varied).map(|k| said(k as usize)).collect();
         let x = places.iter().map(|i| p.x[*i]).collect();
@@ -150,7 +150,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Gives the bonds the stiffnesses that a style tells.
+    /// Gives the bonds the stiffnesses of a style.
     pub fn restyle(&mut self, style: &dyn BondForce) {
         for (k, said) in self.network.k.iter_mut().zip(&self.bonds) {
             *k = stiffness(style, said);
@@ -192,7 +192,7 @@ fn check(
     if all.iter().any(|k| !k.is_finite() || *k < 0.0) {
         let text = format!("the bond between particles {a} and {b} has a negative or infinite stiffness");
         return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
-            .help(format!("look at `bond_coeff {kind}` and at the radii of the particles"))
+            .help(format!("check `bond_coeff {kind}` and the radii of the particles"))
             .into());
     }
     Ok(())

@@ -20,7 +20,7 @@ use perigrain_world::{GroupId, World};
 
 /// A body between held ends.
 pub struct Setup {
-    /// Who is at the ends.
+    /// The particles at the ends.
     pub ends: Ends,
     /// What is held.
     pub held: Held,
@@ -67,7 +67,7 @@ pub struct Response {
     pub steps: Option<usize>,
     /// To which part K is known by how fast the energy fell, if it did.
     pub open: f64,
-    /// To which part K is known for certain, if that was asked for.
+    /// The fraction to which K is certain, if requested.
     pub certain: Option<f64>,
     /// Particles with components that nothing resists.
     pub loose: usize,
@@ -99,7 +99,7 @@ pub fn ends(w: &World, scene: &Scene, words: &Words, span: Span) -> Result<(Ends
     let body = extent[1] - extent[0];
     if ends.overlap() || ends.free_length() <= 1e-9 * body {
         let text = "the body is too short: a particle belongs to both of its ends";
-        let help = "say `thick T` with a smaller T, by default the mean radius, or choose another axis";
+        let help = "use `thick T` with a smaller T, by default the mean radius, or choose another axis";
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
     }
     let length = if words.body { body } else { ends.free_length() };
@@ -135,7 +135,7 @@ impl Setup {
         if !held.through && words.wall.is_none() {
             let text = "no chain of bonds leads from end to end: the stiffness is zero";
             let help =
-                "look at the bonds (`compute bond/local`), or reach further into the body with `thick T`";
+                "check the bonds (`compute bond/local`), or reach further into the body with `thick T`";
             return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
         }
         let moduli = Moduli::new(&mean_field(&scene.network, area * lengths[1]));

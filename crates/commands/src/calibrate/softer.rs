@@ -16,11 +16,11 @@ use std::f64::consts::PI;
 const POROUS: f64 = 0.4;
 /// After so many steps bodies whose struts bend are far below the estimate, and others are not: they cost as much as the estimate.
 const STEPS: usize = 12;
-/// An estimate that is more than so many times what the body has at most is told: those of packings are 5 to 15 % off.
+/// Ratio of an estimate to the body's upper bound beyond which a warning is given: estimates of packings are 5 to 15 % off.
 const APART: f64 = 1.25;
 
-/// Warns of an estimate of a porous body where some steps of `calibrate dsm` find a far lower stiffness: every field between held ends gives
-/// an upper bound. Where contacts carry as well nothing is told.
+/// Warns of an estimate of a porous body where some steps of `calibrate dsm` find a far lower stiffness: every field between held
+/// ends gives an upper bound. Where contacts carry load as well there is no warning.
 pub fn warn_softer(cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>, e: &Estimated) {
     let solid: f64 = scene.radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum();
     if solid >= POROUS * e.volume {
@@ -46,7 +46,7 @@ pub fn warn_softer(cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>
         return;
     }
     let text = format!(
-        "between held ends K is {} at most, and not {}: struts between voids bend, of which a particle's surroundings tell nothing",
+        "between held ends K is {} at most, and not {}: struts between voids bend, which an estimate from a particle's surroundings cannot show",
         general(most, 5),
         general(e.body, 5)
     );
@@ -82,11 +82,10 @@ mod tests {
         let apart = ste.numbers[0] / dsm.numbers[0];
         assert!(apart > 1.5, "{apart}");
         assert_eq!(ste.notes.len(), 1);
-        assert!(
-            ste.notes[0]
-                .ends_with("struts between voids bend, of which a particle's surroundings tell nothing")
-        );
-        // What is said to be the most is at most so much, and not far from what it is.
+        assert!(ste.notes[0].ends_with(
+            "struts between voids bend, which an estimate from a particle's surroundings cannot show"
+        ));
+        // The stated upper bound is an upper bound, and not far from the actual value.
         let most: f64 = ste.notes[0].split_whitespace().nth(5).unwrap().parse().unwrap();
         assert!(most > 0.99 * dsm.numbers[0] && most < 1.5 * dsm.numbers[0], "{most} {}", dsm.numbers[0]);
         let fit = act(&mut opal, "calibrate fit c all target K 1 method ste vary bond 1 E", beams()).unwrap();

@@ -94,7 +94,7 @@ pub fn refuse_walls(words: &Words) -> Result<()> {
     let text =
         "the strength is found for ends that are held: what a wall does is not proportional to the load";
     let d = Diagnostic::error(Code::NOT_SUPPORTED, at, text);
-    Err(d.help("say `grip`, or `plate` for an end that may slide across the load").into())
+    Err(d.help("use `grip`, or `plate` for an end that may slide across the load").into())
 }
 
 /// Breaks the bonds of a scene one after another, from the field of the unbroken body.
@@ -123,7 +123,7 @@ pub fn broken(
     let path = crumble(scene.network.clone(), &setup.held, field, &limits, share);
     if path.breaks.is_empty() {
         let text = "no bond bears anything that could break it";
-        let help = "look at the sign of the strain (below 0 presses), and at which bonds have a strength";
+        let help = "check the sign of the strain (below 0 presses), and which bonds have a strength";
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into());
     }
     Ok(path)
@@ -178,7 +178,7 @@ fn write(name: &FilePath, scene: &Scene, tested: &Tested, path: &Path) -> Result
         for (k, it) in path.breaks.iter().enumerate() {
             let force = it.force(tested.delta);
             let strain = it.load * tested.delta / tested.length;
-            // What bonds that break together set free is told of the first one.
+            // The energy released by bonds that break together is booked for the first one.
             let mut released = it.released();
             for bond in &it.bonds {
                 let [a, b] = scene.bonds[*bond as usize].ids;

@@ -1,4 +1,4 @@
-//! What the kinds of `calibrate` say in the same way.
+//! Messages that the kinds of `calibrate` share.
 
 use super::Line;
 use super::scene::Scene;
@@ -39,7 +39,7 @@ pub fn warn_unfinished(cx: &ActCx, words: &Words, done: bool) {
 /// Contacts that bear more than this part of the energy decide on the stiffness.
 const MUCH: f64 = 0.1;
 
-/// Tells of contacts that bear much and cannot slip.
+/// Warns of contacts with high loads that cannot slip.
 pub fn warn_sticking(cx: &ActCx, words: &Words, setup: &Setup, r: &Response) {
     let meant = words.friction.is_some() || words.paper.is_some() || !setup.contacts.rough();
     let share = r.energies[0] / (r.modes.iter().sum::<f64>() + r.energies.iter().sum::<f64>());
@@ -48,11 +48,11 @@ pub fn warn_sticking(cx: &ActCx, words: &Words, setup: &Setup, r: &Response) {
     }
     let text = format!("contacts bear {:.0} % of the energy, and none of them slips", 100.0 * share);
     let help =
-        "say `mu M` with the friction of the particles: where surfaces slip the body may be far softer";
+        "use `mu M` with the friction of the particles: where surfaces slip the body may be far softer";
     cx.note(Diagnostic::note(Code::SUSPICIOUS, cx.span, text).help(help));
 }
 
-/// Tells of particles that can move without resistance.
+/// Warns of particles that can move without resistance.
 pub fn warn_loose(cx: &ActCx, loose: usize) {
     if loose > 0 {
         let text = format!(

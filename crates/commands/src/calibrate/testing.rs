@@ -143,7 +143,7 @@ impl Values for Declared {
     }
 }
 
-/// What a line did: its numbers, what it said, the lines it left for later, its warnings.
+/// The results of a line: its numbers, its log lines, the lines it left for later, its warnings.
 #[derive(Debug)]
 pub struct Did {
     pub numbers: Vec<f64>,

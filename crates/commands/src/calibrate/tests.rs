@@ -214,7 +214,7 @@ fn two_types_meet_two_targets() {
             near(did.numbers[10 + k], set, 1e-12);
         }
     }
-    // One target leaves a direction open, which is told.
+    // One target leaves a direction open; a note names it.
     let did = act(
         &mut w,
         "calibrate fit f all target K 1e6 vary bond 1 E vary bond 2 E tol 1e-6",
@@ -303,7 +303,7 @@ fn contacts_carry_load_beside_bonds() {
         Law::Hertz,
     );
     near(without.unwrap().numbers[0], bare.numbers[0], 1e-12);
-    // Contacts of another law are left out, which is told.
+    // Contacts of another law are left out, with a note.
     let hooke = act_with(&mut w, "calibrate dsm a all strain -0.02 tol 1e-6", Beams::standard(2), Law::Hooke)
         .unwrap();
     near(hooke.numbers[0], bare.numbers[0], 1e-12);
@@ -329,7 +329,7 @@ fn what_makes_no_sense_is_refused() {
         ("calibrate dms a all", "[dms] "),
         ("calibrate dsm a-b all", "[a-b] `a-b` is no ID"),
         ("calibrate dsm taken all", "[taken] there is a compute ke of the ID `taken`"),
-        ("calibrate dsm a nobody", "[nobody] there is no group"),
+        ("calibrate dsm a nogroup", "[nogroup] there is no group"),
         ("calibrate dsm a all strain -1", "[-1] a strain of -1 turns bonds inside out"),
         ("calibrate dsm a all strain 0", "[0] without a strain"),
         (

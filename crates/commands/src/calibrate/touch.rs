@@ -22,17 +22,17 @@ pub struct Hertz {
     table: Vec<[f64; 2]>,
 }
 
-/// By how much contacts are closer than the strain of the whole says, at most.
+/// How many times closer contacts come than the strain of the whole suggests, at most.
 const CLOSER: f64 = 5.0;
 /// Relative difference of powers of two between overlaps where a law is not Hertz'.
 const ALIKE: f64 = 1e-6;
 
 impl Hertz {
-    /// Of the pair style in force for particles of this size; `None` where contacts do not count: the line says so, or the pair
-    /// style has no contacts and the line does not ask for them.
+    /// For the pair style in force and particles of this size; `None` where contacts do not count: the line excludes them, or the
+    /// pair style has no contacts and the line does not require them.
     ///
     /// # Errors
-    /// Contacts asked for that the pair style has not, or of another law.
+    /// Required contacts that the pair style lacks, or of another law.
     pub fn new(cx: &ActCx, words: &Words, radius: f64) -> Result<Option<Self>> {
         let asked = match (words.contacts, words.wall) {
             (Some((false, _)), None) => return Ok(None),
@@ -51,7 +51,7 @@ impl Hertz {
                         "contacts are left out: their force does not grow as overlap^3/2, as Hertz' does";
                     cx.note(
                         Diagnostic::warning(Code::NO_EFFECT, cx.span, text)
-                            .help("`contacts no` says that this is meant"),
+                            .help("`contacts no` states that this is meant"),
                     );
                     return Ok(None);
                 }

@@ -8,14 +8,14 @@ use perigrain_bonded::strength::Avalanche;
 use perigrain_lang::Args;
 use perigrain_styles::common::axis;
 
-/// The part of what a break changes to which it is found, if nothing is said.
+/// The accuracy to which a break is resolved, relative to the change it causes, by default.
 const BREAKING: f64 = 1e-4;
 /// The same for the way to strength of a fit, where bonds that lack more than that of the load go together anyway.
 pub const BREAKING_IN_FITS: f64 = 1e-3;
-/// The part of the load that bonds may lack to break with another one in a fit, if nothing is said.
+/// The part of the load that bonds may lack to break together with another one in a fit, by default.
 const TOGETHER: f64 = 0.005;
 
-/// All words, with what they are if they are not said.
+/// All words, with their defaults.
 #[derive(Clone, Debug)]
 pub struct Words {
     /// Direction of the load.
@@ -40,7 +40,7 @@ pub struct Words {
     pub bound: Option<Span>,
     /// How.
     pub method: Method,
-    /// The word `paper`, if it is said.
+    /// The word `paper`, if given.
     pub paper: Option<Span>,
     /// Cross-section.
     pub shape: Shape,
@@ -52,7 +52,7 @@ pub struct Words {
     pub large: Option<Span>,
     /// Friction between particles, and its word; `None`: they stick.
     pub friction: Option<(f64, Span)>,
-    /// In how many parts the load is put on, and the word, if it is said.
+    /// The number of parts in which the load is applied, and the word, if given.
     pub parts: Option<(usize, Span)>,
     /// Order of the estimate.
     pub order: usize,

@@ -94,7 +94,7 @@ fn halve(t: Triangle, threshold: f64, found: &mut Vec<([f64; 3], f64)>) {
         let (mut first, mut second) = (t, t);
         first[longest] = middle;
         second[(longest + 1) % 3] = middle;
-        // The first half is worked off first.
+        // The first half is processed first.
         waiting.push(second);
         waiting.push(first);
     }
@@ -136,7 +136,7 @@ pub fn mode(a: &mut Args) -> Result<Mode> {
     })
 }
 
-/// Takes the name of a file and reads it; the surface, and what is said about it.
+/// Takes the name of a file and reads it; the surface, and lines for the log about it.
 pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
     let word = a.expect("the name of a file of triangles")?;
     let mesh = |triangles| Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 };
@@ -159,7 +159,7 @@ mod tests {
     fn large_triangles_are_halved() {
         let mut found = vec![];
         halve([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 0.5, &mut found);
-        // The right triangle halves at its hypotenuse: centres by hand, first half first.
+        // The right triangle halves at its hypotenuse: centres calculated by hand, first half first.
         assert_eq!(found.len(), 2);
         let third = 1.0 / 3.0;
         for ((x, _), wanted) in found.iter().zip([[0.5 * third, 0.5, 0.0], [0.5, 0.5 * third, 0.0]]) {

@@ -13,11 +13,11 @@ use perigrain_world::{Template, World};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// What `mol` and `rotate` ask for.
+/// The words of `mol` and `rotate`.
 pub struct Copies {
     set: Arc<[Template]>,
     seed: u32,
-    /// The turn of all copies; random where none is said.
+    /// The turn of all copies; random by default.
     pub turned: Option<Quat>,
     span: Span,
 }

@@ -1,4 +1,4 @@
-//! `create_atoms … pack`, `opal` and `aggregate`: their words, and what they say of the packing.
+//! `create_atoms … pack`, `opal` and `aggregate`: their words, and the summary of the packing.
 
 mod words;
 
@@ -18,7 +18,7 @@ use perigrain_world::{Domain, Region};
 use std::f64::consts::PI;
 use words::{in_range, mixture, own_types, sizes};
 
-/// Rounds that spheres get if nothing else is said.
+/// Rounds by default.
 const ROUNDS: usize = 1000;
 /// No spheres of sizes that are at all alike are denser (equal ones reach 0.7405, on a lattice).
 const DENSEST: f64 = 0.75;
@@ -27,7 +27,7 @@ const SMALLEST: f64 = 0.9;
 /// Spheres that reach so far through walls are worth a line.
 const TOLD: f64 = 1e-3;
 
-/// What a line asks for.
+/// A parsed line.
 pub struct Pack {
     form: Form,
     region: Region,
@@ -221,7 +221,7 @@ impl Pack {
         }
     }
 
-    /// Packs the spheres and says how they lie.
+    /// Packs the spheres and logs a summary.
     pub fn places(&self, cx: &mut ActCx, domain: &Domain, kind: u16) -> Result<Vec<New>> {
         refuse_region(&self.name, &self.region, domain)?;
         let Ok(room) = Room::new(domain, &self.region) else { return Ok(vec![]) };
@@ -327,7 +327,7 @@ impl Pack {
         }
     }
 
-    /// Says how spheres lie.
+    /// Logs a summary of the packing.
     fn tell(&self, cx: &mut ActCx, p: &Packing, volume: f64) -> Result<()> {
         let came = &p.came;
         let mean = 2.0 * p.radius.iter().sum::<f64>() / p.radius.len() as f64;
@@ -364,7 +364,7 @@ impl Pack {
         cx.say(format!("  overlap of spheres that touch {average} on average, {most} at most"));
         let less = percent(1.0 - came.shrunk);
         if came.shrunk < 1.0 {
-            cx.say(format!("  diameters are {less} smaller than asked for, so that nothing overlaps"));
+            cx.say(format!("  diameters are {less} smaller than requested, so that nothing overlaps"));
         }
         if came.beyond > TOLD * mean {
             cx.say(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));
@@ -392,7 +392,7 @@ impl Pack {
         Ok(())
     }
 
-    /// Says how many spheres of each size a mixture has, and their parts of the mass.
+    /// Logs how many spheres of each size a mixture has, and their parts of the mass.
     fn tell_of_sizes(&self, cx: &mut ActCx, p: &Packing) {
         let Sizes::Mix(parts) = &self.sizes else { return };
         let all = solid(&p.radius);

@@ -15,11 +15,11 @@ use room::Room;
 
 /// The part of its overlap that each of two equal spheres goes back by in a round, twice.
 const PUSH: f64 = 0.54;
-/// How much of its last step a sphere keeps: rounds that remember get to rest several times sooner.
+/// How much of its last step a sphere keeps: with this momentum rounds come to rest several times sooner.
 const MEMORY: f64 = 0.9;
 /// Lists reach so many mean diameters farther than touch.
 const SKIN: f64 = 0.3;
-/// The mean overlap that is small enough if nothing else is said.
+/// The mean overlap that is small enough by default.
 const MEAN: f64 = 1e-3;
 /// Rounds that spheres get once they have shrunk.
 const LAST: usize = 100;
@@ -131,12 +131,12 @@ struct Bed<'a> {
     radius: Vec<f64>,
     /// R³, by which pairs share their way.
     weight: Vec<f64>,
-    /// Each one's last step.
+    /// The last step of each sphere.
     step: Vec<Vec3>,
     near: Nearby,
     /// Where they were when lists were made.
     listed: Vec<Vec3>,
-    /// Who may reach a wall before lists are made anew.
+    /// Spheres that may reach a wall before lists are rebuilt.
     walled: Vec<bool>,
     skin: f64,
     /// The mean diameter.
@@ -243,7 +243,7 @@ impl<'a> Bed<'a> {
     fn push(&self, i: usize, round: &mut Round) -> Vec3 {
         let (x, radius, weight) = (self.x[i], self.radius[i], self.weight[i]);
         let mut push = [0.0; 3];
-        // Those that overlap are picked without a branch, which nobody could foretell.
+        // Overlapping ones are selected without a branch, which would be unpredictable.
         let mut met = [(0, [0.0; 3], 0.0); MET];
         for row in self.near.row(i).chunks(MET) {
             let mut count = 0;

@@ -16,7 +16,7 @@ const SAMPLES: u32 = 1021;
 const GENERATOR: u32 = 94;
 /// Cells of several sites whose shares differ by less are taken for equal.
 const ALIKE: f64 = 0.03;
-/// Parts that are given farther than so many spacings are told of, if they are more than so much of the whole.
+/// Parts that are given farther than so many spacings are reported, if they are more than so much of the whole.
 const FAR: f64 = 1.8;
 const TOLD: f64 = 1e-3;
 
@@ -24,7 +24,7 @@ const TOLD: f64 = 1e-3;
 pub struct Shares {
     /// Of each of them [length³].
     pub each: Vec<f64>,
-    /// What is said of them.
+    /// The log line about them.
     pub said: String,
     /// What is odd about them.
     pub warning: Option<Diagnostic>,

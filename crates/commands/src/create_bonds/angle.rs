@@ -8,7 +8,8 @@ use perigrain_styles::common::on_particles;
 use perigrain_world::Angle;
 use perigrain_world::index::Index;
 
-/// Reads `TYPE ID1 ID2 ID3 [special yes|no]`; angles do not say which pairs count as bonded, so that `special` makes no difference.
+/// Reads `TYPE ID1 ID2 ID3 [special yes|no]`; angles do not decide which pairs count as bonded, so that `special` makes no
+/// difference.
 ///
 /// # Errors
 /// Every mistake in the line.

@@ -10,7 +10,7 @@ use perigrain_styles::common::{self, bond_type};
 use perigrain_styles::{ActCx, BuildCx};
 use perigrain_world::{Bond, GroupId};
 
-/// What a line asks for.
+/// A parsed line.
 pub struct Gap {
     groups: [GroupId; 2],
     range: [f64; 2],

@@ -10,7 +10,7 @@ use perigrain_lang::Command;
 use perigrain_world::index::twice;
 use perigrain_world::{Angle, AtomStyle, Bond, Particles};
 
-/// What the deck says about reading.
+/// The deck's options for reading.
 #[derive(Clone, Copy, Debug)]
 pub struct How<'a> {
     /// Which columns there are.
@@ -66,7 +66,7 @@ pub struct DataFile {
     pub angle_types: usize,
     /// Angles with ids as in the file.
     pub angles: Vec<Angle>,
-    /// What the sections of fixes say.
+    /// The sections that belong to fixes.
     pub filled: Vec<Filled>,
     /// What is worth knowing of the file.
     pub notes: Diagnostics,

@@ -3,7 +3,7 @@
 use super::text::{Line, Lines, not_here, number, whole};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 
-/// What the header says.
+/// The content of the header.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// Number of particles.
@@ -14,7 +14,7 @@ pub struct Header {
     pub lo: [f64; 3],
     /// Upper corner.
     pub hi: [f64; 3],
-    /// How the box leans (xy, xz, yz), where the file says so [length].
+    /// How the box leans (xy, xz, yz), if the file has it [length].
     pub tilt: Option<[f64; 3]>,
     /// Where the number of particles stands.
     pub atoms_at: Option<Span>,

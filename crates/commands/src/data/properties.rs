@@ -1,4 +1,4 @@
-//! Sections of a data file that a fix property/atom asks for: its properties, particle by particle.
+//! Sections of a data file for a fix property/atom: its properties, particle by particle.
 
 use super::body::{ELSEWHERE, Reader, SECTIONS, id};
 use super::more::molecule_id;
@@ -10,21 +10,21 @@ use perigrain_world::index::Index;
 use perigrain_world::properties::MOLECULE;
 use perigrain_world::{Properties, World};
 
-/// A section that a deck's line asks for.
+/// A section that a deck's line requests.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// Its heading.
     pub name: String,
     /// What it holds.
     pub properties: Properties,
-    /// Where it was asked for.
+    /// The place of the request.
     pub span: Span,
 }
 
 /// What stands in a section: a column of values for each property but molecules, by particle.
 #[derive(Debug, Default)]
 pub struct Filled {
-    /// Which of the sections asked for.
+    /// Which of the requested sections.
     pub section: usize,
     /// A value for each particle, property by property; empty for molecules.
     pub columns: Vec<Vec<f64>>,
@@ -71,7 +71,7 @@ impl Section {
 }
 
 impl<'a> Reader<'a> {
-    /// Section `k` of those that were asked for.
+    /// Requested section `k`.
     pub(super) fn properties(&mut self, k: usize, title: &Line<'a>) -> Result<()> {
         let section = &self.how.sections[k];
         let (name, wanted) = (&section.name, &section.properties);

@@ -184,7 +184,7 @@ pub struct Lines<'a> {
     at: usize,
 }
 
-/// Bytes between two looks at whether reading has to end.
+/// Bytes between two checks whether reading has to end.
 const BETWEEN_LOOKS: usize = 1 << 16;
 
 impl<'a> Lines<'a> {

@@ -5,9 +5,9 @@ use crate::Act;
 use perigrain_base::diag::Result;
 use perigrain_styles::ActCx;
 
-/// What such a line asks for.
+/// A parsed line.
 pub trait Body {
-    /// What it says about the particles.
+    /// Its options for the particles.
     fn making(&self) -> &Making;
 
     /// Facts of the scene that the particles settle.

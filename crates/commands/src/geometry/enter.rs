@@ -108,7 +108,7 @@ impl<'a> Newcomers<'a> {
         Ok(first)
     }
 
-    /// Says what lies outside of the box; refuses if all does.
+    /// Reports particles outside of the box; refuses if all are.
     fn tell_outside(&self, cx: &ActCx, what: &str) -> Result<()> {
         let text = |x: [f64; 3]| x.map(|x| general(x, 6)).join(" ");
         let places = format!("they reach from ({}) to ({})", text(self.seen[0]), text(self.seen[1]));

@@ -9,11 +9,11 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 pub struct Table {
     /// The names of the columns.
     pub names: Vec<String>,
-    /// The numbers of the columns that were asked for, row by row.
+    /// The numbers of the requested columns, row by row.
     pub rows: Vec<f64>,
     /// The place of each row: its first byte.
     lines: Vec<u32>,
-    /// Which columns were asked for, in their order.
+    /// The requested columns, in their order.
     wanted: Vec<usize>,
     separator: Separator,
 }
@@ -110,13 +110,13 @@ impl Table {
         self.lines.len()
     }
 
-    /// The numbers of a row, in the order in which columns were asked for.
+    /// The numbers of a row, in the order in which columns were requested.
     pub fn row(&self, k: usize) -> &[f64] {
         let n = self.wanted.len();
         &self.rows[k * n..(k + 1) * n]
     }
 
-    /// The place of a row's field, by the column's place among those asked for; of the whole row for `None`.
+    /// The place of a row's field, by the index of the requested column; of the whole row for `None`.
     pub fn place(&self, text: &str, k: usize, column: Option<usize>) -> Option<Span> {
         let line: Line = Lines::line_at(text, self.lines[k] as usize)?;
         let Some(column) = column.and_then(|c| self.wanted.get(c)) else { return Some(line.span()) };

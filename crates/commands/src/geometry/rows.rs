@@ -1,4 +1,4 @@
-//! What the columns of a table say, and particles of its rows.
+//! The columns of a table, and particles from its rows.
 
 use super::enter::{Newcomers, off_plane};
 use super::points::Table;
@@ -9,7 +9,7 @@ use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::{AtomStyle, Columns, Numbers};
 use std::f64::consts::PI;
 
-/// What a column says of a particle.
+/// The property that a column gives a particle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Property {
     /// A coordinate.
@@ -77,9 +77,9 @@ pub struct Rows<'a> {
     pub table: &'a Table,
     /// The text of the file.
     pub text: &'a str,
-    /// What the columns say.
+    /// The properties of the columns.
     pub properties: &'a [Property],
-    /// What the line says of all.
+    /// The line's options for all particles.
     pub making: &'a Making,
     /// The volume of those that have none of their own.
     pub volume: Option<f64>,
@@ -89,7 +89,7 @@ pub struct Rows<'a> {
     pub checking: bool,
 }
 
-/// What a row says.
+/// The content of a row.
 struct Point {
     x: [f64; 3],
     v: [f64; 3],
@@ -251,7 +251,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Gives the new particles what the file says of their properties.
+    /// Gives the new particles the file's values of their properties.
     fn fill(&self, cx: &mut ActCx, first: usize, kept: &[usize]) {
         let n = cx.world.n();
         for (c, p) in self.properties.iter().enumerate() {

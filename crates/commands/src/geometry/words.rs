@@ -31,7 +31,7 @@ impl Placement {
     }
 }
 
-/// What a line says about the particles it makes.
+/// A line's options for the particles it makes.
 pub struct Making {
     /// Where they go.
     pub placement: Placement,

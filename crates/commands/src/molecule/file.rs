@@ -59,11 +59,7 @@ pub fn read(text: &str, notes: &mut Diagnostics) -> Result<(Template, bool)> {
         }
     }
     if f.t.count == 0 {
-        return fail(
-            Code::INCOMPLETE,
-            lines.end(),
-            "the header must say how many atoms there are: `N atoms`",
-        );
+        return fail(Code::INCOMPLETE, lines.end(), "the header must have the number of atoms: `N atoms`");
     }
     for (promised, have, what, section) in
         [(f.bonds, f.t.bonds.len(), "bonds", "Bonds"), (f.angles, f.t.angles.len(), "angles", "Angles")]

@@ -57,7 +57,7 @@ enum Add {
     Keep,
 }
 
-/// What a line asks for.
+/// A parsed line.
 struct Wish {
     fields: Vec<usize>,
     labels: BTreeMap<String, String>,
@@ -185,7 +185,7 @@ impl Wish {
 
     fn missing<T>(&self, s: &Snapshot, label: &str) -> Result<T> {
         let d = Diagnostic::error(Code::UNKNOWN_NAME, s.title, format!("the dump has no column `{label}`"));
-        Err(d.label(self.span, "asked for here").into())
+        Err(d.label(self.span, "requested here").into())
     }
 }
 

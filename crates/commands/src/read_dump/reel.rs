@@ -124,7 +124,7 @@ impl Reel {
             return fail(Code::BAD_VALUE, self.wish.span, text);
         }
         self.show(&text, at, w).map_err(|e| e.within(&text))?;
-        // The clock belongs to the snapshot whatever `timestep` says.
+        // The clock belongs to the snapshot regardless of `timestep`.
         w.clock.reset(step);
         self.ahead = self.find(w)?;
         Ok(Some(Shown { step, last: self.ahead.is_none() }))
@@ -168,7 +168,7 @@ impl Reel {
         }
     }
 
-    /// The next wanted snapshot of one file: where it begins, and its step. LAMMPS asks the first one only for `first`.
+    /// The next wanted snapshot of one file: where it begins, and its step. LAMMPS tests `first` only for the first one.
     fn advance(&mut self, lines: &mut Lines, lammps: bool) -> Result<Option<(usize, i64)>> {
         loop {
             let at = lines.position();
@@ -184,8 +184,8 @@ impl Reel {
         }
     }
 
-    /// Whether a snapshot not before `first` is wanted: the first one, then one in `skip` of those that go on in time, if it is
-    /// a multiple of `every`.
+    /// Whether a snapshot not before `first` is wanted: the first one, then one in `skip` of those with increasing times, if it
+    /// is a multiple of `every`.
     fn wants(&mut self, step: i64) -> bool {
         let Some(before) = self.step else { return true };
         if step <= before {

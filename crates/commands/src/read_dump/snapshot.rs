@@ -8,7 +8,7 @@ use perigrain_styles::common::settle;
 use perigrain_world::index::{Index, twice};
 use perigrain_world::{Domain, World};
 
-/// What a snapshot says about one particle.
+/// A snapshot's data for one particle.
 pub(super) struct Particle {
     tag: u32,
     kind: u16,

@@ -7,7 +7,7 @@ use perigrain_mesh::Solid;
 use perigrain_styles::BuildCx;
 use perigrain_styles::triangles::{self, Placing};
 
-/// Takes the name of a file and reads the body in it; what is said about it.
+/// Takes the name of a file and reads the body in it; the body, and lines for the log about it.
 pub fn read(a: &mut Args, cx: &BuildCx, placing: Placing, unit: [f64; 3]) -> Result<(Solid, Vec<String>)> {
     let file = a.expect("the name of a file of triangles")?;
     let Some(surface) = triangles::read_faces(file, cx)? else { return Ok((Solid::default(), vec![])) };

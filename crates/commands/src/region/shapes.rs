@@ -6,7 +6,7 @@ use perigrain_styles::BuildCx;
 use perigrain_styles::common;
 use perigrain_world::region::{Given, INFINITE, Shape, Variable, across};
 
-/// Reads a shape's numbers one by one and remembers which ones variables give.
+/// Reads a shape's numbers one by one and keeps which ones variables give.
 pub struct Reader<'r, 'a> {
     /// The words.
     pub a: &'r mut Args<'a>,
@@ -104,7 +104,7 @@ impl<'r, 'a> Reader<'r, 'a> {
         let span = span.to(self.a.here());
         let guessed = [guessed, unknown(self.a)];
         let mut hi = self.bound(d, true)?;
-        // What only a run can tell leaves room between the bounds (`perigrain check`).
+        // A number that only a run determines lies anywhere between the bounds (`perigrain check`).
         match guessed {
             [_, true] if hi <= lo => hi = lo + self.spacing[d],
             [true, false] if hi <= lo => lo = hi - self.spacing[d],

@@ -10,7 +10,7 @@ const KEYWORDS: [&str; 10] =
 /// Forces that LAMMPS orders: none may act in shorter steps than the one before.
 const ORDER: [&str; 6] = ["bond", "angle", "dihedral", "improper", "pair", "kspace"];
 
-/// What a line says of levels, from 0; `None` where it says nothing.
+/// A line's choices of levels, from 0; `None` where it makes none.
 #[derive(Default)]
 struct Said {
     levels: [Option<(usize, Span)>; 6],
@@ -20,7 +20,7 @@ struct Said {
 /// What a level keeps, without forces of particles.
 const BYTES_PER_LEVEL: f64 = 1000.0;
 
-/// Reads what follows `respa`; also gives the lines that tell which forces act where.
+/// Reads the words after `respa`; also returns the lines that list which forces act at which level.
 ///
 /// # Errors
 /// Every mistake in the line.
@@ -79,7 +79,7 @@ fn not_split(word: &Word) -> perigrain_base::diag::Diagnostics {
 }
 
 impl Said {
-    /// LAMMPS' choices where nothing is said, and its order.
+    /// LAMMPS' defaults, and its order.
     fn settle(self, loops: Vec<i64>) -> Result<(RunStyle, Vec<String>)> {
         let outermost = loops.len();
         if let (Some((_, span)), Some(_)) = (&self.subs, self.levels[4]) {

@@ -91,7 +91,7 @@ fn endless(period: f64) -> f64 {
     if period > 0.0 { period } else { f64::INFINITY }
 }
 
-/// Sets the factors of the chosen particles; of all others they are 1 where nothing was said before.
+/// Sets the factors of the chosen particles; those of all others are 1 unless set before.
 pub fn set(w: &mut World, chosen: &[usize], column: Numbers, factors: impl Fn(usize) -> f64) {
     let n = w.n();
     let values = w.columns.scalar(column, n);

@@ -32,7 +32,7 @@ pub struct Options {
     pub order: Loop,
     /// Lengths are in lattice spacings.
     pub lattice: bool,
-    /// The compute that says the temperature.
+    /// The compute that gives the temperature.
     pub compute: Option<ValueRef>,
     /// The flow that this compute takes away stays as it is.
     pub bias: bool,

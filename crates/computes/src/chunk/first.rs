@@ -103,7 +103,7 @@ impl SinceFirst {
         }
         let text = format!("compute {} {}: there were {then} chunks and now are {now}", self.id, self.style);
         Err(Diagnostic::error(Code::CONFLICT, None, text)
-            .help(format!("say `nchunk once` in compute {}", self.chunks.id))
+            .help(format!("use `nchunk once` in compute {}", self.chunks.id))
             .into())
     }
 }

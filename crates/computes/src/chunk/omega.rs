@@ -24,7 +24,7 @@ impl Style for OmegaChunk {
             text: "Global array (intensive) of Nchunk rows and 3 columns: the ω with I ω = L, I and L being the chunk's inertia tensor \
                    and angular momentum (compute inertia/chunk, angmom/chunk), in radians per time. About axes whose moment is \
                    smaller than a millionth of the largest nothing turns: chunks of one particle \
-                   and about the line through two (LAMMPS, and `compat lammps`, asks for that where det I is below 10⁻⁶ alone). chunkID names a `compute chunk/atom`.",
+                   and about the line through two (LAMMPS, and `compat lammps`, does so only where det I is below 10⁻⁶). chunkID names a `compute chunk/atom`.",
             example: "compute cc all chunk/atom type\ncompute w all omega/chunk cc",
         }
     }

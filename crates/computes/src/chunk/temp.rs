@@ -31,7 +31,7 @@ impl Style for TempChunk {
                    of its centre of mass; `internal`, Σ ½ m v² of what is left without the motion of its centre. Chunks without particles have zeros.\n\n\
                    `com yes` takes the motion of each chunk's centre away before temperatures are taken; `bias ID` the flow that compute \
                    temp/com, temp/partial, temp/ramp … ID takes away, from all values. Not both. `adof` is 3 (in two dimensions 2) unless it is said, \
-                   `cdof` 0; nothing is taken off for the bias, and `compute_modify` has no effect. Under `-compat lammps` `ke` of thermo output and pressures know of no \
+                   `cdof` 0; nothing is taken off for the bias, and `compute_modify` has no effect. Under `-compat lammps` `ke` of thermo output and pressures ignore the \
                    motion if this is their temperature, as in LAMMPS. chunkID names a `compute \
                    chunk/atom`. With `com yes` it cannot be the bias of other commands, unlike in LAMMPS.",
             example: "compute cc all chunk/atom type\ncompute t all temp/chunk cc temp internal com yes",

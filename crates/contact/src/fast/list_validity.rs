@@ -187,7 +187,7 @@ impl ListValidity {
             let limit = 3.0_f64.sqrt() * thin;
             debug_assert!(
                 self.closer(lists, grains).iter().all(|c| *c < limit),
-                "something moves grains without a word"
+                "an op moves grains without reporting it"
             );
             return vec![];
         }

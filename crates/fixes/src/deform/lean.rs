@@ -142,7 +142,7 @@ fn one_at_a_time([xy, _, yz]: &[Lean; 3], time: f64, length: f64, span: Span) ->
     }
     let text = "yz may lean so far that the box is flipped, while xy changes too";
     let d = Diagnostic::error(Code::CONFLICT, span, text);
-    Err(d.help("let yz stay within half of ly, or say `flip no`").into())
+    Err(d.help("let yz stay within half of ly, or use `flip no`").into())
 }
 
 /// The tilts at a step, in a box with these lengths, and their rates. Of all equivalent tilts it returns the

@@ -110,7 +110,7 @@ impl Move {
         self.crossed = bonds_across(w, self.changes(), along)?.is_some();
         if self.crossed && self.flips && self.leans.iter().any(Lean::moves) {
             let text = "peridynamic bonds cross periodic faces: the box cannot flip";
-            let help = "say `flip no`: bonds go by the edges of the box at the first run";
+            let help = "use `flip no`: bonds go by the edges of the box at the first run";
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text).help(help).into());
         }
         Ok(())

@@ -121,7 +121,7 @@ impl Controls {
             let text = "fix deform/pressure takes its temperature from its compute of the pressure";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
             return Err(d
-                .help("say `compute ID all pressure T` with that temperature, and `fix_modify ID press` with it")
+                .help("use `compute ID all pressure T` with that temperature, and `fix_modify ID press` with it")
                 .into());
         }
         if !args.eat("press") {
@@ -267,7 +267,7 @@ impl Steering {
             if target == 0.0 && self.most.is_none() {
                 let text = "a pressure of 0 cannot be what others are measured by";
                 let d = Diagnostic::error(Code::BAD_VALUE, self.span, text);
-                return Err(d.help("say `normalize/pressure no`, or limit the rate by `max/rate`").into());
+                return Err(d.help("use `normalize/pressure no`, or limit the rate by `max/rate`").into());
             }
             rate /= target.abs();
         }

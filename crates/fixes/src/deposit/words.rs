@@ -60,7 +60,7 @@ pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Depositing> {
     fix.molecules = said.molecules.finish(kind, at, cx)?;
     let Some((region, corners)) = said.region else {
         let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix deposit needs `region ID`");
-        return Err(d.help("it says where particles may appear").into());
+        return Err(d.help("it is the region where particles may appear").into());
     };
     (fix.region, fix.corners) = (region, corners);
     fix.test = match (said.variable, said.sets.iter().any(Option::is_some)) {

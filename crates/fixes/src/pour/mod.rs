@@ -35,7 +35,7 @@ impl Style for Pour {
                      [dens lo hi] [vel vxlo vxhi vylo vyhi vz] [rate V] [id max|next] [ignore] [mol TEMPLATE [molfrac f1 f2 …] [rigid fixID]]",
             summary: "Pours N spheres into the scene, batch by batch, under gravity.",
             text: "The region is a block or a cylinder along z, in flat scenes a block; it is filled to the volume fraction \
-                   `vol` (0.25) with spheres that touch nobody, and again when these have fallen out of it, until there \
+                   `vol` (0.25) with spheres that touch no other one, and again when these have fallen out of it, until there \
                    are N new ones in `all` and the fix's group. How many and how often is said when a run begins. Heights are chosen and vertical velocities set as \
                    if the spheres fell in a steady stream from the region's top, where they have the velocity vz (0; in flat scenes `vel vxlo vxhi vy`); \
                    vx, vy and densities (1) are uniform between bounds. `diam range` is uniform, `poly` gives n diameters by shares of \
@@ -48,7 +48,7 @@ impl Style for Pour {
                    pours more than N). `rigid` names \
                    the fix rigid/small with the same `mol` that moves them as bodies. `shake` is refused.\n\n\
                    Random numbers and their order are LAMMPS', so that places agree. There must be exactly one `fix gravity`, \
-                   constant and along −z (flat: −y). A second run goes on where the first one ended, also after a \
+                   constant and along −z (flat: −y). A second run continues where the first one ended, also after a \
                    restart; LAMMPS pours a batch at the first step of every run, and so does perigrain under `-compat lammps`. \
                    `ignore` concerns particles of other shapes and \
                    has no effect. Scalar (intensive): how many there are so far.",
@@ -92,7 +92,7 @@ impl FixStyle for Pour {
         };
         if !keywords(&mut pouring, args, cx, span)? {
             let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix pour needs `region ID`");
-            return Err(d.help("it says where spheres appear: a block or a cylinder along z").into());
+            return Err(d.help("the region where spheres appear: a block or a cylinder along z").into());
         }
         Ok(Box::new(pouring))
     }

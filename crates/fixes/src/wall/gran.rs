@@ -47,13 +47,13 @@ impl Style for WallGran {
                 its radius, and with a model of heat the heat that flows into the particle as a ninth. `temperature` is that of the wall, a number or an \
                 equal-style variable, and belongs to a model of heat: h π a² (T_wall − T) flows into a grain (`heat area h`), or 2 k a (T_wall − T).\n\n\
                 LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history`, \
-                `hertz/history` and the `…_classic` models on walls hang on the contact radius and lose it when they slide (until 2026); \
+                `hertz/history` and the `…_classic` models on walls depend on the contact radius and lose it when they slide (until 2026); \
                 a cylinder with `shear x` or `y` also flies along that axis; sticky grains hold on to hollow walls and regions \
                 no longer than they touch.\n\n\
                 Not in LAMMPS: `material E nu` gives the wall elastic constants of its own, for 1/E* and 1/G* of two \
                 unlike bodies; the global vector is the force on the wall (1–3), the torque on it (4–6) about the \
                 origin or the point `about`, and the heat that flows into it (7). Only grains near the wall are looked at, so that a wall far from most costs \
-                nothing. The particle deepest in the wall when one is first pressed in by more than a tenth of its radius is told of after the run.\n\n\
+                nothing. The particle deepest in the wall when one is first pressed in by more than a tenth of its radius is reported after the run.\n\n\
                 Springs of sliding contacts are kept in restart files; a run cut in two has the bits of one.",
             example: "fix floor grains wall/gran granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
                       NULL 1.0 0.5 zplane -0.002 NULL",

@@ -175,7 +175,7 @@ pub fn common(cx: &BuildCx, material: Material) -> Common {
     }
     if material.model.slides_loosely() {
         let fault =
-            "springs of walls with history that hang on the contact radius, and lose it when they slide";
+            "springs of walls with history that depend on the contact radius, and lose it when they slide";
         cx.fault(material.span, fault, true);
     }
     Common {

@@ -305,7 +305,7 @@ fn truth(b: bool) -> f64 {
 }
 
 impl Binary {
-    /// The operator on two numbers; the error says why it cannot be done.
+    /// The operator on two numbers; the error explains why they have no result.
     fn apply(self, a: f64, b: f64) -> core::result::Result<f64, String> {
         Ok(match self {
             Binary::Add => a + b,

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// What a function does.
 pub(super) enum Body {
-    /// It computes; the error says what is wrong with the numbers.
+    /// It computes; the error explains what is wrong with the numbers.
     Plain(fn(&[f64], &Clock) -> Result<f64, String>),
     /// It draws from a random stream, whose seed is the last number.
     Draw(fn(&mut Marsaglia, &[f64]) -> Result<f64, String>),

@@ -45,7 +45,7 @@ struct Part {
     repeated: bool,
 }
 
-/// Whether `pattern` is found in `text`; the error says what is wrong with the pattern.
+/// Whether `pattern` is found in `text`; the error explains what is wrong with the pattern.
 pub(super) fn matches(pattern: &str, text: &str) -> Result<bool, String> {
     let (from_start, rest) = match pattern.strip_prefix('^') {
         Some(rest) => (true, rest),

@@ -21,7 +21,7 @@ pub(super) enum Reduction {
     Descending,
 }
 
-/// What a function asks for.
+/// The quantity a function computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Special {
     Reduce(Reduction),

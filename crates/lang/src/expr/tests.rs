@@ -1,4 +1,4 @@
-//! Tests of formulas; expected values come from LAMMPS 22Jul2025 (`print "$(…)"`) unless said otherwise.
+//! Tests of formulas; expected values come from LAMMPS 22Jul2025 (`print "$(…)"`) unless noted otherwise.
 
 #![allow(clippy::approx_constant)] // LAMMPS' twenty digits as it printed them
 
@@ -18,7 +18,7 @@ fn number(text: &str) -> f64 {
     }
 }
 
-/// The refusal of a formula: what it says, and the bytes it underlines.
+/// The refusal of a formula: its message, and the bytes it underlines.
 fn refusal(text: &str) -> (String, String) {
     let at = Span::new(FileId(0), 0, text.len());
     let mut world = World::default();

@@ -9,7 +9,7 @@ const CONTINUED: usize = 4;
 /// Blanks before a comment whose column is not given by others.
 const BEFORE_COMMENT: usize = 2;
 
-/// A line that ends further to the right has no say in where comments of others stand.
+/// A line that ends further to the right does not count for the column of the others' comments.
 const FAR: usize = 90;
 
 /// The rows as text.
@@ -101,7 +101,7 @@ fn continuation(head: &Row<'_>, columns: &[usize], row: &Row<'_>) -> usize {
     }
 }
 
-/// Whether nothing tells the column of word number `n`: one before it has a line break or a tab in it.
+/// Whether the column of word number `n` is unknown: a word before it contains a line break or a tab.
 fn torn(row: &Row<'_>, n: usize) -> bool {
     row.broken && row.words[..n].iter().any(|word| word.text.contains(['\n', '\t']))
 }

@@ -75,7 +75,8 @@ fn is_empty(line: &str) -> bool {
     line.chars().all(lex::blank)
 }
 
-/// Marks the lines whose words or comments are others now, and says whether there are any; `None` if lines have come or gone.
+/// Marks the lines whose words or comments have changed, and returns whether there are any; `None` if lines were added or
+/// removed.
 fn changed(old: &str, before: &[Held], new: &str, after: &[Held], kept: &mut [bool]) -> Option<bool> {
     let mut any = false;
     for (k, line) in before.iter().enumerate() {
@@ -93,7 +94,7 @@ fn changed(old: &str, before: &[Held], new: &str, after: &[Held], kept: &mut [bo
     (any || before.len() == after.len()).then_some(any)
 }
 
-/// The words of a line, unless it has none that can be told, and its comment.
+/// The words of a line, if they can be determined, and its comment.
 fn meaning(text: &str, held: &Held) -> (Option<Vec<(String, bool)>>, String) {
     let line = &held.line;
     let words = lex::words(&line.text.head(line.code));

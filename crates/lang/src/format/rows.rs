@@ -35,7 +35,7 @@ pub(super) struct Row<'a> {
     pub comment: Option<Piece<'a>>,
     /// Its line break.
     pub ending: &'a str,
-    /// One of its words has a line break or a tab in it, so that nothing tells its width.
+    /// One of its words contains a line break or a tab, so that its width is unknown.
     pub broken: bool,
     /// All of it, where it stays as it is.
     pub whole: Option<&'a str>,
@@ -149,13 +149,13 @@ impl<'a> Walk<'a> {
         }
         let ends_here = start + content.len();
         if joined.is_none() {
-            // Only three quotes go on behind a line break of their own; it belongs to the text.
+            // Only a text in three quotes continues behind a line break of its own; the break belongs to the text.
             self.end = self.open.map_or(self.end, |_| ends_here);
             return false;
         }
         let next = self.line[start + line.len()..].chars().next();
         let inside = self.dollar != Dollar::None || matches!(self.mode, Mode::Quote(..));
-        // Behind a word that goes on there may be lines that hold nothing but a continuation.
+        // Behind a word that continues there may be lines that hold nothing but a continuation.
         let touches = self.end == ends_here || content.is_empty();
         if self.open.is_some() && (inside || (touches && self.glued(start + line.len(), next))) {
             return false;

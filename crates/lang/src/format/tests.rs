@@ -146,7 +146,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// What an editor asks for comes for whatever is typed, with places that can be shown.
+    /// Requests of an editor work for any text as it is typed, with places that can be shown.
     #[test]
     fn any_text_has_lines_for_editors(pieces in prop::collection::vec(prop::sample::select(PIECES), 0..40)) {
         let text = pieces.concat();

@@ -250,7 +250,7 @@ fn quit_ends_with_its_status() {
 fn messages_show_use_and_definition() {
     let out = says("variable radius index 0.5x\nvariable r2 equal v_radius*2\nprint ${r2}\n");
     assert!(out.contains("variable `radius` holds `0.5x`"), "{out}");
-    // the word in the formula, the definition, and the place that asked for it
+    // the word in the formula, the definition, and the place that refers to it
     assert!(
         out.contains("deck:2:19") && out.contains("defined here") && out.contains("evaluated here"),
         "{out}"

@@ -40,7 +40,7 @@ proptest! {
         prop_assert!(!out.contains("endless"));
     }
 
-    /// Loops made of anything end or are refused; a deck that goes on for long changes something in each turn.
+    /// Loops made of any lines end or are refused; a deck that runs for long changes something in each turn.
     #[test]
     fn any_loop(body in prop::collection::vec(prop::sample::select(LOOP), 0..8)) {
         let out = says(&format!("variable i loop 5\nlabel top\n{}jump SELF top\n", body.concat()));

@@ -101,7 +101,7 @@ impl Vars {
                     };
                     let d = Diagnostic::error(Code::CONFLICT, span, text);
                     return Err(d
-                        .help("`-partition` on the command line says how many partitions there are")
+                        .help("`-partition` on the command line sets the number of partitions")
                         .into());
                 }
                 Data::Text(words[number].text.clone())
@@ -211,7 +211,7 @@ impl Vars {
 pub fn no_python(word: &Word) -> Diagnostic {
     let text = "perigrain has no Python inside, so no python variables";
     blame(word, Code::NOT_SUPPORTED, text)
-        .help("a deck that Python works off has them: `perigrain.lammps().file(…)`")
+        .help("a deck that Python executes has them: `perigrain.lammps().file(…)`")
         .help("or compute the value outside and pass it by `-var NAME value`")
 }
 

@@ -132,9 +132,9 @@ struct Variable {
     data: Data,
     /// Where it was defined; nowhere if on the command line.
     span: Option<Span>,
-    /// Only a run can tell its value (`check` and `plan`).
+    /// Only a run determines its value (`check` and `plan`).
     unknown: bool,
-    /// Only a run can tell which line has set or moved it last, or whether one has deleted it.
+    /// Only a run determines which line has set or moved it last, or whether one has deleted it.
     adrift: bool,
     /// When it was defined, in lines that set variables.
     born: u64,
@@ -300,7 +300,7 @@ impl Vars {
         &self.environment
     }
 
-    /// `clear` forgets values per particle read from files.
+    /// `clear` removes values per particle read from files.
     pub fn clear_atomfiles(&mut self) {
         let gone: Vec<String> =
             self.table.iter().filter(|(_, v)| v.kind == Kind::Atomfile).map(|(n, _)| n.clone()).collect();
@@ -312,7 +312,7 @@ impl Vars {
         self.sets
     }
 
-    /// Whether only a run can tell if there is such a variable, or which line has set it.
+    /// Whether only a run determines if there is such a variable, or which line has set it.
     pub(super) fn is_adrift(&self, name: &str) -> bool {
         self.table.get(name).is_some_and(|v| v.adrift)
     }
@@ -322,21 +322,21 @@ impl Vars {
         self.table.values().any(|v| v.turns_known() && v.set > since && v.born <= since)
     }
 
-    /// Forgets what a variable's value is: only a run can tell whether a line that sets it is reached.
+    /// Marks a variable's value as unknown: only a run determines whether a line that sets it is reached.
     pub(super) fn set_adrift(&mut self, name: &str) {
         let Some(old) = self.table.get(name) else { return };
         let new = Variable { unknown: true, adrift: true, ..old.clone() };
         self.put(name, new);
     }
 
-    /// Forgets the values of all variables that lines behind the moment `since` have set or moved.
+    /// Marks the values of all variables as unknown that lines after the moment `since` have set or moved.
     pub(super) fn set_adrift_since(&mut self, since: u64) {
         let names: Vec<String> =
             self.table.iter().filter(|(_, v)| v.set > since).map(|(n, _)| n.clone()).collect();
         names.iter().for_each(|n| self.set_adrift(n));
     }
 
-    /// Forgets the numbers of all internal-style variables: a run that is only looked at may have set them.
+    /// Marks the numbers of all internal-style variables as unknown: a run that is only checked may have set them.
     pub fn forget_internal(&mut self) {
         let names: Vec<String> =
             self.table.iter().filter(|(_, v)| v.kind == Kind::Internal).map(|(n, _)| n.clone()).collect();

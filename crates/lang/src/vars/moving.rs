@@ -24,7 +24,7 @@ impl Variable {
         !self.adrift && (!self.unknown || matches!(self.data, Data::List { .. }))
     }
 
-    /// Leaves the position in a file to those it was shared with, and goes on with one of its own.
+    /// Gives up the shared position in a file and continues with one of its own.
     pub fn detach(&mut self) {
         match &mut self.data {
             Data::Lines(l) => l.detach(),
@@ -73,15 +73,15 @@ pub enum Next {
     More,
     /// One has none.
     Over,
-    /// Only a run can tell; they are taken to have none.
+    /// Known only in a run; they are taken to have none.
     Unknown,
 }
 
 impl Vars {
-    /// `next`: moves all of `names` on; says if one of them has no further value (it is then forgotten).
+    /// `next`: advances all of `names`; returns whether one of them has no further value (it is then deleted).
     ///
-    /// `maybe` says that only a run can tell whether the line is reached: nothing moves, and positions are unknown. With `keep` only
-    /// a run can tell whether variables get as far as to their last value: none is forgotten, for lines that ask for them.
+    /// With `maybe` only a run determines whether the line is reached: nothing advances, and positions are unknown. With `keep`
+    /// only a run determines whether variables reach their last value: none is deleted, for lines that read them.
     pub fn next(&mut self, names: &[Word], maybe: bool, keep: bool) -> Result<Next> {
         let family = |k: Kind| if k == Kind::Uloop { Kind::Universe } else { k };
         let mut first = None;
@@ -158,7 +158,7 @@ impl Vars {
         match (partition.turn)(partition.rounds.saturating_sub(1)) {
             Ok(turn) => Ok(Some(turn)),
             Err(e) => {
-                let text = format!("the partitions cannot agree on who is next: {e}");
+                let text = format!("the partitions cannot agree on the next one: {e}");
                 fail(Code::NO_FILE, names.first().map(|n| n.span), text)
             }
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-/// Takes the next turn of a round; told the round, counted from 0.
+/// Takes the next turn of a round, given the round, counted from 0.
 pub type Turn = Arc<dyn Fn(u64) -> std::io::Result<usize> + Send + Sync>;
 
 /// Which of several partitions works the deck off.
@@ -12,7 +12,7 @@ pub struct Partition {
     pub number: usize,
     /// How many there are.
     pub of: usize,
-    /// Hands out the turns of universe and uloop variables that nobody has had, each once.
+    /// Hands out the free turns of universe and uloop variables, each once.
     pub turn: Turn,
     /// Rounds of such variables that have been begun.
     pub(super) rounds: u64,

@@ -1,4 +1,4 @@
-//! Variables of style `python`: functions of a program that hosts the session, and what the command `python` has said of them.
+//! Variables of style `python`: functions of a program that hosts the session, and their declaration by the command `python`.
 
 use super::{Data, Vars};
 use crate::args::{Args, blame};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 ///
 /// It is no state of a session: copies talk to the same program, and no file holds it.
 pub trait Functions: Debug + Send + Sync {
-    /// Works off code at the top of the program's names.
+    /// Executes code at the top level of the program's names.
     ///
     /// # Errors
     /// The program's own words on why it failed.
@@ -57,7 +57,7 @@ impl Given {
     }
 }
 
-/// What is given to a function, in the place where the command says it.
+/// An argument of a function, at its place in the command.
 #[derive(Clone, Debug)]
 enum Input {
     Word(String),
@@ -72,14 +72,14 @@ pub struct Function {
     gives: Option<(String, char)>,
 }
 
-/// What the words of the command `python` ask for.
+/// The request of a `python` command.
 #[derive(Debug)]
 pub enum Asked<'a> {
     /// A function is made known, after code if there is some.
     Known(String, Function, Option<Source<'a>>),
     /// A function is called.
     Invoked(String),
-    /// Code is worked off.
+    /// Code is executed.
     Source(Source<'a>),
 }
 
@@ -243,7 +243,7 @@ impl Vars {
         if let Some(variable) = variable.filter(|own| known.gives.as_ref().is_none_or(|g| g.0 != *own)) {
             let text = format!("function `{function}` gives nothing to variable `{variable}`");
             let d = Diagnostic::error(Code::CONFLICT, span, text);
-            return Err(d.help(format!("say `return v_{variable}` in its `python` line")).into());
+            return Err(d.help(format!("use `return v_{variable}` in its `python` line")).into());
         }
         if env.only_looks() {
             return Ok(None);
@@ -269,7 +269,7 @@ impl Vars {
         );
         if !fits {
             let kind = kind.unwrap_or(' ');
-            let text = format!("function `{function}` gave back {}, its format says `{kind}`", what(&back));
+            let text = format!("function `{function}` gave back {}, its format is `{kind}`", what(&back));
             return fail(Code::WRONG_KIND, span, text);
         }
         Ok(Some(back))
@@ -310,7 +310,7 @@ impl Vars {
             return fail(
                 Code::BAD_NUMBER,
                 span,
-                format!("`{text}` is no number, as the function's format says"),
+                format!("`{text}` is no number, as the function's format requires"),
             );
         };
         if kind == 'f' { Ok(Some(Given::Real(a))) } else { whole(a, &text, span).map(Some) }
@@ -321,7 +321,7 @@ fn whole(a: f64, of: &str, span: Span) -> Result<Given> {
     if a.fract() == 0.0 && a.abs() < 9e15 {
         return Ok(Given::Whole(a as i64));
     }
-    fail(Code::BAD_NUMBER, span, format!("`{of}` is {a}, and the function's format says a whole number"))
+    fail(Code::BAD_NUMBER, span, format!("`{of}` is {a}, and the function's format requires a whole number"))
 }
 
 fn what(given: &Given) -> &'static str {

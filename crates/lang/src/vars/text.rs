@@ -218,7 +218,7 @@ fn no_text(name: &str, text: &str, span: Span) -> Result<Value> {
     }
 }
 
-/// The element of a vector, if an index asks for it.
+/// The element of a vector, if there is an index.
 fn picked_element(all: Value, r: &ValueRef) -> Result<Value> {
     let Value::Vector(list) = &all else { return Ok(all) };
     match r.index[..] {
@@ -234,7 +234,7 @@ fn picked_element(all: Value, r: &ValueRef) -> Result<Value> {
     }
 }
 
-/// One particle's element of a variable with values per particle, if an index asks for it.
+/// One particle's element of a variable with values per particle, if there is an index.
 fn picked_particle(all: Value, r: &ValueRef, env: &mut dyn Env) -> Result<Value> {
     let [tag] = r.index[..] else {
         if r.index.is_empty() || all == Value::Unknown {

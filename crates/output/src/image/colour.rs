@@ -110,7 +110,7 @@ impl Map {
         MAPS.iter().find(|m| m.name == name)
     }
 
-    /// The colour at a fraction from 0 to 1; beyond, the ends go on. Not a number is magenta.
+    /// The colour at a fraction from 0 to 1; beyond, the end colours apply. Not a number is magenta.
     pub fn at(&self, t: f64) -> Colour {
         if t.is_nan() {
             return Colour::hex(0xff00ff);

@@ -90,7 +90,7 @@ pub struct Image {
     pub pixels: Vec<[u8; 3]>,
 }
 
-/// Draws a scene. Same bits for any number of threads. A picture without pixels where something wants the present work to end.
+/// Draws a scene. Same bits for any number of threads. A picture without pixels if the present work was requested to end.
 pub fn render(scene: &Scene<'_>, view: &View, look: &Look) -> Image {
     let frame = Frame::new(scene, look);
     let raster = Raster::new(scene, view, &frame);
@@ -147,7 +147,7 @@ pub enum Kind {
     Ppm,
 }
 
-/// Endings of names, and which kind of file they ask for.
+/// File extensions and the kinds of file they stand for.
 pub const ENDINGS: &[(&str, Kind)] = &[
     (".png", Kind::Png),
     (".PNG", Kind::Png),
@@ -159,7 +159,7 @@ pub const ENDINGS: &[(&str, Kind)] = &[
 ];
 
 impl Image {
-    /// The picture as a file of the kind that its name asks for; PNG by default.
+    /// The picture as a file of the kind that its name's extension stands for; PNG by default.
     pub fn file(&self, name: &str) -> std::io::Result<Vec<u8>> {
         match ENDINGS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, kind)| kind) {
             Some(Kind::Jpeg) => self.jpeg(),

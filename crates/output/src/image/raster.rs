@@ -43,7 +43,7 @@ pub(super) struct Raster {
     width: usize,
     height: usize,
     strips: Vec<Strip>,
-    /// Something wants the present work to end, and not all strips are drawn.
+    /// The present work was requested to end, and not all strips are drawn.
     pub(super) cut: bool,
 }
 

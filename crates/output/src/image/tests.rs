@@ -65,7 +65,7 @@ fn thread_count_does_not_show() {
 
 #[test]
 fn what_large_spheres_hide_is_not_drawn_and_nothing_else_is_missing() {
-    // A body of cubes a hundredth as wide as their spheres: which one is seen at each sample, by asking all of them.
+    // A body of cubes a hundredth as wide as their spheres: the one seen at each sample, found by testing all of them.
     let x: Vec<[f64; 3]> =
         (0..600).map(|i| [i % 10, i / 10 % 10, i / 100].map(|c| 0.01 * f64::from(c))).collect();
     let r: Vec<f64> = (0..600).map(|i| 0.5 + 1e-4 * f64::from(i % 7)).collect();

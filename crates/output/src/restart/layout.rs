@@ -1,7 +1,7 @@
 //! A fingerprint of the shapes of stored types: names of fields and variants, kinds of values, in order.
 //!
-//! The stored form has no names in it, so a file is readable only by a program whose types have the same shape. Reading
-//! is played through on a reader that writes down what it is asked for.
+//! The stored form has no names in it, so a file is readable only by a program whose types have the same shape. The fingerprint
+//! is made by deserializing from a reader that records each request.
 
 use serde::de::IntoDeserializer;
 use serde::de::value::U32Deserializer;
@@ -27,7 +27,7 @@ pub fn fingerprint<T: for<'de> Deserialize<'de>>() -> u32 {
     hasher.finalize()
 }
 
-/// Writes down what is asked for and answers with zeros, one element per list, and one variant of each enum.
+/// Records each request and answers with zeros, one element per list, and one variant of each enum.
 struct Asked {
     text: String,
     variant: u32,
@@ -90,7 +90,7 @@ impl<'de> Deserializer<'de> for &mut Asked {
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, Error> {
-        Err(Error::custom("stored types say what they are"))
+        Err(Error::custom("stored types describe themselves"))
     }
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {

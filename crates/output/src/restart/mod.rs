@@ -98,12 +98,12 @@ struct Counted<'a> {
     out: &'a mut dyn Write,
     crc: crc32fast::Hasher,
     count: u64,
-    /// What the system said when it refused.
+    /// The system's error when it refused.
     failed: Option<std::io::Error>,
 }
 
 impl Counted<'_> {
-    /// Keeps what the system says; who asked gets the kind of it.
+    /// Keeps the system's error; the caller gets its kind.
     fn note<T>(&mut self, outcome: std::io::Result<T>) -> std::io::Result<T> {
         outcome.map_err(|e| {
             let kind = e.kind();
@@ -128,10 +128,10 @@ impl Write for Counted<'_> {
     }
 }
 
-/// Reads a restart file whole, or says why it is none.
+/// Reads a whole restart file.
 ///
 /// # Errors
-/// Files that cannot be read, are cut off, damaged, of another program, of another version.
+/// Files that cannot be read, are truncated, damaged, of another program, of another version.
 pub fn read(path: &Path) -> Result<Saved> {
     let failed = |e: std::io::Error| trouble("read the restart file", path, &e);
     let refuse = |why: String| {
@@ -163,12 +163,12 @@ pub fn read(path: &Path) -> Result<Saved> {
     // Room for the longest text in it: names and words of a deck.
     let mut room = vec![0u8; at_most(size)];
     let (mut saved, _): (Saved, _) = postcard::from_io((reader, &mut room)).map_err(|e| {
-        refuse(format!("holds no scene: {e}")).help("it was made by hand or by another program")
+        refuse(format!("holds no scene: {e}")).help("it was forged or made by another program")
     })?;
     sound::check(&saved.world).map_err(|fault| contradiction(refuse, fault.section, &fault.what))?;
     saved.standing &= sound::stand(&saved.world);
     if !saved.pair.iter().all(|said| said.lattice.is_sound()) {
-        return Err(contradiction(refuse, "pair", "a line was said under a lattice that is none").into());
+        return Err(contradiction(refuse, "pair", "a line stands under a lattice that is none").into());
     }
     Ok(saved)
 }
@@ -181,7 +181,7 @@ fn at_most(size: u64) -> usize {
 /// A file that is whole and yet not what a perigrain writes.
 fn contradiction(refuse: impl Fn(String) -> Diagnostic, section: &str, what: &str) -> Diagnostic {
     refuse(format!("contradicts itself in its section `{section}`: {what}"))
-        .help("its checksum fits, so this is no damage: it was made by hand or by another program")
+        .help("its checksum fits, so this is no damage: it was forged or made by another program")
 }
 
 /// Why a file is refused, and what to do.

@@ -3,7 +3,7 @@
 use super::sum_of;
 use perigrain_world::{Named, Resume, World};
 
-/// What a scene just read says about itself.
+/// The description of a scene that has just been read.
 pub fn resume(w: &World, declared: Vec<String>) -> Resume {
     let names = w.regions.keys().map(|key| key.to_string()).chain(w.materials.keys().cloned());
     let names = names.chain(w.memo.keys().map(|key| key.to_string()));

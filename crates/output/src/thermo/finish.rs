@@ -1,4 +1,4 @@
-//! What a log says before and after a run: memory, loop time, timing tables, counts, wall time.
+//! The text of a log before and after a run: memory, loop time, timing tables, counts, wall time.
 
 use perigrain_base::comm;
 use perigrain_base::math::cformat::{Format, Value, general};
@@ -12,7 +12,7 @@ pub struct Section<'a> {
     pub seconds: f64,
 }
 
-/// Everything that is told at the end of a run.
+/// Everything that is printed at the end of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Finish<'a> {
     /// Wall time of the loop in seconds.
@@ -37,7 +37,7 @@ pub struct Finish<'a> {
     pub builds: u64,
     /// Builds that came later than they should have.
     pub dangerous: u64,
-    /// What a minimization tells of itself.
+    /// The summary of a minimization.
     pub minimized: Option<&'a str>,
 }
 
@@ -133,7 +133,7 @@ impl Finish<'_> {
         text
     }
 
-    /// LAMMPS' counts, without those that nobody knows; there are no ghosts here.
+    /// LAMMPS' counts, without those that do not exist here; there are no ghosts.
     fn counts(&self) -> String {
         let mut text = count("Nlocal:", self.atoms) + &count("Nghost:", 0);
         if let Some(total) = self.full {

@@ -43,7 +43,7 @@ impl Column {
         Self { name: word.into(), header: word.into(), kind: Kind::Float, extensive }
     }
 
-    /// What stands above the column unless `colname` says otherwise.
+    /// The header of the column unless `colname` sets another.
     pub fn usual_header(&self) -> String {
         keyword(&self.name).map_or(self.name.clone(), |k| k.header.into())
     }

@@ -1,4 +1,4 @@
-//! LAMMPS' thermo text: columns, rows and what is said around a run, so that existing log readers work.
+//! LAMMPS' thermo text: columns, rows and the text around a run, so that existing log readers work.
 
 mod finish;
 mod keywords;

@@ -40,14 +40,14 @@ impl Style for BpmBeam {
                    All of it comes from one energy of positions and orientations: energy, momentum and angular momentum are kept, and a body as it was \
                    made has exactly no force. `compute energy/ledger` counts the energy of each bond that breaks, and what dashpots take up.\n\
                    A bond breaks where N/A + B M_b R/I reaches the strength S1 [pressure], or Q/A + B M_t R/(2 I) reaches S2, with the tension N, the \
-                   shear force Q, the moments M_b of bending and M_t of twist; `moment` B is between 0 and 1 (1). `criterion separate` asks each of the \
+                   shear force Q, the moments M_b of bending and M_t of twist; `moment` B is between 0 and 1 (1). `criterion separate` tests each of the \
                    four alone, N and M_b only where the bond is pulled. `weibull M SEED` multiplies both strengths of every bond with a number of a Weibull \
                    distribution of modulus M and mean 1, which belongs to the IDs of its ends. A broken bond is gone, and pair forces act between its ends \
                    from the next step on; nothing breaks without `strength`, nor under `compat lammps` in the setup of a run. `smooth yes` multiplies forces with 1 − B⁴, \
                    B the share of the strength that is used up; energy is not kept then.\n\
                    `damping`: dashpots of Z times the critical damping of the two ends on the bond, of all modes or of stretch, shear, twist and bending.\n\
                    Needs `atom_style bpm/sphere` and `fix nve/bpm/sphere`; bonds that break need `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair \
-                   yes` `special_bonds lj/coul 1 1 1`. `compute bond/local` tells of each bond `tension`, `shear` [force], `bend`, \
+                   yes` `special_bonds lj/coul 1 1 1`. `compute bond/local` gives for each bond `tension`, `shear` [force], `bend`, \
                    `twist` [force length] and `load`, the share of its strength that is used up. This style is perigrain's own. `kinematics incremental` and `yield` are refused.\n\
                    Jarolin and Dosta, Comput. Part. Mech. 8 (2021); Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004)."
             ),

@@ -66,7 +66,7 @@ impl BondStyle for BpmRotational {
     }
 }
 
-/// The words of newer LAMMPS for what this style is.
+/// The words of newer LAMMPS for the behaviour of this style.
 fn same_as_here(word: &str, args: &mut Args) -> Result<bool> {
     let (here, elsewhere) = match word {
         "frame" => ("particle", "average"),
@@ -170,7 +170,7 @@ impl BondForce for Declared {
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
         let mut pull = pull_of(self, w, bond)?;
         if self.compat_lammps {
-            // LAMMPS says force where force over length is meant.
+            // LAMMPS calls force what is force over length.
             pull.force_per_length *= bond.length();
         }
         Some(pull)

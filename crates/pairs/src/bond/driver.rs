@@ -19,14 +19,14 @@ use perigrain_world::share::{Halo, Listed};
 use perigrain_world::tally::add_share;
 use perigrain_world::{Bond, Key as ListKey, World};
 
-/// A law with what the deck's lines say.
+/// A law with the coefficients of the deck's lines.
 pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
     /// What one bond does.
     type Law: BondLaw<C>;
     /// The style's name.
     const NAME: &'static str;
 
-    /// The law, as the style's line says.
+    /// The law, as the style's line sets it.
     fn law(&self) -> Self::Law;
 
     /// The coefficients of a type, if the style has some for it.
@@ -46,7 +46,7 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
         vec![]
     }
 
-    /// Whether that looks at all bonds.
+    /// Whether the preparation covers all bonds.
     fn prepares(&self) -> bool {
         false
     }
@@ -135,8 +135,8 @@ fn lower_first(ids: [u32; 2], places: [usize; 2]) -> [usize; 2] {
     if ids[0] < ids[1] { places } else { [places[1], places[0]] }
 }
 
-/// What a law says of one bond as it is now: its ends, and how they move, and with `turns` how they have turned. The first end
-/// is that with the lower ID.
+/// The input of a law for one bond in its present state: its ends, and how they move, and with `turns` how they have turned. The
+/// first end is that with the lower ID.
 pub fn ends_of(w: &World, bond: &Stretched, turns: bool) -> (Ends<f64>, Motion<f64>) {
     let p = &w.particles;
     let [a, b] = lower_first(bond.bond.ends, bond.ends);
@@ -271,7 +271,8 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         true
     }
 
-    /// The present deal of grains to ranks, where this rank evaluates the bonds of its own: not where sums over bonds are asked for.
+    /// The present deal of grains to ranks, where this rank evaluates the bonds of its own: not where sums over bonds are
+    /// requested.
     fn deal(&self, w: &World, t: &Tick) -> Option<u64> {
         let sums = t.energy || t.atom_energy || t.virial || w.bonds.past().counts_losses;
         w.grains_dealt().filter(|_| !sums && !t.setup && !self.law.prepares())
@@ -304,7 +305,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         w.halo(X | turns | moves, Halo::Listed);
     }
 
-    /// Energies and virials, for those who ask.
+    /// Energies and virials, if requested.
     fn tally(&self, w: &mut World, t: &Tick, periods: &Periods) {
         if t.energy {
             let energy = par::sum(self.columns.rows(), |k| self.out.force[k].0[3]);
@@ -329,7 +330,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         }
     }
 
-    /// Tells the ledger what the dashpots of this style's types take up.
+    /// Books the work of the dashpots of this style's types in the ledger.
     fn account(&self, w: &mut World) {
         let power = &mut w.bonds.power;
         power.resize(self.coeffs.len(), 0.0);
@@ -383,7 +384,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
 impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
     fn about(&self) -> About {
         let mut needs = Needs::new().read(X | BONDS | BOX | LISTS | TAG | self.law.reads()).add(F);
-        // Lengths at rest, bonds that break, and what dashpots take up, which a ledger is told also where there are none.
+        // Lengths at rest, bonds that break, and the work of dashpots, which a ledger books also where there are none.
         let mut writes = TALLY.and(BONDS);
         if self.law.breaks() {
             writes = writes.and(LISTS);
@@ -418,7 +419,7 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             }
             self.lay_out(w)?;
         }
-        // Who adds up over bonds does so in the order of space, whatever has been before.
+        // Sums over bonds are made in the order of space, whatever the order before.
         let sums = t.energy || t.atom_energy || t.virial || w.bonds.counts_losses;
         if sums && !self.columns.in_order() {
             self.columns.put_in_order();

@@ -46,7 +46,7 @@ struct Declared {
     springs: BTreeMap<u16, Spring>,
 }
 
-/// A spring as the deck's line said it.
+/// A spring as the deck's line set it.
 #[derive(Clone, Copy)]
 struct Spring {
     said: [f64; 2],
@@ -72,7 +72,7 @@ impl Spring {
 /// The springs of a run.
 #[derive(Clone)]
 struct Adapting {
-    /// As the deck's lines said.
+    /// As the deck's lines set them.
     said: Declared,
     /// As fixes have changed them.
     now: BTreeMap<u16, [f64; 2]>,

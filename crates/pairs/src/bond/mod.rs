@@ -1,6 +1,6 @@
 //! Bond styles: forces along bonds between particles.
 
-/// What the pages of bond styles say of `store/local`, after their own text.
+/// What the pages of bond styles add about `store/local`, after their own text.
 macro_rules! with_store {
     ($text:literal) => {
         concat!(

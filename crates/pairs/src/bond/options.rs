@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_styles::Fix;
 use perigrain_world::World;
 
-/// What the line of a style says.
+/// The options of a style's line.
 #[derive(Clone)]
 pub struct Options {
     /// Pair forces act between bonded particles too.
@@ -26,8 +26,8 @@ pub struct Options {
 pub const WORDS: [&str; 5] = ["overlay/pair", "smooth", "normalize", "break", "store/local"];
 
 impl Options {
-    /// Reads the line; `smooth` is what holds where the
-    /// line is silent, `more` reads what only one style knows and says whether it did.
+    /// Reads the line; `smooth` is the default of that option, `more` reads the words of a single style and returns whether there
+    /// was one.
     ///
     /// # Errors
     /// Every mistake in the line.
@@ -65,7 +65,7 @@ impl Options {
         if self.breaks { args.positive(what) } else { args.number(what) }
     }
 
-    /// The fix that `store/local` asks for.
+    /// The fix that `store/local` requests.
     pub fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
         self.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
     }

@@ -35,7 +35,7 @@ const VALUES: [(&str, Value); 9] = [
     ("z/ref", Value::First(2)),
 ];
 
-/// What a bond style's line says of bonds that break.
+/// The words of a bond style's line about bonds that break.
 #[derive(Clone)]
 pub struct Store {
     id: String,
@@ -64,7 +64,8 @@ impl Store {
         }
         if values.is_empty() {
             let known: Vec<&str> = VALUES.iter().map(|(name, _)| *name).collect();
-            let text = format!("`store/local` says what to keep of bonds that break: {}", known.join(" "));
+            let text =
+                format!("`store/local` needs the values to keep of bonds that break: {}", known.join(" "));
             return fail(Code::INCOMPLETE, args.here(), text);
         }
         let (rows, first) = (Key::new(&format!("{NAME}/{id}")), Key::new(&format!("{NAME}/{id}/first")));
@@ -85,7 +86,7 @@ impl Store {
         if self.looks_back() { COLUMNS } else { Fields::NONE }
     }
 
-    /// Takes note of bonds that have broken, told by the places of their ends, that of the lower ID first.
+    /// Keeps broken bonds, given by the places of their ends, that of the lower ID first.
     pub fn keep(&self, w: &mut World, step: i64, broken: &[[usize; 2]]) {
         let p = &w.particles;
         // Read only where it is stated: see `reads`.

@@ -67,7 +67,7 @@ impl<L: Law> Op for Push<L> {
             let near = list[start..].iter();
             felt.iter_mut().zip(near).for_each(|(felt, pair)| *felt = table.felt(scene, pair));
         });
-        // Pairs that can be asked about say themselves what they add to virials of particles.
+        // Pairs that can be probed report their own part of the virials of particles.
         let t = &Tick { atom_virial: t.atom_virial && !L::SINGLE, ..t.clone() };
         let mut energy = 0.0;
         for (pair, felt) in list.iter().zip(felt.iter()) {

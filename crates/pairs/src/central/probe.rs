@@ -1,4 +1,4 @@
-//! What single pairs of a central law say when they are asked.
+//! Probes for single pairs of a central law.
 
 use super::{Law, Table};
 use crate::shared::{built_at, near};

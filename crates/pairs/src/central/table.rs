@@ -46,7 +46,7 @@ pub struct Felt {
 }
 
 impl<L: Law> Table<L> {
-    /// Of a style, as the deck's lines said.
+    /// For a style, with the coefficients of the deck's lines.
     pub fn new(style: &Declared<L>, w: &World) -> Self {
         let types = w.types;
         let (mut entries, mut wanted) = (vec![None; types * types], Wanted::new(types));
@@ -98,7 +98,7 @@ impl<L: Law> Table<L> {
         self.farthest.sqrt()
     }
 
-    /// Takes in what `special_bonds` says of bonds as they stand.
+    /// Applies the weights of `special_bonds` to the present bonds.
     pub fn weigh(&mut self, w: &World) {
         self.parts = w.bonds.weakened();
     }

@@ -6,14 +6,14 @@ use perigrain_styles::pair::{Deck, ToCome};
 use perigrain_world::World;
 use std::f64::consts::PI;
 
-/// The overlap over radius that grains are taken to reach while nobody moves.
+/// The overlap over radius assumed for grains at rest.
 const USUAL_OVERLAP: f64 = 0.01;
 
 /// Lightest mass and smallest radius of a type.
 type Smallest = Option<[f64; 2]>;
 
-/// The shortest contact between equal grains of the lightest kind of each type, at the largest speed there is now;
-/// `deck`: what the deck says of grains that are not there yet.
+/// The shortest contact between equal grains of the lightest kind of each type, at the present largest speed; `deck`: what the
+/// deck states about grains that do not exist yet.
 pub fn between_grains(w: &World, rules: &Rules, deck: Deck) -> Option<f64> {
     let types = 1..=w.types as u16;
     let kind = &w.particles.kind;

@@ -8,7 +8,7 @@ use perigrain_base::diag::Span;
 use perigrain_contact::Model;
 use perigrain_contact::driver::{Average, Curvature};
 
-/// What one `pair_coeff` line says of its pairs of types, or a wall of its contacts.
+/// Coefficients of one `pair_coeff` line for its pairs of types, or of a wall for its contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coeff {
     /// The models.
@@ -17,7 +17,7 @@ pub struct Coeff {
     pub average: Average,
     /// Effective radius.
     pub curvature: Curvature,
-    /// The reach of the neighbour list by hand [length].
+    /// The explicit reach of the neighbour list [length].
     pub cutoff: Option<f64>,
     /// The word with the normal model, for messages.
     pub span: Span,

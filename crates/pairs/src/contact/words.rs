@@ -1,4 +1,4 @@
-//! The words of `pair_coeff … granular`: models by name, each with its numbers; what is not there is refused by name.
+//! The words of `pair_coeff … granular`: models by name, each with its numbers; unknown models are refused by name.
 
 use super::Coeff;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};

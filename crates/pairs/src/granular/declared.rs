@@ -31,7 +31,7 @@ const FAULTS: [(HasFault, &str, bool); 4] = [
         "synchronized_verlet whose forces act along the normal of the middle of the step",
         false,
     ),
-    (Model::slides_loosely, "springs of contacts that forget the contact radius when they slide", true),
+    (Model::slides_loosely, "springs of contacts that lose the contact radius when they slide", true),
     (
         |m| m.twisting != Twisting::None,
         "a sliding twist in the direction of the spin, not of its torque",
@@ -45,7 +45,7 @@ pub struct Declared {
     /// The style; contact history is kept under its name.
     name: &'static str,
     cutoff: Option<f64>,
-    /// What all pairs of types get, where the style's own line says it all.
+    /// The coefficients of all pairs of types, if the style's own line gives them.
     all: Option<Coeff>,
     given: BTreeMap<(u16, u16), Coeff>,
     /// As a sub-style: the pairs of types it acts on.

@@ -36,7 +36,7 @@ pub struct Force {
     name: String,
     /// Whether fix freeze holds a particle; empty without one.
     frozen: Vec<bool>,
-    /// Whether nobody changes masses, radii and groups in a step.
+    /// Whether masses, radii and groups stay the same during steps.
     steady: bool,
     /// Masses where rigid bodies lend theirs.
     lent: Option<Vec<f64>>,
@@ -59,7 +59,7 @@ pub struct Force {
 struct Plain {
     list: Vec<Pair>,
     body: Vec<u32>,
-    /// Who was there when the bodies were found.
+    /// The roster at which the bodies were found.
     roster: Option<u64>,
     sweep: Sweep,
 }
@@ -92,7 +92,7 @@ impl Force {
         }
     }
 
-    /// Which solid each particle belongs to, where some rule asks.
+    /// The solid each particle belongs to, where some rule needs it.
     fn find_bodies(&mut self, w: &World) {
         self.plain.body.clear();
         let asked = self.rules.ask_for_bodies();
@@ -185,9 +185,10 @@ impl Force {
         Ok(true)
     }
 
-    /// What precedes contacts: lists where they are due; the box, whether contacts remember, and whether masses may be others.
+    /// The preparation of contacts: lists where they are due; the box, whether contacts keep history, and whether masses may have
+    /// changed.
     fn prepare(&mut self, w: &mut World, t: &Tick) -> Result<(Periods, bool, bool)> {
-        // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
+        // A run that continues an unchanged scene has no setup; added or removed particles shift the others.
         self.bring_up_to_date(w);
         if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
             self.plain.roster = Some(w.rebuild.roster);
@@ -366,7 +367,7 @@ impl Op for Force {
     }
 
     fn settle(&mut self, changed: Fields) {
-        // Who comes or goes has lists made anew, and all is read again.
+        // Added or removed particles rebuild lists, and everything is read again.
         self.steady = !changed.has(MASS | MASK | RADIUS);
     }
 
@@ -395,7 +396,7 @@ impl Op for Force {
     }
 }
 
-/// The laws as the fast loop wants them; `None` where some rule is not for it.
+/// The laws in the form of the fast loop; `None` where some rule does not fit it.
 fn laws(rules: &Rules, wanted: &Wanted, types: usize) -> Option<Laws> {
     let plain = rules.any(|r| {
         r.law.is_told()
@@ -436,7 +437,7 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
     })
 }
 
-/// Room for what contacts tell the ledger of energy, where there is one.
+/// Room for what contacts report to the ledger of energy, where there is one.
 fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairDeeds> {
     // Opening a memory that does not exist writes it.
     w.parts.pair_deeds.as_ref()?;
@@ -447,7 +448,7 @@ fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Op
     Some(own)
 }
 
-/// Gives the ledger what they told.
+/// Books what they reported in the ledger.
 fn keep_deeds(w: &mut World, key: Key<Contacts>, own: PairDeeds) {
     if let Some(all) = &mut w.parts.pair_deeds {
         all.insert(key.of(), own);

@@ -14,13 +14,13 @@ pub struct Press {
     meetings: Meetings,
     /// The grains while a step is under way.
     state: State,
-    /// What contacts remember on both sides, likewise.
+    /// The contact history of both sides, likewise.
     plastic: Contacts,
     spare: Vec<f64>,
 }
 
 impl Press {
-    /// Grains of this material, said there.
+    /// Grains of this material, given at `span`.
     pub fn new(material: Material, span: Span) -> Self {
         let (state, plastic) = (State::default(), Contacts::default());
         Self { material, span, meetings: Meetings::default(), state, plastic, spare: vec![] }
@@ -55,13 +55,13 @@ impl Press {
         }
     }
 
-    /// Ends a step: what grains and contacts remember goes back into the world.
+    /// Ends a step: the history of grains and contacts goes back into the world.
     pub fn end(&mut self, w: &mut World) {
         w.contacts.insert(*PLASTIC, std::mem::take(&mut self.plastic));
         std::mem::take(&mut self.state).put(&mut w.columns);
     }
 
-    /// What contacts remembered `before` a setup, and what they were told in it: whoever asks for single pairs needs that.
+    /// Combines the contact history `before` a setup with the evaluation data of that setup, which probes of single pairs need.
     pub fn told(&mut self, mut before: Contacts, after: &Contacts) -> Contacts {
         let width = after.width;
         before.carry(&after.keys, width, &mut self.spare);

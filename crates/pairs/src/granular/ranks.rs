@@ -6,12 +6,13 @@ use perigrain_world::World;
 use perigrain_world::contacts::{Contacts, Deep};
 use perigrain_world::share::joined_of_all;
 
-/// What contacts of all ranks remember.
+/// Contact history of all ranks.
 pub fn contacts_of_all(fast: &Fast) -> Contacts {
     joined_of_all(&*comm::present(), &fast.contacts())
 }
 
-/// What other ranks remember of contacts that this one lists, as grains are dealt and listed now; they have this rank's in exchange.
+/// The other ranks' history of contacts that this rank lists, as grains are dealt and listed now; they get this rank's in
+/// exchange.
 pub fn contacts_of_others(w: &World, fast: &Fast, dealt: Dealt, own: &Own) -> Contacts {
     let comm = comm::present();
     let all = fast.handed_over(&w.particles.tag, dealt, own);

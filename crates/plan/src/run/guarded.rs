@@ -19,7 +19,7 @@ pub struct Guarded {
 /// What becomes of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Go on.
+    /// Continue.
     Good,
     /// The scene is that of the last good block again.
     Back,

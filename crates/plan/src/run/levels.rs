@@ -17,7 +17,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long a step may go on after a signal, to end as a whole one.
+/// How long a step may continue after a signal, to end as a whole one.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Levels of steps.
@@ -25,7 +25,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 pub struct Levels {
     /// How many steps of a level one of the next holds, from the shortest.
     pub loops: Vec<i64>,
-    /// Who alone moves in the short steps of two lengths.
+    /// Of two levels: the particles that move in the short steps, and only there.
     pub solids: Option<Arc<Solids>>,
     /// What each level has of its own, from the shortest.
     pub(super) own: Arc<[columns::Level]>,
@@ -42,7 +42,7 @@ impl Levels {
         Self { loops, solids, own }
     }
 
-    /// Forgets what they have of their own.
+    /// Removes the columns of all levels.
     pub(super) fn forget(&self, w: &mut World) {
         for own in self.own.iter() {
             own.forces.into_iter().chain(own.path).for_each(|key| w.columns.remove(key));
@@ -55,7 +55,7 @@ impl Levels {
         self.loops.len() + 1
     }
 
-    /// A tick as those who act in a level see it.
+    /// A tick as the ops of a level see it.
     pub(super) fn at(&self, t: &Tick, level: usize) -> Tick {
         let phase = Phase { level, levels: self.count(), solids: self.solids.clone(), path: [None; 2] };
         Tick { phase, ..t.clone() }
@@ -146,7 +146,7 @@ pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels) -> Result<
     Ok(())
 }
 
-/// A long step that something wants to end: it is made to its end where that is near.
+/// A long step after a signal: it is completed if its end is near.
 #[derive(Default)]
 struct Waiting {
     since: Cell<Option<Instant>>,
@@ -169,14 +169,13 @@ impl Waiting {
         let text = format!(
             "in the middle of step {step}, after {made} of the {all} short steps that fill a longer one"
         );
-        let help =
-            "no restart file holds such a scene: go on from one that `restart N` has written at a whole step";
+        let help = "no restart file holds such a scene: continue from one that `restart N` has written at a whole step";
         Err(Diagnostic::error(Code::INTERRUPTED, None, text).help(help).into())
     }
 }
 
-/// One step of a level. Only the last of the steps in it have their sums asked for: those end where the step ends. Of the
-/// shortest the last kick is made with the first one of the next where `more` follow at once.
+/// One step of a level. Of the steps in it only the last computes its sums: it ends where the step ends. In the shortest level
+/// the last kick is made together with the first one of the next step where `more` follow at once.
 fn level(
     plan: &mut StepPlan,
     w: &mut World,

@@ -16,7 +16,7 @@ pub(super) struct Path {
     key: Vectors,
 }
 
-/// Whether ops that act at this level remember contacts.
+/// Whether ops that act at this level keep contact history.
 pub(super) fn remembers(plan: &StepPlan, phase: &Phase) -> bool {
     forces(plan, |level| level.acts(phase), |needs| needs.changes(CONTACTS | WALL_CONTACTS))
 }

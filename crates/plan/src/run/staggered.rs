@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// How long steps and short ones relate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Staggered {
-    /// Who moves in short steps.
+    /// The particles that move in short steps.
     pub solids: Arc<Solids>,
     /// Short steps per long one.
     pub ratio: Ratio,
@@ -105,8 +105,8 @@ pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Resu
     levels::step(plan, w, t, &s.levels(m))
 }
 
-/// Forces where bonds act at multiples of `m` steps: `m` times then, else not at all. Where somebody asks for sums at
-/// another step, bonds are looked at without moving on.
+/// Forces where bonds act at multiples of `m` steps: `m` times then, else not at all. Where sums are requested at another step,
+/// bonds are evaluated without advancing them.
 fn rare(plan: &mut StepPlan, w: &mut World, t: &Tick, m: i64, s: &Staggered) -> Result<()> {
     let (two, due) = (s.levels(m), t.step.rem_euclid(m) == 0);
     if due || t.energy || t.virial {

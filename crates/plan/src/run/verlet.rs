@@ -38,26 +38,26 @@ pub struct Made {
     pub dt: f64,
 }
 
-/// Told after every step, for a progress bar or a film.
+/// Observes a run step by step, for a progress bar or a film.
 pub trait Watch: Send {
-    /// A deck asks for a run of so many steps, which may be made in several stretches.
+    /// A run of `steps` steps was requested; it may be made in several stretches.
     fn asked(&mut self, _steps: i64) {}
-    /// A run begins: its setup is made.
+    /// A run begins; its setup comes next.
     fn begins(&mut self, _w: &World) {}
     /// A step is made.
     fn step(&mut self, made: &Made);
-    /// Whether the scene is to be shown after the step that comes now, which the clock tells.
+    /// Whether the scene is wanted after the next step, whose number the clock holds.
     fn looks(&mut self, _w: &World) -> bool {
         false
     }
-    /// The scene after a step, told what has been asked for.
+    /// The scene after a step for which [`Watch::looks`] returned `true`; all collective results are up to date.
     fn scene(&mut self, _w: &World) {}
 }
 
 /// Computes forces at the start of a run and makes its first outputs.
 ///
-/// When the scene is `unchanged` since the last run, forces, bonds and contact history stand already, and a run
-/// cut in two equals one run to the bit; only sums that nobody had asked for are made up for.
+/// When the scene is `unchanged` since the last run, forces, bonds and contact history are kept, and a run cut in two equals one
+/// run to the bit; only sums that were not requested before are computed.
 ///
 /// # Errors
 /// The first op's that fails.
@@ -119,7 +119,7 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     outcome
 }
 
-/// Whether the present step is the last one, or somebody wants it to be.
+/// Whether the present step is the last one, or the run has been requested to end.
 fn over(w: &World) -> bool {
     let c = &w.clock;
     c.step >= c.last || c.halt != Halt::No || w.settings.stops() || w.settings.ends_at(c.step)
@@ -140,7 +140,7 @@ pub(super) const MOTION: [Stage; 8] = [
 /// And those that put out.
 const OUTPUTS: [Stage; 2] = [Stage::EndOfStep, Stage::Output];
 
-/// Makes the steps of a run, each by `step`, which is told whether somebody looks at the scene after it, and then its outputs.
+/// Makes the steps of a run, each by `step`, with a flag whether the scene is read after it, and then its outputs.
 ///
 /// # Errors
 /// As [`verlet`].
@@ -218,15 +218,15 @@ pub(super) fn steps(
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
 }
 
-/// Why a run ends before the last step that the deck asked for.
+/// Why a run ends before the last step that the deck requests.
 ///
-/// The step that comes then is made as the last one of a shorter run: its row, its sums and its files are those of a run
-/// that was asked to end there, and so is the scene it leaves.
+/// The next step is made as the last one of a shorter run: its row, its sums and its files are those of a run of that length, and
+/// so is the scene it leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Early {
     /// A signal, or a program around this one.
     Interrupted,
-    /// The limit of time.
+    /// The time limit.
     TimedOut,
 }
 
@@ -239,7 +239,7 @@ impl Early {
         w.settings.ends_at(w.clock.step).then_some(Self::TimedOut)
     }
 
-    /// Makes the step to come the last one; `false` where none is made yet, and the run is over as it stands.
+    /// Makes the next step the last one; `false` where no step is made yet: the run ends as it is.
     fn one_more(w: &mut World, first: i64) -> bool {
         let some = w.clock.step > first;
         w.clock.last = w.clock.step + i64::from(some);
@@ -247,7 +247,7 @@ impl Early {
     }
 }
 
-/// Forces and output for each scene that `next` puts in; nothing moves. `next` says `false` when there are no more.
+/// Forces and output for each scene that `next` puts in; nothing moves. `next` returns `false` when there are no more.
 ///
 /// # Errors
 /// The first op's that fails, and those of `next`.
@@ -262,7 +262,7 @@ pub fn look(
         w.settings.agree(None);
         interrupted |= w.settings.stops();
         if !interrupted {
-            // The limit of time.
+            // The time limit.
             stop::check()?;
         }
         if interrupted || !next(w)? {

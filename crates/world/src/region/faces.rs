@@ -87,7 +87,7 @@ impl Shape {
                     near.iter().for_each(|n| f.add(n.part, n.normal, n.distance, 0.0));
                 }
             }
-            // Their parts are asked one by one.
+            // Their parts are queried one by one.
             Shape::Union(_) | Shape::Intersect(_) => {}
         }
     }

@@ -80,7 +80,7 @@ impl Motion {
         self.shift.iter().flatten().chain(self.turn.iter().map(|t| &t.variable))
     }
 
-    /// Asks for displacement and angle.
+    /// Evaluates displacement and angle.
     pub(super) fn place(&mut self, ask: &mut Ask) -> Result<()> {
         for (now, variable) in self.now.iter_mut().zip(&self.shift) {
             if let Some(variable) = variable
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use crate::region::{Region, Shape};
 
-    // Walls asked for the sine of the opposite angle before it was kept.
+    // Walls used the sine of the opposite angle before it was kept.
     #[test]
     fn sines_are_odd_and_cosines_even_to_the_bit() {
         for k in -2000..2000 {

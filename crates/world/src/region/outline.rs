@@ -14,7 +14,7 @@ const AROUND: usize = 48;
 const POLES: usize = 24;
 
 impl Region {
-    /// Its surface as triangles; what goes on without an end does so up to these bounds. Open faces are left out.
+    /// Its surface as triangles; an unbounded one is cut at these bounds. Open faces are left out.
     pub fn outline(&self, bounds: Bounds) -> Vec<Triangle> {
         let mut found = match &self.shape {
             Shape::Union(parts) => combined(parts, bounds, |p| !p.open_side(), false),
@@ -224,7 +224,7 @@ mod tests {
     fn surfaces_have_the_area_of_their_shapes() {
         let of = |shape: Shape, open: u8| area(&Region { open, ..Region::inside(shape) }.outline(BOX));
         let inf = f64::INFINITY;
-        // By hand; round ones fall short with the square of their pieces, 0.3 % at most.
+        // Calculated by hand; round ones fall short with the square of their pieces, 0.3 % at most.
         let near = |got: f64, wanted: f64| assert!((got / wanted - 1.0).abs() < 4e-3, "{got} {wanted}");
         near(of(Shape::Block { lo: [0.0; 3], hi: [1.0, 1.0, 2.0] }, 0), 10.0);
         near(of(Shape::Block { lo: [0.0; 3], hi: [1.0, 1.0, inf] }, 1), 1.0 + 3.0 * 4.0);

@@ -91,7 +91,7 @@ pub fn across(axis: usize) -> [usize; 2] {
 
 thread_local!(static LAYERS: Cell<usize> = const { Cell::new(0) });
 
-/// Reads the regions of a region, no deeper than [`Region::DEEPEST`]: a file that somebody has made must not use up the stack.
+/// Reads the regions of a region, no deeper than [`Region::DEEPEST`]: a forged file must not use up the stack.
 fn nested<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Region>, D::Error> {
     let layers = LAYERS.get() + 1;
     if layers >= Region::DEEPEST {

@@ -45,7 +45,7 @@ struct Search<'s> {
     reach: f64,
     dt: f64,
     lammps: bool,
-    /// Whoever is near: sides and what other parts hide do not count.
+    /// All surfaces near enough: sides and what other parts hide do not count.
     anyone: bool,
     out: &'s mut Vec<Near>,
 }
@@ -67,7 +67,7 @@ impl Region {
         !spare.is_empty()
     }
 
-    /// Whether a contact with part `to` of the surface may go on as one with part `from` did: neighbours on a mesh.
+    /// Whether a contact with part `from` of the surface may continue as one with part `to`: neighbours on a mesh.
     pub fn passes(&self, from: u32, to: u32) -> bool {
         matches!(&self.shape, Shape::Mesh(solid) if solid.passes(from, to))
     }

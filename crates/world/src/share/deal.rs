@@ -269,7 +269,7 @@ impl World {
         self.dealings.wanted = false;
     }
 
-    /// Forgets that rows are shared out after a failure, without a word to other ranks.
+    /// Ends the distribution of rows after a failure, without communication.
     pub fn part(&mut self) {
         self.abandon();
         (self.dealings.wanted, self.dealings.apart) = (false, true);
@@ -331,7 +331,7 @@ fn wanted(alone: &[Vec<Range<usize>>], me: usize, listed: impl Iterator<Item = u
     alone.iter().enumerate().map(of).collect()
 }
 
-/// The rows of this rank that each other one wants, when this one wants these of them.
+/// The rows of this rank that each other rank needs, when this one needs these of theirs.
 fn asked(comm: &dyn Comm, wanted: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let letter = |rows: &Vec<u32>| {
         let mut bytes = vec![];

@@ -41,8 +41,8 @@ impl World {
         self.share.as_ref().is_some_and(|share| share.what == What::Grains)
     }
 
-    /// Adds up the term of each row that has one, the same bits for any number of threads and ranks. Where the op at work acts on the rows of
-    /// one rank, all ranks call this at the same place, and terms of their own rows are asked for alone.
+    /// Adds up the term of each row that has one, the same bits for any number of threads and ranks. Where the present op acts on
+    /// the rows of one rank, all ranks call this at the same place, and only terms of their own rows are evaluated.
     pub fn sum_rows<const N: usize>(&self, term: impl Fn(usize) -> Option<[f64; N]> + Sync) -> [f64; N] {
         let leaf = |rows: Range<usize>| rows.filter_map(&term).fold([0.0; N], add);
         match self.narrow_share() {

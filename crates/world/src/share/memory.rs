@@ -1,4 +1,4 @@
-//! What contacts remember on ranks: gathered where all of it is asked for.
+//! Contact history on ranks: gathered where all of it is needed.
 
 use super::{Share, Traffic};
 use crate::World;

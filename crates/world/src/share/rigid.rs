@@ -1,4 +1,5 @@
-//! Rigid bodies on ranks: a rank brings those up to date of which it moves a particle, and all have all of them where these are asked for.
+//! Rigid bodies on ranks: a rank updates the bodies of which it moves a particle; all ranks have all bodies where these are
+//! needed.
 
 use super::{Halo, NUMBER, Share, What};
 use crate::{Named, Numbers, World};

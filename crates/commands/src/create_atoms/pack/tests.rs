@@ -1,4 +1,4 @@
-//! Tests of packings as decks ask for them.
+//! Tests of packings as decks request them.
 
 use crate::testing::{act, more, refused, scene};
 use perigrain_world::World;

@@ -1,4 +1,4 @@
-//! The words of packings that say how large spheres are.
+//! The words of packings that set the sizes of spheres.
 
 use super::Sizes;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};

@@ -19,7 +19,7 @@ pub const LINK: f64 = 0.1;
 pub struct Aggregate {
     /// The spheres that stay, ascending.
     pub kept: Vec<usize>,
-    /// How many hung on nothing, or not on both ends.
+    /// How many had no neighbour, or none at one end.
     pub lost: usize,
     /// The direction between the ends, 0 to 2.
     pub axis: usize,

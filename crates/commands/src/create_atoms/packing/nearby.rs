@@ -1,4 +1,4 @@
-//! Who is near whom: for each sphere the others within touch and a skin, good until someone has moved half the skin.
+//! Neighbour lists of spheres: for each sphere the others within touch and a skin, valid until a sphere has moved half the skin.
 
 use super::room::Room;
 use perigrain_base::math::vec3::{Vec3, add};

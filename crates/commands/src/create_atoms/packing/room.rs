@@ -353,7 +353,7 @@ fn flatten(region: &Region, flip: bool, out: &mut Vec<Region>) -> Result<(), &'s
     }
 }
 
-/// Whether a shape looks the same on both sides of the faces across `d`, so that the room may go on there.
+/// Whether a shape looks the same on both sides of the faces across `d`, so that the room may continue there.
 fn passes(region: &Region, d: usize, domain: &Domain) -> bool {
     let spans = |lo: f64, hi: f64| lo <= domain.lo[d] && hi >= domain.hi[d];
     match &region.shape {

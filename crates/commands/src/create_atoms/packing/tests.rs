@@ -27,7 +27,7 @@ fn packed(room: &Room, share: f64, sizes: Sizes, seed: u32, goal: &Goal) -> Pack
     pack(room, radii, &mut stream, goal).unwrap()
 }
 
-/// Gaps of all pairs as parts of the distance of touching spheres, by asking each pair.
+/// Gaps of all pairs as parts of the distance of touching spheres, by testing each pair.
 fn gaps(room: &Room, p: &Packing) -> Vec<f64> {
     let n = p.x.len();
     let mut list = vec![];
@@ -44,7 +44,7 @@ fn share(room: &Room, p: &Packing) -> f64 {
     p.radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum::<f64>() / room.volume()
 }
 
-/// Whether the largest and the mean overlap are what the outcome says, to rounding.
+/// Whether the largest and the mean overlap match the outcome, to rounding.
 fn says_the_truth(room: &Room, p: &Packing) {
     let over: Vec<f64> = gaps(room, p).into_iter().filter(|g| *g < 0.0).map(|g| -g).collect();
     let largest = over.iter().copied().fold(0.0, f64::max);
@@ -86,10 +86,9 @@ fn coordination_numbers_of_a_dense_packing() {
     let near = Nearby::find(&room, &p.x, &p.radius, 0.75);
     let inner: Vec<usize> =
         (0..p.x.len()).filter(|&i| p.x[i].iter().all(|a| (2.5..16.5).contains(a))).collect();
-    // The table of bonded particles' page, 8.1, for packings with walls and without memory at this share. Interior spheres
-    // lie denser than the share says, by how many there are at walls, so that sizes differ by a percent or two; the
-    // statistical error of some 3000 spheres is half a percent. Gap 0 is left out: whether two only just touch is a
-    // matter of when rounds end.
+    // The table of bonded particles' page, 8.1, for packings with walls and without memory at this share. Interior spheres lie
+    // denser than the share, depending on how many there are at walls, so that sizes differ by a percent or two; the statistical
+    // error of some 3000 spheres is half a percent. Gap 0 is left out: whether two only just touch depends on when rounds end.
     let table = [
         (0.05, 7.6),
         (0.1, 8.5),
@@ -310,7 +309,7 @@ fn spheres_of_an_opal_lie_between_the_pores() {
     }
 }
 
-/// Whether spheres hang together over gaps up to [`LINK`], by asking each pair.
+/// Whether spheres are connected over gaps up to [`LINK`], by testing each pair.
 fn connected(room: &Room, x: &[Vec3], radius: f64) -> bool {
     let mut reached = vec![false; x.len()];
     let mut todo = vec![0];

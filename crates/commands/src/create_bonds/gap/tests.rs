@@ -15,7 +15,7 @@ fn packing(boundary: &str) -> World {
     w
 }
 
-/// Pairs by asking each: one in the first group, the other in the second, nearest images.
+/// Pairs by testing each: one in the first group, the other in the second, nearest images.
 fn counted(w: &World, groups: [&str; 2], range: [f64; 2]) -> usize {
     let (p, domain) = (&w.particles, w.domain().unwrap());
     let bits = groups.map(|g| w.groups.find(g).unwrap().bit());

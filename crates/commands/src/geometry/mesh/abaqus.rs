@@ -209,7 +209,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// An element, which may go on over lines.
+    /// An element, which may extend over several lines.
     fn element(&mut self, line: &Line<'a>, kind: Element, set: Option<&str>) -> Result<()> {
         let (mut id, mut nodes) = (None, vec![]);
         let mut here = *line;

@@ -179,7 +179,7 @@ mod tests {
         assert!((0..3).all(|d| (c[d] - x[d]).abs() < 1e-14), "{shape:?} {c:?}");
     }
 
-    // Volumes and centroids by hand.
+    // Volumes and centroids calculated by hand.
     #[test]
     fn volumes_and_centroids_are_exact() {
         let [a, b, c, d, e, ..] = CUBE;

@@ -23,7 +23,7 @@ pub(super) struct Reader<'a> {
 
 /// Reads a file.
 pub fn read(file: &File) -> Result<Mesh> {
-    // A binary file says so in its second line, which is a text in any case.
+    // A binary file is marked in its second line, which is a text in any case.
     let head = String::from_utf8_lossy(&file.bytes[..file.bytes.len().min(200)]).into_owned();
     let kind = head.lines().nth(1).and_then(|l| l.split_ascii_whitespace().nth(1));
     if head.starts_with("$MeshFormat") && kind == Some("1") {
@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
             ("$PartitionedEntities", _) => {
                 return Err(not_read(title.span(), "a mesh in partitions").into());
             }
-            // What hangs on nodes and elements, and comments: nothing that a particle could take.
+            // Data on nodes and elements, and comments: nothing that a particle could take.
             _ => return self.pass(title),
         }
         if name == "$Nodes"
@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
             false => fail(
                 Code::SYNTAX,
                 line.span(),
-                format!("{end} must stand here: the section is as long as it said"),
+                format!("{end} must stand here: the section is as long as its header states"),
             ),
         }
     }

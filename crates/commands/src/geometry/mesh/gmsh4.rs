@@ -26,7 +26,7 @@ pub fn entities<'a>(r: &mut Reader<'a>, title: &Line<'a>) -> Result<()> {
             };
             let mut list = vec![];
             for word in words {
-                // The sign of a number says which way round the entity is taken.
+                // The sign of a number is the orientation of the entity.
                 list.push(whole(&line, word, "the number of a physical group")?.saturating_abs());
             }
             r.entities.insert((dimension, number), list);

@@ -1,4 +1,4 @@
-//! Volume meshes: points, cells, and what a file says of the cells, whichever file it was.
+//! Volume meshes: points, cells, and the file's data on cells, for all formats.
 
 mod abaqus;
 pub mod cell;
@@ -152,10 +152,10 @@ impl Mesh {
 /// The endings of files that are meshes.
 pub const ENDINGS: [&str; 4] = [".vtk", ".vtu", ".msh", ".inp"];
 
-/// Reads a mesh, as the ending of its name says.
+/// Reads a mesh in the format of its name's extension.
 ///
 /// # Errors
-/// Other endings, and what is wrong in the file, with its place there.
+/// Other extensions, and errors in the file, with their place there.
 pub fn read(file: &File, name: &str) -> Result<Mesh> {
     let plain = name.strip_suffix(".gz").unwrap_or(name).to_ascii_lowercase();
     let mesh = match ENDINGS.iter().find(|e| plain.ends_with(**e)) {

@@ -7,7 +7,7 @@ fn of(name: &str, text: &str) -> Result<Mesh> {
     read(&file, name)
 }
 
-/// The bytes that a refusal underlines, and what it says.
+/// The bytes that a refusal underlines, and its message.
 fn refused(name: &str, text: &str) -> (String, String) {
     let d = of(name, text).expect_err(text).0.remove(0);
     let s = d.span.unwrap_or_default();
@@ -36,7 +36,7 @@ fn two_tetrahedra(mesh: &Mesh) {
     let at = |k: usize| mesh.corners(k).iter().map(|p| mesh.points[*p as usize]).collect::<Vec<_>>();
     let (v, _) = cell::measure(Shape::Tetrahedron, &at(0)).unwrap();
     let (w, x) = cell::measure(Shape::Tetrahedron, &at(1)).unwrap();
-    // By hand: a sixth of the unit cube, and a third of it whose corners are the three on the axes and (1, 1, 1).
+    // Calculated by hand: a sixth of the unit cube, and a third of it whose corners are the three on the axes and (1, 1, 1).
     assert!((v - 1.0 / 6.0).abs() < 1e-15 && (w - 1.0 / 3.0).abs() < 1e-15 && x == [0.5; 3]);
 }
 

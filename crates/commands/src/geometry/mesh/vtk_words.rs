@@ -146,7 +146,7 @@ impl<'a> Words<'a> {
 /// A word and where it stands.
 #[derive(Clone, Copy)]
 pub struct Word<'a> {
-    /// What it says.
+    /// Its text.
     pub text: &'a str,
     start: usize,
     end: usize,

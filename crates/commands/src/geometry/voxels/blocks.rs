@@ -95,7 +95,7 @@ impl<'a> Counter<'a> {
 mod tests {
     use super::*;
 
-    /// Materials of all blocks of an image whose voxels `of` tells.
+    /// Materials of all blocks of an image whose voxels `of` returns.
     fn coarse(size: [usize; 3], h: f64, materials: usize, of: impl Fn([usize; 3]) -> usize) -> Vec<usize> {
         let blocks = Blocks::new(size, [1.0; 3], Some(h));
         let mut counter = Counter::new(&blocks, materials);

@@ -14,7 +14,7 @@ use perigrain_lang::Word;
 use perigrain_world::World;
 use std::path::{Path, PathBuf};
 
-/// What an image tells of itself before its voxels are read.
+/// The header of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Info {
     /// Voxels along x, y, z.
@@ -67,7 +67,7 @@ impl Info {
 
 /// An image that is read slice by slice, from the lowest z on.
 pub trait Image {
-    /// What it tells of itself.
+    /// Its header.
     fn info(&self) -> &Info;
 
     /// Back to the first slice.
@@ -83,10 +83,10 @@ pub trait Image {
     fn slice(&mut self, values: &mut Vec<f64>) -> Result<()>;
 }
 
-/// Opens an image, as the ending of its name says; `array` chooses among several.
+/// Opens an image in the format of its name's extension; `array` chooses among several.
 ///
 /// # Errors
-/// Other endings, files that are not there, and what is wrong in them.
+/// Other extensions, missing files, and errors in them.
 pub fn open(w: &World, word: &Word, array: Option<&Word>) -> Result<Box<dyn Image>> {
     let lower = word.text.to_ascii_lowercase();
     let ends = |endings: &[&str]| endings.iter().any(|e| lower.ends_with(e));

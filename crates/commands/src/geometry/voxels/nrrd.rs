@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The longest header that is looked through.
 const HEADER: usize = 1 << 16;
 
-/// What a header says.
+/// The content of a header.
 #[derive(Debug)]
 pub struct Header {
     info: Info,
@@ -100,7 +100,7 @@ fn from(path: &Path, start: u64, packed: bool) -> std::io::Result<Box<dyn Read>>
 /// Reads a header.
 ///
 /// # Errors
-/// What is no NRRD header, and what perigrain does not know of them.
+/// What is no NRRD header, and NRRD features that perigrain lacks.
 pub fn read(text: &str) -> Result<Header> {
     let mut lines = Lines::new(text);
     let first = lines.take();

@@ -156,7 +156,7 @@ fn page(r: &mut Reader, entries: &[u8], promised: &mut usize) -> Outcome<Option<
     Ok(Some(Page { size, kind, big_endian: r.big_endian, strips }))
 }
 
-/// How many images ImageJ says it has put into a page.
+/// The number of images that ImageJ states for a page.
 fn images(text: &[u64]) -> usize {
     let text: String = text.iter().map(|c| char::from(*c as u8)).collect();
     let number = text.strip_prefix("ImageJ=").and_then(|t| t.lines().find_map(|l| l.strip_prefix("images=")));

@@ -44,8 +44,8 @@ pub fn open(w: &World, word: &Word, array: Option<&Word>) -> Result<Box<dyn Imag
     Ok(Box::new(Whole { info, values, at: 0 }))
 }
 
-/// The tags of a file whose arrays stand raw behind them, and the file. What cannot be opened or understood is for who reads it
-/// whole.
+/// The tags of a file whose arrays stand raw behind them, and the file. Files that cannot be opened or understood are left to the
+/// reader of the whole file.
 fn head(w: &World, word: &Word) -> Option<(File, fs::File)> {
     if w.parts.promised.get(&word.text).is_some() {
         return None;
@@ -106,7 +106,7 @@ fn read(bytes: &[u8], word: &Word, chosen: Option<&Word>) -> Result<(Info, Vec<f
     Ok((info, values))
 }
 
-/// What the tags tell of the image, its piece, and the array that is meant.
+/// The image, its piece, and the chosen array, as the tags describe them.
 fn described<'d>(
     document: &'d Document,
     word: &Word,

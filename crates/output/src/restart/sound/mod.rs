@@ -1,7 +1,7 @@
-//! Whether a scene read from a restart file fits together: what every loop relies on, section by section.
+//! Whether a scene read from a restart file is consistent: the conditions that every loop relies on, section by section.
 //!
-//! A checksum tells of damage, not of a file that somebody has made. So nothing in it is believed: each length, index and
-//! cross-reference is looked at here, once, before anything is computed from it.
+//! A checksum detects damage, not a forged file. So nothing in the file is trusted: each length, index and cross-reference is
+//! checked here, once, before anything is computed from it.
 
 mod numbers;
 mod parts;
@@ -19,7 +19,7 @@ pub struct Fault {
     pub what: String,
 }
 
-/// What a section says.
+/// The result for a section.
 type Outcome = Result<(), String>;
 
 /// A fault unless all is well.
@@ -27,10 +27,10 @@ fn must(well: bool, what: &str) -> Outcome {
     if well { Ok(()) } else { Err(what.to_string()) }
 }
 
-/// Looks at all sections of a scene.
+/// Checks all sections of a scene.
 ///
 /// # Errors
-/// The first one that does not fit.
+/// The first one that is inconsistent.
 pub fn check(w: &World) -> Result<(), Fault> {
     let n = w.n();
     let sections: [(&'static str, Outcome); 14] = [

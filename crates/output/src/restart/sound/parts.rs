@@ -52,7 +52,7 @@ pub fn particles(w: &World) -> Outcome {
     ] {
         must(!triples.as_flattened().iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
-    // A density that was never told is none.
+    // A density that was never set is none.
     for (what, all) in [("mass", p.mass.past()), ("volume", p.volume.past()), ("charge", p.charge.past())] {
         must(!all.iter().any(|x| x.is_nan()), &format!("a {what} is no number"))?;
     }
@@ -79,7 +79,7 @@ pub fn stand(w: &World) -> bool {
     let energies = [t.atom.len(), t.bond_atom.len(), t.fix_atom.len()];
     let virials = [t.atom_virial.len(), t.atom_bonds.len(), t.atom_fixes.len()];
     let places = [r.held.len(), r.kept.x.len()];
-    // Where nobody had moved since creation no places are held.
+    // Where no particle had moved since creation no places are held.
     let held = r.unmoved || r.held.len() == w.n();
     held && energies.into_iter().chain(virials).chain(places).all(|len| len == 0 || len == w.n())
 }
@@ -87,7 +87,10 @@ pub fn stand(w: &World) -> bool {
 pub fn rebuild(w: &World) -> Outcome {
     let r = w.rebuild.past();
     must(r.kept.x.len() == r.kept.turns.len(), "places of kept lists and their turns differ in number")?;
-    must(!r.unmoved || w.particles.style.peri, "nothing has moved since a creation that nobody remembers")?;
+    must(
+        !r.unmoved || w.particles.style.peri,
+        "nothing has moved since a creation whose places are not stored",
+    )?;
     let kept = (r.kept.corners, r.kept.tilt);
     let box_of_kept = kept.0.as_flattened().iter().chain(&kept.1).all(|x| x.is_finite())
         && (0..3).all(|d| r.kept.x.is_empty() || kept.0[0][d] < kept.0[1][d]);
@@ -112,9 +115,9 @@ pub fn bonds(w: &World) -> Outcome {
     must(pairs_ascend(b.special.iter()), "pairs that count as bonded are out of order")?;
     must(
         b.turned.keys().chain(b.memory.keys()).all(|e| e[0] < e[1]),
-        "what a bond remembers belongs to no pair",
+        "the history of a bond belongs to no pair",
     )?;
-    // Counted from type 0, which nobody has.
+    // Counted from type 0, which no particle has.
     must(b.power.len() <= b.types + 1, "there are dashpots of more types than there are")?;
     let angles = &b.angles;
     must(angles.types <= usize::from(u16::MAX), "there are more types of angles than can be")?;
@@ -124,11 +127,11 @@ pub fn bonds(w: &World) -> Outcome {
     must(coeffs.into_iter().all(|k| (1..=b.types).contains(k)), "coefficients belong to no type")
 }
 
-/// Grains that touch each other are two, in order; those that touch a wall are told with the part of it.
+/// Grains that touch each other are two, in order; those that touch a wall are stored with the part of it.
 pub fn contacts(w: &World) -> Outcome {
     let sound = |c: &contacts::Contacts| {
         must(c.sound(), "contacts and their history differ in length")?;
-        must(!c.history.iter().any(|x| x.is_nan()), "what a contact remembers is no number")?;
+        must(!c.history.iter().any(|x| x.is_nan()), "the history of a contact is no number")?;
         must(c.keys.is_sorted_by(|a, b| a < b), "contacts are out of order")
     };
     for c in w.contacts.past().values() {
@@ -145,7 +148,7 @@ pub fn families(w: &World) -> Outcome {
     must(w.volumes().len() == w.n(), "there are families of particles without volumes")?;
     must(
         w.particles.style.peri || f.reference.is_some(),
-        "nobody knows where the particles of families began",
+        "the first places of the particles of families are missing",
     )?;
     let x0 = w.particles.x0.past();
     f.sound(w.types, &x0[..x0.len().min(f.place.len())])

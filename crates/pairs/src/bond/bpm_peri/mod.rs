@@ -71,7 +71,7 @@ impl BondStyle for BpmPeri {
                     return refused(
                         word.span,
                         "broken bonds are no table here",
-                        "`d_damage`, `compute damage/atom` and thermo's `bonds` tell of them",
+                        "`d_damage`, `compute damage/atom` and thermo's `bonds` count them",
                     );
                 }
                 "write/history" | "write/reference" | "read/history" | "read/reference" => {
@@ -93,7 +93,7 @@ fn refused<T>(span: Span, why: &str, instead: &str) -> Result<T> {
     Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help(instead.to_string()).into())
 }
 
-/// What a line says of bonds.
+/// The options of a line for bonds.
 #[derive(Clone, Copy, PartialEq)]
 struct Coeff {
     kind: LawKind,
@@ -209,6 +209,6 @@ pub fn cubic(w: &World, what: &str, span: Span) -> Result<()> {
     }
     let text = format!("{what} needs a lattice that is the same in x, y and z");
     Err(Diagnostic::error(Code::CONFLICT, span, text)
-        .help("`lattice sc SPACING` before the run says how far the particles of the solid are apart")
+        .help("`lattice sc SPACING` before the run sets the distance of the particles of the solid")
         .into())
 }

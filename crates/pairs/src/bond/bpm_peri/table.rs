@@ -1,4 +1,4 @@
-//! From bonds and their types to what families want: links between places, coefficients, moduli of types.
+//! Converts bonds and their types to the input of families: links between places, coefficients, moduli of types.
 
 use super::{Coeff, Declared};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -6,7 +6,7 @@ use perigrain_peri::families::{Influence, Law, LawKind, Moduli, PmbCoeff, PmbTab
 use perigrain_styles::pull::find;
 use perigrain_world::World;
 
-/// A scene's peridynamic bonds as families want them.
+/// A scene's peridynamic bonds as input of families.
 pub struct Links {
     /// Places of the ends, and the type − 1.
     pub links: Vec<([u32; 2], u8)>,

@@ -1,4 +1,4 @@
-//! Lists of granular contacts: when they are made anew, on one rank or several, and what contacts remember meanwhile.
+//! Lists of granular contacts: when they are rebuilt, on one rank or several, and contact history meanwhile.
 
 use super::{Force, grains};
 use crate::granular::heating::conducts;
@@ -27,7 +27,7 @@ impl Force {
         self.is_fast && self.fast.as_ref().is_some_and(Fast::is_part)
     }
 
-    /// Where grains are shared out to ranks: how much work this one's were, by which they are dealt anew.
+    /// Where grains are distributed over ranks: how much work this one's were; the next deal is balanced by it.
     pub(super) fn note_work(&self, w: &mut World) {
         if self.is_part()
             && let (Some(fast), Some(share)) = (&self.fast, &w.share)

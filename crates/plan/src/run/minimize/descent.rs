@@ -5,7 +5,7 @@ use super::{Search, Stop, product};
 use perigrain_base::diag::Result;
 use perigrain_world::minimizer::MinStyle;
 
-/// Goes along one direction after the other until something says stop.
+/// Searches along one direction after the other until a criterion stops it.
 ///
 /// # Errors
 /// As the ops of the plan.

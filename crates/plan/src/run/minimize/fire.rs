@@ -33,7 +33,7 @@ struct Damping {
     mix: Option<(f64, f64)>,
 }
 
-/// Moves until something says stop. Velocities and time step are those of the last iteration then.
+/// Moves until a criterion stops the search. Velocities and time step are those of the last iteration then.
 ///
 /// # Errors
 /// As the ops of the plan.
@@ -107,8 +107,8 @@ fn speed_up(w: &mut World, d: &mut Damping) {
     }
 }
 
-/// Uphill: a shorter time step, half a step back, and a fresh start along the forces, whose speed after one step is left
-/// in the velocities for `limit`; the unbiased way goes on with the forces it has. `false` if this has happened too often.
+/// Uphill: a shorter time step, half a step back, and a fresh start along the forces, whose speed after one step is left in the
+/// velocities for `limit`; the unbiased variant continues with the forces it has. `false` if this has happened too often.
 fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
     let step = s.w.clock.step;
     (d.mix, d.uphill, d.downhills) = (None, step, 0);
@@ -135,7 +135,7 @@ fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
     Ok(true)
 }
 
-/// Shortens this step so that nobody goes further than `dmax`.
+/// Shortens this step so that no particle moves further than `dmax`.
 fn limit(s: &Search, d: &mut Damping) {
     // The unbiased way limits speeds instead.
     d.limited = if d.set.unbiased { d.dt } else { shortened(s.w, d.dt, s.farthest) };

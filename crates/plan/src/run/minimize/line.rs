@@ -10,7 +10,7 @@ use perigrain_world::minimizer::LineSearch;
 const LONGEST: f64 = 1.0;
 /// Factor from one trial to the next shorter one.
 const SHORTER: f64 = 0.5;
-/// The share of the expected fall of energy that is asked for.
+/// The required share of the expected fall of energy.
 const ENOUGH: f64 = 0.4;
 /// How far from quadratic the energy may be for the secant step.
 const QUADRATIC: f64 = 0.1;

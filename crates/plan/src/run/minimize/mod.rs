@@ -111,7 +111,7 @@ struct Search<'a> {
     evaluations: i64,
     alpha: f64,
     first: i64,
-    /// Iterations that the deck asked for.
+    /// Iterations that the deck requests.
     asked: i64,
     /// The time step before FIRE changed it.
     dt: f64,
@@ -236,7 +236,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Begins an iteration, unless something from outside says to stop.
+    /// Begins an iteration, unless the search has to stop.
     fn next(&mut self) -> Option<Stop> {
         if self.w.clock.step - self.first >= self.goal.iterations {
             return Some(Stop::Iterations);
@@ -246,7 +246,7 @@ impl Search<'_> {
             return Some(Stop::Ended);
         }
         if !self.interrupted && self.w.settings.stops() {
-            // This iteration is the last one, as if no more had been asked for.
+            // This iteration is the last one, as if no more had been requested.
             self.interrupted = true;
             self.goal.iterations = self.w.clock.step - self.first + 1;
             self.w.clock.last = self.w.clock.step + 1;
@@ -327,7 +327,7 @@ fn tries(w: &World) -> bool {
     line && bonds && !w.settings.lammps()
 }
 
-/// Lost particles have mostly been thrown: says how far they may go.
+/// Lost particles have mostly been thrown: adds how far they may move.
 fn thrown(e: Diagnostics, farthest: f64) -> Diagnostics {
     let named = |d: Diagnostic| {
         match d.code == Code::LOST {

@@ -7,7 +7,7 @@ use perigrain_base::diag::Result;
 /// Downhill iterations before the energy tolerance counts, as in LAMMPS.
 const DELAY: i64 = 5;
 
-/// Moves until something says stop. Velocities are those of the last iteration then.
+/// Moves until a criterion stops the search. Velocities are those of the last iteration then.
 ///
 /// # Errors
 /// As the ops of the plan.
