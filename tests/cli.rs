@@ -75,6 +75,23 @@ fn exit_codes_say_how_it_ended() {
 }
 
 #[test]
+fn the_version_says_what_was_built_and_which_lanes_are_in_use() {
+    let folder = tempfile::tempdir().unwrap();
+    for switch in ["-version", "--version", "-V"] {
+        let o = perigrain(folder.path(), &[switch], "");
+        let line = out(&o);
+        let (head, tail) = line.trim_end().split_once(") ").unwrap();
+        let (name, commit) = head.split_once(" (").unwrap();
+        assert_eq!(name, concat!("perigrain ", env!("CARGO_PKG_VERSION")));
+        // Tests are debug builds, but for `cargo test --release`.
+        assert_eq!(commit == "debug build", cfg!(debug_assertions), "{line}");
+        let (target, lanes) = tail.split_once(", ").unwrap();
+        assert!(target.starts_with(std::env::consts::ARCH), "{line}");
+        assert!(["avx512", "avx2", "portable"].contains(&lanes), "{line}");
+    }
+}
+
+#[test]
 fn a_refusal_stands_in_the_log_too() {
     let folder = tempfile::tempdir().unwrap();
     let o = perigrain(folder.path(), &["-log", "a.log"], "units si\npair_sytle peri/pmb\n");

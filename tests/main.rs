@@ -44,6 +44,7 @@ mod pty;
 #[path = "common/random.rs"]
 mod random;
 mod ranks;
+mod release;
 mod report;
 #[path = "restart/main.rs"]
 mod restart;

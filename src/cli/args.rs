@@ -297,10 +297,15 @@ pub const SWITCHES: &[Switch] = &[
         o.help = true;
         Ok(())
     }),
-    switch(&["-version", "--version", "-V"], "", "the version", |o, _| {
-        o.version = true;
-        Ok(())
-    }),
+    switch(
+        &["-version", "--version", "-V"],
+        "",
+        "version, commit, target and vector instructions in use",
+        |o, _| {
+            o.version = true;
+            Ok(())
+        },
+    ),
     switch(&["-world"], "", "", |o, v| {
         let number = v.number("a partition")?;
         let parent = v.number("a process")? as u32;

@@ -22,6 +22,7 @@ mod starters;
 mod sweeping;
 pub mod tasks;
 pub mod verifying;
+mod version;
 mod viewing;
 
 use crate::session::Mode;

@@ -385,9 +385,9 @@ fn swallowed(options: &Options) -> Option<Usage> {
     Some(Usage { message: "no deck".into(), help: Some(help) })
 }
 
-/// Name and version.
+/// Version, commit, target and lanes, as a line.
 pub fn version() -> String {
-    format!("perigrain {}\n", env!("CARGO_PKG_VERSION"))
+    super::version::line() + "\n"
 }
 
 /// The help page: forms, subcommands, switches.

@@ -21,6 +21,11 @@ pub fn started_by(program: PathBuf, own: Vec<OsString>, words: Vec<OsString>) {
     let _ = HOST.set((Starter { program, words: own }, words));
 }
 
+/// Whether this program is the Python module.
+pub fn is_hosted() -> bool {
+    HOST.get().is_some()
+}
+
 /// The words of the command line.
 pub fn words() -> Vec<OsString> {
     HOST.get().map_or_else(|| std::env::args_os().skip(1).collect(), |host| host.1.clone())

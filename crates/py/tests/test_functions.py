@@ -93,7 +93,8 @@ def test_the_module_is_the_program(tmp_path):
     ended = program("-in", "in.deck", "-log", "none", cwd=tmp_path)
     assert "hello" in ended.stdout and ended.returncode == 1
     assert "no Python inside" in ended.stderr
-    assert program("-version").returncode == 0
+    version = program("-version")
+    assert version.returncode == 0 and version.stdout.startswith("perigrain ") and version.stdout.endswith(", python\n")
 
 
 FALL = """

@@ -82,7 +82,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     others](../safe.md); `-limit memory|steps|lines|files|pixels N` is the same with another limit (memory in MB);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
     - `-package omp N`, `-pk`: the same as `-threads N`;\n\
-    - `-help`, `-h` and `-version`: print and end.\n\n\
+    - `-help`, `-h`: prints switches and subcommands and ends; `-version`, `--version`, `-V`: prints version, commit (in release builds), target \
+    and the vector instructions that kernels use here, and ends.\n\n\
     LAMMPS' other switches are refused by name.\n\n\
     Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
     wrong, 130 ended by Ctrl-C or a signal. The first Ctrl-C (and SIGTERM, as queues send it, or SIGHUP of a closed terminal, unless \
