@@ -41,6 +41,8 @@ struct Walk<'a> {
     offers: Vec<Offer>,
     /// What stands from the cursor on.
     rest: Vec<String>,
+    /// The part at the cursor, or the keyword, counted behind the parts.
+    within: Option<usize>,
 }
 
 impl Declared {
@@ -92,18 +94,13 @@ impl Declared {
         if n < self.head.len() {
             return (words, Some(n));
         }
-        let walk = self.walk(&typed[self.head.len()..]);
-        // What is left names the part, or the keyword, that stands here.
-        let next = walk.rest.first().and_then(|first| {
-            let same =
-                |word: &String| word == first || word.trim_matches(['[', ']']).ends_with(first.as_str());
-            words[self.head.len()..].iter().position(same).map(|k| self.head.len() + k)
-        });
-        (words, next)
+        let within = self.walk(&typed[self.head.len()..]).within;
+        (words, within.map(|k| self.head.len() + k))
     }
 
     fn walk<'a>(&self, typed: &'a [&'a str]) -> Walk<'a> {
-        let mut walk = Walk { typed, at: 0, grammar: self.grammar, offers: vec![], rest: vec![] };
+        let mut walk =
+            Walk { typed, at: 0, grammar: self.grammar, offers: vec![], rest: vec![], within: None };
         walk.line();
         walk
     }
@@ -119,19 +116,31 @@ impl Walk<'_> {
     }
 
     fn line(&mut self) {
-        if !self.along(&self.grammar.in_order()) {
-            return;
-        }
-        let all = self.grammar.every();
-        let mut used: Vec<&str> = vec![];
-        while let Some(word) = self.typed.get(self.at) {
-            self.at += 1;
-            let Some(keyword) = all.iter().find(|k| k.word == *word) else { continue };
-            used.push(keyword.word);
-            if !self.along(&keyword.values.iter().collect::<Vec<_>>()) {
+        let (parts, all) = (self.grammar.in_order(), self.grammar.every());
+        for (k, part) in parts.iter().enumerate() {
+            let before = self.offers.len();
+            let passed = self.along(&[*part]);
+            if self.within.is_none() && self.offers.len() > before {
+                self.within = Some(k);
+            }
+            if !passed {
+                self.rest.extend(parts[k + 1..].iter().map(|part| part.shown()));
+                self.rest.extend(all.iter().map(|keyword| format!("[{}]", keyword.shown())));
                 return;
             }
         }
+        let mut used: Vec<&str> = vec![];
+        while let Some(word) = self.typed.get(self.at) {
+            self.at += 1;
+            let Some(k) = all.iter().position(|k| k.word == *word) else { continue };
+            used.push(all[k].word);
+            if !self.along(&all[k].values.iter().collect::<Vec<_>>()) {
+                self.within = Some(parts.len() + k);
+                return;
+            }
+        }
+        let left = all.iter().position(|k| k.repeats || !used.contains(&k.word));
+        self.within = self.within.or(left.map(|k| parts.len() + k));
         self.offer_keywords(&all, &used);
     }
 
@@ -307,8 +316,8 @@ mod tests {
     fn words_in_order_then_keywords() {
         let keywords = "[side in | near R] [scale R R]";
         check("fix 1 all", &["ball"], &format!("ball R group-ID … {keywords}…"));
-        check("fix 1 all ball", &["R"], "R group-ID …");
-        check("fix 1 all ball 1", &["group-ID"], "group-ID …");
+        check("fix 1 all ball", &["R"], &format!("R group-ID … {keywords}"));
+        check("fix 1 all ball 1", &["group-ID"], &format!("group-ID … {keywords}"));
         check("fix 1 all ball 1 a", &["group-ID", "side", "scale"], &format!("group-ID … {keywords}"));
         check("fix 1 all ball 1 a side", &["in", "near"], "in | near R");
         check("fix 1 all ball 1 a side near", &["R"], "R");
