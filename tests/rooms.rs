@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 const ARROWS: &[(&str, &[&str])] = &[
     // Communication between ranks; every crate may query its rank, through `base`.
     ("comm", &[]),
+    // A macro: knows Rust alone.
+    ("words", &[]),
     ("base", &["comm"]),
     ("bonded", &["base"]),
     ("lang", &["base"]),
@@ -18,7 +20,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("contact", &["base", "neigh", "peri", "world"]),
     ("plan", &["base", "world"]),
     ("output", &["base", "world"]),
-    ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "world"]),
+    ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "words", "world"]),
     ("commands", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "styles", "world"]),
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
