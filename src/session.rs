@@ -48,7 +48,7 @@ use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
 pub use ahead::{Ahead, steps_ahead};
 pub use commands::OWN;
-pub use embed::{Column, Columns, Global, Newcomers, Order, Rows, Told};
+pub use embed::{Column, Columns, Global, Newcomers, Order, Rows, VariableValue};
 pub use files::folder_of;
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
@@ -95,7 +95,7 @@ pub struct Session {
     watch: Box<dyn Watch>,
     ran: bool,
     /// Whether the warning about few grains for so many ranks has been given.
-    said_few: bool,
+    warned_of_few: bool,
     /// The step with which the present scene has passed the check of its bonds.
     checked_step: Option<f64>,
     shown: usize,
@@ -107,7 +107,7 @@ pub struct Session {
     /// The present text was typed, and is this one.
     prompt: Option<FileId>,
     /// Commands whose lack of effect has been noted.
-    told: std::collections::BTreeSet<String>,
+    noted: std::collections::BTreeSet<String>,
     /// A file could not be looked into (`check` mode).
     blind: bool,
     timer: timer::Timer,
@@ -133,7 +133,7 @@ pub struct Session {
     /// The plans so far, where a deck is planned.
     plans: planning::Plans,
     /// The log that plans are written to.
-    told_to: Log,
+    plan_log: Log,
     /// The text of the latest line.
     read_from: Option<FileId>,
     /// Lines executed, each turn of a loop counted.
@@ -145,7 +145,7 @@ pub struct Session {
     /// How many scenes there have been.
     scenes: u64,
     /// Requests from outside, each text once.
-    asked: std::collections::BTreeMap<String, FileId>,
+    requests: std::collections::BTreeMap<String, FileId>,
 }
 
 /// No progress shown.
@@ -161,7 +161,7 @@ impl Session {
     /// # Errors
     /// Variables of the command line that cannot be set.
     pub fn new(mut options: Options) -> Result<Self> {
-        let told_to = options.log.clone();
+        let plan_log = options.log.clone();
         if options.mode == Mode::Plan {
             // The text of lines about a run that is not made is no part of a plan.
             options.log = Log::silent();
@@ -176,14 +176,14 @@ impl Session {
             plan: None,
             watch: Box::new(Unwatched),
             ran: false,
-            said_few: false,
+            warned_of_few: false,
             checked_step: None,
             shown: 0,
             interrupted: false,
             quit: None,
             typed: None,
             prompt: None,
-            told: Default::default(),
+            noted: Default::default(),
             blind: false,
             timer: Default::default(),
             worked: Worked::default(),
@@ -198,13 +198,13 @@ impl Session {
             later: Default::default(),
             seen_names: 0,
             plans: Default::default(),
-            told_to,
+            plan_log,
             read_from: None,
             turns: 0,
             behind: 0,
             made: 0,
             scenes: 0,
-            asked: Default::default(),
+            requests: Default::default(),
         };
         s.vars.set_partition(s.options.partition.clone());
         for (name, values) in s.options.vars.clone() {
@@ -276,13 +276,13 @@ impl Session {
         self.note_letters(file.0 as usize);
         let script = Script::new(file);
         let mut script = if self.planning() { script.first_branches() } else { script };
-        let outcome = self.work_off(&mut script);
+        let outcome = self.execute(&mut script);
         self.doubt(&script);
         self.notes.0.extend(files::left_loops(&script));
         if self.planning() {
             let text = self.plans.text(&self.sources);
-            self.told_to.line_or(&text, Some(&text))?;
-            self.told_to.flush()?;
+            self.plan_log.line_or(&text, Some(&text))?;
+            self.plan_log.flush()?;
         }
         if self.checking() && !self.blind {
             let given: Vec<String> = self.options.vars.iter().map(|v| v.0.clone()).collect();
@@ -294,7 +294,7 @@ impl Session {
         Ok(ending)
     }
 
-    fn work_off(&mut self, script: &mut Script) -> Result<Ending> {
+    fn execute(&mut self, script: &mut Script) -> Result<Ending> {
         let mut problems = Diagnostics::default();
         let mut refused = causes::Refused::default();
         loop {
@@ -338,9 +338,9 @@ impl Session {
                 }
                 Err(e) => return Err(e),
             }
-            if self.is_asked_to_end(&line) && !self.interrupted {
+            if self.has_end_request(&line) && !self.interrupted {
                 self.interrupted = true;
-                self.say_interrupted(&line)?;
+                self.report_interrupt(&line)?;
             }
             if self.interrupted || self.quit.is_some() {
                 break;
@@ -389,7 +389,7 @@ impl Session {
             self.options.log.echo(text)?;
         }
         let Some(cmd) = &line.command else { return Ok(None) };
-        self.say_where(cmd.span);
+        self.mark_line(cmd.span);
         if self.checking() {
             match cmd.name.text.as_str() {
                 "if" => self.foresee_loop(&line.raw),
@@ -403,17 +403,18 @@ impl Session {
         }
         let outcome = stop.heed(|| self.within_limits(cmd).and_then(|()| self.command(script, cmd)));
         self.fixless |= outcome.is_err() && cmd.name.text == "fix";
-        self.say_notes()?;
+        self.print_notes()?;
         if stop.has_cut() {
             let told = outcome.err().unwrap_or_default();
             return self.cut_short(&stop, line, cmd.span, &told).map(|()| None);
         }
-        outcome
-            .map_err(|e| checking::with_origins(belongs::told(self.sources.adopt(e), cmd).at(cmd.span), cmd))
+        outcome.map_err(|e| {
+            checking::with_origins(belongs::add_places(self.sources.adopt(e), cmd).at(cmd.span), cmd)
+        })
     }
 
     /// The line that runs now, which a message on missing memory names.
-    fn say_where(&mut self, line: Span) {
+    fn mark_line(&mut self, line: Span) {
         if self.read_from.replace(line.file) != Some(line.file)
             && let Some(text) = self.sources.keep(line.file)
         {
@@ -423,7 +424,7 @@ impl Session {
     }
 
     /// Warnings go to screen and log as they come.
-    fn say_notes(&mut self) -> Result<()> {
+    fn print_notes(&mut self) -> Result<()> {
         self.notes.0.extend(self.world.read_files.take_notes());
         if self.checking() {
             return Ok(());

@@ -227,7 +227,7 @@ fn read_restart() {
     {
         let path = folder.path().join(format!("{k}.restart"));
         let deck = format!("{scene}\nwrite_restart {}\n", path.display());
-        bodies::work_off(&deck, perigrain::session::Mode::Run, folder.path());
+        bodies::execute(&deck, perigrain::session::Mode::Run, folder.path());
         corpus.push(fs::read(&path).unwrap());
     }
     hunt("read_restart", &corpus, bodies::read_restart);

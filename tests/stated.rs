@@ -46,7 +46,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("fixes/src/evaporate.rs", "x mask", "only where its time has come"),
     ("graph/dynamic.rs", "x regions", "only groups by region look at places"),
     (
-        "graph/welcome.rs",
+        "graph/joined.rs",
         "box columns image x v quat mask memo radius mass",
         "only where particles come during a run, and by what takes note of them",
     ),
@@ -81,7 +81,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
     ("damping_cundall.rs", "slots", "only with `scale v_name`"),
     ("granular/force.rs", "facts", "only where plastic grains overlap deeply"),
-    ("graph/welcome.rs", "v mask", "only where molecules that come are bodies"),
+    ("graph/joined.rs", "v mask", "only where molecules that come are bodies"),
     ("deform/op.rs", "id", "only where peridynamic bonds cross faces"),
     ("pair_local.rs", "memo", "only where pairs of central laws are asked"),
     ("group_group.rs", "memo", "only where pairs of central laws are asked"),

@@ -409,16 +409,16 @@ fn jobs_give_outcomes_from_rust() {
         threads: 2,
         retry: 0,
         program: env!("CARGO_BIN_EXE_perigrain").into(),
-        telling: true,
+        reports_progress: true,
         ranks: None,
     };
     assert!(sweep::look_ahead(&sweep).problems.is_empty());
     let stop = AtomicBool::new(false);
     let mut watch = Impatient(&stop, vec![]);
-    let some = sweep::work_off(&sweep, false, &mut watch, &stop).unwrap();
+    let some = sweep::execute(&sweep, false, &mut watch, &stop).unwrap();
     assert!(some.interrupted && !some.all_ok() && watch.1 == [0]);
     assert_eq!(some.outcomes.iter().flatten().count(), 1);
-    let all = sweep::work_off(&sweep, false, &mut (), &AtomicBool::new(false)).unwrap();
+    let all = sweep::execute(&sweep, false, &mut (), &AtomicBool::new(false)).unwrap();
     assert!(all.all_ok());
     let of = |k: usize| all.outcomes[k].as_ref().unwrap();
     assert_eq!((of(1).steps, of(1).atoms, of(1).threads), (10, 125, 2));
@@ -428,6 +428,6 @@ fn jobs_give_outcomes_from_rust() {
     let standing = sweep::look(&sweep.folder).unwrap();
     assert_eq!((standing.deck.as_str(), standing.jobs.len(), standing.running), ("in.x", 2, None));
     sweep.jobs.pop();
-    let other = sweep::work_off(&sweep, false, &mut (), &AtomicBool::new(false)).unwrap_err();
+    let other = sweep::execute(&sweep, false, &mut (), &AtomicBool::new(false)).unwrap_err();
     assert!(other.0[0].message.contains("it has 2 runs, not 1"), "{other}");
 }

@@ -7,7 +7,7 @@ use perigrain::session::{Mode, Options, Session};
 use std::path::Path;
 
 /// Works the deck off; the outcome means nothing, a panic everything.
-pub fn work_off(deck: &str, mode: Mode, folder: &Path) {
+pub fn execute(deck: &str, mode: Mode, folder: &Path) {
     let options = Options { mode, folder: folder.to_path_buf(), ..Options::default() };
     if let Ok(mut session) = Session::new(options) {
         let _ = session.run_text("fuzz.in", deck);
@@ -24,14 +24,14 @@ pub fn with_file_named(name: &str, bytes: &[u8], deck: &str) {
     let Ok(folder) = tempfile::tempdir() else { return };
     let path = folder.path().join(name);
     if std::fs::write(&path, bytes).is_ok() {
-        work_off(&deck.replace("FILE", &path.display().to_string()), Mode::Run, folder.path());
+        execute(&deck.replace("FILE", &path.display().to_string()), Mode::Run, folder.path());
     }
 }
 
 /// Any text as a deck that is only checked: words, quotes, substitution, flow, and every command's own reader.
 pub fn lexer(text: &str) {
     let _ = perigrain::lang::is_unfinished(text);
-    work_off(text, Mode::Check, Path::new("/nonexistent"));
+    execute(text, Mode::Check, Path::new("/nonexistent"));
 }
 
 /// Any text as a formula: equal, vector and atom style, in a scene with particles.
@@ -46,7 +46,7 @@ pub fn expression(text: &str) {
     let deck = format!(
         "{SCENE}variable e equal \"{text}\"\nvariable p atom \"{text}\"\nvariable q equal v_p[1]\nprint \"${{e}}\"\nprint \"${{q}}\"\n"
     );
-    work_off(&deck, Mode::Run, Path::new("."));
+    execute(&deck, Mode::Run, Path::new("."));
 }
 
 /// Any bytes as a data file. The first byte chooses the atom style.
@@ -97,7 +97,7 @@ pub fn read_body(bytes: &[u8]) {
     let Ok(folder) = tempfile::tempdir() else { return };
     let name = line.split(' ').nth(1).unwrap_or("input");
     if std::fs::write(folder.path().join(name), rest).is_ok() {
-        work_off(&format!("{SCENE}{line}\n"), Mode::Run, folder.path());
+        execute(&format!("{SCENE}{line}\n"), Mode::Run, folder.path());
     }
 }
 

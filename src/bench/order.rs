@@ -23,7 +23,7 @@ pub fn all(bench: &Bench, measure: &Measure, errors: &[Error]) -> Vec<Vec<Option
     let numbers: Vec<Option<Vec<f64>>> = (0..bench.axes.len()).map(|k| bench.numbers(k)).collect();
     let order = |point: usize, axis: usize| {
         let steps = numbers[axis].as_ref()?;
-        if !speaks_of(measure, &bench.axes[axis].names) {
+        if !contains_all(measure, &bench.axes[axis].names) {
             return None;
         }
         let mut places = bench.places(point);
@@ -53,7 +53,7 @@ pub fn all(bench: &Bench, measure: &Measure, errors: &[Error]) -> Vec<Vec<Option
 }
 
 /// Whether settings along these knobs are compared with one reference.
-fn speaks_of(measure: &Measure, names: &[String]) -> bool {
+fn contains_all(measure: &Measure, names: &[String]) -> bool {
     match &measure.against {
         Against::Finest(knobs) => knobs.is_empty() || names.iter().any(|n| knobs.contains(n)),
         _ => true,

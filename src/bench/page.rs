@@ -63,7 +63,7 @@ fn of_case(outcome: &Outcome, manner: &Manner, pictures: &str, drawn: &mut Vec<P
     let against: Vec<String> = bench
         .measures
         .iter()
-        .map(|m| format!("{} against {}, norm {}", plain(&m.name), m.against.said(), m.norm.name()))
+        .map(|m| format!("{} against {}, norm {}", plain(&m.name), m.against.describe(), m.norm.name()))
         .collect();
     let _ = write!(out, "Errors: {}.\n\n", against.join("; "));
     let (head, rows) = table::cells(bench, found);

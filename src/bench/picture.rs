@@ -118,7 +118,7 @@ pub fn text(bench: &Bench, found: &Found, measure: usize, colours: bool) -> Opti
         "error of {} ({}) against {}; capitals are on the Pareto front\n",
         m.name,
         m.norm.name(),
-        m.against.said()
+        m.against.describe()
     );
     Some(head + &terminal::logarithmic(&curves, &marks, "seconds", colours))
 }

@@ -22,7 +22,7 @@ pub enum Against {
 
 impl Against {
     /// In a few words.
-    pub fn said(&self) -> String {
+    pub fn describe(&self) -> String {
         match self {
             Self::Finest(knobs) if knobs.is_empty() => "the finest run".into(),
             Self::Finest(knobs) => format!("the run with the finest {}", knobs.join(" and ")),

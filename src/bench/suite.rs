@@ -101,7 +101,7 @@ pub struct Manner {
     /// This program.
     pub program: Starter,
     /// Whether runs report their progress.
-    pub telling: bool,
+    pub reports_progress: bool,
     /// The ranks that make the runs, if there are several.
     pub ranks: Option<Ranks>,
 }
@@ -169,7 +169,7 @@ impl Case {
             threads: manner.threads,
             retry: 0,
             program: manner.program.clone(),
-            telling: manner.telling,
+            reports_progress: manner.reports_progress,
             ranks: manner.ranks.clone(),
         };
         Bench::new(sweep, axes, manner.repeat, self.measure.iter().map(measure).collect())

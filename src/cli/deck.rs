@@ -2,7 +2,7 @@
 
 use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
-use super::reporting::{Recorder, Sheet, Told};
+use super::reporting::{Recorder, Sheet, Subject};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals, viewing};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use console::Term;
@@ -20,11 +20,11 @@ use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 /// Works a deck off in some mode; the exit code.
-pub fn work_off(o: &Options, mode: Mode) -> u8 {
+pub fn execute(o: &Options, mode: Mode) -> u8 {
     let begin = Instant::now();
     let log = Log::silent();
     let progress = if comm::is_first() { Progress::new(Some(log.clone())) } else { Progress::default() };
-    say_lacking(&log);
+    report_lack_of_memory(&log);
     let mut sources = Sources::default();
     let outcome = attempt(o, mode, &progress, &log, &mut sources);
     progress.clear();
@@ -59,10 +59,10 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     }
     catch_interrupt(&session, progress);
     if runs(mode) {
-        let with = o.compat.told();
+        let with = o.compat.describe();
         let threads = session::threads();
         let version = env!("CARGO_PKG_VERSION");
-        let ranks = super::ranks::said();
+        let ranks = super::ranks::describe();
         let _ = log.line(&format!("perigrain {version} ({ranks}{threads} thread(s){with})"));
     }
     let outcome = session.run_text(&name, &text);
@@ -70,11 +70,12 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     let mut written = Ok(());
     if let Some(sheet) = &mut sheet {
         let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
-        let told = Told { options: o, text: text.clone(), session: &session, outcome: &outcome, film, log };
+        let told =
+            Subject { options: o, text: text.clone(), session: &session, outcome: &outcome, film, log };
         // The first rank reads the scene without the others.
         written = comm::run_as(Arc::new(Alone), || sheet.write(told));
         if written.is_ok() {
-            log.to_screen(&sheet.said());
+            log.to_screen(&sheet.message());
         }
     }
     if let Some(live) = live {
@@ -117,7 +118,7 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
 /// # Errors
 /// A missing folder.
 pub(super) fn settled(o: &Options, mode: Mode, log: &Log) -> Result<session::Options> {
-    session::set_threads(o.threads.or_else(asked_of_openmp).unwrap_or(0));
+    session::set_threads(o.threads.or_else(openmp_threads_allowed).unwrap_or(0));
     let folder = match &o.deck {
         Deck::Stdin => Default::default(),
         Deck::File(path) => folder_of(path),
@@ -191,7 +192,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
 }
 
 /// The threads that `OMP_NUM_THREADS` allows: batch systems set it to the cores that were given.
-pub(super) fn asked_of_openmp() -> Option<usize> {
+pub(super) fn openmp_threads_allowed() -> Option<usize> {
     let value = std::env::var("OMP_NUM_THREADS").ok()?;
     let threads = openmp_threads(&value);
     if threads.is_none() && !value.trim().is_empty() {
@@ -243,8 +244,8 @@ pub(super) fn catch_interrupts(session: &Session, progress: &Progress) {
 pub(super) struct Bar(pub Progress);
 
 impl Watch for Bar {
-    fn asked(&mut self, steps: i64) {
-        self.0.asked(steps);
+    fn requested(&mut self, steps: i64) {
+        self.0.requested(steps);
     }
 
     fn begins(&mut self, _w: &World) {
@@ -323,7 +324,7 @@ pub(super) fn open_screen(log: &Log, o: &Options, progress: &Progress) -> Result
 
 /// Problems go to standard error, and to the log without colours.
 /// Where memory is not there, or `-limit memory` does not allow it, the program ends with a message in place of an abort.
-pub(super) fn say_lacking(log: &Log) {
+pub(super) fn report_lack_of_memory(log: &Log) {
     let log = log.clone();
     memory::speaks(move |said| {
         let mut sources = Sources::default();

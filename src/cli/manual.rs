@@ -43,7 +43,7 @@ pub fn page(name: &str) -> Result<String, Usage> {
     if let Some(howto) = HOWTOS.iter().find(|h| h.name == name || h.title() == name) {
         return Ok(howto.text());
     }
-    if let Some(text) = speaking_of(name, &all) {
+    if let Some(text) = search(name, &all) {
         return Ok(text);
     }
     let titles: Vec<String> = all.iter().map(Page::title).collect();
@@ -56,7 +56,7 @@ pub fn page(name: &str) -> Result<String, Usage> {
 }
 
 /// Pages with the words in their names, then those with them in their texts: beside each other, else each of them.
-fn speaking_of(words: &str, all: &[Page]) -> Option<String> {
+fn search(words: &str, all: &[Page]) -> Option<String> {
     let words = words.to_lowercase();
     found(&words, &[&words], all)
         .or_else(|| found(&words, &words.split_whitespace().collect::<Vec<_>>(), all))
@@ -69,12 +69,12 @@ fn found(words: &str, each: &[&str], all: &[Page]) -> Option<String> {
         each.iter().all(|part| text.contains(part))
     };
     let (named, others): (Vec<&Page>, Vec<&Page>) = all.iter().partition(|p| holds(&p.title()));
-    let telling: Vec<&Page> = others.into_iter().filter(|p| holds(&p.markdown())).collect();
-    let howtos: Vec<&HowTo> = HOWTOS.iter().filter(|h| h.speaks_of(each)).collect();
+    let mentioned: Vec<&Page> = others.into_iter().filter(|p| holds(&p.markdown())).collect();
+    let howtos: Vec<&HowTo> = HOWTOS.iter().filter(|h| h.contains_all(each)).collect();
     let parts = [
         ("Pages named so", lines(&named)),
         ("How-tos", questions(&howtos)),
-        ("Pages that contain it", lines(&telling)),
+        ("Pages that contain it", lines(&mentioned)),
     ];
     let text: Vec<String> = parts
         .iter()

@@ -77,10 +77,10 @@ fn perform(task: Task) -> Result<u8, Usage> {
             return match &o.world {
                 Some(world) => {
                     partitions::settle(world);
-                    Ok(deck::work_off(&partitions::own(&o, world), Mode::Run))
+                    Ok(deck::execute(&partitions::own(&o, world), Mode::Run))
                 }
-                None if !o.partition.is_empty() => partitions::work_off(&o),
-                None => ranks::work_off(&o, Mode::Run),
+                None if !o.partition.is_empty() => partitions::execute(&o),
+                None => ranks::execute(&o, Mode::Run),
             };
         }
         Task::Ranks(o) => return ranks::show(&o),
@@ -96,12 +96,12 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Format(wanted) => return formatting::perform(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
-        Task::Plan { options, measure: true, .. } => return ranks::work_off(&options, Mode::Measure),
+        Task::Plan { options, measure: true, .. } => return ranks::execute(&options, Mode::Measure),
         Task::Plan { options, .. } if options.ranks.is_some() => {
             let usage = Usage::new("what ranks exchange follows from bodies, which are built in a run");
             return Err(usage.help("`perigrain plan --measure DECK -ranks N` runs the deck and prints it"));
         }
-        Task::Plan { options, .. } => return Ok(deck::work_off(&options, Mode::Plan)),
+        Task::Plan { options, .. } => return Ok(deck::execute(&options, Mode::Plan)),
     }
     Ok(OK)
 }

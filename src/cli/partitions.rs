@@ -91,7 +91,7 @@ impl World {
     fn take(&self, round: u64, of: usize) -> std::io::Result<usize> {
         #[cfg(unix)]
         if std::os::unix::fs::FileTypeExt::is_socket(&std::fs::metadata(&self.turns)?.file_type()) {
-            return ranks::ask(&self.turns, self, round);
+            return ranks::request_turn(&self.turns, self, round);
         }
         take(&self.turns, round as usize, of)
     }
@@ -120,12 +120,12 @@ fn take(path: &Path, round: usize, of: usize) -> std::io::Result<usize> {
 ///
 /// # Errors
 /// A deck from standard input, which several cannot read, ranks that cannot be joined.
-pub fn work_off(o: &Options) -> Result<u8, Usage> {
+pub fn execute(o: &Options) -> Result<u8, Usage> {
     if o.deck == Deck::Stdin {
         return Err(Usage::new("several partitions cannot all read the deck from standard input")
             .help("write `-in FILE`"));
     }
-    let said = |outcome: std::io::Result<u8>| {
+    let exit_code = |outcome: std::io::Result<u8>| {
         outcome.unwrap_or_else(|e| {
             eprintln!("error: the partitions cannot be started: {e}");
             FAILED
@@ -136,12 +136,12 @@ pub fn work_off(o: &Options) -> Result<u8, Usage> {
         let outcome = all(o, &turns);
         // It is no longer needed.
         let _ = std::fs::remove_file(&turns);
-        Ok(said(outcome))
+        Ok(exit_code(outcome))
     };
     #[cfg(unix)]
     return super::ranks::shared_out(
         o,
-        |ranks| ranks.map_or_else(here, |ranks| Ok(said(ranks::first(o, &ranks)))),
+        |ranks| ranks.map_or_else(here, |ranks| Ok(exit_code(ranks::first(o, &ranks)))),
         ranks::serve,
     );
     #[cfg(not(unix))]

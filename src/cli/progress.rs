@@ -42,7 +42,7 @@ struct State {
     /// Steps requested for the runs that are over.
     before: i64,
     /// Steps of the present run: requested, those of its completed stretches, and those of the present one.
-    asked: i64,
+    requested: i64,
     stretches: i64,
     done: i64,
     /// Steps per second, learnt from the runs so far.
@@ -83,10 +83,10 @@ impl Progress {
     }
 
     /// A run of so many steps begins.
-    pub fn asked(&self, steps: i64) {
+    pub fn requested(&self, steps: i64) {
         let mut state = self.state();
-        state.before += state.asked;
-        (state.asked, state.stretches, state.done, state.mark) = (steps, 0, 0, None);
+        state.before += state.requested;
+        (state.requested, state.stretches, state.done, state.mark) = (steps, 0, 0, None);
     }
 
     /// A stretch of the run begins with its setup, which is left out of the speed of steps.
@@ -113,7 +113,7 @@ impl Progress {
         if ends || due {
             state.time(now);
         }
-        if ends && !state.goes_on() {
+        if ends && !state.is_running() {
             state.drawn = None;
             drop(state);
             return self.live.clear();
@@ -175,7 +175,7 @@ impl State {
     }
 
     /// Whether it is known that further runs follow the present one.
-    fn goes_on(&self) -> bool {
+    fn is_running(&self) -> bool {
         let deck = *self.deck.lock().unwrap_or_else(PoisonError::into_inner);
         deck.is_some_and(|all| self.before + self.stretches + self.done < all.steps)
     }
@@ -187,11 +187,11 @@ impl State {
         let in_run = self.stretches + self.done;
         let own = if self.before == 0 { ["", ""] } else { ["", " of this run"] };
         match deck {
-            _ if in_run > self.asked => (made.done, made.total, ["", ""]),
-            Some(all) if self.before + self.asked <= all.steps => {
+            _ if in_run > self.requested => (made.done, made.total, ["", ""]),
+            Some(all) if self.before + self.requested <= all.steps => {
                 (self.before + in_run, all.steps, [if all.at_most { "up to " } else { "" }, ""])
             }
-            _ => (in_run, self.asked, own),
+            _ => (in_run, self.requested, own),
         }
     }
 
@@ -308,7 +308,7 @@ mod tests {
         let all = ["step 121", "t 1.210e-6", "dt 1.000e-8", "pe 0.3126", "v_speed 7.500e6"];
         assert_eq!(values(&MADE, Some(&log)), all);
         assert_eq!(values(&MADE, None), all[..3]);
-        let state = State { asked: 10, done: 1, rate: Some(3.0), ..State::default() };
+        let state = State { requested: 10, done: 1, rate: Some(3.0), ..State::default() };
         let line = |width| state.line(&MADE, Some(&log), width);
         assert_eq!(line(60), "█░░░░░░░░░ 1 of 10 steps, 3 steps/s, 3 s left  step 121");
         assert_eq!([25, 15, 14].map(line), ["█░░░░░░░░░ 1 of 10 steps", "░ 1 of 10 steps", "1 of 10 steps"]);
@@ -319,18 +319,18 @@ mod tests {
     fn steps_are_those_of_the_whole_deck_once_they_are_known() {
         let progress = Progress::default();
         let share = || progress.state().share(&Made { done: 40, total: 50, ..MADE });
-        progress.asked(100);
+        progress.requested(100);
         progress.state().done = 40;
         progress.begins();
         progress.state().done = 40;
         assert_eq!(share(), (80, 100, ["", ""]));
         *progress.state().deck.lock().unwrap() = Some(Ahead { steps: 700, at_most: true });
         assert_eq!(share(), (80, 700, ["up to ", ""]));
-        progress.asked(300);
+        progress.requested(300);
         progress.state().done = 40;
         assert_eq!(share(), (140, 700, ["up to ", ""]));
         // The deck makes more than was foreseen, and then a minimization.
-        progress.asked(500);
+        progress.requested(500);
         assert_eq!(share(), (0, 500, ["", " of this run"]));
         progress.state().done = 501;
         assert_eq!(share(), (40, 50, ["", ""]));

@@ -26,9 +26,9 @@ static KEPT: Mutex<String> = Mutex::new(String::new());
 ///
 /// # Errors
 /// Ranks that cannot be joined.
-pub(super) fn work_off(o: &Options, mode: Mode) -> Result<u8, Usage> {
+pub(super) fn execute(o: &Options, mode: Mode) -> Result<u8, Usage> {
     match join(o)? {
-        None => Ok(deck::work_off(o, mode)),
+        None => Ok(deck::execute(o, mode)),
         Some(ranks) => comm::run_as(ranks.clone(), || together(&*ranks, o, mode)),
     }
 }
@@ -168,13 +168,13 @@ fn together(ranks: &dyn Comm, o: &Options, mode: Mode) -> Result<u8, Usage> {
     let mut plain = [f64::from(u8::from(o.portable || Form::here() == Form::Plain))];
     ranks.most(&mut plain);
     o.portable |= plain[0] > 0.0 && Form::here() != Form::Plain;
-    o.threads = o.threads.or_else(deck::asked_of_openmp);
+    o.threads = o.threads.or_else(deck::openmp_threads_allowed);
     o.threads = o.threads.or_else(|| Some(share_of_cores(&nodes, ranks.rank())));
     if ranks.rank() > 0 {
         // The first rank shows everything.
         (o.screen, o.report, o.view) = (Target::None, None, None);
     }
-    let code = deck::work_off(&o, mode);
+    let code = deck::execute(&o, mode);
     end(ranks, &nodes, code);
     Ok(code)
 }
@@ -215,7 +215,7 @@ fn differs(ranks: &dyn Comm, nodes: &[String]) -> Option<Usage> {
     let own = [build(), words.join(" ")];
     let mut odd = vec![0i64; 2 * ranks.size()];
     for (k, text) in own.iter().enumerate() {
-        let first = comm::told::bytes(|| text.clone().into_bytes());
+        let first = comm::broadcast::bytes(|| text.clone().into_bytes());
         odd[2 * ranks.rank() + k] = i64::from(first != text.as_bytes());
     }
     ranks.sum(&mut odd);
@@ -250,11 +250,11 @@ fn cores() -> usize {
 }
 
 /// The ranks in the log's first line: nothing where there is one process.
-pub(super) fn said() -> String {
+pub(super) fn describe() -> String {
     if !comm::several() {
         return String::new();
     }
-    format!("{} of ", comm::said(&comm::nodes(&*comm::present())))
+    format!("{} of ", comm::describe(&comm::nodes(&*comm::present())))
 }
 
 /// `perigrain ranks`: what the ranks are connected by, and how fast.
@@ -270,7 +270,7 @@ pub(super) fn show(o: &Options) -> Result<u8, Usage> {
     };
     comm::run_as(ranks.clone(), || {
         let nodes = comm::nodes(&*ranks);
-        let mut text = format!("library    {}\nranks      {}\n", ranks.library(), comm::said(&nodes));
+        let mut text = format!("library    {}\nranks      {}\n", ranks.library(), comm::describe(&nodes));
         text += &format!("threads    {} of each rank\n", share_of_cores(&nodes, ranks.rank()));
         text += &format!("sum        {:.1} us for 8 numbers\n", 1e6 * timed(500, || ranks.sum(&mut [1; 8])));
         for (bytes, turns) in [(8, 1000), (64 << 10, 200), (1 << 20, 40)] {

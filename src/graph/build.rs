@@ -8,7 +8,7 @@ use perigrain_computes::COMPUTES;
 use perigrain_fixes::FIXES;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::{BuildCx, Style, Use, UseKind, lammps};
-use perigrain_world::{GroupId, Said, World};
+use perigrain_world::{DeclaredLine, GroupId, World};
 use std::cell::RefCell;
 
 /// The commands that declare.
@@ -117,17 +117,21 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
         name @ ("pair_style" | "pair_coeff" | "pair_modify" | "peri_modify") => {
             let counts = |node: &PairNode| name != "pair_modify" || node.pair.facts().mixes;
             if let Some(node) = graph.pair.as_mut().filter(|node| counts(node)) {
-                say(&mut node.lines, Said { words, lattice: w.lattice.clone() }, |a, b| a.words == b.words);
+                replace_line(&mut node.lines, DeclaredLine { words, lattice: w.lattice.clone() }, |a, b| {
+                    a.words == b.words
+                });
             }
         }
         "bond_style" | "bond_coeff" => {
             if let Some(node) = &mut graph.bond {
-                say(&mut node.lines, Said { words, lattice: w.lattice.clone() }, |a, b| a.words == b.words);
+                replace_line(&mut node.lines, DeclaredLine { words, lattice: w.lattice.clone() }, |a, b| {
+                    a.words == b.words
+                });
             }
         }
         "fix" | "fix_modify" => {
             if let Some(node) = graph.fixes.iter_mut().find(|f| f.id == id) {
-                say(&mut node.lines, words.join(" "), |a, b| a == b);
+                replace_line(&mut node.lines, words.join(" "), |a, b| a == b);
             }
         }
         _ => {}
@@ -135,7 +139,7 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
 }
 
 /// A repeated line counts where it appeared last.
-fn say<T>(lines: &mut Vec<T>, line: T, same: impl Fn(&T, &T) -> bool) {
+fn replace_line<T>(lines: &mut Vec<T>, line: T, same: impl Fn(&T, &T) -> bool) {
     lines.retain(|old| !same(old, &line));
     lines.push(line);
 }

@@ -184,8 +184,13 @@ fn hidden(w: &World, name: &str) -> bool {
 
 impl DeckEnv<'_> {
     /// Plans the values that `ask` requests and runs that plan once.
-    fn now<T>(&mut self, span: Span, vars: &Vars, ask: impl FnOnce(&mut Sealer) -> Result<T>) -> Result<T> {
-        let (answer, mut plan, t) = self.planned(span, vars, ask)?;
+    fn evaluate<T>(
+        &mut self,
+        span: Span,
+        vars: &Vars,
+        request: impl FnOnce(&mut Sealer) -> Result<T>,
+    ) -> Result<T> {
+        let (answer, mut plan, t) = self.planned(span, vars, request)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         Ok(answer)
     }
@@ -196,7 +201,7 @@ impl DeckEnv<'_> {
     /// Values that are not available.
     pub fn slot(&mut self, r: &ValueRef, vars: &Vars) -> Result<SlotId> {
         regions::place_all(self.w, self.graph, vars);
-        self.now(r.span, vars, |s| s.reference(r))
+        self.evaluate(r.span, vars, |s| s.reference(r))
     }
 
     /// Runs an op once, its values fresh, as `write_dump` does.
@@ -207,10 +212,10 @@ impl DeckEnv<'_> {
         &mut self,
         span: Span,
         vars: &Vars,
-        ask: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>,
+        request: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>,
     ) -> Result<()> {
         regions::place_all(self.w, self.graph, vars);
-        let (mut op, mut plan, t) = self.planned(span, vars, ask)?;
+        let (mut op, mut plan, t) = self.planned(span, vars, request)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         op.run(self.w, &t)?;
         op.finish(self.w)
@@ -220,17 +225,17 @@ impl DeckEnv<'_> {
         &mut self,
         span: Span,
         vars: &Vars,
-        ask: impl FnOnce(&mut Sealer) -> Result<T>,
+        request: impl FnOnce(&mut Sealer) -> Result<T>,
     ) -> Result<(T, StepPlan, Tick)> {
         self.w.spread_type_masses();
         let mut sealer = Sealer::new(self.w, self.graph, Arc::new(vars.clone()));
         sealer.at(span);
-        let answer = ask(&mut sealer)?;
+        let answer = request(&mut sealer)?;
         let word = sealer.tallies.unwrap_or(span);
         let mut plan = sealer.plan;
         let t = Tick::between_runs(&self.w.clock);
         let mut wanted = t.clone();
-        plan.ask(&mut wanted);
+        plan.request_sums(&mut wanted);
         let tally = &self.w.tally;
         // LAMMPS checks the step alone, and returns what the last run has left of particles that were changed since.
         let stands = tally.step == Some(t.step) && (!self.w.parts.changed || self.w.settings.lammps());
@@ -270,7 +275,7 @@ impl DeckEnv<'_> {
             return Ok(Value::Unknown);
         }
         regions::place_all(self.w, self.graph, vars);
-        let slot = self.now(r.span, vars, |s| s.reference(r))?;
+        let slot = self.evaluate(r.span, vars, |s| s.reference(r))?;
         read(self.w, slot, r)
     }
 }
@@ -281,7 +286,7 @@ impl Env for DeckEnv<'_> {
         if hidden(self.w, name) {
             return Some(Ok(Value::Unknown));
         }
-        let reading = self.now(span, vars, |s| s.keyword(name, span, Stage::Output, &When::Always));
+        let reading = self.evaluate(span, vars, |s| s.keyword(name, span, Stage::Output, &When::Always));
         Some(reading.map(|r| Value::Number(r.get(self.w))))
     }
 
@@ -304,7 +309,7 @@ impl Env for DeckEnv<'_> {
 
     fn group_function(&mut self, name: &str, args: &[Word], span: Span, vars: &Vars) -> Result<Value> {
         self.w.spread_type_masses();
-        regions::place_now(self.w, self.graph, vars, |name| args.iter().any(|a| a.text == name))?;
+        regions::place_following(self.w, self.graph, vars, |name| args.iter().any(|a| a.text == name))?;
         let value = measure::group_function(self.w, name, args, span)?;
         Ok(if self.blind() { Value::Unknown } else { Value::Number(value) })
     }
@@ -314,13 +319,13 @@ impl Env for DeckEnv<'_> {
             return Ok(Value::Unknown);
         }
         regions::place_all(self.w, self.graph, vars);
-        let slot = self.now(r.span, vars, |s| s.reference(r))?;
+        let slot = self.evaluate(r.span, vars, |s| s.reference(r))?;
         whole_vector(self.w, slot, r)
     }
 
     fn mask(&mut self, group: Option<&Word>, region: Option<&Word>, vars: &Vars) -> Result<Value> {
         let named = |name: &str| region.is_some_and(|r| r.text == name);
-        regions::place_now(self.w, self.graph, vars, named)?;
+        regions::place_following(self.w, self.graph, vars, named)?;
         let list = answers::mask(self.w, group, region)?;
         Ok(if self.blind() { Value::Unknown } else { Value::Atom(list) })
     }
@@ -440,6 +445,6 @@ impl DeckValues<'_> {
     fn reading(&mut self, w: &mut World, r: &ValueRef) -> Result<Reading> {
         let mut env = DeckEnv { w, graph: self.graph };
         regions::place_all(env.w, env.graph, &self.vars);
-        env.now(r.span, &self.vars, |s| s.value(r, Stage::Output, &When::Always))
+        env.evaluate(r.span, &self.vars, |s| s.value(r, Stage::Output, &When::Always))
     }
 }

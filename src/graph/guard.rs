@@ -26,8 +26,8 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     let outputs = s.plan.ops.iter().filter(|p| late(p.about.stage)).map(|p| p.about.when.clone());
     let blocks = When::Every(rule.every).or(When::First).or(When::Last);
     let when = outputs.fold(blocks, When::or);
-    s.ask_energy(&when);
-    s.ask_atom_energy(&when);
+    s.request_energy(&when);
+    s.request_atom_energy(&when);
     let mut probes = s.probes()?;
     let log = s.log();
     let name = format!("fix {} dt/guard", node.id);
@@ -39,6 +39,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
             turnover: sheet.turnover(),
         })
     });
-    s.plan.guard = Some(Guard { name, rule: *rule, when, look, say: Box::new(move |line| log.line(line)) });
+    s.plan.guard =
+        Some(Guard { name, rule: *rule, when, look, write_line: Box::new(move |line| log.line(line)) });
     Ok(())
 }

@@ -201,7 +201,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
 }
 
 fn time_value(name: &str, c: &Clock) -> f64 {
-    let cpu = || comm::told::number(|| c.began.map_or(0.0, |b| b.elapsed().as_secs_f64()));
+    let cpu = || comm::broadcast::number(|| c.began.map_or(0.0, |b| b.elapsed().as_secs_f64()));
     let done = (c.step - c.first) as f64;
     match name {
         "step" => c.step as f64,

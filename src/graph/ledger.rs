@@ -103,8 +103,8 @@ pub fn end(s: &mut Sealer) -> Result<()> {
     s.add(vec![op.in_setup(true).boxed()], span);
     let mut probes = s.probes()?;
     let ends = When::First.or(When::Last);
-    s.ask_energy(&ends);
-    s.ask_atom_energy(&ends);
+    s.request_energy(&ends);
+    s.request_atom_energy(&ends);
     let all = Needs::new()
         .read(X | X0 | V | OMEGA | RADIUS | MASS | TYPE_MASS | VOLUME | KIND | MASK | TAG | MOLECULE)
         .read(COLUMNS | FAMILIES | BONDS | CONTACTS | TALLY | LISTS | BOX | TRAVEL | FACTS)

@@ -8,7 +8,7 @@ use perigrain_lang::{RefKind, ValueRef};
 use perigrain_pairs::bond::BondForce;
 use perigrain_styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use perigrain_world::adapted::Coefficient;
-use perigrain_world::{GroupId, Said, World};
+use perigrain_world::{DeclaredLine, GroupId, World};
 use std::collections::BTreeMap;
 
 /// Which node.
@@ -23,7 +23,7 @@ pub struct PairNode {
     /// The `pair_style` line.
     pub span: Span,
     /// All its lines, for restart files.
-    pub lines: Vec<Said>,
+    pub lines: Vec<DeclaredLine>,
 }
 
 /// The bond style in force.
@@ -34,7 +34,7 @@ pub struct BondNode {
     /// The `bond_style` line.
     pub span: Span,
     /// All its lines, for restart files.
-    pub lines: Vec<Said>,
+    pub lines: Vec<DeclaredLine>,
 }
 
 /// A fix in force.

@@ -41,7 +41,7 @@ impl Op for Reneighbor {
         )
     }
     fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
-        Rows::Asks
+        Rows::Requested
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
@@ -69,7 +69,7 @@ impl Op for Reneighbor {
                 return Ok(());
             }
             let moved = farthest(w, t)?;
-            w.rebuild.seen = Seen::now(*w.travel, moved.sqrt());
+            w.rebuild.seen = Seen::measured(*w.travel, moved.sqrt());
             if moved <= half * half {
                 return Ok(());
             }
@@ -299,7 +299,7 @@ fn too_far(w: &World, lost: &[usize], t: &Tick) -> perigrain_base::diag::Diagnos
 /// Keeps the present positions; those of creation are kept already.
 fn hold(w: &mut World) {
     let (p, rebuild) = (&w.particles, &mut *w.rebuild);
-    rebuild.seen = Seen::now(*w.travel, 0.0);
+    rebuild.seen = Seen::measured(*w.travel, 0.0);
     rebuild.corners = w.domain.as_ref().map(|d| [d.lo, d.hi]);
     rebuild.tilt = w.domain.as_ref().and_then(|d| d.tilt).unwrap_or_default();
     // A scene without particles does not count as unmoved.

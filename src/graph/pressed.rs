@@ -86,13 +86,13 @@ impl Look {
             "the time step {dt:e} is longer than contacts stand as they are pressed at step {}: {limit:.3e}",
             t.step
         );
-        let say = 0.8 * limit * (t.dt / dt);
+        let stable = 0.8 * limit * (t.dt / dt);
         Diagnostic::warning(Code::UNSTABLE, self.place, text)
             .help(
                 "beyond 2/ω, ω the largest frequency of grains on their contacts with each other and with walls (less where dashpots \
                  act), they swing ever farther until contacts open: such a run may end well, and is wrong",
             )
-            .help(format!("use `timestep {say:.1e}` or less, or take softer grains"))
+            .help(format!("use `timestep {stable:.1e}` or less, or take softer grains"))
             .help("`fix ID all dt/critical 100 0.8` lets the step follow")
     }
 }
@@ -111,13 +111,13 @@ impl Op for Look {
         // An examination takes as long as some 15 steps: a continued run repeats it at its beginning and end only this long after
         // the last.
         let soon = same.is_some_and(|p| (0..LOOK).contains(&(t.step - p.step)));
-        let goes_on = !t.setup || t.unchanged;
-        if same.is_some_and(|p| p.told) || (soon && goes_on) {
+        let continues = !t.setup || t.unchanged;
+        if same.is_some_and(|p| p.warned) || (soon && continues) {
             return Ok(());
         }
         let Self { probes, movers, .. } = self;
         let limit = exceeded(w, probes, |i| movers.of(w.particles.mask[i]), step_of(w, t.dt))?;
-        w.parts.pressed = Some(Pressed { step: t.step, dt: t.dt, told: limit.is_some() });
+        w.parts.pressed = Some(Pressed { step: t.step, dt: t.dt, warned: limit.is_some() });
         if let Some(limit) = limit {
             let problem = self.problem(w, t, limit);
             w.parts.notes.push(problem);

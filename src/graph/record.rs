@@ -62,7 +62,7 @@ impl Node {
     }
 
     /// The positive number given for a fact.
-    fn said(&self, fact: &str) -> Option<f64> {
+    fn given(&self, fact: &str) -> Option<f64> {
         let mut words = self.text.split_whitespace().skip_while(|w| *w != fact);
         words.nth(1)?.parse::<f64>().ok().filter(|d| *d > 0.0)
     }
@@ -148,7 +148,7 @@ impl Record {
         node.turn = turn;
         for fact in &node.settles {
             let before = self.settled.entry(fact).or_default();
-            let Some(x) = node.said(fact) else { continue };
+            let Some(x) = node.given(fact) else { continue };
             let old = before.unwrap_or(Extremes { least: x, most: x });
             *before = Some(Extremes { least: old.least.min(x), most: old.most.max(x) });
         }
@@ -276,7 +276,7 @@ impl Record {
     }
 
     /// The positive numbers that acts have given for a fact, if any.
-    pub fn said(&self, fact: &str) -> Option<Extremes> {
+    pub fn given(&self, fact: &str) -> Option<Extremes> {
         self.settled.get(fact).copied().flatten()
     }
 
@@ -387,7 +387,7 @@ mod tests {
             set.settles = vec!["density"];
             r.add(set, turn as u64);
         }
-        assert_eq!(r.said("density"), Some(Extremes { least: 2.0, most: 5.0 }));
-        assert!(r.settled("density") && !r.settled("mass") && r.said("mass").is_none());
+        assert_eq!(r.given("density"), Some(Extremes { least: 2.0, most: 5.0 }));
+        assert!(r.settled("density") && !r.settled("mass") && r.given("mass").is_none());
     }
 }

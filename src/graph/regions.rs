@@ -18,7 +18,12 @@ const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];
 ///
 /// # Errors
 /// Variables that are gone, have no number, or give a region no shape.
-pub fn place_now(w: &mut World, graph: &Graph, vars: &Vars, meant: impl Fn(&str) -> bool) -> Result<()> {
+pub fn place_following(
+    w: &mut World,
+    graph: &Graph,
+    vars: &Vars,
+    meant: impl Fn(&str) -> bool,
+) -> Result<()> {
     let follows = w.regions.iter().filter(|(key, region)| region.follows() && meant(key.text()));
     let keys: Vec<Key<Region>> = follows.map(|(key, _)| key).collect();
     for key in keys {

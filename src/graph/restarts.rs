@@ -11,7 +11,7 @@ use perigrain_styles::{BuildCx, SealCx, Use, UseKind};
 use perigrain_world::adapted;
 use perigrain_world::columns::{BOND_FACTORS, LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use perigrain_world::field::{Fields, MEMO};
-use perigrain_world::{Constant, Said, World};
+use perigrain_world::{Constant, DeclaredLine, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -149,7 +149,7 @@ enum Names {
 struct Write {
     when: When,
     names: Names,
-    pair: Vec<Said>,
+    pair: Vec<DeclaredLine>,
     declared: Vec<String>,
     /// The step of the last file.
     written: Option<i64>,
@@ -190,7 +190,7 @@ impl Op for Write {
 ///
 /// # Errors
 /// The disk's.
-pub fn save(path: &Path, w: &World, ran: bool, pair: &[Said], declared: &[String]) -> Result<()> {
+pub fn save(path: &Path, w: &World, ran: bool, pair: &[DeclaredLine], declared: &[String]) -> Result<()> {
     let ran = ran && !w.clock.minimizing;
     let standing = ran && (w.clock.running || !w.parts.changed);
     write(path, &Saving { world: w, ran, standing, pair, declared })
@@ -210,7 +210,7 @@ pub fn claimable(name: &str) -> bool {
 
 impl Graph {
     /// The lines of the pair style and the bond style in force.
-    pub fn force_lines(&self) -> Vec<Said> {
+    pub fn force_lines(&self) -> Vec<DeclaredLine> {
         let pair = self.pair.iter().flat_map(|p| &p.lines);
         pair.chain(self.bond.iter().flat_map(|b| &b.lines)).cloned().collect()
     }

@@ -111,7 +111,7 @@ pub fn seal(s: &mut Sealer, rows: &When) -> Result<()> {
         log: s.log.clone(),
         begin: State::default(),
         budget: None,
-        told: false,
+        reported: false,
     };
     let span = s.span();
     s.add(vec![Box::new(op)], span);
@@ -165,7 +165,7 @@ struct Look {
     begin: State,
     /// All energy of that time, if it is known.
     budget: Option<f64>,
-    told: bool,
+    reported: bool,
 }
 
 impl Look {
@@ -234,8 +234,8 @@ impl Look {
     }
 
     /// Reports a problem once, as an error where that is wanted.
-    fn tell(&mut self, problem: Diagnostic) -> Result<()> {
-        self.told = true;
+    fn report(&mut self, problem: Diagnostic) -> Result<()> {
+        self.reported = true;
         match self.how {
             Runaway::Error => Err(problem.into()),
             _ => self.log.line(&format!("WARNING: {}", problem.message)),
@@ -281,12 +281,12 @@ impl Op for Look {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if self.told {
+        if self.reported {
             return Ok(());
         }
         // Compared with anything, what is no number is never more: it is looked for by itself.
         if self.closed && w.tally.step == Some(t.step) && (w.tally.pair + w.tally.bond).is_nan() {
-            return self.tell(no_number(t));
+            return self.report(no_number(t));
         }
         let now = self.state(w);
         if t.setup {
@@ -297,7 +297,7 @@ impl Op for Look {
             return Ok(());
         }
         match self.beyond(now) {
-            Some(why) => self.tell(self.problem(t, &why)),
+            Some(why) => self.report(self.problem(t, &why)),
             None => Ok(()),
         }
     }

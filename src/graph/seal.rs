@@ -37,7 +37,7 @@ pub struct Sealer<'a> {
     /// Declarations as formulas see them.
     declared: Option<Arc<Declared>>,
     /// The word outside computes and variables whose value is being planned.
-    asking: Span,
+    word: Span,
     /// The first such word that needs energies or pressures.
     pub tallies: Option<Span>,
     /// The level of steps that the present fix has been given.
@@ -60,7 +60,7 @@ impl<'a> Sealer<'a> {
             uses: 0,
             log: Log::silent(),
             declared: None,
-            asking: Span::default(),
+            word: Span::default(),
             tallies: None,
             chosen: None,
             group: 0,
@@ -98,7 +98,7 @@ impl<'a> Sealer<'a> {
     }
 
     /// Notes the parts of a full step that this scene does without.
-    pub fn say_what_is_missing(&mut self) {
+    pub fn note_left_out(&mut self) {
         let p = &self.world.particles;
         let out: [(bool, &str, &str); 5] = [
             (!p.style.sphere, "rotation and torque", "no particle has a radius"),
@@ -163,9 +163,9 @@ impl<'a> Sealer<'a> {
     }
 
     /// What follows is planned for the word at `span`, unless it is for a compute or variable that is being planned itself.
-    fn ask(&mut self, span: Span) {
+    fn at_word(&mut self, span: Span) {
         if self.trail.is_empty() {
-            self.asking = span;
+            self.word = span;
         }
     }
 
@@ -194,7 +194,7 @@ impl<'a> Sealer<'a> {
         let Some(node) = graph.find_compute(id) else {
             return fail(Code::UNKNOWN_COMPUTE, span, format!("there is no compute `{id}`"));
         };
-        self.ask(span);
+        self.at_word(span);
         let key = format!("c_{id}");
         let slot = self.world.slots.id(&key);
         self.world.slots.get_mut(slot).offers = node.compute.shape().offers();
@@ -280,7 +280,7 @@ impl<'a> Sealer<'a> {
         if vars.kind(&r.name).is_none() {
             return fail(Code::UNKNOWN_VARIABLE, r.span, format!("there is no variable `{}`", r.name));
         }
-        self.ask(r.span);
+        self.at_word(r.span);
         self.enter(format!("v_{}", r.name), r.span)?;
         let deps = vars.depends(&r.name);
         let mut from = BTreeMap::new();
@@ -358,7 +358,7 @@ impl<'a> Sealer<'a> {
                 Need::Temp => sources.temp = Some(self.compute(&ids.0, span, stage, when)?),
                 Need::Press => sources.press = Some(self.compute(&ids.1, span, stage, when)?),
                 Need::Pe => sources.pe = Some(self.compute(&ids.2, span, stage, when)?),
-                Need::Pair => self.ask_energy(when),
+                Need::Pair => self.request_energy(when),
             }
         }
         Ok(Reading::Scalar(

@@ -194,7 +194,7 @@ impl Op for Evaluate {
         let rebuild = w.rebuild.past();
         let now = [rebuild.roster, rebuild.places];
         let (then, common) = *self.common.get_or_insert_with(|| (now, w.is_common(bits)));
-        if common && then == now { Rows::Asks } else { Rows::All }
+        if common && then == now { Rows::Requested } else { Rows::All }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let mut env = RunEnv::new(w, &self.declared, &self.from);

@@ -4,7 +4,7 @@ use super::seal::Sealer;
 use perigrain_base::diag::Result;
 use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::SealCx;
-use perigrain_styles::probe::{Ask, Probe, look_all};
+use perigrain_styles::probe::{Probe, Request, look_all};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
     TAG, TALLY, TRAVEL, V, X, X0,
@@ -23,16 +23,16 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     let Some(pair) = graph.pair.as_ref().map(|node| &node.pair) else { return Ok(()) };
     let RunStyle::Respa(respa) = s.world().settings.run_style.clone() else {
         let probes = s.probes()?;
-        s.add(ask(probes), span);
+        s.add(ops(probes), span);
         return Ok(());
     };
     for (k, probe) in pair.probes(s.world(), false)? {
-        s.add_forces(ask(vec![probe]), span, respa.of_pair(k));
+        s.add_forces(ops(vec![probe]), span, respa.of_pair(k));
     }
     Ok(())
 }
 
-fn ask(probes: Vec<Box<dyn Probe>>) -> Vec<Box<dyn Op>> {
+fn ops(probes: Vec<Box<dyn Probe>>) -> Vec<Box<dyn Op>> {
     if probes.is_empty() { vec![] } else { vec![Box::new(Virials { probes })] }
 }
 
@@ -66,13 +66,13 @@ impl Op for Virials {
         About::new("virials of particles", Stage::Force, needs)
     }
     fn span(&mut self, _: &mut World, t: &Tick) -> Rows {
-        if t.atom_virial { Rows::All } else { Rows::Asks }
+        if t.atom_virial { Rows::All } else { Rows::Requested }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !t.atom_virial {
             return Ok(());
         }
-        let pairs = look_all(&mut self.probes, w, Ask::Felt { setup: t.setup })?;
+        let pairs = look_all(&mut self.probes, w, Request::Felt { setup: t.setup })?;
         let atoms = &mut w.tally.atom_virial;
         for p in &pairs {
             let virial = p.virial();

@@ -53,19 +53,19 @@ pub struct Checker {
 }
 
 impl Checker {
-    /// Starts the thread; `tell` receives the reports.
-    pub fn new(tell: impl Fn(Report) + Send + 'static) -> Self {
+    /// Starts the thread; `publish` receives the reports.
+    pub fn new(publish: impl Fn(Report) + Send + 'static) -> Self {
         let (jobs, queue) = channel();
         let running = Running::default();
         let own = running.clone();
         let thread = std::thread::Builder::new().stack_size(STACK);
         // Without a thread more there are no messages; all else is answered.
-        let _ = thread.spawn(move || work(&queue, &own, &tell));
+        let _ = thread.spawn(move || work(&queue, &own, &publish));
         Self { jobs, running }
     }
 
     /// Queues a check; one of an older text of the same deck is given up.
-    pub fn ask(&self, job: Job) {
+    pub fn queue(&self, job: Job) {
         let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, stop)) = running.as_ref().filter(|(uri, _)| *uri == job.uri) {
             stop.store(true, Ordering::Relaxed);
@@ -76,7 +76,7 @@ impl Checker {
     }
 }
 
-fn work(queue: &Receiver<Job>, running: &Running, tell: &dyn Fn(Report)) {
+fn work(queue: &Receiver<Job>, running: &Running, publish: &dyn Fn(Report)) {
     let mut waiting: Vec<Job> = vec![];
     loop {
         if waiting.is_empty() {
@@ -94,7 +94,7 @@ fn work(queue: &Receiver<Job>, running: &Running, tell: &dyn Fn(Report)) {
         let found = catch_unwind(AssertUnwindSafe(|| report(&job, &stale)));
         set(None);
         if !stale.load(Ordering::Relaxed) {
-            tell(found.unwrap_or_else(|_| broken(&job)));
+            publish(found.unwrap_or_else(|_| broken(&job)));
         }
     }
 }

@@ -10,7 +10,7 @@ mod places;
 mod server;
 mod wire;
 
-use answers::{completion, finding, fixes, outline, telling};
+use answers::{completion, finding, fixes, hover, outline};
 use checks::{Checker, Report};
 use perigrain_base::diag::FileId;
 use perigrain_lang::format::format;
@@ -186,8 +186,8 @@ impl Talk {
         let cannot = |why: String| Refusal(REQUEST_FAILED, why);
         Ok(match method {
             "textDocument/completion" => completion::complete(server, file, byte),
-            "textDocument/hover" => telling::hover(server, file, byte),
-            "textDocument/signatureHelp" => telling::signature(server, file, byte),
+            "textDocument/hover" => hover::hover(server, file, byte),
+            "textDocument/signatureHelp" => hover::signature(server, file, byte),
             "textDocument/definition" => finding::definition(server, file, byte),
             "textDocument/references" => {
                 let with = params["context"]["includeDeclaration"].as_bool().unwrap_or(true);

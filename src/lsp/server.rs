@@ -62,7 +62,7 @@ pub struct Server {
     parents: BTreeMap<String, String>,
     shown: BTreeSet<String>,
     /// The newest job of each deck.
-    asked: BTreeMap<String, u64>,
+    numbers: BTreeMap<String, u64>,
     checker: Checker,
     out: Sender<Value>,
 }
@@ -76,7 +76,7 @@ impl Server {
             reports: BTreeMap::new(),
             parents: BTreeMap::new(),
             shown: BTreeSet::new(),
-            asked: BTreeMap::new(),
+            numbers: BTreeMap::new(),
             checker,
             out,
         }
@@ -121,7 +121,7 @@ impl Server {
         if let Some(report) = self.reports.remove(uri) {
             self.show(report.problems.keys().cloned().collect());
         }
-        self.asked.remove(uri);
+        self.numbers.remove(uri);
         if self.decks_of(uri).iter().any(|deck| deck != uri) {
             self.check(uri);
         }
@@ -136,9 +136,9 @@ impl Server {
                 Some((path, Arc::from(open.file.text.as_str())))
             });
             let overlay = Overlay::new(texts.collect());
-            let number = self.asked.entry(deck.clone()).or_default();
+            let number = self.numbers.entry(deck.clone()).or_default();
             *number += 1;
-            self.checker.ask(Job {
+            self.checker.queue(Job {
                 uri: deck,
                 number: *number,
                 text: file.text.as_str().to_string(),
@@ -195,7 +195,7 @@ impl Server {
 
     /// Takes the results of a check, and sends them to the client.
     pub fn take(&mut self, report: Report) {
-        if self.asked.get(&report.uri) != Some(&report.number) {
+        if self.numbers.get(&report.uri) != Some(&report.number) {
             // The text is another one by now.
             return;
         }

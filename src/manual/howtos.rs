@@ -38,7 +38,7 @@ impl HowTo {
     }
 
     /// Whether it has each of the words, in lower case.
-    pub fn speaks_of(&self, words: &[&str]) -> bool {
+    pub fn contains_all(&self, words: &[&str]) -> bool {
         let text = self.page.to_lowercase();
         words.iter().all(|word| text.contains(word))
     }

@@ -287,7 +287,7 @@ pub fn keywords_in(text: &str) -> Vec<&str> {
 }
 
 /// A page's text on a word: from the word in backticks to the end of that sentence or item.
-pub fn told_of(text: &str, word: &str) -> Option<String> {
+pub fn sentence_on(text: &str, word: &str) -> Option<String> {
     const LONGEST: usize = 500;
     let opening = format!("`{word}");
     let begins = |(k, _): &(usize, &str)| text[k + opening.len()..].starts_with(['`', ' ']);
@@ -380,8 +380,8 @@ mod tests {
     fn pages_tell_of_their_keywords() {
         let text =
             "Keywords:\n\n* `size W H` pixels (1280 960), `up x`; `legend yes|no` what.\n* `map NAME` all.";
-        assert_eq!(told_of(text, "size").as_deref(), Some("`size W H` pixels (1280 960)"));
-        assert_eq!(told_of(text, "map").as_deref(), Some("`map NAME` all."));
-        assert_eq!(told_of(text, "nothing"), None);
+        assert_eq!(sentence_on(text, "size").as_deref(), Some("`size W H` pixels (1280 960)"));
+        assert_eq!(sentence_on(text, "map").as_deref(), Some("`map NAME` all."));
+        assert_eq!(sentence_on(text, "nothing"), None);
     }
 }

@@ -9,7 +9,7 @@ const LINES: usize = 14;
 
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct LogContent {
     /// The step tables.
     pub tables: Tables,
     /// Program and threads.
@@ -17,7 +17,7 @@ pub struct Told {
     /// How it ended.
     pub ended: Ended,
     /// Warnings and notes.
-    pub said: Vec<(Weight, String)>,
+    pub messages: Vec<(Weight, String)>,
     /// Steps made.
     pub steps: i64,
     /// Time that they took [s].
@@ -29,18 +29,18 @@ pub struct Told {
 }
 
 /// Reads a log.
-pub fn read(text: &str) -> Told {
-    let told = lammps::read(text);
+pub fn read(text: &str) -> LogContent {
+    let content = lammps::read(text);
     let lines: Vec<&str> = text.lines().collect();
     let known = |line: &&&str| line.starts_with("perigrain ") || line.starts_with("LAMMPS (");
     let origin = lines.iter().take(3).find(known).map_or(String::new(), |l| l.trim().to_string());
-    let (mut said, mut error) = (vec![], None);
+    let (mut messages, mut error) = (vec![], None);
     for (k, line) in lines.iter().enumerate() {
         let begins = |words: &[&str]| words.iter().any(|w| line.starts_with(w));
         if begins(&["warning[", "WARNING"]) {
-            said.push((Weight::Warning, message(&lines[k..])));
+            messages.push((Weight::Warning, message(&lines[k..])));
         } else if begins(&["note["]) {
-            said.push((Weight::Note, message(&lines[k..])));
+            messages.push((Weight::Note, message(&lines[k..])));
         } else if begins(&["error[", "ERROR"]) && error.is_none() {
             error = Some(message(&lines[k..]));
         }
@@ -55,8 +55,8 @@ pub fn read(text: &str) -> Told {
         None if whole => Ended::Well,
         None => Ended::Unknown,
     };
-    let (steps, seconds, atoms) = (told.steps, told.loop_seconds, told.atoms);
-    Told { tables: told.tables, origin, ended, said, steps, seconds, atoms, remark }
+    let (steps, seconds, atoms) = (content.steps, content.loop_seconds, content.atoms);
+    LogContent { tables: content.tables, origin, ended, messages, steps, seconds, atoms, remark }
 }
 
 /// A message with the lines that belong to it: perigrain's ends with an empty one, LAMMPS' has one.
@@ -84,22 +84,22 @@ mod tests {
     fn a_log_tells_how_it_ended_and_what_it_warned_of() {
         let text = "LAMMPS (22 Jul 2025)\nWARNING: odd\n   Step          KinEng\n  0  1.5\n  10  1.25\n\
                     Loop time of 0.5 on 1 procs for 10 steps with 7 atoms\nTotal wall time: 0:00:01\n";
-        let told = read(text);
+        let content = read(text);
         assert_eq!(
-            (told.ended, told.origin.as_str(), told.remark),
+            (content.ended, content.origin.as_str(), content.remark),
             (Ended::Well, "LAMMPS (22 Jul 2025)", None)
         );
         assert_eq!(
-            (told.atoms, told.steps, told.said),
+            (content.atoms, content.steps, content.messages),
             (7, 10, vec![(Weight::Warning, "WARNING: odd".into())])
         );
         let text = "perigrain 0.1.0 (2 thread(s))\nwarning[PG0301]: w\n --> in.a:1:2\n\nerror[PG0102]: no\n  = help: h\n\nmore\n";
-        let told = read(text);
-        assert_eq!(told.ended, Ended::Failed("error[PG0102]: no\n  = help: h".into()));
-        assert_eq!(told.said, [(Weight::Warning, "warning[PG0301]: w\n --> in.a:1:2".into())]);
-        let told = read("Step KinEng\n0 1\n1 2\n");
-        assert_eq!((told.ended, told.tables.0[0].rows.len()), (Ended::Unknown, 2));
-        assert!(told.remark.unwrap().contains("no end"));
+        let content = read(text);
+        assert_eq!(content.ended, Ended::Failed("error[PG0102]: no\n  = help: h".into()));
+        assert_eq!(content.messages, [(Weight::Warning, "warning[PG0301]: w\n --> in.a:1:2".into())]);
+        let content = read("Step KinEng\n0 1\n1 2\n");
+        assert_eq!((content.ended, content.tables.0[0].rows.len()), (Ended::Unknown, 2));
+        assert!(content.remark.unwrap().contains("no end"));
         assert!(read("").tables.0.is_empty());
     }
 }

@@ -66,7 +66,7 @@ pub struct Report {
     /// What columns of them are, by their words.
     pub columns: Vec<(String, String)>,
     /// Warnings and notes in their order.
-    pub said: Vec<(Weight, String)>,
+    pub messages: Vec<(Weight, String)>,
     /// Parts of steps and what they took.
     pub parts: Vec<Part>,
     /// The last run's plan.
@@ -93,7 +93,7 @@ impl Report {
             deck: None,
             tables: Tables::default(),
             columns: vec![],
-            said: vec![],
+            messages: vec![],
             parts: vec![],
             plan: None,
             gallery: Gallery::default(),

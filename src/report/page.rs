@@ -45,7 +45,7 @@ pub fn html(report: &Report) -> String {
         ("curves", "Step table", curves_section(report, &curves)),
         ("pictures", "Pictures", pictures(report)),
         ("time", "Where the time went", time(report)),
-        ("said", "Warnings and notes", said(report)),
+        ("said", "Warnings and notes", messages(report)),
         ("deck", report.deck.as_ref().map_or("", |deck| deck.what), deck(report)),
     ]
     .into_iter()
@@ -211,15 +211,18 @@ fn part(p: &Part, all: f64) -> String {
     )
 }
 
-fn said(report: &Report) -> String {
+fn messages(report: &Report) -> String {
     let mut out = String::new();
-    for (weight, text) in report.said.iter().take(WARNINGS) {
+    for (weight, text) in report.messages.iter().take(WARNINGS) {
         let class = if *weight == Weight::Warning { "warning" } else { "note" };
         let _ = writeln!(out, "<pre class=\"{class}\" tabindex=\"0\">{}</pre>", escaped(text.trim_end()));
     }
-    if report.said.len() > WARNINGS {
-        let _ =
-            writeln!(out, "<p class=\"small\">{} more stand in the log.</p>", report.said.len() - WARNINGS);
+    if report.messages.len() > WARNINGS {
+        let _ = writeln!(
+            out,
+            "<p class=\"small\">{} more stand in the log.</p>",
+            report.messages.len() - WARNINGS
+        );
     }
     out
 }

@@ -15,7 +15,7 @@ fn hostile() -> (String, Report) {
     r.facts = r.figures.clone();
     r.deck = Some(Text { what: "Deck", name: evil.into(), text: evil.into() });
     r.columns = vec![(evil.into(), evil.into())];
-    r.said = vec![(Weight::Warning, evil.into())];
+    r.messages = vec![(Weight::Warning, evil.into())];
     r.plan = Some(evil.into());
     r.gallery.left_out = vec![evil.into()];
     r.gallery.pictures = vec![Picture { name: evil.into(), kind: "image/png", bytes: vec![1, 2] }];

@@ -1,11 +1,11 @@
 //! Declarations, and lines that change the scene, done at once; where a deck is only looked at, only as far as the scene is known.
 
-use super::planning::hangs_on_a_run;
+use super::planning::depends_on_a_run;
 use super::{Mode, Session, brief, commands, later};
 use crate::graph::Role;
 use crate::graph::build::{Context, declare};
 use crate::graph::env::DeckValues;
-use crate::graph::regions::place_now;
+use crate::graph::regions::place_following;
 use perigrain_base::diag::Result;
 use perigrain_commands::COMMANDS;
 use perigrain_lang::{Args, Command};
@@ -47,15 +47,15 @@ impl Session {
     pub(super) fn act(&mut self, cmd: &Command, style: &'static dyn CommandStyle) -> Result<()> {
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
-        let (mut said, mut then, mut left) = (vec![], vec![], None);
+        let (mut lines, mut then, mut left) = (vec![], vec![], None);
         let outcome: Result<Vec<&'static str>> = (|| {
             let vars = Arc::new(self.vars.clone());
             let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
-            place_now(&mut self.world, &self.graph, &vars, named)?;
+            place_following(&mut self.world, &self.graph, &vars, named)?;
             let mut args = Args::new(cmd);
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
             args.finish()?;
-            self.world.parts.unseen.vague |= self.planning() && hangs_on_a_run(cmd);
+            self.world.parts.unseen.vague |= self.planning() && depends_on_a_run(cmd);
             let settles = act.settles().to_vec();
             left = act.leaves();
             if act.needs_particles() && self.passes(left.is_some()) {
@@ -71,7 +71,7 @@ impl Session {
                 world,
                 values: &mut values,
                 span: cmd.span,
-                said: &mut said,
+                lines: &mut lines,
                 then: &mut then,
                 notes: &notes,
             });
@@ -89,7 +89,7 @@ impl Session {
         })();
         let notes = self.sources.adopt(notes.into_inner());
         self.notes.append(notes);
-        self.tell_in_one_line(cmd, &said)?;
+        self.print_summary(cmd, &lines)?;
         let settles = outcome?;
         if let Some((id, compute)) = left {
             self.graph.leave(id, style.name(), compute, cmd.span);
@@ -113,15 +113,15 @@ impl Session {
 
     /// Prints what a command has made: its lines in the log, and one line on a terminal, unless they are results as those of
     /// `calibrate`.
-    fn tell_in_one_line(&self, cmd: &Command, said: &[String]) -> Result<()> {
+    fn print_summary(&self, cmd: &Command, lines: &[String]) -> Result<()> {
         let log = &self.options.log;
         if log.brief().is_none() || cmd.name.text == "calibrate" {
-            return said.iter().try_for_each(|line| log.line(line));
+            return lines.iter().try_for_each(|line| log.line(line));
         }
-        if let Some(line) = brief::one_line(said) {
+        if let Some(line) = brief::one_line(lines) {
             log.to_screen(&line);
         }
-        said.iter().try_for_each(|line| log.to_log(line))
+        lines.iter().try_for_each(|line| log.to_log(line))
     }
 
     /// A scene read from a file that the deck would have written is known as far as the scene was that went into it; what

@@ -19,7 +19,7 @@ const LINES: [(&str, &str, &str); 6] = [
 /// Adds to each problem with a word of the line where that word belongs.
 ///
 /// Words behind an unexpected one are its own numbers and not reported.
-pub(super) fn told(problems: Diagnostics, cmd: &Command) -> Diagnostics {
+pub(super) fn add_places(problems: Diagnostics, cmd: &Command) -> Diagnostics {
     let mut explained = false;
     let mut kept = vec![];
     for d in problems.0 {

@@ -24,7 +24,7 @@ use perigrain_world::{Slot, TableRow};
 
 /// The present value of a variable.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Told {
+pub enum VariableValue {
     /// One number.
     Number(f64),
     /// A global vector.
@@ -53,7 +53,7 @@ impl Session {
     /// Words that cannot be read, are no number, or have not been computed.
     pub fn number(&mut self, formula: &str) -> Result<f64> {
         self.thermo_computes();
-        let span = self.asked(formula);
+        let span = self.request_span(formula);
         let expr = Expr::parse(formula, span)?;
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         match expr.number(&self.vars, &mut env).map_err(|e| e.at(span))? {
@@ -68,7 +68,7 @@ impl Session {
     /// Unknown variables, formulas that cannot be evaluated.
     pub fn expand(&mut self, text: &str) -> Result<String> {
         self.thermo_computes();
-        let span = self.asked(text);
+        let span = self.request_span(text);
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         substitute(text, span, &self.vars, &mut env)
     }
@@ -77,7 +77,7 @@ impl Session {
     ///
     /// # Errors
     /// A formula that cannot be evaluated.
-    pub fn variable(&mut self, name: &str) -> Result<Option<Told>> {
+    pub fn variable(&mut self, name: &str) -> Result<Option<VariableValue>> {
         let Some(kind) = self.vars.kind(name) else { return Ok(None) };
         self.thermo_computes();
         let holds_number = matches!(
@@ -85,14 +85,14 @@ impl Session {
             Kind::Equal | Kind::Atom | Kind::Vector | Kind::Atomfile | Kind::Internal | Kind::Timer
         );
         if !holds_number {
-            return self.expand(&format!("${{{name}}}")).map(|text| Some(Told::Text(text)));
+            return self.expand(&format!("${{{name}}}")).map(|text| Some(VariableValue::Text(text)));
         }
-        let span = self.asked(&format!("v_{name}"));
+        let span = self.request_span(&format!("v_{name}"));
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         Ok(Some(match self.vars.value(name, span, &mut env)? {
-            Value::Number(number) => Told::Number(number),
-            Value::Vector(list) => Told::Vector(list),
-            Value::Atom(list) => Told::Particles(list),
+            Value::Number(number) => VariableValue::Number(number),
+            Value::Vector(list) => VariableValue::Vector(list),
+            Value::Atom(list) => VariableValue::Particles(list),
             Value::Unknown => {
                 return fail(Code::WRONG_KIND, span, format!("variable `{name}` has no value here"));
             }
@@ -167,7 +167,7 @@ impl Session {
     }
 
     fn slot(&mut self, kind: RefKind, id: &str) -> Result<&Slot> {
-        let span = self.asked(&format!("{}_{id}", kind.letter()));
+        let span = self.request_span(&format!("{}_{id}", kind.letter()));
         let r = ValueRef { kind, name: id.to_string(), index: vec![], span };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         let slot = env.slot(&r, &self.vars)?;
@@ -266,12 +266,12 @@ impl Session {
     }
 
     /// The place of a request from outside; the same words are kept once.
-    fn asked(&mut self, words: &str) -> Span {
-        let file = match self.asked.get(words) {
+    fn request_span(&mut self, words: &str) -> Span {
+        let file = match self.requests.get(words) {
             Some(file) => *file,
             None => {
                 let file: FileId = self.sources.add("asked", words);
-                self.asked.insert(words.to_string(), file);
+                self.requests.insert(words.to_string(), file);
                 file
             }
         };

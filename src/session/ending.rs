@@ -42,12 +42,12 @@ impl Session {
     /// Prints on a terminal, before a run, how much memory the scene will take.
     pub(super) fn foretell(&mut self) {
         let n = self.world.n();
-        let (told, log) = (&mut self.spoken, &self.options.log);
-        let same = told.scene == self.scenes && 10 * n.abs_diff(told.particles) <= told.particles;
+        let (problems, log) = (&mut self.spoken, &self.options.log);
+        let same = problems.scene == self.scenes && 10 * n.abs_diff(problems.particles) <= problems.particles;
         if same || log.brief().is_none() {
             return;
         }
-        (told.scene, told.particles) = (self.scenes, n);
+        (problems.scene, problems.particles) = (self.scenes, n);
         let memory = bytes(memory::expected(&self.world));
         let s = if n == 1 { "" } else { "s" };
         log.to_screen(&format!("{} particle{s}, about {memory} of memory", count(n as f64)));
@@ -81,7 +81,7 @@ impl Session {
     }
 
     /// Reports on a terminal a file that a line has written; `*` in its name stands for the step.
-    pub(super) fn tell_written(&self, file: &str) {
+    pub(super) fn report_file(&self, file: &str) {
         if self.options.log.brief().is_some() {
             self.options
                 .log
@@ -104,7 +104,7 @@ impl Session {
 
     /// Whether a signal requests the end after a line. Several ranks agree about that; after lines that a loop repeats a million
     /// times, now and then.
-    pub(super) fn is_asked_to_end(&mut self, line: &Line) -> bool {
+    pub(super) fn has_end_request(&mut self, line: &Line) -> bool {
         if comm::several() {
             let light = line.command.as_ref().is_none_or(|cmd| {
                 let name = cmd.name.text.as_str();
@@ -127,12 +127,12 @@ impl Session {
         stop: &Stop,
         line: &Line,
         span: Span,
-        told: &Diagnostics,
+        problems: &Diagnostics,
     ) -> Result<()> {
-        let told: Vec<&Diagnostic> = told.0.iter().filter(|d| d.code == Code::INTERRUPTED).collect();
+        let problems: Vec<&Diagnostic> = problems.0.iter().filter(|d| d.code == Code::INTERRUPTED).collect();
         if stop.is_late() {
             let text = "the limit of `-timeout` has passed, and this line is not done";
-            let text = told.iter().fold(text.to_string(), |text, d| format!("{text}: {}", d.message));
+            let text = problems.iter().fold(text.to_string(), |text, d| format!("{text}: {}", d.message));
             return fail(Code::INTERRUPTED, span, text);
         }
         if self.prompt == Some(span.file) {
@@ -146,7 +146,7 @@ impl Session {
             self.options.log.flush()?;
             comm::present().abort(INTERRUPTED);
         }
-        let mut details = told.iter().filter(|d| !d.help.is_empty());
+        let mut details = problems.iter().filter(|d| !d.help.is_empty());
         details.try_for_each(|d| self.options.log.line(&format!("  {}; {}", d.message, d.help.join("; "))))
     }
 
@@ -180,7 +180,7 @@ impl Session {
 
     /// Reports that a line was the last one because of a signal; a run reports that itself. The state after the last run is saved
     /// if the scene has not changed since.
-    pub(super) fn say_interrupted(&mut self, line: &Line) -> Result<()> {
+    pub(super) fn report_interrupt(&mut self, line: &Line) -> Result<()> {
         if let Some(plan) = self.plan.as_mut().filter(|_| self.ran && !self.world.parts.changed) {
             plan.part(&mut self.world)?;
         }

@@ -40,7 +40,7 @@ impl Session {
             _ => return Ok(false),
         };
         let text = format!("`{}` is without effect here: {why}", cmd.name.text);
-        if self.told.insert(cmd.name.text.clone()) {
+        if self.noted.insert(cmd.name.text.clone()) {
             self.notes.push(Diagnostic::note(Code::NO_EFFECT, cmd.span, text));
         }
         Ok(true)

@@ -89,7 +89,7 @@ impl Session {
         self.note_letters(file.0 as usize);
         let mut script = self.typed.take().map_or_else(|| Script::new(file), |before| before.then(file));
         self.prompt = typed.then_some(file);
-        let outcome = self.work_off(&mut script);
+        let outcome = self.execute(&mut script);
         self.prompt = None;
         self.typed = Some(script);
         let flushed = self.options.log.flush();
@@ -137,7 +137,7 @@ impl Session {
             interrupted: _,
             quit: _,
             prompt: _,
-            told: _,
+            noted: _,
             blind: _,
             born: _,
             pairless: _,
@@ -145,15 +145,15 @@ impl Session {
             later: _,
             seen_names: _,
             plans: _,
-            told_to: _,
+            plan_log: _,
             turns: _,
             behind: _,
             read_from: _,
             made: _,
             scenes: _,
-            asked: _,
+            requests: _,
             checked_step: _,
-            said_few: _,
+            warned_of_few: _,
             columns: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());

@@ -36,7 +36,7 @@ impl Session {
                     .help("leave it out, or use `run_style verlet`"),
             );
         }
-        self.tell_idle(r, place, found);
+        self.note_idle_levels(r, place, found);
     }
 
     /// Refuses a `hybrid` that does not fit the pair style.
@@ -62,7 +62,7 @@ impl Session {
     }
 
     /// Warns of levels without forces.
-    fn tell_idle(&self, r: &Respa, place: Span, found: &mut Diagnostics) {
+    fn note_idle_levels(&self, r: &Respa, place: Span, found: &mut Diagnostics) {
         let outermost = r.loops.len();
         let mut busy = vec![false; outermost + 1];
         if let Some(node) = &self.graph.pair {

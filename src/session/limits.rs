@@ -56,8 +56,8 @@ pub(super) struct Warden<'a> {
 }
 
 impl Watch for Warden<'_> {
-    fn asked(&mut self, steps: i64) {
-        self.watch.asked(steps);
+    fn requested(&mut self, steps: i64) {
+        self.watch.requested(steps);
     }
 
     fn begins(&mut self, w: &World) {

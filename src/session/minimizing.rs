@@ -39,7 +39,7 @@ impl Session {
             self.unsee(false);
             return Ok(());
         }
-        self.say_notes()?;
+        self.print_notes()?;
         if self.world.clock.halt == Halt::All || self.world.settings.timed_out() {
             return Ok(());
         }
@@ -107,7 +107,7 @@ impl Session {
         let (outcome, stats) = outcome.map_err(|e| e.at(span))?;
         saved.and(finished)?;
         self.interrupted |= outcome.interrupted;
-        self.say_end(&plan, &outcome, Some(&block(&stats)), self.timer.tables())?;
+        self.log_end(&plan, &outcome, Some(&block(&stats)), self.timer.tables())?;
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
         }

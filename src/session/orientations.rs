@@ -36,9 +36,9 @@ impl Session {
     }
 }
 
-fn unturned(f: &FixNode, whom: &str, bonds: &str) -> Diagnostic {
+fn unturned(f: &FixNode, ends: &str, bonds: &str) -> Diagnostic {
     let text = format!(
-        "fix {} does not turn {whom}, and bonds of `{bonds}` bend and twist with the orientations of their ends",
+        "fix {} does not turn {ends}, and bonds of `{bonds}` bend and twist with the orientations of their ends",
         f.style
     );
     Diagnostic::warning(Code::SUSPICIOUS, f.span, text)

@@ -95,7 +95,7 @@ fn is_of_values(code: Code) -> bool {
 }
 
 /// Whether a line holds a value that only a run determines, for which a placeholder stands.
-pub(super) fn hangs_on_a_run(cmd: &Command) -> bool {
+pub(super) fn depends_on_a_run(cmd: &Command) -> bool {
     cmd.args.iter().chain([&cmd.name]).any(|w| w.unknown)
 }
 
@@ -151,7 +151,7 @@ impl Session {
         }
         let cmd = line.and_then(|l| l.command.as_deref());
         let words = || cmd.into_iter().flat_map(|c| c.args.iter().chain([&c.name]));
-        let stands_in = cmd.is_some_and(hangs_on_a_run);
+        let stands_in = cmd.is_some_and(depends_on_a_run);
         let later = self.planning() && words().any(|w| self.world.parts.promised.get(&w.text).is_some());
         e.0.iter().all(|d| {
             let at_stand_in = words().any(|w| w.unknown && Some(w.span) == d.span);
@@ -184,7 +184,7 @@ impl Session {
         }
         if script.is_speculative() {
             self.plans.leave_open(cmd.span, "stands behind a condition, which is taken to hold");
-        } else if hangs_on_a_run(cmd) {
+        } else if depends_on_a_run(cmd) {
             let words: Vec<&str> = cmd.text.split_whitespace().collect();
             self.plans.leave_open(cmd.span, format!("values not known are read as 1: {}", words.join(" ")));
         }

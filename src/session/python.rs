@@ -3,7 +3,7 @@
 use super::Session;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::python::{Asked, Functions, Source, asked};
+use perigrain_lang::python::{Functions, PythonCommand, Source, read_command};
 use perigrain_lang::{Args, Word};
 use perigrain_world::outside::Host;
 use std::sync::Arc;
@@ -30,13 +30,13 @@ impl Session {
         if let Some(d) = perigrain_base::gate::forbids("a deck may not execute Python code") {
             return Err(d.at(span).into());
         }
-        match asked(args)? {
-            Asked::Source(code) => self.teach(&*program, code),
-            Asked::Invoked(name) => {
+        match read_command(args)? {
+            PythonCommand::Source(code) => self.teach(&*program, code),
+            PythonCommand::Invoked(name) => {
                 let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
                 self.vars.invoke(&name, span, &mut env).map(drop)
             }
-            Asked::Known(name, function, code) => {
+            PythonCommand::Known(name, function, code) => {
                 if let Some(code) = code {
                     self.teach(&*program, code)?;
                 }
@@ -66,6 +66,6 @@ impl Session {
             return Ok(());
         }
         let failed = |words: String| fail(Code::OUTSIDE, word.span, format!("the code failed: {words}"));
-        program.work_off(&text, &name).or_else(failed)
+        program.execute(&text, &name).or_else(failed)
     }
 }

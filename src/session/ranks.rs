@@ -10,10 +10,14 @@ const PAYS: usize = 1000;
 
 impl Session {
     /// Warns once where ranks have so few grains that they wait for each other.
-    pub(super) fn say_few_for_ranks(&mut self) -> Result<()> {
+    pub(super) fn warn_of_few_grains(&mut self) -> Result<()> {
         let (n, ranks) = (self.world.n(), comm::present().size());
         let grains = self.world.particles.style.sphere && self.world.families.is_none();
-        if !grains || ranks < 2 || n == 0 || n >= ranks * PAYS || std::mem::replace(&mut self.said_few, true)
+        if !grains
+            || ranks < 2
+            || n == 0
+            || n >= ranks * PAYS
+            || std::mem::replace(&mut self.warned_of_few, true)
         {
             return Ok(());
         }

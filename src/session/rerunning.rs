@@ -29,7 +29,7 @@ impl Session {
             self.unsee(false);
             return Ok(());
         }
-        self.say_notes()?;
+        self.print_notes()?;
         let Rerun { mut reel, start, stop, post } = rerun;
         let c = &mut self.world.clock;
         let (first, last) = (reel.first, reel.last);
@@ -71,7 +71,7 @@ impl Session {
         finished?;
         self.ran = true;
         self.interrupted |= outcome.interrupted;
-        self.say_end(&plan, &outcome, None, post)?;
+        self.log_end(&plan, &outcome, None, post)?;
         self.plan = Some(plan);
         Ok(())
     }

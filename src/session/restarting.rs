@@ -9,7 +9,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::gate;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_output::restart::{Saved, fingerprint, read, resume};
-use perigrain_world::{Halt, Key, Numbers, Particles, Parts, Promise, Said, Unseen, World};
+use perigrain_world::{DeclaredLine, Halt, Key, Numbers, Particles, Parts, Promise, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -35,7 +35,7 @@ impl Session {
             return Ok(());
         }
         self.save_restart(&word.text).map_err(|e| e.at(word.span))?;
-        self.tell_written(&word.text);
+        self.report_file(&word.text);
         Ok(())
     }
 
@@ -103,7 +103,7 @@ impl Session {
         if self.checking() {
             return Ok(());
         }
-        self.tell(&path)?;
+        self.log_restart(&path)?;
         let text = format!("  read_restart CPU = {:.3} seconds", began.elapsed().as_secs_f64());
         self.options.log.line_or(&text, None)
     }
@@ -196,14 +196,14 @@ impl Session {
 
     /// Repeats the lines of the stored pair and bond styles, each with the lattice that was in force. Changes of their
     /// coefficients by fixes are kept.
-    fn replay(&mut self, pair: &[Said], span: Span) -> Result<()> {
+    fn replay(&mut self, pair: &[DeclaredLine], span: Span) -> Result<()> {
         let (lattice, adapted) = (self.world.lattice.clone(), self.world.adaptations_made());
         (self.graph.pair, self.graph.bond) = (None, None);
-        for said in pair {
-            self.world.lattice = said.lattice.clone();
-            let mut words = said.words.iter().map(|w| Word::new(w.as_str(), span));
+        for lines in pair {
+            self.world.lattice = lines.lattice.clone();
+            let mut words = lines.words.iter().map(|w| Word::new(w.as_str(), span));
             let Some(name) = words.next() else { continue };
-            let text = said.words.join(" ");
+            let text = lines.words.join(" ");
             let cmd = Command { name, args: words.collect(), span, text };
             let (notes, uses) = (RefCell::default(), RefCell::default());
             let cx = Context { span, checking: self.checking(), notes: &notes, uses: &uses };
@@ -214,21 +214,21 @@ impl Session {
         Ok(())
     }
 
-    fn tell(&self, path: &Path) -> Result<()> {
+    fn log_restart(&self, path: &Path) -> Result<()> {
         let (log, w) = (&self.options.log, &self.world);
-        let mut said = vec![format!("Reading restart file {} ...", path.display())];
-        said.push(format!("  restoring atom style {} from restart", w.particles.style.name()));
+        let mut lines = vec![format!("Reading restart file {} ...", path.display())];
+        lines.push(format!("  restoring atom style {} from restart", w.particles.style.name()));
         if let Some(d) = &*w.domain {
-            said.push(format!("  {}", d.told(d.lo, d.hi)));
+            lines.push(format!("  {}", d.describe(d.lo, d.hi)));
         }
         if let Some(node) = &self.graph.pair {
-            said.push(format!("  restoring pair style {} from restart", node.pair.facts().name));
+            lines.push(format!("  restoring pair style {} from restart", node.pair.facts().name));
         }
         if let Some(node) = &self.graph.bond {
-            said.push(format!("  restoring bond style {} from restart", node.force.name()));
+            lines.push(format!("  restoring bond style {} from restart", node.force.name()));
         }
         let count = format!("  {} atoms at step {}", w.n(), w.clock.step);
-        log.line_or(&said.join("\n"), None)?;
+        log.line_or(&lines.join("\n"), None)?;
         log.line_or(&count, Some(&format!("Reading restart file {}:{}", path.display(), &count[1..])))
     }
 

@@ -1,7 +1,7 @@
 //! `run` and `write_dump`: seal the declarations, step, report the outcome.
 
 use super::limits::Warden;
-use super::planning::hangs_on_a_run;
+use super::planning::depends_on_a_run;
 use super::{Mode, Session, refuse};
 use crate::graph::Role;
 use crate::graph::build::Context;
@@ -66,7 +66,7 @@ impl Session {
         if args.steps > 0 && !self.unsure() {
             self.check_resolution(cmd.span)?;
         }
-        self.say_notes()?;
+        self.print_notes()?;
         if self.world.settings.timed_out() {
             let which = if self.options.limit.is_some() { "-timeout" } else { "timer timeout" };
             self.options.log.line(&format!("The limit of `{which}` has passed: no further run"))?;
@@ -79,10 +79,10 @@ impl Session {
         let last = c.step + args.steps;
         c.start = args.start.unwrap_or(c.step);
         c.stop = args.stop.unwrap_or(last);
-        let known = !hangs_on_a_run(cmd);
+        let known = !depends_on_a_run(cmd);
         if !self.looking() {
             self.foretell();
-            self.watch.asked(args.steps);
+            self.watch.requested(args.steps);
         }
         match args.every {
             None => self.leg(args.steps, args.pre, args.post, cmd.span),
@@ -101,7 +101,7 @@ impl Session {
                     }
                     let script = Script::of_commands(&commands);
                     let mut script = if self.planning() { script.first_branches() } else { script };
-                    self.work_off(&mut script)?;
+                    self.execute(&mut script)?;
                     stretches += 1;
                     if self.quit.is_some() {
                         break;
@@ -207,7 +207,7 @@ impl Session {
         let minimizing = pass == Pass::Minimization;
         let vars = Arc::new(self.vars.clone());
         let respa = self.respa().filter(|_| !minimizing).cloned();
-        self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
+        self.graph.computes.iter().for_each(|c| c.compute.particles_joined(&mut self.world));
         self.world.bonds.lost = self.graph.thermo.lost_bond;
         self.world.parts.plastic = None;
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
@@ -259,7 +259,7 @@ impl Session {
         if booked {
             ledger::end(&mut s)?;
         }
-        crate::graph::welcome::seal(&mut s);
+        crate::graph::joined::seal(&mut s);
         s.begin_computes()?;
         // Elsewhere LAMMPS' order: dumps before the row.
         let row_first = self.graph.dumps.iter().any(|d| d.dump.repeats_row());
@@ -298,7 +298,7 @@ impl Session {
             crate::graph::runaway::seal(&mut s, &rows)?;
             crate::graph::pressed::seal(&mut s)?;
         }
-        s.say_what_is_missing();
+        s.note_left_out();
         s.plan.settle();
         Ok((s.plan, energy))
     }
@@ -321,7 +321,7 @@ impl Session {
         }
         let mut plan = self.seal(span)?;
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
-        self.say_notes()?;
+        self.print_notes()?;
         if !unchanged {
             self.world.slots.invalidate();
         }
@@ -334,9 +334,9 @@ impl Session {
                 )
                 .help("LAMMPS 22Jul2025 computes forces once more between runs; perigrain alone does not"),
             );
-            self.say_notes()?;
+            self.print_notes()?;
         }
-        self.say_few_for_ranks()?;
+        self.warn_of_few_grains()?;
         self.world.clock.running = true;
         let pace = self.pace(span)?;
         spatial::line_up_again(&mut self.world);
@@ -362,11 +362,11 @@ impl Session {
         if let Some(d) = used_up {
             return Err(d.at(span).into());
         }
-        self.say_notes()?;
-        self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
-        self.say_deep(span)?;
+        self.print_notes()?;
+        self.log_end(&plan, &outcome, None, post && self.timer.tables())?;
+        self.warn_of_overlap(span)?;
         if self.is_out_of_time() {
-            self.say_timed_out()?;
+            self.report_timeout()?;
         }
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
@@ -393,7 +393,7 @@ impl Session {
         pace.setup(plan, &mut self.world, unchanged)?;
         // Problems known before the first step are reported before it.
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
-        self.say_notes()?;
+        self.print_notes()?;
         self.options.log.flush()?;
         if self.options.mode == Mode::Measure {
             self.world.parts.tiles = Some(vec![]);
@@ -417,7 +417,7 @@ impl Session {
     }
 
     /// The text at the end of a run, or of a minimization with its own block of text.
-    pub(super) fn say_end(
+    pub(super) fn log_end(
         &mut self,
         plan: &StepPlan,
         o: &verlet::Outcome,
@@ -491,7 +491,7 @@ impl Session {
         self.world.spread_type_masses();
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         env.once(cmd.span, &self.vars, |s| dump.op(s, 0))?;
-        self.tell_written(cmd.args.get(2).map_or("", |w| &w.text));
+        self.report_file(cmd.args.get(2).map_or("", |w| &w.text));
         Ok(())
     }
 }

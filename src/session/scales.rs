@@ -11,14 +11,14 @@ use perigrain_world::GroupId;
 const THOUSANDTH: f64 = 1.0 / 200.0;
 
 /// A speed or length that a line names.
-struct Said {
+struct Quantity {
     /// As it is written, and what a lattice makes of it where it counts in lattice spacings.
     raw: f64,
     lattice: Option<f64>,
     span: Span,
 }
 
-impl Said {
+impl Quantity {
     fn value(&self) -> f64 {
         self.raw * self.lattice.unwrap_or(1.0)
     }
@@ -33,8 +33,8 @@ impl Session {
             return;
         }
         let lines = || self.graph.lines.nodes().iter().map(|n| (n.text.as_str(), n.span));
-        let speeds: Vec<Said> =
-            lines().filter_map(|(text, span)| said(speed(text)?, text, span, scale)).collect();
+        let speeds: Vec<Quantity> =
+            lines().filter_map(|(text, span)| quantity(speed(text)?, text, span, scale)).collect();
         let fastest = speeds.iter().filter(|s| s.lattice.is_none()).map(|s| s.value()).fold(0.0, f64::max);
         for s in speeds.iter().filter(|s| s.lattice.is_some() && fastest > 0.0) {
             // Written as the others are, and a thousandth of them.
@@ -44,7 +44,7 @@ impl Session {
         }
         let Some(domain) = &*self.world.domain else { return };
         let widest = (0..3).map(|d| domain.hi[d] - domain.lo[d]).fold(0.0, f64::max);
-        for s in lines().filter_map(|(text, span)| said(length(text)?, text, span, scale)) {
+        for s in lines().filter_map(|(text, span)| quantity(length(text)?, text, span, scale)) {
             if s.lattice.is_some()
                 && s.raw < 0.5
                 && s.value() < THOUSANDTH * widest
@@ -139,12 +139,12 @@ const WITHOUT_GROUP: [&str; 12] = [
     "deform",
 ];
 
-fn said(raw: f64, text: &str, span: Span, scale: f64) -> Option<Said> {
+fn quantity(raw: f64, text: &str, span: Span, scale: f64) -> Option<Quantity> {
     let boxed = text.split_whitespace().collect::<Vec<_>>().windows(2).any(|w| w == ["units", "box"]);
-    (raw > 0.0).then_some(Said { raw, lattice: (!boxed).then_some(scale), span })
+    (raw > 0.0).then_some(Quantity { raw, lattice: (!boxed).then_some(scale), span })
 }
 
-fn note(s: &Said, what: &str, others: &str, scale: f64) -> Diagnostic {
+fn note(s: &Quantity, what: &str, others: &str, scale: f64) -> Diagnostic {
     let text =
         format!("this {what} counts in lattice spacings of {scale:e}: it is {:e}, while {others}", s.value());
     Diagnostic::note(Code::SUSPICIOUS, s.span, text).help(

@@ -2,7 +2,7 @@
 
 use super::Session;
 use crate::processes;
-use perigrain_base::comm::{self, told};
+use perigrain_base::comm::{self, broadcast};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::{gate, stop};
 use perigrain_lang::{Args, Command, Word};
@@ -101,7 +101,7 @@ impl Session {
         let line: Vec<&str> = std::iter::once(what).chain(words).map(|w| w.text.as_str()).collect();
         let line = line.join(" ");
         // Of several ranks the first one does it.
-        let trouble = told::text(|| {
+        let trouble = broadcast::text(|| {
             let mut shell = std::process::Command::new("sh");
             comm::set_apart(&mut shell);
             let child = shell.arg("-c").arg(&line).envs(self.vars.environment()).spawn();

@@ -7,8 +7,8 @@ impl Session {
     /// Warns of damage that is requested where no bond can break.
     pub(super) fn check_breaking(&self, found: &mut Diagnostics) {
         let Some(node) = &self.graph.pair else { return };
-        let asks = |style: &str| style == "damage/atom" || style == "fragment/atom";
-        let Some(compute) = self.graph.computes.iter().find(|c| asks(c.style)) else { return };
+        let needs = |style: &str| style == "damage/atom" || style == "fragment/atom";
+        let Some(compute) = self.graph.computes.iter().find(|c| needs(c.style)) else { return };
         let mut parts = node.pair.parts();
         parts.push(node.pair.as_ref());
         // Cracks that are cut need no strength.

@@ -18,7 +18,7 @@ impl Session {
             return;
         }
         let to_come = self.to_come();
-        let deck = Deck { to_come: &to_come, ..self.said() };
+        let deck = Deck { to_come: &to_come, ..self.deck_facts() };
         let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()));
         let styles: Vec<&dyn Pair> = pairs.collect();
         let pairs: Vec<Scales> = styles.iter().map(|p| p.scales(&self.world, deck)).collect();
@@ -60,7 +60,7 @@ impl Session {
             return None;
         }
         let to_come = self.to_come();
-        let deck = Deck { to_come: &to_come, ..self.said() };
+        let deck = Deck { to_come: &to_come, ..self.deck_facts() };
         let pairs = g.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref())).map(|p| p.scales(w, deck));
         let own = pairs.flat_map(|p| [p.sure_step.map(|s| 0.8 * s), p.contact_time.map(|c| 0.05 * c)]);
         let walls = g.fixes.iter().map(|f| f.fix.contact_time(w, deck).map(|c| 0.05 * c));
@@ -161,7 +161,7 @@ impl Session {
     /// touch.
     pub(super) fn check_skin(&self, span: Span, found: &mut Diagnostics) {
         let (near, p) = (&self.world.settings.neighbor, &self.world.particles);
-        if near.said || !p.style.sphere || p.style.peri || p.len() < MANY || self.all_excluded() {
+        if near.skin_set || !p.style.sphere || p.style.peri || p.len() < MANY || self.all_excluded() {
             return;
         }
         let widest = 2.0 * p.radius.iter().copied().fold(0.0, f64::max);
@@ -190,9 +190,9 @@ impl Session {
 
     /// The largest density and the smallest diameter that the deck has set, for a check that has no particles: no other
     /// particles' numbers shall draw a warning.
-    fn said(&self) -> Deck<'static> {
-        let said = |fact| self.graph.lines.said(fact);
-        let (density, diameter) = (said("density").map(|d| d.most), said("diameter").map(|d| d.least));
+    fn deck_facts(&self) -> Deck<'static> {
+        let given = |fact| self.graph.lines.given(fact);
+        let (density, diameter) = (given("density").map(|d| d.most), given("diameter").map(|d| d.least));
         Deck { density, diameter, to_come: &[] }
     }
 
@@ -216,9 +216,9 @@ impl Session {
     }
 
     /// Warns once of grains that a run has pushed far into each other.
-    pub(super) fn say_deep(&mut self, span: Span) -> Result<()> {
-        let Some(deep) = self.world.parts.deep.as_mut().filter(|d| !d.told) else { return Ok(()) };
-        deep.told = true;
+    pub(super) fn warn_of_overlap(&mut self, span: Span) -> Result<()> {
+        let Some(deep) = self.world.parts.deep.as_mut().filter(|d| !d.warned) else { return Ok(()) };
+        deep.warned = true;
         let ([i, j], part) = (deep.ids, 100.0 * deep.part);
         let text = format!(
             "particles {i} and {j} overlap by {part:.0} % of the smaller radius at step {}: contact laws hold below 10 %",
@@ -230,7 +230,7 @@ impl Session {
                 .help(remedy)
                 .help("only the first such pair is reported"),
         );
-        self.say_notes()
+        self.print_notes()
     }
 }
 

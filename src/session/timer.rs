@@ -47,7 +47,7 @@ impl Session {
     ///
     /// # Errors
     /// A log that cannot be written.
-    pub(super) fn say_timed_out(&self) -> Result<()> {
+    pub(super) fn report_timeout(&self) -> Result<()> {
         let (step, log) = (self.world.clock.step, self.options.log.clone());
         log.line(&format!("Wall time limit reached at step {step}"))?;
         let Some(limit) = &self.options.limit else { return Ok(()) };

@@ -19,7 +19,7 @@ pub(super) struct Crew {
     /// By rank.
     posts: Vec<Post>,
     /// Another rank has received a request to end.
-    pub asked: bool,
+    pub end_requested: bool,
 }
 
 /// What a rank has under way.
@@ -58,7 +58,7 @@ impl Crew {
                 (0..ranks.size()).map(|rank| post(ranks.cores(rank), each)).collect()
             }
         };
-        Self { ranks, own: Hands::default(), posts, asked: false }
+        Self { ranks, own: Hands::default(), posts, end_requested: false }
     }
 
     /// How many runs are made at once.
@@ -102,7 +102,7 @@ impl Crew {
             Some(ranks) if rank > 0 => {
                 self.posts[rank].jobs.push(Away { job: order.job, since: Instant::now(), steps: None });
                 self.posts[rank].heard = Instant::now();
-                ranks.say(rank, &Letter::Begin(Box::new(order)).words());
+                ranks.send(rank, &Letter::Begin(Box::new(order)).words());
             }
             _ => self.own.begin(&sweep.program, order),
         }
@@ -132,7 +132,7 @@ impl Crew {
                             away.for_each(|away| away.steps = Some((done, of)));
                         }
                     }
-                    Some(Letter::Asked) => self.asked = true,
+                    Some(Letter::EndRequested) => self.end_requested = true,
                     Some(Letter::Blind) => return Err(blind(&ranks, rank, sweep)),
                     _ => {}
                 }
@@ -186,7 +186,7 @@ impl Crew {
         let Some(ranks) = &self.ranks else { return };
         let mut busy: Vec<usize> =
             (1..self.posts.len()).filter(|rank| !self.posts[*rank].jobs.is_empty()).collect();
-        busy.iter().for_each(|rank| ranks.say(*rank, &Letter::Stop.words()));
+        busy.iter().for_each(|rank| ranks.send(*rank, &Letter::Stop.words()));
         let begin = Instant::now();
         while !busy.is_empty() && begin.elapsed() < ENDING {
             busy.retain(|rank| match ranks.hear(*rank) {

@@ -86,7 +86,7 @@ impl Folder {
             threads,
             parent: std::process::id(),
             lock: self.path.join(WORKERS),
-            telling: sweep.telling,
+            reports_progress: sweep.reports_progress,
         }
     }
 

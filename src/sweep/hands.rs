@@ -67,7 +67,7 @@ impl Hands {
         for k in (0..self.hands.len()).rev() {
             let how = match self.hands[k].child.try_wait() {
                 Ok(None) => continue,
-                Ok(Some(status)) => said(status),
+                Ok(Some(status)) => describe(status),
                 Err(e) => e.to_string(),
             };
             let hand = self.hands.remove(k);
@@ -125,9 +125,9 @@ fn started(program: &Starter, order: &Order) -> Result<Child> {
         let program = task.settings.lammps.as_ref().map_or(program.display(), |path| path.display());
         Diagnostic::error(Code::NO_FILE, None, format!("`{program}` cannot be started: {e}"))
     })?;
-    let told = child.stdin.take().map_or(Ok(()), |mut pipe| pipe.write_all(task.text().as_bytes()));
+    let sent = child.stdin.take().map_or(Ok(()), |mut pipe| pipe.write_all(task.text().as_bytes()));
     // A process that does not listen has ended, which is seen later.
-    drop(told);
+    drop(sent);
     Ok(child)
 }
 
@@ -143,10 +143,10 @@ fn left_by(order: &Order, how: &str, seconds: f64) -> Outcome {
 
 /// A run whose process ended without a result.
 fn crashed(home: &Path, how: &str, seconds: f64) -> Outcome {
-    let said = std::fs::read(home.join(OUTPUT)).unwrap_or_default();
-    let said = String::from_utf8_lossy(&said);
-    let word = said.lines().map(str::trim).find(|l| l.contains("panicked") || l.contains("error"));
-    let last = word.or_else(|| said.lines().rev().map(str::trim).find(|l| !l.is_empty()));
+    let output = std::fs::read(home.join(OUTPUT)).unwrap_or_default();
+    let output = String::from_utf8_lossy(&output);
+    let word = output.lines().map(str::trim).find(|l| l.contains("panicked") || l.contains("error"));
+    let last = word.or_else(|| output.lines().rev().map(str::trim).find(|l| !l.is_empty()));
     let text = match last {
         Some(last) => format!("the process crashed ({how}): {last}"),
         None => format!("the process crashed ({how})"),
@@ -155,7 +155,7 @@ fn crashed(home: &Path, how: &str, seconds: f64) -> Outcome {
 }
 
 /// How a process ended, in a few words.
-fn said(status: ExitStatus) -> String {
+fn describe(status: ExitStatus) -> String {
     #[cfg(unix)]
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
         return format!("signal {signal}");

@@ -33,7 +33,7 @@ pub(super) fn command(
 
 /// The content of a log of LAMMPS, or of perigrain.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
+pub struct LogContent {
     /// The step tables, columns by the words of `thermo_style`.
     pub tables: Tables,
     /// Wall time of the steps [s].
@@ -47,8 +47,8 @@ pub struct Told {
 }
 
 /// Reads a log with step tables of one line per row.
-pub fn read(text: &str) -> Told {
-    let mut told = Told::default();
+pub fn read(text: &str) -> LogContent {
+    let mut content = LogContent::default();
     let mut columns: Option<Vec<String>> = None;
     for line in text.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -57,19 +57,19 @@ pub fn read(text: &str) -> Told {
         } else if line.starts_with("Loop time of ") {
             columns = None;
             let number = |k: usize| words.get(k).and_then(|w| w.parse::<f64>().ok()).unwrap_or(0.0);
-            told.loop_seconds += number(3);
-            told.steps += number(8) as i64;
-            told.atoms = number(11) as usize;
-        } else if line.starts_with("ERROR") && told.error.is_none() {
-            told.error = Some(line.trim().to_owned());
+            content.loop_seconds += number(3);
+            content.steps += number(8) as i64;
+            content.atoms = number(11) as usize;
+        } else if line.starts_with("ERROR") && content.error.is_none() {
+            content.error = Some(line.trim().to_owned());
         } else if let Some(columns) = &columns {
             let values: Vec<f64> = words.iter().map_while(|w| w.parse().ok()).collect();
             if values.len() == columns.len() && words.len() == columns.len() {
-                told.tables.push(columns.clone(), row(columns, values));
+                content.tables.push(columns.clone(), row(columns, values));
             }
         }
     }
-    told
+    content
 }
 
 /// The word of `thermo_style` below whose heading a column stands.
@@ -87,21 +87,21 @@ fn row(columns: &[String], values: Vec<f64>) -> Row {
 /// The outcome of a run in its folder, with the words that were to be reported.
 pub(super) fn outcome(home: &Path, report: &[String], seconds: f64, threads: usize) -> Outcome {
     let text = std::fs::read_to_string(home.join(LOG)).unwrap_or_default();
-    let told = read(&text);
+    let content = read(&text);
     let mut out = Outcome {
         seconds,
         threads,
-        loop_seconds: told.loop_seconds,
-        steps: told.steps,
-        atoms: told.atoms,
+        loop_seconds: content.loop_seconds,
+        steps: content.steps,
+        atoms: content.atoms,
         ..Outcome::default()
     };
-    if let Some((columns, row)) = told.tables.last() {
+    if let Some((columns, row)) = content.tables.last() {
         out.row = columns.iter().cloned().zip(row.values.iter().copied()).collect();
     }
     let said = || std::fs::read_to_string(home.join(OUTPUT)).unwrap_or_default();
     let last = || said().lines().rev().map(str::trim).find(|l| !l.is_empty()).map(String::from);
-    out.problem = match (told.error, text.contains("Total wall time")) {
+    out.problem = match (content.error, text.contains("Total wall time")) {
         (Some(error), _) => Some(format!("LAMMPS: {error}")),
         (None, true) => None,
         (None, false) => {
@@ -113,7 +113,7 @@ pub(super) fn outcome(home: &Path, report: &[String], seconds: f64, threads: usi
         let value = out.row.iter().find(|(name, _)| name == word).map(|(_, value)| format!("{value:?}"));
         out.measures.extend(value.map(|value| (word.clone(), value)));
     }
-    if let Err(e) = series::write(&home.join(series::FILE), &told.tables, report) {
+    if let Err(e) = series::write(&home.join(series::FILE), &content.tables, report) {
         out.problem.get_or_insert(e.to_string());
     }
     out
@@ -129,10 +129,10 @@ mod tests {
                     WARNING: something\n         0   0              1.5            2\n        10   0.1            1.25           3\n\
                     Loop time of 0.5 on 1 procs for 10 steps with 7 atoms\nStep Time KinEng v_x\n10 0.1 1.25 3\n20 0.2 1 4\n\
                     Loop time of 0.25 on 1 procs for 10 steps with 8 atoms\nERROR: no (src/x.cpp:1)\n";
-        let told = read(text);
-        assert_eq!((told.loop_seconds, told.steps, told.atoms), (0.75, 20, 8));
-        let ke = series::Series::of(&told.tables, "ke").unwrap();
+        let content = read(text);
+        assert_eq!((content.loop_seconds, content.steps, content.atoms), (0.75, 20, 8));
+        let ke = series::Series::of(&content.tables, "ke").unwrap();
         assert_eq!((ke.times, ke.values), (vec![0.0, 0.1, 0.2], vec![1.5, 1.25, 1.0]));
-        assert_eq!(told.error.as_deref(), Some("ERROR: no (src/x.cpp:1)"));
+        assert_eq!(content.error.as_deref(), Some("ERROR: no (src/x.cpp:1)"));
     }
 }

@@ -1,6 +1,6 @@
 //! Many runs of one deck side by side: a table of jobs in, worker processes, a journal, a table of results out.
 //!
-//! [`Job::all`] makes the jobs, [`work_off`] has them run, [`Results`] holds their results; this module is independent of the
+//! [`Job::all`] makes the jobs, [`execute`] has them run, [`Results`] holds their results; this module is independent of the
 //! command line.
 
 mod ahead;
@@ -125,7 +125,7 @@ pub struct Sweep {
     /// The program that executes a run when called with [`worker::WORD`]: this one, as a rule.
     pub program: Starter,
     /// Whether runs report their progress.
-    pub telling: bool,
+    pub reports_progress: bool,
     /// The ranks that make the runs; without them this process has them made.
     pub ranks: Option<Ranks>,
 }
@@ -239,7 +239,7 @@ fn time_left(outcomes: &[Option<Outcome>], spent: f64, at_once: usize) -> Option
 /// # Errors
 /// A folder that holds another sweep or is in use, a journal that cannot be written. A failed run is none: it stands in the
 /// results.
-pub fn work_off(sweep: &Sweep, anew: bool, watch: &mut dyn Watch, stop: &AtomicBool) -> Result<Results> {
+pub fn execute(sweep: &Sweep, anew: bool, watch: &mut dyn Watch, stop: &AtomicBool) -> Result<Results> {
     let folder = Folder::open(sweep)?;
     let mut journal = Journal::open(sweep, &folder, anew)?;
     if !journal.notes.is_empty() {
@@ -368,7 +368,7 @@ impl<'a> Work<'a> {
             if !notes.is_empty() {
                 watch.note(&notes);
             }
-            if std::mem::take(&mut self.crew.asked) {
+            if std::mem::take(&mut self.crew.end_requested) {
                 stop.store(true, Ordering::Relaxed);
             }
             if ended.is_empty() {

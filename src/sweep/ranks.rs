@@ -29,7 +29,7 @@ pub struct Ranks {
 
 impl std::fmt::Debug for Ranks {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "rank {} of {}", self.comm.rank(), self.said())
+        write!(f, "rank {} of {}", self.comm.rank(), self.describe())
     }
 }
 
@@ -55,8 +55,8 @@ impl Ranks {
     }
 
     /// `4 ranks on 2 hosts`.
-    pub fn said(&self) -> String {
-        comm::said(&self.hosts)
+    pub fn describe(&self) -> String {
+        comm::describe(&self.hosts)
     }
 
     /// `rank 2 on node7`.
@@ -65,7 +65,7 @@ impl Ranks {
     }
 
     /// Writes to another rank.
-    pub fn say(&self, to: usize, words: &[String]) {
+    pub fn send(&self, to: usize, words: &[String]) {
         self.comm.post(to, join(words).as_bytes());
     }
 
@@ -80,7 +80,7 @@ impl Ranks {
 
     /// The first rank sends the others home with the program's exit code; whether all were there to hear it.
     pub fn dismiss(&self, code: u8) -> bool {
-        (1..self.size()).for_each(|to| self.say(to, &["bye".into(), code.to_string()]));
+        (1..self.size()).for_each(|to| self.send(to, &["bye".into(), code.to_string()]));
         let mut there: Vec<usize> = (1..self.size()).collect();
         let (end, mut all) = (Instant::now() + FAREWELL, true);
         while !there.is_empty() && Instant::now() < end {
@@ -99,7 +99,7 @@ impl Ranks {
 
     /// A dismissed rank says good-bye, and waits until that has been sent.
     pub fn leave(&self) {
-        self.say(0, &["bye".into()]);
+        self.send(0, &["bye".into()]);
         let end = Instant::now() + FAREWELL;
         while !self.comm.posted() && Instant::now() < end {
             std::thread::sleep(PAUSE);
@@ -131,7 +131,7 @@ pub(super) enum Letter {
     /// To the first: what is under way, each with steps made and steps of its present `run`.
     At(Vec<(usize, i64, i64)>),
     /// To the first: a request from outside to end the sweep.
-    Asked,
+    EndRequested,
     /// To the first: the sweep's folder is not there on this machine.
     Blind,
 }
@@ -154,7 +154,7 @@ impl Letter {
             }
             Self::Stop => word("stop"),
             Self::Stopped => word("stopped"),
-            Self::Asked => word("asked"),
+            Self::EndRequested => word("asked"),
             Self::Blind => word("blind"),
         }
     }
@@ -178,7 +178,7 @@ impl Letter {
             }
             ("stop", _) => Self::Stop,
             ("stopped", _) => Self::Stopped,
-            ("asked", _) => Self::Asked,
+            ("asked", _) => Self::EndRequested,
             ("blind", _) => Self::Blind,
             _ => return None,
         })
@@ -195,7 +195,7 @@ pub fn serve(ranks: &Ranks, stop: &AtomicBool) -> u8 {
         }
     };
     let (mut hands, mut beat) = (Hands::default(), Instant::now());
-    let say = |letter: Letter| ranks.say(0, &letter.words());
+    let say = |letter: Letter| ranks.send(0, &letter.words());
     loop {
         let words = match ranks.hear(0) {
             Ok(words) => words,
@@ -223,7 +223,7 @@ pub fn serve(ranks: &Ranks, stop: &AtomicBool) -> u8 {
             say(Letter::End(job, Box::new(outcome)));
         }
         if stop.swap(false, Ordering::Relaxed) {
-            say(Letter::Asked);
+            say(Letter::EndRequested);
         }
         if beat.elapsed() > BEAT && hands.count() > 0 {
             let at = |r: super::Running| r.steps.map_or((r.job, 0, 0), |(done, of)| (r.job, done, of));
@@ -272,7 +272,7 @@ mod tests {
             threads: 3,
             parent: 7,
             lock: "/d/.workers".into(),
-            telling: false,
+            reports_progress: false,
         };
         let outcome = Outcome { problem: Some("in.x:3: no\ttab\n".into()), steps: 7, ..Outcome::default() };
         for letter in [
@@ -282,7 +282,7 @@ mod tests {
             Letter::At(vec![]),
             Letter::Stop,
             Letter::Stopped,
-            Letter::Asked,
+            Letter::EndRequested,
             Letter::Blind,
         ] {
             assert_eq!(Letter::read(&split(&join(&letter.words()))), Some(letter));

@@ -47,7 +47,7 @@ pub(super) struct Task {
     pub parent: u32,
     /// Held during the run.
     pub lock: PathBuf,
-    pub telling: bool,
+    pub reports_progress: bool,
 }
 
 impl Task {
@@ -65,7 +65,13 @@ impl Task {
             path(&self.folder),
             join(&vars),
             s.compat.name().into(),
-            join(&[on(s.force_list), on(s.no_skipping), on(s.portable), on(s.series), on(self.telling)]),
+            join(&[
+                on(s.force_list),
+                on(s.no_skipping),
+                on(s.portable),
+                on(s.series),
+                on(self.reports_progress),
+            ]),
             join(&self.report),
             self.threads.to_string(),
             self.parent.to_string(),
@@ -84,7 +90,7 @@ impl Task {
             Some((name, if words.is_empty() { vec![String::new()] } else { words }))
         });
         let on: Vec<bool> = split(on).iter().map(|w| w == "1").collect();
-        let [force_list, no_skipping, portable, series, telling] = on[..] else { return None };
+        let [force_list, no_skipping, portable, series, reports_progress] = on[..] else { return None };
         let compat = Compat::from_name(compat)?;
         // A worker makes no runs of other programs.
         let lammps = None;
@@ -99,7 +105,7 @@ impl Task {
             threads: threads.parse().ok()?,
             parent: parent.parse().ok()?,
             lock: lock.into(),
-            telling,
+            reports_progress,
         })
     }
 }
@@ -194,7 +200,7 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
     let text = std::fs::read_to_string(&task.deck)
         .map_err(|e| perigrain_output::file::trouble("read the deck", &task.deck, &e))?;
     let s = &task.settings;
-    let with = s.compat.told();
+    let with = s.compat.describe();
     let version = env!("CARGO_PKG_VERSION");
     log.line(&format!("perigrain {version} ({} thread(s){with})", outcome.threads))?;
     let mut session = Session::new(session::Options {
@@ -211,8 +217,8 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
     if s.series {
         session.add_columns(task.report.clone());
     }
-    if task.telling {
-        session.set_watch(Box::new(Telling::default()));
+    if task.reports_progress {
+        session.set_watch(Box::new(ProgressReport::default()));
     }
     let ended = session.run_text(&task.name, &text);
     let worked = session.worked();
@@ -271,16 +277,16 @@ fn in_one_line(problems: &Diagnostics, sources: &Sources) -> String {
 
 /// Reports the run's progress to the sweep.
 #[derive(Default)]
-struct Telling {
-    told: Option<Instant>,
+struct ProgressReport {
+    last: Option<Instant>,
 }
 
-impl Watch for Telling {
+impl Watch for ProgressReport {
     fn step(&mut self, made: &Made) {
-        if made.done % 16 != 0 || self.told.is_some_and(|t| t.elapsed() < PAUSE) {
+        if made.done % 16 != 0 || self.last.is_some_and(|t| t.elapsed() < PAUSE) {
             return;
         }
-        self.told = Some(Instant::now());
+        self.last = Some(Instant::now());
         // Nothing depends on it.
         let _ = std::fs::write(PROGRESS, format!("{} {}", made.done, made.total));
     }
@@ -303,7 +309,7 @@ mod tests {
             threads: 3,
             parent: 7,
             lock: "/d/.workers".into(),
-            telling: true,
+            reports_progress: true,
         };
         assert_eq!(Task::read(&task.text()), Some(task.clone()));
         let bare = Task { report: vec![], settings: Settings::default(), ..task };

@@ -78,8 +78,8 @@ impl Outcome {
     }
 }
 
-/// Runs cases, up to `workers` at a time; `tell` receives each outcome as the case ends. Outcomes come in the order of the cases.
-pub fn run_all(cases: Vec<Case>, workers: usize, tell: impl Fn(&Outcome) + Sync) -> Vec<Outcome> {
+/// Runs cases, up to `workers` at a time; `report` receives each outcome as the case ends. Outcomes come in the order of the cases.
+pub fn run_all(cases: Vec<Case>, workers: usize, report: impl Fn(&Outcome) + Sync) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
     let done: Mutex<Vec<(usize, Outcome)>> = Mutex::default();
     let work = || {
@@ -88,7 +88,7 @@ pub fn run_all(cases: Vec<Case>, workers: usize, tell: impl Fn(&Outcome) + Sync)
             cases.get(at).map(|case| (at, case))
         } {
             let outcome = run(case);
-            tell(&outcome);
+            report(&outcome);
             done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((at, outcome));
         }
     };

@@ -51,11 +51,11 @@ fn table(log: &str) -> Table {
     rows
 }
 
-/// Compares the table of `tests/PLACE/NAME.in`, as `work_off` makes it of the deck's text, with LAMMPS' in
+/// Compares the table of `tests/PLACE/NAME.in`, as `execute` makes it of the deck's text, with LAMMPS' in
 /// `tests/PLACE/golden/NAME.txt`, each column to a share of its largest number.
-pub fn agrees(place: &str, name: &str, tolerance: f64, work_off: impl FnOnce(&str) -> Table) {
+pub fn agrees(place: &str, name: &str, tolerance: f64, execute: impl FnOnce(&str) -> Table) {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(place);
-    let ours = work_off(&fs::read_to_string(here.join(format!("{name}.in"))).unwrap());
+    let ours = execute(&fs::read_to_string(here.join(format!("{name}.in"))).unwrap());
     let golden = table(&fs::read_to_string(here.join(format!("golden/{name}.txt"))).unwrap());
     assert_eq!((ours.len(), &ours[0]), (golden.len(), &golden[0]), "{name}");
     for (k, column) in golden[0].iter().enumerate() {

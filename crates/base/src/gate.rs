@@ -290,7 +290,7 @@ pub fn read_to_string(path: impl AsRef<Path>) -> Result<String> {
 
 /// Whether there is such a file or folder.
 pub fn exists(path: &Path) -> bool {
-    comm::told::truth(|| path.exists())
+    comm::broadcast::truth(|| path.exists())
 }
 
 /// The paths of what a folder holds, in order.

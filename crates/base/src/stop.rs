@@ -37,22 +37,22 @@ impl Stop {
     }
 
     /// Whether work has to end.
-    pub fn asked(&self) -> bool {
+    pub fn must_end(&self) -> bool {
         self.flag.load(Ordering::Relaxed) || self.deadline.is_some_and(|end| Instant::now() >= end)
     }
 
     /// Whether the limit of time alone is why.
     pub fn is_late(&self) -> bool {
-        !self.flag.load(Ordering::Relaxed) && self.asked()
+        !self.flag.load(Ordering::Relaxed) && self.must_end()
     }
 
-    /// As [`Stop::asked`]; work that hears yes is given up.
+    /// As [`Stop::must_end`]; work that hears yes is given up.
     pub fn cuts(&self) -> bool {
-        let asked = self.asked();
-        if asked {
+        let ends = self.must_end();
+        if ends {
             self.cut.store(true, Ordering::Relaxed);
         }
-        asked
+        ends
     }
 
     /// Whether some work was given up.
@@ -124,7 +124,7 @@ mod tests {
         assert!(!stop.heed(cuts) && !stop.has_cut());
         stop.flag.store(true, Ordering::Relaxed);
         // A look alone gives nothing up, and nothing is heeded outside.
-        assert!(stop.asked() && !stop.has_cut() && !cuts() && check().is_ok());
+        assert!(stop.must_end() && !stop.has_cut() && !cuts() && check().is_ok());
         assert!(stop.heed(|| !cuts_at(1) && cuts_at(MANY) && check().is_err()));
         assert!(stop.has_cut() && !stop.is_late() && !cuts());
     }

@@ -32,7 +32,7 @@ impl Comm for Alone {
 
     fn most(&self, _values: &mut [f64]) {}
 
-    fn tell(&self, _bytes: &mut Vec<u8>) {}
+    fn broadcast(&self, _bytes: &mut Vec<u8>) {}
 
     fn post(&self, _to: usize, _letter: &[u8]) {}
 

@@ -68,7 +68,7 @@ pub fn nodes(comm: &dyn Comm) -> Vec<String> {
 }
 
 /// How many ranks there are on how many machines, in words.
-pub fn said(nodes: &[String]) -> String {
+pub fn describe(nodes: &[String]) -> String {
     let hosts = nodes.iter().collect::<BTreeSet<_>>().len();
     let (ranks, s) = (nodes.len(), |n: usize| if n == 1 { "" } else { "s" });
     format!("{ranks} rank{} on {hosts} host{}", s(ranks), s(hosts))

@@ -12,6 +12,7 @@
 mod mpi;
 
 mod alone;
+pub mod broadcast;
 mod host;
 mod launcher;
 #[cfg(unix)]
@@ -23,10 +24,9 @@ mod present;
 pub mod rows;
 #[cfg(unix)]
 mod swap;
-pub mod told;
 
 pub use alone::Alone;
-pub use host::{file_of, host, nodes, said};
+pub use host::{describe, file_of, host, nodes};
 pub use launcher::{Launched, launched, open, set_apart};
 #[cfg(unix)]
 pub use local::{Local, Seat};
@@ -63,7 +63,7 @@ pub trait Comm: Send + Sync {
     fn most(&self, values: &mut [f64]);
 
     /// Hands the first rank's bytes to all.
-    fn tell(&self, bytes: &mut Vec<u8>);
+    fn broadcast(&self, bytes: &mut Vec<u8>);
 
     /// Sends a letter to another rank, which takes it by [`Comm::letter`]. Letters between two ranks keep their order. They are for ranks
     /// that wait for each other in no fixed order, and that do nothing else together until all letters are taken.

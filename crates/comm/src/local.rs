@@ -28,7 +28,7 @@ pub(super) enum Kind {
     Gather,
     Sum,
     Most,
-    Tell,
+    Broadcast,
     Meet,
     Letter,
 }
@@ -292,11 +292,11 @@ impl Comm for Local {
         self.numbers(Kind::Most, values, f64::to_le_bytes, f64::from_le_bytes, f64::max);
     }
 
-    fn tell(&self, bytes: &mut Vec<u8>) {
+    fn broadcast(&self, bytes: &mut Vec<u8>) {
         if self.rank == 0 {
-            return (1..self.size()).for_each(|to| self.send(to, Kind::Tell, bytes));
+            return (1..self.size()).for_each(|to| self.send(to, Kind::Broadcast, bytes));
         }
-        *bytes = vec![0; self.head(0, Kind::Tell)];
+        *bytes = vec![0; self.head(0, Kind::Broadcast)];
         if self.socket(0).read_exact(bytes).is_err() {
             self.gone(0);
         }

@@ -1,7 +1,7 @@
 //! What ranks do together, over sockets.
 
 use super::*;
-use crate::{is_first, present, run_as, several, told};
+use crate::{broadcast, is_first, present, run_as, several};
 use std::sync::Arc;
 
 /// Does the same on so many ranks, each a thread.
@@ -98,13 +98,19 @@ fn the_first_rank_finds_out_and_all_know() {
     let texts = ranks(3, || {
         assert!(several());
         // Only the first one is asked.
-        let number = told::number(|| if is_first() { 2.5 } else { panic!("not asked") });
-        let flag = told::truth(is_first);
-        let none = told::text(|| None);
-        (number, flag, none, told::text(|| Some("a b".into())), told::bytes(|| vec![0; 100_000]).len())
+        let number = broadcast::number(|| if is_first() { 2.5 } else { panic!("not needed") });
+        let flag = broadcast::truth(is_first);
+        let none = broadcast::text(|| None);
+        (
+            number,
+            flag,
+            none,
+            broadcast::text(|| Some("a b".into())),
+            broadcast::bytes(|| vec![0; 100_000]).len(),
+        )
     });
     assert!(texts.iter().all(|t| *t == (2.5, true, None, Some("a b".into()), 100_000)));
-    assert!(!several() && is_first() && told::number(|| 1.0) == 1.0);
+    assert!(!several() && is_first() && broadcast::number(|| 1.0) == 1.0);
 }
 
 #[test]
@@ -123,7 +129,7 @@ fn ranks_that_end_meet_before() {
 fn machines_are_named() {
     let names = ranks(2, || crate::nodes(&*present()));
     assert_eq!(names[0], vec![crate::host(); 2]);
-    assert_eq!(crate::said(&names[0]), "2 ranks on 1 host");
+    assert_eq!(crate::describe(&names[0]), "2 ranks on 1 host");
 }
 
 #[test]

@@ -6,13 +6,13 @@ mod dsm;
 mod fit;
 mod found;
 mod kinds;
+mod messages;
 mod model;
 mod scene;
 mod setup;
 mod softer;
 mod ste;
 mod strength;
-mod telling;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]

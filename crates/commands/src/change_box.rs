@@ -1,7 +1,7 @@
 //! `change_box`: size and faces of the box, with particles moved along if requested.
 
 use super::boundary::pair_of_faces;
-use super::replicate::say_box;
+use super::replicate::log_box;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
@@ -221,10 +221,10 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
         bonds_fit(cx.world, &domain.periods()).map_err(|e| e.at(span))?;
     }
     common::warn_of_skew(cx, &domain);
-    cx.say("Changing box ...");
+    cx.print("Changing box ...");
     for domain in boxes {
         cx.world.domain = Some(domain).into();
-        say_box(cx)?;
+        log_box(cx)?;
     }
     unwind(cx, unwound);
     // What is read into the box later finds these faces in force.

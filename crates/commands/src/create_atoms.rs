@@ -369,7 +369,7 @@ fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
 fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     let domain = cx.world.domain()?.clone();
     if let Some(line) = memory::forecast(cx.world, c.place.expected(cx.world, &domain))? {
-        cx.say(line);
+        cx.print(line);
     }
     let maker =
         Maker { domain: &domain, kind: c.kind, basis: &c.basis, test: c.test.as_ref(), mol: c.mol.as_ref() };
@@ -409,17 +409,17 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     {
         cx.world.particles.mask[first..].iter_mut().for_each(|m| *m |= group.bit());
     }
-    c.note.iter().for_each(|line| cx.say(line));
+    c.note.iter().for_each(|line| cx.print(line));
     if let Place::Mesh(mesh) = &c.place {
         let (each, mode) = (places.len() as f64 / mesh.triangles.len().max(1) as f64, mesh.mode.name());
         let count = mesh.triangles.len();
-        cx.say(format!("  read {count} triangles with {each:.2} atoms per triangle added in {mode} mode"));
+        cx.print(format!("  read {count} triangles with {each:.2} atoms per triangle added in {mode} mode"));
     }
     let units = if c.lattice_units { "lattice" } else { "box" };
-    cx.say(format!("Created {count} atoms"));
-    cx.say(format!("  using {units} units in {}", domain.told(domain.lo, domain.hi)));
+    cx.print(format!("Created {count} atoms"));
+    cx.print(format!("  using {units} units in {}", domain.describe(domain.lo, domain.hi)));
     if let Some(shares) = shares {
-        cx.say(shares.said);
+        cx.print(shares.line);
         shares.warning.into_iter().for_each(|d| cx.note(d));
     }
     Ok(())

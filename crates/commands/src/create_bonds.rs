@@ -171,7 +171,7 @@ fn add(cx: &mut ActCx, new: impl Iterator<Item = Bond>) {
     let before = cx.world.bonds.len();
     new.for_each(|bond| cx.world.bonds.push(bond));
     let now = cx.world.bonds.len();
-    cx.say(format!("Added {} bonds, new total = {now}", now - before));
+    cx.print(format!("Added {} bonds, new total = {now}", now - before));
 }
 
 /// Pairs of ids in range, ascending.

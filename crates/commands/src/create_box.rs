@@ -87,9 +87,9 @@ impl CommandStyle for CreateBox {
         common::check_volume([0, 1, 2].map(|d| hi[d] - lo[d])).map_err(|e| e.at(word.span))?;
         Ok(setting(move |cx| {
             let mut domain = Domain { flat, tilt, ..Domain::new(lo, hi, cx.world.settings.boundary) };
-            cx.say(format!("Created {}", domain.told(lo, hi)));
+            cx.print(format!("Created {}", domain.describe(lo, hi)));
             common::warn_of_skew(cx, &domain);
-            cx.say("  1 by 1 by 1 MPI processor grid");
+            cx.print("  1 by 1 by 1 MPI processor grid");
             domain.open_shrinking_faces();
             cx.world.domain = Some(domain).into();
             cx.world.types = types as usize;

@@ -162,10 +162,10 @@ fn delete(cx: &mut ActCx, choice: &Choice, how: How) -> Result<()> {
     cx.world.forget_touches();
     cx.world.bonds.left = 0;
     let now = cx.world.n();
-    cx.say(format!("Deleted {} atoms, new total = {now}", before - now));
+    cx.print(format!("Deleted {} atoms, new total = {now}", before - now));
     if (how.bond || how.mol) && bonds > 0 {
         let left = cx.world.bonds.len();
-        cx.say(format!("Deleted {} bonds, new total = {left}", bonds - left));
+        cx.print(format!("Deleted {} bonds, new total = {left}", bonds - left));
     }
     Ok(())
 }

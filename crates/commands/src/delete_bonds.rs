@@ -91,7 +91,7 @@ impl CommandStyle for DeleteBonds {
 }
 
 fn delete(cx: &mut ActCx, group: GroupId, choice: Choice, how: How) -> Result<()> {
-    cx.say("Deleting bonds ...");
+    cx.print("Deleting bonds ...");
     switch(cx.world, group, choice, how);
     let bonds = &mut cx.world.bonds;
     if how.remove {
@@ -102,7 +102,7 @@ fn delete(cx: &mut ActCx, group: GroupId, choice: Choice, how: How) -> Result<()
         bonds.find_special();
     }
     cx.world.touch();
-    cx.say(format!("  {all} total bonds, {on} turned on, {} turned off", all - on));
+    cx.print(format!("  {all} total bonds, {on} turned on, {} turned off", all - on));
     Ok(())
 }
 

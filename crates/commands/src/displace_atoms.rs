@@ -86,7 +86,7 @@ impl CommandStyle for DisplaceAtoms {
         }
         let spacing = scales(cx.world, lattice);
         Ok(on_particles(vec![], move |cx| {
-            cx.say("Displacing atoms ...");
+            cx.print("Displacing atoms ...");
             displace(cx, group, &motion, spacing)?;
             common::settle(cx.world);
             cx.world.touch();

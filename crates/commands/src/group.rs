@@ -54,7 +54,7 @@ impl Style for Group {
 
 /// Which particles join.
 enum Choice {
-    Nobody,
+    Empty,
     Kind(Numbers),
     Tag(Numbers),
     Molecule(Numbers),
@@ -170,7 +170,7 @@ fn make_static(cx: &BuildCx, word: &Word) -> Result<Box<dyn Act>> {
         if let Some((_, s)) = cx.world.groups.surfaces().iter().find(|(g, _)| *g == group).copied() {
             cx.world.groups.set_surface(group, Some(Surface { every: None, ..s }));
         }
-        say_count(cx, group, &name);
+        log_count(cx, group, &name);
         Ok(())
     }))
 }
@@ -211,7 +211,7 @@ fn dynamic(a: &mut Args, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
             return fail(Code::TOO_LARGE, None, "there are 32 groups already; delete one first");
         };
         cx.world.groups.set_dynamic(group, Some(rule));
-        cx.say(format!("dynamic group {name} defined"));
+        cx.print(format!("dynamic group {name} defined"));
         Ok(())
     }))
 }
@@ -255,15 +255,15 @@ fn surface(a: &mut Args, cx: &BuildCx, style: &Word, name: String) -> Result<Box
         cx.world.groups.set_surface(group, Some(found));
         choose(cx.world, group.bit(), &found);
         cx.world.touch();
-        say_count(cx, group, &name);
+        log_count(cx, group, &name);
         Ok(())
     }))
 }
 
 /// Logs how many particles a group has now.
-fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
+fn log_count(cx: &mut ActCx, group: GroupId, name: &str) {
     let count = cx.world.particles.mask.iter().filter(|m| **m & group.bit() != 0).count();
-    cx.say(format!("{count} atoms in group {name}"));
+    cx.print(format!("{count} atoms in group {name}"));
 }
 
 /// The ways to choose a group's particles.
@@ -285,7 +285,7 @@ const KNOWN: [&str; 13] = [
 
 fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
     Ok(match style.text.as_str() {
-        "empty" => Choice::Nobody,
+        "empty" => Choice::Empty,
         "type" => Choice::Kind(numbers(a, "a type")?),
         "id" => Choice::Tag(numbers(a, "an id")?),
         "region" => Choice::Region(Box::new(cx.region(a.expect("a region")?)?.clone())),
@@ -362,7 +362,7 @@ fn join(cx: &mut ActCx, name: &str, choice: &Choice) -> Result<()> {
     for (mask, _) in particles.mask.iter_mut().zip(joins).filter(|(_, j)| *j) {
         *mask |= group.bit();
     }
-    say_count(cx, group, name);
+    log_count(cx, group, name);
     Ok(())
 }
 
@@ -383,7 +383,7 @@ fn include_molecules(p: &mut Particles, group: GroupId) {
 fn chosen(choice: &Choice, p: &Particles, values: &[f64], i: usize) -> bool {
     let within = |g: &GroupId| p.mask[i] & g.bit() != 0;
     match choice {
-        Choice::Nobody => false,
+        Choice::Empty => false,
         Choice::Kind(set) => set.contain(i64::from(p.kind[i])),
         Choice::Tag(set) => set.contain(i64::from(p.tag[i])),
         Choice::Molecule(set) => set.contain(i64::from(p.molecule[i])),

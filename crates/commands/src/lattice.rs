@@ -77,7 +77,7 @@ impl CommandStyle for LatticeCommand {
 fn set(lattice: Lattice) -> Box<dyn Act> {
     setting(move |cx| {
         let [x, y, z] = lattice.spacing.map(|s| general(s, 8));
-        cx.say(format!("Lattice spacing in x,y,z = {x} {y} {z}"));
+        cx.print(format!("Lattice spacing in x,y,z = {x} {y} {z}"));
         cx.world.lattice = lattice;
         Ok(())
     })

@@ -40,7 +40,7 @@ impl Style for Molecule {
 
 /// A file and its keywords.
 #[derive(Clone)]
-struct Asked {
+struct FileWords {
     file: Word,
     kind: u16,
     bond: u16,
@@ -50,7 +50,7 @@ struct Asked {
 
 struct Reading {
     id: String,
-    files: Vec<Asked>,
+    files: Vec<FileWords>,
 }
 
 impl CommandStyle for Molecule {
@@ -61,22 +61,22 @@ impl CommandStyle for Molecule {
             let text = format!("there is a molecule template `{id}` already");
             return fail(Code::DUPLICATE_NAME, word.span, text);
         }
-        let mut files: Vec<Asked> = vec![];
+        let mut files: Vec<FileWords> = vec![];
         while files.is_empty() || !a.is_empty() {
             let file = a.expect("a file name")?.clone();
             if file.text.ends_with(".json") {
                 return Err(not_here(&file, "a molecule file in JSON:"));
             }
-            let mut asked = Asked { file, kind: 0, bond: 0, angle: 0, scale: 1.0 };
-            while keyword(a, &mut asked)? {}
-            files.push(asked);
+            let mut words = FileWords { file, kind: 0, bond: 0, angle: 0, scale: 1.0 };
+            while keyword(a, &mut words)? {}
+            files.push(words);
         }
         Ok(Box::new(Reading { id, files }))
     }
 }
 
 /// Takes a keyword of the file before it; `false` if another file follows.
-fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
+fn keyword(a: &mut Args, words: &mut FileWords) -> Result<bool> {
     let offset = |a: &mut Args, what: &str| -> Result<u16> {
         let span = a.here();
         let k = a.integer_from(0, what)?;
@@ -85,15 +85,15 @@ fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
     match a.peek_text() {
         "toff" => {
             a.next();
-            asked.kind = offset(a, "the offset of types")?;
+            words.kind = offset(a, "the offset of types")?;
         }
         "boff" => {
             a.next();
-            asked.bond = offset(a, "the offset of bond types")?;
+            words.bond = offset(a, "the offset of bond types")?;
         }
         "aoff" => {
             a.next();
-            asked.angle = offset(a, "the offset of angle types")?;
+            words.angle = offset(a, "the offset of angle types")?;
         }
         "doff" | "ioff" => {
             a.next();
@@ -101,16 +101,16 @@ fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
         }
         "offset" => {
             a.next();
-            asked.kind = offset(a, "the offset of types")?;
-            asked.bond = offset(a, "the offset of bond types")?;
-            asked.angle = offset(a, "the offset of angle types")?;
+            words.kind = offset(a, "the offset of types")?;
+            words.bond = offset(a, "the offset of bond types")?;
+            words.angle = offset(a, "the offset of angle types")?;
             for what in ["dihedral", "improper"] {
                 offset(a, &format!("the offset of {what} types"))?;
             }
         }
         "scale" => {
             a.next();
-            asked.scale = a.positive("the scale")?;
+            words.scale = a.positive("the scale")?;
         }
         _ => return Ok(false),
     }
@@ -120,17 +120,17 @@ fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
 impl Act for Reading {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
         let mut list = vec![];
-        for asked in &self.files {
-            let text = find(cx.world, &asked.file, "molecule file")?;
+        for words in &self.files {
+            let text = find(cx.world, &words.file, "molecule file")?;
             let mut notes = Diagnostics::default();
             let (mut t, skipped) = file::read(&text.text, &mut notes).map_err(|e| e.within(&text))?;
             notes.within(&text).0.into_iter().for_each(|note| cx.note(note));
-            change(&mut t, asked)?;
+            change(&mut t, words)?;
             if skipped {
                 let note = "without effect: which pairs count as bonded follows from the bonds, not from Special Bonds";
-                cx.note(Diagnostic::note(Code::NO_EFFECT, asked.file.span, note));
+                cx.note(Diagnostic::note(Code::NO_EFFECT, words.file.span, note));
             }
-            tell(cx, &self.id, &t);
+            log_summary(cx, &self.id, &t);
             list.push(t);
         }
         cx.world.templates.insert(self.id, list.into());
@@ -143,19 +143,19 @@ impl Act for Reading {
 }
 
 /// Offsets and scale.
-fn change(t: &mut Template, asked: &Asked) -> Result<()> {
-    let s = asked.scale;
+fn change(t: &mut Template, words: &FileWords) -> Result<()> {
+    let s = words.scale;
     for kind in &mut t.kinds {
-        let Some(sum) = kind.checked_add(asked.kind) else {
-            return fail(Code::BAD_VALUE, asked.file.span, "a type is beyond 65535 with its offset");
+        let Some(sum) = kind.checked_add(words.kind) else {
+            return fail(Code::BAD_VALUE, words.file.span, "a type is beyond 65535 with its offset");
         };
         *kind = sum;
     }
     for (kind, _) in &mut t.bonds {
-        *kind = kind.saturating_add(asked.bond);
+        *kind = kind.saturating_add(words.bond);
     }
     for (kind, _) in &mut t.angles {
-        *kind = kind.saturating_add(asked.angle);
+        *kind = kind.saturating_add(words.angle);
     }
     t.places.iter_mut().chain(&mut t.com).flatten().for_each(|x| *x *= s);
     t.radii.iter_mut().for_each(|r| *r *= s);
@@ -164,19 +164,19 @@ fn change(t: &mut Template, asked: &Asked) -> Result<()> {
     Ok(())
 }
 
-fn tell(cx: &mut ActCx, id: &str, t: &Template) {
+fn log_summary(cx: &mut ActCx, id: &str, t: &Template) {
     let kinds = t.kinds.iter().max().copied().unwrap_or(0);
     let bonds = t.bonds.iter().map(|b| b.0).max().unwrap_or(0);
-    cx.say(format!("Read molecule template {id}:"));
-    cx.say(t.title.clone());
-    cx.say(format!("  {} molecules", t.last_molecule()));
-    cx.say("  0 fragments");
-    cx.say("  0 bodies");
-    cx.say(format!("  {} atoms with max type {kinds}", t.count));
-    cx.say(format!("  {} bonds with max type {bonds}", t.bonds.len()));
+    cx.print(format!("Read molecule template {id}:"));
+    cx.print(t.title.clone());
+    cx.print(format!("  {} molecules", t.last_molecule()));
+    cx.print("  0 fragments");
+    cx.print("  0 bodies");
+    cx.print(format!("  {} atoms with max type {kinds}", t.count));
+    cx.print(format!("  {} bonds with max type {bonds}", t.bonds.len()));
     let angles = t.angles.iter().map(|a| a.0).max().unwrap_or(0);
-    cx.say(format!("  {} angles with max type {angles}", t.angles.len()));
+    cx.print(format!("  {} angles with max type {angles}", t.angles.len()));
     for what in ["dihedrals", "impropers"] {
-        cx.say(format!("  0 {what} with max type 0"));
+        cx.print(format!("  0 {what} with max type 0"));
     }
 }

@@ -34,7 +34,7 @@ impl CommandStyle for Neighbor {
         let way = choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
         Ok(setting(move |cx| {
             let near = &mut cx.world.settings.neighbor;
-            (near.skin, near.said, near.multi) = (skin, true, way == "multi");
+            (near.skin, near.skin_set, near.multi) = (skin, true, way == "multi");
             Ok(())
         }))
     }

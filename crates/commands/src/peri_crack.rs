@@ -123,7 +123,7 @@ impl Act for Cut {
             0 => Err(Crack::missed(&self.crack).into()),
             n => {
                 w.touch();
-                cx.say(format!("{n} bonds cut"));
+                cx.print(format!("{n} bonds cut"));
                 Ok(())
             }
         }

@@ -166,7 +166,7 @@ impl Act for Reading {
             Found::File(text) => text,
             Found::Promised(scene) => return self.promised(cx, &scene),
         };
-        cx.say("Reading data file ...");
+        cx.print("Reading data file ...");
         let world = &*cx.world;
         let how = How {
             style: world.particles.style,
@@ -190,7 +190,7 @@ impl Act for Reading {
         let coeffs = std::mem::take(&mut data.coeffs);
         cx.then.extend(coeffs.into_iter().map(|line| (line, text.clone())));
         if !self.checking {
-            cx.say(format!("  read_data CPU = {:.3} seconds", began.elapsed().as_secs_f64()));
+            cx.print(format!("  read_data CPU = {:.3} seconds", began.elapsed().as_secs_f64()));
         }
         Ok(())
     }
@@ -339,7 +339,7 @@ impl Reading {
     fn enter(&self, cx: &mut ActCx, data: &mut DataFile) -> Result<()> {
         let count = data.particles.len();
         if let Some(line) = memory::forecast(cx.world, count as f64)? {
-            cx.say(line);
+            cx.print(line);
         }
         let domain = self.domain(cx.world, data);
         let faces = (domain.lo[2], domain.hi[2]);
@@ -349,7 +349,7 @@ impl Reading {
             return Err(d.at(self.file.span).into());
         }
         let bit = self.group(cx)?;
-        self.tell(cx, data, &domain);
+        self.log_summary(cx, data, &domain);
         let w = &mut *cx.world;
         w.domain = Some(domain).into();
         w.types = data.types;
@@ -375,24 +375,24 @@ impl Reading {
         Ok(())
     }
 
-    fn tell(&self, cx: &mut ActCx, data: &DataFile, domain: &Domain) {
-        cx.say(format!("  {}", domain.told(domain.min_lo, domain.min_hi)));
+    fn log_summary(&self, cx: &mut ActCx, data: &DataFile, domain: &Domain) {
+        cx.print(format!("  {}", domain.describe(domain.min_lo, domain.min_hi)));
         common::warn_of_skew(cx, domain);
-        cx.say("  1 by 1 by 1 MPI processor grid");
+        cx.print("  1 by 1 by 1 MPI processor grid");
         let count = data.particles.len();
-        cx.say("  reading atoms ...");
-        cx.say(format!("  {count} atoms"));
+        cx.print("  reading atoms ...");
+        cx.print(format!("  {count} atoms"));
         if data.velocities {
-            cx.say("  reading velocities ...");
-            cx.say(format!("  {count} velocities"));
+            cx.print("  reading velocities ...");
+            cx.print(format!("  {count} velocities"));
         }
         if !data.bonds.is_empty() {
-            cx.say("  reading bonds ...");
-            cx.say(format!("  {} bonds", data.bonds.len()));
+            cx.print("  reading bonds ...");
+            cx.print(format!("  {} bonds", data.bonds.len()));
         }
         if !data.angles.is_empty() {
-            cx.say("  reading angles ...");
-            cx.say(format!("  {} angles", data.angles.len()));
+            cx.print("  reading angles ...");
+            cx.print(format!("  {} angles", data.angles.len()));
         }
     }
 }

@@ -99,7 +99,7 @@ impl Body for Reading {
 
     fn make(&self, cx: &mut ActCx) -> Result<()> {
         let file = File::find(cx.world, &self.file, "mesh")?;
-        cx.say("Reading mesh file ...");
+        cx.print("Reading mesh file ...");
         self.enter(cx, &file).map_err(|e| file.blame(e))
     }
 }
@@ -118,7 +118,7 @@ impl Reading {
             Some(by) => by.of(&mesh, &used, self.making.kind, types)?,
             None => vec![self.making.kind.unwrap_or(1); mesh.len()],
         };
-        self.tell(cx, &mesh, &used);
+        self.log_summary(cx, &mesh, &used);
         let chosen: Vec<usize> = (0..mesh.len()).filter(|&k| used[k] && kinds[k] != 0).collect();
         let mut new = Newcomers::new(cx, &self.making, chosen.len())?;
         let mut corners: Vec<[f64; 3]> = vec![];
@@ -166,7 +166,7 @@ impl Reading {
         Err(d.help(help).into())
     }
 
-    fn tell(&self, cx: &mut ActCx, mesh: &Mesh, used: &[bool]) {
+    fn log_summary(&self, cx: &mut ActCx, mesh: &Mesh, used: &[bool]) {
         let count = |shape: Shape, yes: bool| {
             mesh.shapes.iter().zip(used).filter(|(s, u)| **s == shape && **u == yes).count()
         };
@@ -176,10 +176,10 @@ impl Reading {
             let all: Vec<(&str, usize)> = cells.chain(others).filter(|(_, n)| *n > 0).collect();
             all.iter().map(|(name, n)| format!("{n} {name}")).collect::<Vec<_>>().join(", ")
         };
-        cx.say(format!("  {} points, {}", mesh.points.len(), list(true)));
+        cx.print(format!("  {} points, {}", mesh.points.len(), list(true)));
         let left = list(false);
         if !left.is_empty() {
-            cx.say(format!("  left out: {left}"));
+            cx.print(format!("  left out: {left}"));
         }
         if mesh.curved > 0 {
             let text = format!(

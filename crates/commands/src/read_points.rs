@@ -163,9 +163,9 @@ impl Reading {
         let (names, head) = Table::head(text)?;
         let (wanted, others) = self.wanted(cx, &names, head)?;
         let table = Table::read(text, wanted.iter().map(|(k, _)| *k).collect())?;
-        cx.say(format!("  {} points", table.len()));
+        cx.print(format!("  {} points", table.len()));
         if !others.is_empty() {
-            cx.say(format!("  columns left out: {}", others.join(", ")));
+            cx.print(format!("  columns left out: {}", others.join(", ")));
         }
         let properties: Vec<Property> = wanted.into_iter().map(|(_, p)| p).collect();
         let (volume, diameter, checking) = (self.volume, self.diameter, self.checking);
@@ -184,7 +184,7 @@ impl Body for Reading {
 
     fn make(&self, cx: &mut ActCx) -> Result<()> {
         let file = File::find(cx.world, &self.file, "table")?;
-        cx.say("Reading points file ...");
+        cx.print("Reading points file ...");
         self.enter(cx, &file).map_err(|e| file.blame(e))
     }
 

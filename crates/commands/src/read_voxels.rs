@@ -124,7 +124,7 @@ impl Body for Reading {
 
     fn make(&self, cx: &mut ActCx) -> Result<()> {
         let mut image = voxels::open(cx.world, &self.file, self.array.as_ref())?;
-        cx.say("Reading image ...");
+        cx.print("Reading image ...");
         self.enter(cx, &mut *image)
     }
 }
@@ -168,7 +168,7 @@ impl Reading {
         let blocks = Blocks::new(info.size, spacing, wanted);
         let edges = [0, 1, 2].map(|d| spacing[d] * info.size[d] as f64 / blocks.count[d] as f64);
         let grid = Grid { corner, edges, blocks, types: self.ranges.types() };
-        self.tell(cx, info.size, spacing, &grid);
+        self.log_summary(cx, info.size, spacing, &grid);
         let mut voxels = vec![0u64; grid.types.len() + 1];
         let mut counts = vec![0usize; grid.types.len() + 1];
         self.each_block(image, &grid, Some(&mut voxels), |_, m| {
@@ -243,13 +243,13 @@ impl Reading {
         Ok(())
     }
 
-    fn tell(&self, cx: &mut ActCx, size: [usize; 3], spacing: [f64; 3], grid: &Grid) {
+    fn log_summary(&self, cx: &mut ActCx, size: [usize; 3], spacing: [f64; 3], grid: &Grid) {
         let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" x ");
         let whole = |n: [usize; 3]| n.map(|n| n.to_string()).join(" x ");
-        cx.say(format!("  {} voxels of {}", whole(size), text(spacing)));
+        cx.print(format!("  {} voxels of {}", whole(size), text(spacing)));
         if !grid.blocks.single() {
             let scale = self.making.placement.scale;
-            cx.say(format!(
+            cx.print(format!(
                 "  {} blocks of {}",
                 whole(grid.blocks.count),
                 text(grid.edges.map(|e| e * scale))
@@ -265,7 +265,7 @@ impl Reading {
                 continue;
             }
             let off = after / before - 1.0;
-            cx.say(format!(
+            cx.print(format!(
                 "  type {kind}: {} in the image, {:+.2} % in blocks",
                 general(before, 10),
                 100.0 * off

@@ -133,7 +133,7 @@ impl CommandStyle for RegionCommand {
         let mut region = Region { outside, open, given, motion, ..Region::inside(shape) };
         region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
-            said.iter().for_each(|line| cx.say(line));
+            said.iter().for_each(|line| cx.print(line));
             cx.world.parts.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(Key::new(&name), region);
             Ok(())

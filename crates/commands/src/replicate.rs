@@ -109,11 +109,11 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
         return fail(Code::TOO_LARGE, None, text);
     };
     if let Some(line) = memory::forecast(cx.world, (n as i64 * (copies - 1)) as f64)? {
-        cx.say(line);
+        cx.print(line);
     }
     let old = cx.world.domain()?.clone();
     let [nx, ny, nz] = count;
-    cx.say(format!("Replication is creating a {nx}x{ny}x{nz} = {copies} times larger system..."));
+    cx.print(format!("Replication is creating a {nx}x{ny}x{nz} = {copies} times larger system..."));
     if (0..3).any(|d| count[d] > 1 && !old.boundary.periodic(d)) {
         let text = "the scene is repeated along a dimension whose faces are not periodic";
         cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
@@ -182,17 +182,17 @@ fn repeat(cx: &mut ActCx, count: [i64; 3], nearest: bool) -> Result<()> {
     world.bonds.changes += 1;
     world.domain = Some(domain).into();
     world.touch();
-    say_box(cx)?;
+    log_box(cx)?;
     if let Some(domain) = &mut *cx.world.domain {
         domain.open_shrinking_faces();
     }
-    cx.say("  1 by 1 by 1 MPI processor grid");
-    cx.say(format!("  {} atoms", cx.world.n()));
+    cx.print("  1 by 1 by 1 MPI processor grid");
+    cx.print(format!("  {} atoms", cx.world.n()));
     if !cx.world.bonds.is_empty() {
-        cx.say(format!("  {} bonds", cx.world.bonds.len()));
+        cx.print(format!("  {} bonds", cx.world.bonds.len()));
     }
     if !cx.world.bonds.angles.list.is_empty() {
-        cx.say(format!("  {} angles", cx.world.bonds.angles.list.len()));
+        cx.print(format!("  {} angles", cx.world.bonds.angles.list.len()));
     }
     Ok(())
 }
@@ -208,10 +208,10 @@ fn larger(old: &Domain, count: [i64; 3]) -> Domain {
 }
 
 /// Logs where the box is, as LAMMPS does.
-pub fn say_box(cx: &mut ActCx) -> Result<()> {
+pub fn log_box(cx: &mut ActCx) -> Result<()> {
     let domain = cx.world.domain()?;
-    let line = format!("  {}", domain.told(domain.lo, domain.hi));
-    cx.say(line);
+    let line = format!("  {}", domain.describe(domain.lo, domain.hi));
+    cx.print(line);
     Ok(())
 }
 

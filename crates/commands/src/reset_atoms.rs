@@ -132,7 +132,7 @@ fn ids(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         }
     }
     Ok(on_particles(vec![], move |cx| {
-        cx.say("Resetting atom IDs ...");
+        cx.print("Resetting atom IDs ...");
         common::settle(cx.world);
         match sorted {
             false => cx.world.renumber(),
@@ -167,10 +167,10 @@ fn molecules(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         }
     }
     Ok(on_particles(vec![], move |cx| {
-        cx.say("Resetting molecule IDs ...");
+        cx.print("Resetting molecule IDs ...");
         let count = number(cx.world, group, &how);
         let count = count.map_or("unknown".to_string(), |n| n.to_string());
-        cx.say(format!("  number of new molecule IDs = {count}"));
+        cx.print(format!("  number of new molecule IDs = {count}"));
         cx.world.slots.invalidate();
         Ok(())
     }))
@@ -213,7 +213,7 @@ fn images(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
     let group = cx.group(a.expect("a group")?)?;
     a.finish()?;
     Ok(on_particles(vec![], move |cx| {
-        cx.say("Resetting image flags ...");
+        cx.print("Resetting image flags ...");
         let w = &mut *cx.world;
         let names = fragments(w, |_| true, true);
         let mut range: BTreeMap<u32, [[i32; 3]; 2]> = BTreeMap::new();

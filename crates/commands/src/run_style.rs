@@ -88,7 +88,7 @@ impl CommandStyle for RunStyleCommand {
             "respa" => {
                 let (style, said) = respa::read(a)?;
                 return Ok(setting(move |cx| {
-                    said.iter().for_each(|line| cx.say(line));
+                    said.iter().for_each(|line| cx.print(line));
                     put(cx.world, style.clone());
                     Ok(())
                 }));

@@ -84,17 +84,17 @@ pub fn act(world: &mut World, line: &str, variables: &[AtomVariable]) -> Result<
     };
     let parsed = style.parse(&mut args, &cx)?;
     args.finish()?;
-    let (mut said, mut then) = (vec![], vec![]);
+    let (mut lines, mut then) = (vec![], vec![]);
     let mut cx = ActCx {
         world,
         values: &mut table,
         span: command.span,
-        said: &mut said,
+        lines: &mut lines,
         then: &mut then,
         notes: &notes,
     };
     parsed.apply(&mut cx)?;
-    Ok(said)
+    Ok(lines)
 }
 
 /// The world after these lines, each of which must work.

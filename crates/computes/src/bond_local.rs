@@ -163,15 +163,15 @@ fn norm(a: Vec3) -> f64 {
 impl Declared {
     /// Indices of the style's own values among those that only some styles provide.
     fn places(&self, style: Option<&dyn BondForce>, span: Span) -> Result<Vec<usize>> {
-        let (told, name) = style.map_or((&[][..], ""), |s| (s.extras(), s.name()));
+        let (known, name) = style.map_or((&[][..], ""), |s| (s.extras(), s.name()));
         let mut places = vec![];
         for value in &self.values {
             let Value::Extra(wanted) = value else { continue };
-            let Some(place) = told.iter().position(|t| t == wanted) else {
+            let Some(place) = known.iter().position(|t| t == wanted) else {
                 let text = format!("bond_style {name} has no `{wanted}` of its bonds");
                 let d = Diagnostic::error(Code::WRONG_KIND, span, text);
-                let told = told.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
-                return Err(if told.is_empty() { d } else { d.help(format!("it tells {told}")) }.into());
+                let known = known.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
+                return Err(if known.is_empty() { d } else { d.help(format!("it has {known}")) }.into());
             };
             places.push(place);
         }

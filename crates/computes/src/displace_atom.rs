@@ -68,8 +68,8 @@ impl Compute for Declared {
         Ok(())
     }
 
-    fn welcome(&self, w: &mut World) {
-        self.origin.welcome(w, [0.0; 3]);
+    fn particles_joined(&self, w: &mut World) {
+        self.origin.extend(w, [0.0; 3]);
     }
 
     fn remove(&self, w: &mut World) {
@@ -77,7 +77,7 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        self.welcome(cx.world());
+        self.particles_joined(cx.world());
         let (places, group) = (self.origin.places, self.group);
         Ok(fill(
             &self.id,

@@ -130,7 +130,7 @@ impl Compute for Declared {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         if self.grains {
-            critical::ask_walls(w);
+            critical::request_wall_springs(w);
         }
         Ok(())
     }

@@ -94,8 +94,8 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        cx.ask_energy(when);
-        cx.ask_atom_energy(when);
+        cx.request_energy(when);
+        cx.request_atom_energy(when);
         let mut probes = cx.probes()?;
         let reads = X
             | V

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::probe::{Ask, Interaction, look_all};
+use perigrain_styles::probe::{Interaction, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
@@ -152,7 +152,7 @@ impl Compute for Declared {
             | MOLECULE
             | TRAVEL;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let mut pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
+            let mut pairs = look_all(&mut probes, w, Request::idle(!me.touching))?;
             let kind = |i: u32| w.particles.kind[i as usize];
             pairs.retain(|p| {
                 of_group(w, me.group, p)

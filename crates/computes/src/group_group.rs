@@ -5,7 +5,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::probe::{Ask, Interaction, look_all};
+use perigrain_styles::probe::{Interaction, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
@@ -129,7 +129,7 @@ impl Compute for Declared {
             | X0
             | BONDS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let pairs = if me.pair { look_all(&mut probes, w, Ask::Acting)? } else { vec![] };
+            let pairs = if me.pair { look_all(&mut probes, w, Request::Acting)? } else { vec![] };
             let is = |i: u32, g: GroupId| w.particles.mask[i as usize] & g.bit() != 0;
             let (mut energy, mut force) = (0.0, [0.0; 3]);
             for p in pairs.iter().filter(|p| me.counts(w, p)) {

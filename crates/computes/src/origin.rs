@@ -22,11 +22,11 @@ impl Origin {
     /// Stores the current unwrapped position of every particle, less `shift`.
     pub fn capture(self, w: &mut World, shift: [f64; 3]) {
         self.forget(w);
-        self.welcome(w, shift);
+        self.extend(w, shift);
     }
 
     /// Stores the position of every particle that has none yet.
-    pub fn welcome(self, w: &mut World, shift: [f64; 3]) {
+    pub fn extend(self, w: &mut World, shift: [f64; 3]) {
         let n = w.n();
         w.columns.resize(n);
         w.columns.vector(self.places, n);

@@ -70,7 +70,7 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        cx.ask_energy(when);
+        cx.request_energy(when);
         let me = self.clone();
         Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY, move |w, t, out| {
             let tally = &w.tally;

@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, look_all};
+use perigrain_styles::probe::{Interaction, OWN, Probe, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
@@ -180,7 +180,7 @@ impl Compute for Declared {
             | VOLUME
             | X0;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
+            let pairs = look_all(&mut probes, w, Request::idle(!me.touching))?;
             out.local_cols = me.values.len();
             out.local.clear();
             for p in pairs.iter().filter(|p| of_group(w, me.group, p) && (!me.touching || touches(w, p))) {

@@ -53,7 +53,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let Terms { pair, bond, fix } = self.terms;
         if pair || bond {
-            cx.ask_energy(when);
+            cx.request_energy(when);
         }
         let names = if fix { cx.energy_fixes() } else { vec![] };
         let fixes: Vec<SlotId> = names.iter().map(|n| cx.slot(n)).collect();

@@ -51,7 +51,7 @@ impl Compute for Declared {
         let (group, Terms { pair, bond, fix }) = (self.group, self.terms);
         let any = pair || bond || fix;
         if any {
-            cx.ask_atom_energy(when);
+            cx.request_atom_energy(when);
         }
         Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY | MASK, move |w, t, out| {
             let tally = &w.tally;

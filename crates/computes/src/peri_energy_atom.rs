@@ -51,7 +51,7 @@ impl Compute for Declared {
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let group = self.group;
-        cx.ask_atom_energy(when);
+        cx.request_atom_energy(when);
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },

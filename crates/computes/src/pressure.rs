@@ -51,18 +51,18 @@ impl ComputeStyle for Pressure {
 ///
 /// # Errors
 /// Other words.
-pub(super) fn terms(who: &str, args: &mut Args) -> Result<(bool, Parts)> {
+pub(super) fn terms(name: &str, args: &mut Args) -> Result<(bool, Parts)> {
     let all = args.is_empty();
     let (mut ke, mut parts) = (all, Parts { pair: all, bond: all, fix: all });
     while let Some(word) = args.peek() {
-        match args.choice(&format!("keyword of {who}"), KEYWORDS)? {
+        match args.choice(&format!("keyword of {name}"), KEYWORDS)? {
             "ke" => ke = true,
             "pair" => parts.pair = true,
             "bond" => parts.bond = true,
             "fix" => parts.fix = true,
             "virial" => parts = Parts { pair: true, bond: true, fix: true },
             "pair/hybrid" => {
-                let text = format!("{who} of one sub-style of pair_style hybrid is not in perigrain");
+                let text = format!("{name} of one sub-style of pair_style hybrid is not in perigrain");
                 return fail(Code::NOT_SUPPORTED, word.span, text);
             }
             _ => {}
@@ -130,7 +130,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let parts = self.parts;
         if parts.any() {
-            cx.ask_virial(when);
+            cx.request_virial(when);
         }
         let kinetic = match &self.temperature {
             Some(r) => Some((cx.value(r, stage, when)?, r.clone())),

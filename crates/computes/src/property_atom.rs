@@ -100,7 +100,7 @@ impl Getter {
     }
 
     /// The current values.
-    pub fn now<'w>(&self, w: &'w World) -> Values<'w> {
+    pub fn values<'w>(&self, w: &'w World) -> Values<'w> {
         match self {
             Getter::Own(read) => Values::Own(w, *read),
             Getter::Whole(find) => Values::Found(Cow::Owned(find(w))),
@@ -366,7 +366,7 @@ impl Compute for Declared {
                 let (bit, columns) = (group.bit(), getters.len());
                 out.cols = columns;
                 out.atom.resize(w.n() * columns, 0.0);
-                let values: Vec<Values> = getters.iter().map(|g| g.now(w)).collect();
+                let values: Vec<Values> = getters.iter().map(|g| g.values(w)).collect();
                 par::each(&mut out.atom[..], |start, all| {
                     for (k, value) in all.iter_mut().enumerate() {
                         let (i, column) = ((start + k) / columns, (start + k) % columns);

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_neigh::list::Reach;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{bonds, bonds_within, within};
-use perigrain_styles::probe::{Ask, look_all};
+use perigrain_styles::probe::{Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
@@ -198,7 +198,7 @@ impl Compute for Declared {
                     rows.sort_by_key(|r| r.tags);
                 }
                 Of::Contact if !me.touching => {
-                    let found = look_all(&mut probes, w, Ask::Idle)?;
+                    let found = look_all(&mut probes, w, Request::Idle)?;
                     let chosen = found.iter().filter(|p| of_group(w, me.group, p));
                     rows.extend(chosen.map(|p| Row::of(w, p.i, p.j)));
                 }

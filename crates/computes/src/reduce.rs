@@ -323,7 +323,7 @@ impl Compute for Declared {
         }
         let chosen = Chosen::new(cx.world(), self.group, self.region.as_deref(), span)?;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, X | V | F | MASK | REGIONS, move |w, _, out| {
-            let chosen = chosen.now(w);
+            let chosen = chosen.resolve(w);
             let p = &w.particles;
             let has = |i: usize| chosen.has(p.mask[i], p.x[i]);
             let artefact = Artefact { lammps: w.settings.lammps(), several: sources.len() > 1 };

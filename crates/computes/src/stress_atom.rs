@@ -62,7 +62,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (ke, parts, bit, span) = (self.ke, self.parts, self.group.bit(), cx.span());
         if parts.any() {
-            cx.ask_atom_virial(when);
+            cx.request_atom_virial(when);
         }
         if ke {
             check_masses(cx.world(), span)?;

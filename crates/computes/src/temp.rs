@@ -96,7 +96,7 @@ pub(super) struct Freedom {
 
 impl Freedom {
     /// The count to use, given the `present` one; `before` is the last output.
-    pub fn now(&mut self, w: &World, t: &Tick, present: f64, before: &Slot) -> f64 {
+    pub fn count(&mut self, w: &World, t: &Tick, present: f64, before: &Slot) -> f64 {
         if !w.settings.lammps() || self.dynamic {
             return present;
         }
@@ -132,7 +132,7 @@ impl Compute for Declared {
                 });
                 let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
                 let dof =
-                    freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension), out);
+                    freedom.count(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension), out);
                 offer(w, out, mv2, tensor, dof);
                 Ok(())
             },

@@ -116,7 +116,7 @@ impl Compute for Declared {
             });
             let present = me.freedom(w, flow.as_ref());
             let anew = flow.is_some_and(|f| !f.apart.is_empty());
-            let dof = if anew { present } else { freedom.now(w, t, present, out) };
+            let dof = if anew { present } else { freedom.count(w, t, present, out) };
             let twice = tensor[0] + tensor[1] + tensor[2];
             offer(w, out, twice, tensor, dof);
             Ok(())

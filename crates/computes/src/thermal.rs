@@ -131,7 +131,7 @@ impl<S: Streams> Compute for Thermal<S> {
                 [m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
             });
             let present = me.flow.freedom(w, me.group, me.rules.extra);
-            let dof = if me.flow.counts_anew() { present } else { freedom.now(w, t, present, out) };
+            let dof = if me.flow.counts_anew() { present } else { freedom.count(w, t, present, out) };
             offer(w, out, tensor[0] + tensor[1] + tensor[2], tensor, dof);
             if me.flow.bins() > 0 {
                 (out.array, out.array_cols) = (me.by_bin(w, &taken), 2);

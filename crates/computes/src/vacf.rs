@@ -53,11 +53,11 @@ impl Compute for Declared {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
-        self.welcome(w);
+        self.particles_joined(w);
         Ok(())
     }
 
-    fn welcome(&self, w: &mut World) {
+    fn particles_joined(&self, w: &mut World) {
         let n = w.n();
         w.columns.resize(n);
         keep_places(w, self.key, GroupId::ALL, |w, i| w.particles.v[i]);
@@ -68,7 +68,7 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        self.welcome(cx.world());
+        self.particles_joined(cx.world());
         let (me, key, whole) = (self.clone(), self.key, Whole::number(cx.world(), self.group));
         Ok(fill_sums(&self.id, &Wanted { slot, stage, when }, V | MASK | COLUMNS, move |w, _, out| {
             let first = w.columns.get_vector(key).unwrap_or(&[]);

@@ -1,9 +1,9 @@
 //! The loop over contacts: finds touching pairs, updates their history, evaluates the law, and sums in a
 //! fixed order.
 
+mod booking;
 mod grains;
 mod rules;
-mod told;
 
 pub use grains::{DEEP, Grains, NO_BODY};
 pub use rules::{Average, Curvature, Rule, Rules};

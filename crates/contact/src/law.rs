@@ -73,8 +73,8 @@ impl Granular {
 
     /// Whether the normal force is computed before the contacts are evaluated and read from their history;
     /// the fast loop does not support this.
-    pub fn is_told(&self) -> bool {
-        self.normal.is_told()
+    pub fn is_precomputed(&self) -> bool {
+        self.normal.is_precomputed()
     }
 
     /// The largest gap between surfaces before an existing contact ends (cohesion) [length].

@@ -1,7 +1,7 @@
 //! Contacts of spheres with walls: finding them, their histories, and their forces.
 
+mod booking;
 mod shapes;
-mod told;
 
 use super::together::{Met, Together};
 use super::{Advance, Geometry, Granular, Motion, Wrench};

@@ -302,7 +302,7 @@ impl Base {
             Rhythm::Time(every) => Some(Clock::Multiples(*every)),
             Rhythm::NamedTime(r) => {
                 let text = format!("$({r}:%.17g)");
-                Some(Clock::Asked(cx.text(&text, r.span, Stage::Output, &When::Always)?, r.clone()))
+                Some(Clock::Named(cx.text(&text, r.span, Stage::Output, &When::Always)?, r.clone()))
             }
         })
     }

@@ -182,7 +182,7 @@ impl Fix for Declared {
         self.columns.into_iter().chain([self.factors]).for_each(|c| w.columns.remove(c));
     }
 
-    fn welcome(&self, w: &mut World) {
+    fn particles_joined(&self, w: &mut World) {
         let [radius, mass] = self.columns;
         if !w.memo.contains(radius) {
             return;

@@ -8,7 +8,7 @@ mod track;
 pub use pressure::DeformPressure;
 
 use super::{Facts, Fix, FixStyle};
-use op::{Move, Shape, tell};
+use op::{Move, Shape, store_streaming};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Tick, When};
@@ -281,7 +281,7 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let Some(d) = &*w.domain else { return Ok(()) };
         w.memo.insert(self.key(), [d.lo, d.hi, d.tilt.unwrap_or_default()].concat());
-        tell(w, self.rates(), [[0.0; 3]; 3], self.remap);
+        store_streaming(w, self.rates(), [[0.0; 3]; 3], self.remap);
         Ok(())
     }
 
@@ -304,7 +304,7 @@ impl Fix for Declared {
         let now = Shape::at(&tracks, &leans, w, &t)?;
         let leans_now = w.domain.as_ref().is_some_and(|d| d.tilt.is_some());
         let (stretch, flips) = (self.rates(), self.flips && leans_now);
-        tell(w, stretch, now.streaming(&tracks, &leans, w, true), remap);
+        store_streaming(w, stretch, now.streaming(&tracks, &leans, w, true), remap);
         if remap == Remap::Velocities {
             let flow = now.flow(&tracks, &leans, (w, group), true);
             w.domain.iter_mut().for_each(|d| d.flow = Some(flow));

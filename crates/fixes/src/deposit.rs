@@ -272,7 +272,7 @@ impl Op for Drop {
         About::new(&self.name, Stage::Exchange, Needs::new().read(X).write(Fields::ALL))
     }
     fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
-        Rows::Asks
+        Rows::Requested
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (fix, key) = (&self.fix, self.key);

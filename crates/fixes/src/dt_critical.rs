@@ -102,7 +102,7 @@ struct Declared {
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         self.follower.declare(w);
-        critical::ask_walls(w);
+        critical::request_wall_springs(w);
         Ok(())
     }
 

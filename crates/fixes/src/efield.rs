@@ -65,8 +65,8 @@ impl FixStyle for Efield {
                 "energy" | "potential" => {
                     let of = atom_variable(args, cx, &word.text)?;
                     // As in LAMMPS the potential overrides the energy.
-                    if potential || !matches!(fix.energy, Energy::Said { potential: true, .. }) {
-                        fix.energy = Energy::Said { of, potential };
+                    if potential || !matches!(fix.energy, Energy::Given { potential: true, .. }) {
+                        fix.energy = Energy::Given { of, potential };
                     }
                 }
                 _ => return Err(args.unknown(word, &["region", "energy", "potential"])),
@@ -104,7 +104,7 @@ enum Energy {
     /// None: a variable field without an energy variable.
     None,
     /// An atom-style variable: the energy itself, or the potential at the charge.
-    Said { of: ValueRef, potential: bool },
+    Given { of: ValueRef, potential: bool },
 }
 
 #[derive(Clone)]
@@ -130,7 +130,7 @@ impl Fix for Declared {
         let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
         let field = [read(x)?, read(y)?, read(z)?];
         let said: Option<(Reading, bool)> = match &self.energy {
-            Energy::Said { of, potential } => {
+            Energy::Given { of, potential } => {
                 Some((cx.value(of, Stage::PostForce, &When::Always)?, *potential))
             }
             Energy::Own | Energy::None => None,

@@ -39,7 +39,7 @@ impl Elapsed {
     }
 
     /// Time at the latest step.
-    pub fn now(&self) -> f64 {
+    pub fn time(&self) -> f64 {
         self.time + (self.last - self.step) * self.dt
     }
 
@@ -49,7 +49,7 @@ impl Elapsed {
         self.step += before - self.last;
         self.last = before;
         if dt != self.dt {
-            *self = Self { time: self.now(), step: before, dt, ..*self };
+            *self = Self { time: self.time(), step: before, dt, ..*self };
         }
         self.last = step as f64;
     }

@@ -77,7 +77,7 @@ impl Declared {
         // The choice depends on the order of creation.
         w.fall_back();
         let p = &w.particles;
-        let here = chosen.now(w);
+        let here = chosen.resolve(w);
         let mut list: Vec<usize> = (0..p.len()).filter(|&i| here.has(p.mask[i], p.x[i])).collect();
         let mut gone = vec![false; p.len()];
         for _ in 0..self.count.min(list.len() as u64) {
@@ -127,7 +127,7 @@ impl Fix for Declared {
             Ok(())
         };
         let op = StepOp::new(format!("fix {} evaporate", self.id), Stage::Exchange, access, act);
-        Ok(vec![op.asking().boxed()])
+        Ok(vec![op.requesting_rows().boxed()])
     }
 
     fn shape(&self) -> Shape {

@@ -8,7 +8,7 @@ use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
-use perigrain_world::outside::{Asked, Each, Told};
+use perigrain_world::outside::{Each, HostCall, HostValues};
 use perigrain_world::{GroupId, Key, Numbers, Outside, Vectors, World};
 
 /// The style.
@@ -162,7 +162,7 @@ impl Fix for Declared {
             let outside = w.parts.outside.get(own.key.of()).cloned();
             let due = |every: i64| t.step % every == 0;
             if own.call.is_some_and(due) && !t.unchanged {
-                own.ask(w, t, outside.as_deref()).map_err(|e| e.at(span))?;
+                own.call_program(w, t, outside.as_deref()).map_err(|e| e.at(span))?;
             }
             if due(own.apply) && !t.unchanged {
                 change_forces::<0>(w, &chosen, |w, i, f| {
@@ -172,13 +172,13 @@ impl Fix for Declared {
                     []
                 });
             }
-            let mut told = outside.map_or_else(Told::default, |program| program.told());
+            let mut values = outside.map_or_else(HostValues::default, |program| program.values());
             own.kept.add(w, (t.atom_energy && counted, t.atom_virial && own.virial));
             if own.virial && t.virial {
-                (0..6).for_each(|k| w.tally.fixes[k] += told.virial[k]);
+                (0..6).for_each(|k| w.tally.fixes[k] += values.virial[k]);
             }
-            told.vector.resize(own.length, 0.0);
-            publish(w, slot, t, told.energy, &told.vector);
+            values.vector.resize(own.length, 0.0);
+            publish(w, slot, t, values.energy, &values.vector);
             Ok(())
         });
         Ok(vec![op.boxed()])
@@ -217,12 +217,12 @@ impl Fix for Declared {
 
 impl Declared {
     /// Calls the host program to write forces.
-    fn ask(&self, w: &mut World, t: &Tick, outside: Option<&dyn Outside>) -> Result<()> {
+    fn call_program(&self, w: &mut World, t: &Tick, outside: Option<&dyn Outside>) -> Result<()> {
         let n = w.n();
         let mut f = std::mem::take(w.columns.vector(self.key, n));
         let p = &w.particles;
-        let asked = Asked { step: t.step, ids: &p.tag, x: &p.x, f: &mut f };
-        let answer = outside.and_then(|program| program.call(asked));
+        let call = HostCall { step: t.step, ids: &p.tag, x: &p.x, f: &mut f };
+        let answer = outside.and_then(|program| program.call(call));
         *w.columns.vector(self.key, n) = f;
         match answer {
             Some(Ok(())) => match outside {
@@ -258,15 +258,15 @@ mod tests {
     struct Program;
 
     impl Outside for Program {
-        fn call(&self, asked: Asked<'_>) -> Option<std::result::Result<(), String>> {
-            for (f, id) in asked.f.iter_mut().zip(asked.ids) {
-                *f = [asked.step as f64 + f[0], f64::from(*id), 0.0];
+        fn call(&self, call: HostCall<'_>) -> Option<std::result::Result<(), String>> {
+            for (f, id) in call.f.iter_mut().zip(call.ids) {
+                *f = [call.step as f64 + f[0], f64::from(*id), 0.0];
             }
-            Some(if asked.step == 3 { Err("three".into()) } else { Ok(()) })
+            Some(if call.step == 3 { Err("three".into()) } else { Ok(()) })
         }
 
-        fn told(&self) -> Told {
-            Told { energy: 2.5, virial: [1.0; 6], vector: vec![7.0] }
+        fn values(&self) -> HostValues {
+            HostValues { energy: 2.5, virial: [1.0; 6], vector: vec![7.0] }
         }
 
         fn each(&self) -> Each {

@@ -261,7 +261,7 @@ impl Fix for Declared {
             Ok(())
         };
         // An idle gravity needs no rows.
-        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told).asking();
+        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told).requesting_rows();
         Ok(vec![op.boxed()])
     }
 

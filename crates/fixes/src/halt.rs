@@ -1,7 +1,7 @@
 //! fix halt: ends a run when a condition is met.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
-use perigrain_base::comm::told;
+use perigrain_base::comm::broadcast;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
@@ -111,12 +111,12 @@ struct Declared {
 
 impl Declared {
     /// The current value of the attribute.
-    fn now(&self, w: &World, reading: Option<Reading>) -> Result<f64> {
+    fn present_value(&self, w: &World, reading: Option<Reading>) -> Result<f64> {
         match &self.attribute {
             // Without a bond_style there are no bonds.
             Attribute::Bonds => Ok(0.0),
             Attribute::Seconds => {
-                Ok(told::number(|| w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64())))
+                Ok(broadcast::number(|| w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64())))
             }
             Attribute::Disk(path) => free_megabytes(path),
             Attribute::Variable(_) => Ok(reading.map_or(0.0, |r| r.get(w))),
@@ -131,7 +131,7 @@ fn free_megabytes(path: &Path) -> Result<f64> {
         Diagnostic::error(perigrain_base::gate::code(&e), None::<Span>, text)
     })?;
     // Uses `df`, because the standard library has no function for this.
-    let text = told::text(|| {
+    let text = broadcast::text(|| {
         let output = std::process::Command::new("df").arg("-Pk").arg("--").arg(path).output();
         output.ok().filter(|o| o.status.success()).map(|o| String::from_utf8_lossy(&o.stdout).into_owned())
     });
@@ -151,7 +151,7 @@ impl Fix for Declared {
         };
         let (me, log, access) = (self.clone(), cx.log(), Needs::new().read(SLOTS).write(CLOCK));
         let op = StepOp::new(format!("fix {} halt", self.id), Stage::EndOfStep, access, move |w, t| {
-            let value = me.now(w, reading)?;
+            let value = me.present_value(w, reading)?;
             if !(me.compare)(value, me.value) {
                 return Ok(());
             }

@@ -150,7 +150,7 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            let body = form.now(w)?;
+            let body = form.present(w)?;
             let lammps = w.settings.lammps();
             let domain = w.domain.clone();
             let repeats = domain.as_ref().filter(|b| (0..3).any(|k| b.boundary.periodic(k)));

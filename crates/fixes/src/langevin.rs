@@ -214,7 +214,7 @@ impl Declared {
     fn bath(
         &self,
         w: &World,
-        who: &[(usize, f64, f64)],
+        members: &[(usize, f64, f64)],
         stream: &mut Marsaglia,
         rotation: bool,
     ) -> Vec<Vec3> {
@@ -223,7 +223,7 @@ impl Declared {
         let push = (by * units.boltz / self.damp / w.clock.dt / units.mvv2e).sqrt() / units.ftm2v;
         let drag = if rotation { 10.0 / 3.0 } else { 1.0 } / self.damp / units.ftm2v;
         let ratio = |i: usize| self.ratios[usize::from(p.kind[i]) - 1];
-        let mut forces: Vec<Vec3> = who
+        let mut forces: Vec<Vec3> = members
             .iter()
             .map(|&(i, inertia, root)| {
                 let size = inertia.sqrt() * push / ratio(i).sqrt() * root;
@@ -236,7 +236,7 @@ impl Declared {
             let mean = mean.map(|a| a / forces.len() as f64);
             forces.iter_mut().for_each(|f| (0..3).for_each(|d| f[d] -= mean[d]));
         }
-        for (f, &(i, inertia, _)) in forces.iter_mut().zip(who) {
+        for (f, &(i, inertia, _)) in forces.iter_mut().zip(members) {
             let v = if rotation { p.omega[i] } else { p.v[i] };
             (0..3).for_each(|d| f[d] -= inertia * drag / ratio(i) * v[d]);
         }

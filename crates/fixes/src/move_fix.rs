@@ -140,7 +140,7 @@ impl Declared {
     /// Stores the initial positions and orientations of particles that joined the group since the last call.
     fn capture(&self, w: &mut World) {
         let (key, bit) = (self.key, self.group.bit());
-        let now = Elapsed::load(w, key).now();
+        let now = Elapsed::load(w, key).time();
         keep_places(w, key.of(), self.group, |w, i| self.path.start(unwrapped(w, i), now));
         let Some(turned) = self.turned(w, now) else { return };
         let new = |i: &usize| w.particles.mask[*i] & bit != 0 && !self.turn.holds(w, *i);
@@ -169,7 +169,7 @@ impl Fix for Declared {
         self.turn.drop(w);
     }
 
-    fn welcome(&self, w: &mut World) {
+    fn particles_joined(&self, w: &mut World) {
         self.capture(w);
     }
 
@@ -254,7 +254,7 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
     elapsed.follow(t.step, t.dt);
     elapsed.store(w, key);
     let lammps = (t.step as f64 - elapsed.origin) * t.dt;
-    let time = if w.settings.lammps() { lammps } else { elapsed.now() };
+    let time = if w.settings.lammps() { lammps } else { elapsed.time() };
     let (bit, half) = (group.bit(), half_step(w, t.dt));
     let periods = w.periods();
     let (lengths, tilted) = (periods.length, periods.tilted());

@@ -435,12 +435,12 @@ impl Fix for Declared {
             crew.weight = weight.clone();
             move |w: &mut World, t: &Tick| {
                 // Values that decks can read need all bodies.
-                if !t.told && me.shares(w, t) {
+                if !t.collective && me.shares(w, t) {
                     me.take_part(w, &mut crew);
                     w.halo(X | F | TORQUE, Halo::Members);
                 }
                 if t.on {
-                    me.go_on(w, t, slot, &mut crew);
+                    me.begin_next(w, t, slot, &mut crew);
                 } else if !t.unchanged {
                     me.finish_step(w, t, slot, &mut crew);
                 }
@@ -449,8 +449,8 @@ impl Fix for Declared {
         };
         let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
         let first = first.reporting().spanning(spans(self.clone()));
-        let last = last.reporting().going_on().with_sums().spanning(spans(self.clone()));
-        let mut ops = vec![bodies.asking().boxed(), first.boxed()];
+        let last = last.reporting().beginning_next().with_sums().spanning(spans(self.clone()));
+        let mut ops = vec![bodies.requesting_rows().boxed(), first.boxed()];
         if cx.world().settings.lammps() {
             // Its setup sums the forces at its place among the fixes: those of fixes declared later are
             // missing.

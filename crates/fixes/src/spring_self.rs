@@ -72,7 +72,7 @@ impl Fix for Declared {
         w.columns.remove(self.key);
     }
 
-    fn welcome(&self, w: &mut World) {
+    fn particles_joined(&self, w: &mut World) {
         keep_places(w, self.key, self.group, unwrapped);
     }
 

@@ -127,7 +127,7 @@ impl Declared {
                         "zu" => center[2],
                         _ => 0.0,
                     };
-                    let values = getter.now(world);
+                    let values = getter.values(world);
                     (0..n).map(|i| values.get(i) - less).collect()
                 }
                 Input::Value(_) if which != input.left_out_at() => {

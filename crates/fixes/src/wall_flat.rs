@@ -154,14 +154,14 @@ struct Sealed {
 }
 
 /// One wall in this step.
-struct Now<'a> {
+struct PresentWall<'a> {
     face: &'a Face,
     at: f64,
     law: Law,
 }
 
 impl Sealed {
-    fn now(&self, w: &World, span: Span) -> Result<Now<'_>> {
+    fn present(&self, w: &World, span: Span) -> Result<PresentWall<'_>> {
         let mut given = [0.0; 3];
         for ((to, (from, varies)), what) in given.iter_mut().zip(&self.numbers).zip(numbers(self.law)) {
             *to = from.get(w);
@@ -171,11 +171,15 @@ impl Sealed {
                 return fail(Code::BAD_VALUE, span, text);
             }
         }
-        Ok(Now { face: &self.face, at: self.spot.get(w), law: Law::new(self.law, given, self.cutoff) })
+        Ok(PresentWall {
+            face: &self.face,
+            at: self.spot.get(w),
+            law: Law::new(self.law, given, self.cutoff),
+        })
     }
 }
 
-impl Now<'_> {
+impl PresentWall<'_> {
     /// Distance, force away from the wall and energy of a particle.
     #[inline]
     fn push(&self, x: [f64; 3], radius: f64) -> Option<(f64, [f64; 2])> {
@@ -230,7 +234,7 @@ fn radius(w: &World, i: usize, asked: bool) -> f64 {
 /// What one particle gets from all walls: energy, the forces on up to six walls, whether it is behind one.
 type Got = [f64; 8];
 
-fn push_all(walls: &[Now], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
+fn push_all(walls: &[PresentWall], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
     let mut got = [0.0; 8];
     for (k, wall) in walls.iter().enumerate() {
         let Some((_, [push, energy])) = wall.push(x, radius) else { continue };
@@ -244,7 +248,7 @@ fn push_all(walls: &[Now], x: [f64; 3], radius: f64, f: &mut [f64; 3]) -> Got {
 }
 
 /// Virial of a particle from all walls: xx yy zz xy xz yz.
-fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 6] {
+fn virial_of(walls: &[PresentWall], x: [f64; 3], radius: f64) -> [f64; 6] {
     let mut virial = [0.0; 6];
     for (wall, (r, [push, _])) in walls.iter().filter_map(|wall| Some((wall, wall.push(x, radius)?))) {
         virial[wall.face.axis] += push * r;
@@ -253,8 +257,14 @@ fn virial_of(walls: &[Now], x: [f64; 3], radius: f64) -> [f64; 6] {
 }
 
 /// The error for a particle that has reached a wall or gone through it.
-fn reached(w: &World, chosen: &Chosen, (walls, sized): (&[Now], bool), t: &Tick, span: Span) -> Result<()> {
-    let (p, now) = (&w.particles, chosen.now(w));
+fn reached(
+    w: &World,
+    chosen: &Chosen,
+    (walls, sized): (&[PresentWall], bool),
+    t: &Tick,
+    span: Span,
+) -> Result<()> {
+    let (p, now) = (&w.particles, chosen.resolve(w));
     let behind = |i: usize| walls.iter().find(|wall| wall.reached(p.x[i], radius(w, i, sized)));
     let first = (0..w.n())
         .filter(|&i| now.has(p.mask[i], p.x[i]))
@@ -291,7 +301,7 @@ impl Fix for Declared {
             move |w, t| {
                 let mut now = vec![];
                 for wall in &walls {
-                    now.push(wall.now(w, span)?);
+                    now.push(wall.present(w, span)?);
                 }
                 if virial {
                     let of = |w: &World, i: usize| virial_of(&now, w.particles.x[i], radius(w, i, sized));

@@ -145,7 +145,7 @@ impl Log {
         let mut inner = self.inner();
         let echo = inner.echo;
         if matches!(echo, Echo::Screen | Echo::Both) {
-            inner.say(line);
+            inner.write_line(line);
         }
         if matches!(echo, Echo::Log | Echo::Both) {
             inner.record(line)?;
@@ -156,7 +156,7 @@ impl Log {
     /// A line for screen and file.
     pub fn line(&self, line: &str) -> Result<()> {
         let mut inner = self.inner();
-        inner.say(line);
+        inner.write_line(line);
         inner.record(line)
     }
 
@@ -167,16 +167,16 @@ impl Log {
     pub fn line_or(&self, line: &str, brief: Option<&str>) -> Result<()> {
         let mut inner = self.inner();
         match (inner.width.is_some(), brief) {
-            (true, Some(brief)) => inner.say_within(brief),
+            (true, Some(brief)) => inner.write_within(brief),
             (true, None) => {}
-            (false, _) => inner.say(line),
+            (false, _) => inner.write_line(line),
         }
         inner.record(line)
     }
 
     /// A line for the screen alone; a brief screen breaks it at its width.
     pub fn to_screen(&self, line: &str) {
-        self.inner().say_within(line);
+        self.inner().write_within(line);
     }
 
     /// A line for the file alone.
@@ -232,7 +232,7 @@ impl Log {
 
 impl Inner {
     /// A screen that cannot be written (`| head`) is dropped; the file has it all.
-    fn say(&mut self, line: &str) {
+    fn write_line(&mut self, line: &str) {
         if let Some(screen) = &mut self.screen
             && writeln!(screen, "{line}").is_err()
         {
@@ -241,10 +241,10 @@ impl Inner {
     }
 
     /// Writes lines that are wider than a brief screen on several lines, broken between words.
-    fn say_within(&mut self, text: &str) {
+    fn write_within(&mut self, text: &str) {
         match self.width.as_ref().map(|width| width()) {
-            Some(width) => self.say(&within(text, width)),
-            None => self.say(text),
+            Some(width) => self.write_line(&within(text, width)),
+            None => self.write_line(text),
         }
     }
 

@@ -5,7 +5,7 @@ mod apng;
 use crate::file::trouble;
 use crate::image::Image;
 use apng::Apng;
-use perigrain_base::comm::{self, told};
+use perigrain_base::comm::{self, broadcast};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::gate;
 use std::io::{BufWriter, Write};
@@ -52,7 +52,7 @@ pub fn ffmpeg() -> Option<PathBuf> {
     if gate::limits().is_some() {
         return None;
     }
-    told::text(|| found()?.into_os_string().into_string().ok()).map(PathBuf::from)
+    broadcast::text(|| found()?.into_os_string().into_string().ok()).map(PathBuf::from)
 }
 
 /// Where ffmpeg is on this machine.

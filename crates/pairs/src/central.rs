@@ -14,7 +14,7 @@ use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::World;
 use perigrain_world::field::Fields;
-use probe::Asked;
+use probe::CentralProbe;
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 pub use table::Table;
@@ -136,7 +136,7 @@ impl<L: Law> Pair for Declared<L> {
         if !L::SINGLE {
             return Ok(vec![]);
         }
-        Ok(vec![(0, Box::new(Asked::new(Table::new(self, w))))])
+        Ok(vec![(0, Box::new(CentralProbe::new(Table::new(self, w))))])
     }
 
     fn scales(&self, w: &World, _deck: Deck) -> Scales {

@@ -10,7 +10,7 @@ use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Grains, Rule, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
-use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, Springs};
+use perigrain_styles::probe::{Interaction, OWN, Probe, Request, Springs};
 use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::contacts::{Contacts, Rolls};
 use perigrain_world::index::Index;
@@ -83,14 +83,14 @@ impl ContactProbe {
     fn evaluated<T>(
         &mut self,
         w: &World,
-        ask: Ask,
+        request: Request,
         read: impl FnOnce(&Grains, &Rules, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
         let list = match self.take_list(w) {
             Some(list) => list,
             None => self.list(w)?,
         };
-        let out = self.swept(w, &list, ask, read);
+        let out = self.swept(w, &list, request, read);
         self.listed = Some((w.rebuild.generation, list));
         out
     }
@@ -100,10 +100,10 @@ impl ContactProbe {
         &mut self,
         w: &World,
         list: &[Pair],
-        ask: Ask,
+        request: Request,
         read: impl FnOnce(&Grains, &Rules, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
-        let asked = self.rules.ask_for_bodies();
+        let asked = self.rules.needs_bodies();
         let body = match &*w.families {
             Some(families) if asked => solids(families, w.n()),
             _ => vec![],
@@ -113,13 +113,13 @@ impl ContactProbe {
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, w.periods(), &body, &frozen)? };
         let mut memory = w.contacts.get(self.key).cloned().unwrap_or_default();
-        if ask == (Ask::Felt { setup: true }) && w.settings.lammps() && self.own != Own::Mdr {
+        if request == (Request::Felt { setup: true }) && w.settings.lammps() && self.own != Own::Mdr {
             // There the setup has kept the springs it has shrunk, and not the radii it shrank them to.
             self.keep_shrunk(w, &mut memory);
         }
-        let rules = match ask {
-            Ask::Felt { setup } => &self.rules.again(setup),
-            Ask::Acting | Ask::Idle => &self.rules,
+        let rules = match request {
+            Request::Felt { setup } => &self.rules.again(setup),
+            Request::Acting | Request::Idle => &self.rules,
         };
         self.sweep.run(list, &grains, rules, &mut memory, still(w));
         Ok(read(&grains, rules, &self.sweep, &memory))
@@ -217,12 +217,12 @@ impl Probe for ContactProbe {
         Ok(self.list(w)?.iter().map(|p| [p.i, p.j]).collect())
     }
 
-    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, request: Request) -> Result<Vec<Interaction>> {
         let p = &w.particles;
         let own = self.own;
         let warm = conducts(&self.rules).then(|| w.columns.property(*TEMPERATURE)).flatten();
         let (warm, last) = (warm.and_then(|key| w.columns.get_scalar(key)), self.own() - 1);
-        let acting = self.evaluated(w, ask, |grains, _, sweep, memory| {
+        let acting = self.evaluated(w, request, |grains, _, sweep, memory| {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
             if own == Own::Mdr {
@@ -236,7 +236,7 @@ impl Probe for ContactProbe {
             }
             all
         })?;
-        if ask != Ask::Idle {
+        if request != Request::Idle {
             return Ok(acting);
         }
         let mut acting = acting.into_iter().peekable();
@@ -276,8 +276,8 @@ impl Probe for ContactProbe {
             });
         };
         // What contacts of solids share depends on all of them.
-        if self.rules.ask_for_bodies() || self.rules.any(|r| r.average != Average::None) {
-            return self.swept(w, &list, Ask::Acting, &mut read);
+        if self.rules.needs_bodies() || self.rules.any(|r| r.average != Average::None) {
+            return self.swept(w, &list, Request::Acting, &mut read);
         }
         self.swept_in_blocks(w, &list, read)
     }
@@ -292,7 +292,7 @@ impl Probe for ContactProbe {
     }
 
     fn held(&mut self, w: &World) -> Result<[f64; 2]> {
-        self.evaluated(w, Ask::Felt { setup: false }, |grains, rules, sweep, memory| {
+        self.evaluated(w, Request::Felt { setup: false }, |grains, rules, sweep, memory| {
             let mut sum = [0.0; 2];
             sweep.each(grains, rules, memory, |c| {
                 let stored = c.law.stored(&c.geometry, c.history);

@@ -59,7 +59,7 @@ impl StepPlan {
         let next = all.map(|w| w.next(t.step, t.last)).min().unwrap_or(i64::MAX);
         self.quiet = (t.step..next, t.last);
         self.usually.take(&self.ops);
-        self.asked = self.asked_by(When::is_always);
+        self.requested = self.requested_by(When::is_always);
     }
 
     /// Whether ops with these times act at this tick.
@@ -134,8 +134,8 @@ impl StepPlan {
         // The virial of constraints depends on how the first half of a step changes velocities. Short steps followed by others
         // keep the number of the long step, in which nothing reads the virial.
         let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };
-        let asked = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| self.fires(w, &next));
+        let requested = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| self.fires(w, &next));
         let looks = t.phase.outermost() && (looks(Stage::EndOfStep) || looks(Stage::Output));
-        (one && !asked && !looks).then_some(k)
+        (one && !requested && !looks).then_some(k)
     }
 }

@@ -17,7 +17,7 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
         for p in ops {
             let _ = write!(s, "  {:<34} {:<22}", p.about.name, p.about.when.to_string());
             if let Some(levels) = plan.levels.filter(|_| stage < Stage::EndOfStep) {
-                let _ = write!(s, " {:<12}", p.about.level.told(levels));
+                let _ = write!(s, " {:<12}", p.about.level.describe(levels));
             }
             if measured {
                 let secs = p.meter.time.as_secs_f64();

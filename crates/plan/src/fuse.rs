@@ -222,15 +222,15 @@ mod tests {
     }
 
     /// One word per pass: the places of the actions in a pass of a motion, `c` if it clears.
-    fn told(fill: &[&dyn Fn(&mut Room)]) -> Vec<String> {
-        let told = |pass: Pass| match pass {
+    fn pass_words(fill: &[&dyn Fn(&mut Room)]) -> Vec<String> {
+        let word = |pass: Pass| match pass {
             Pass::Alone(at, _) => format!("{at}"),
             Pass::Together(_, beside, places) => {
                 let at: String = places.iter().flatten().map(|k| format!("{k}+")).collect();
                 at + if beside.clears { "c" } else { "" }
             }
         };
-        passes(Acts::new(&rooms(fill), &[0, 1, 2, 3, 4][..fill.len()])).map(told).collect()
+        passes(Acts::new(&rooms(fill), &[0, 1, 2, 3, 4][..fill.len()])).map(word).collect()
     }
 
     #[test]
@@ -242,15 +242,15 @@ mod tests {
         let moving: &dyn Fn(&mut Room) = &|room| room.moving(|_, _| [BlockSums::default(); 3]);
         let other: &dyn Fn(&mut Room) = &|room| room.act(none);
         let clear: &dyn Fn(&mut Room) = &Room::clear;
-        assert_eq!(told(&[pull, hold, moving, clear]), ["0+1+2+c"]);
-        assert_eq!(told(&[hold, pull, moving, clear]), ["0", "1+2+c"]);
+        assert_eq!(pass_words(&[pull, hold, moving, clear]), ["0+1+2+c"]);
+        assert_eq!(pass_words(&[hold, pull, moving, clear]), ["0", "1+2+c"]);
         // A flattening has no sum of its own.
-        assert_eq!(told(&[pull, hold, flat, moving, clear]), ["0+1+3+c"]);
-        assert_eq!(told(&[flat, moving, clear]), ["1+c"]);
-        assert_eq!(told(&[flat, hold, moving]), ["0", "1+2+"]);
-        assert_eq!(told(&[pull, pull, hold, moving]), ["0", "1+2+3+"]);
-        assert_eq!(told(&[pull, other, moving, hold, clear]), ["0", "1", "2+", "3", "4"]);
-        assert_eq!(told(&[pull, hold, clear, moving, moving]), ["0", "1", "2", "3+", "4+"]);
+        assert_eq!(pass_words(&[pull, hold, flat, moving, clear]), ["0+1+3+c"]);
+        assert_eq!(pass_words(&[flat, moving, clear]), ["1+c"]);
+        assert_eq!(pass_words(&[flat, hold, moving]), ["0", "1+2+"]);
+        assert_eq!(pass_words(&[pull, pull, hold, moving]), ["0", "1+2+3+"]);
+        assert_eq!(pass_words(&[pull, other, moving, hold, clear]), ["0", "1", "2+", "3", "4"]);
+        assert_eq!(pass_words(&[pull, hold, clear, moving, moving]), ["0", "1", "2", "3+", "4+"]);
     }
 
     #[test]

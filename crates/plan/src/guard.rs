@@ -8,7 +8,7 @@ use perigrain_world::World;
 pub type Look = Box<dyn FnMut(&World) -> Result<Energy> + Send>;
 
 /// Writes a line to the log.
-pub type Say = Box<dyn FnMut(&str) -> Result<()> + Send>;
+pub type WriteLine = Box<dyn FnMut(&str) -> Result<()> + Send>;
 
 /// The energy of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,5 +47,5 @@ pub struct Guard {
     /// Reads the energy.
     pub look: Look,
     /// Writes a line.
-    pub say: Say,
+    pub write_line: WriteLine,
 }

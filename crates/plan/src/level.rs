@@ -76,7 +76,7 @@ pub enum Level {
 
 impl Level {
     /// The level in a user's words, of `levels`.
-    pub fn told(self, levels: usize) -> String {
+    pub fn describe(self, levels: usize) -> String {
         match self {
             Level::Outermost => format!("level {levels}"),
             Level::At(k) => format!("level {}", (k + 1).min(levels)),

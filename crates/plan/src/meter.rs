@@ -85,14 +85,14 @@ impl Timing {
     }
 
     /// A running clock, unless times are not needed.
-    pub fn now(&self) -> Stopwatch {
+    pub fn running(&self) -> Stopwatch {
         if self.off { Stopwatch { last: None, counts: 1 } } else { Stopwatch::all() }
     }
 
     /// The clock for this step: it stands still in most short steps, and a timed step counts for them.
     pub fn clock(&self, t: &Tick) -> Stopwatch {
         if self.off || self.one_in == 0 || t.setup {
-            return self.now();
+            return self.running();
         }
         // Fibonacci hashing: the sample does not fall in with the period of any op.
         let place = (t.step as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;

@@ -215,9 +215,9 @@ mod tests {
     use perigrain_world::field::{F, V, X};
 
     /// States one thing and does another.
-    struct Says(Needs, fn(&mut World));
+    struct Stated(Needs, fn(&mut World));
 
-    impl Op for Says {
+    impl Op for Stated {
         fn about(&self) -> About {
             About::new("fix 1 says", Stage::PostForce, self.0)
         }
@@ -230,7 +230,7 @@ mod tests {
     fn acts(needs: Needs, does: fn(&mut World)) {
         let (mut plan, mut w) = (StepPlan::default(), World::default());
         w.particles.push(1, 1, [0.5; 3]);
-        plan.add(Placed::new(Box::new(Says(needs, does)), None));
+        plan.add(Placed::new(Box::new(Stated(needs, does)), None));
         let t = Tick::between_runs(&w.clock);
         plan.run(&mut w, &t, &[Stage::PostForce]).unwrap();
     }

@@ -226,7 +226,7 @@ pub struct Tick {
     /// in between.
     pub on: bool,
     /// The collective results of ops (sums of forces and the like) may be read after this step.
-    pub told: bool,
+    pub collective: bool,
     /// Only the ops of every step act.
     pub quiet: bool,
 }
@@ -259,7 +259,7 @@ impl Tick {
             contacts: false,
             atom_virial: false,
             on: false,
-            told: true,
+            collective: true,
             quiet: false,
         }
     }
@@ -299,10 +299,10 @@ pub struct About {
     pub reports_travel: bool,
     /// Whether it may act on blocks of particles ([`Way::Blocks`]); it never rests then.
     pub fuses: bool,
-    /// Whether it computes a collective result of all particles that others may read ([`Tick::told`]).
-    pub tells: bool,
+    /// Whether it computes a collective result of all particles that others may read ([`Tick::collective`]).
+    pub collective: bool,
     /// Whether `run` can begin the next step as well, where [`Tick::on`] is set.
-    pub goes_on: bool,
+    pub begins_next: bool,
     /// Whether it also acts once the run is over, if that ended before its last step ([`Tick::ending`]): ops that save the run.
     pub at_parting: bool,
     /// The row of the timing table.
@@ -320,7 +320,8 @@ impl About {
             _ => OpClass::Modify,
         };
         let (when, in_setup, level) = (When::Always, stage.in_setup(), Level::Outermost);
-        let (reports_travel, fuses, tells, goes_on, at_parting) = (false, false, false, false, false);
+        let (reports_travel, fuses, collective, begins_next, at_parting) =
+            (false, false, false, false, false);
         Self {
             name: name.into(),
             stage,
@@ -330,8 +331,8 @@ impl About {
             level,
             reports_travel,
             fuses,
-            tells,
-            goes_on,
+            collective,
+            begins_next,
             at_parting,
             class,
         }
@@ -379,7 +380,7 @@ pub trait Op: Send {
         Way::Alone
     }
     /// The rows whose values it needs at this tick, where particles are distributed over ranks; all rows where its sums may be
-    /// read, see [`About::tells`].
+    /// read, see [`About::collective`].
     fn span(&mut self, _w: &mut World, _t: &Tick) -> Span {
         Span::All
     }

@@ -71,7 +71,7 @@ impl Placed {
     /// Of which rows the op needs values at this tick, where particles are shared out to ranks.
     pub(super) fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
         match w.share {
-            Some(_) if !(self.about.tells && t.told) => self.op.span(w, t),
+            Some(_) if !(self.about.collective && t.collective) => self.op.span(w, t),
             _ => Rows::All,
         }
     }
@@ -157,7 +157,7 @@ pub struct StepPlan {
     pub(super) quiet: (Range<i64>, i64),
     /// The ops of those steps, and the sums they request.
     pub(super) usually: Usually,
-    pub(super) asked: Asked,
+    pub(super) requested: Requested,
     /// The ending of quiet steps before quiet steps.
     pub(super) usual: Option<Box<Ending>>,
     /// Room that steps use again.
@@ -166,7 +166,7 @@ pub struct StepPlan {
 
 /// Which sums are requested at a tick.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Asked {
+pub(super) struct Requested {
     energy: bool,
     virial: bool,
     atom_energy: bool,
@@ -191,23 +191,23 @@ impl StepPlan {
     }
 
     /// Fills in which sums are requested at this tick.
-    pub fn ask(&mut self, t: &mut Tick) {
+    pub fn request_sums(&mut self, t: &mut Tick) {
         self.look_ahead(t);
-        let asked = match self.is_quiet(t) && !t.ending {
-            true => self.asked,
-            false => self.asked_by(|w| t.ending || self.fires(w, t)),
+        let requested = match self.is_quiet(t) && !t.ending {
+            true => self.requested,
+            false => self.requested_by(|w| t.ending || self.fires(w, t)),
         };
         t.quiet = self.is_quiet(t) && !t.ending && t.step < t.last;
-        t.told = !t.quiet || !self.watched.is_empty();
-        t.energy = asked.energy;
-        t.virial = asked.virial;
-        t.atom_energy = asked.atom_energy;
-        t.atom_virial = asked.atom_virial;
-        t.contacts = asked.contacts;
+        t.collective = !t.quiet || !self.watched.is_empty();
+        t.energy = requested.energy;
+        t.virial = requested.virial;
+        t.atom_energy = requested.atom_energy;
+        t.atom_virial = requested.atom_virial;
+        t.contacts = requested.contacts;
     }
 
     /// Which sums the ops that act request.
-    pub(super) fn asked_by(&self, acts: impl Fn(&When) -> bool) -> Asked {
+    pub(super) fn requested_by(&self, acts: impl Fn(&When) -> bool) -> Requested {
         let any = |list: &[When]| list.iter().any(&acts);
         let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
         let atom_virial = any(&self.atom_virial);
@@ -215,7 +215,7 @@ impl StepPlan {
         let reads = |p: &Placed| {
             p.about.stage != Stage::Force && p.about.needs.reads(CONTACTS) && acts(&p.about.when)
         };
-        Asked {
+        Requested {
             energy: energy || atoms,
             virial: virial || atom_virial,
             atom_energy: atoms,
@@ -258,7 +258,7 @@ impl StepPlan {
                     When::Always => clock.get_or_insert_with(|| self.timing.clock(t)),
                     _ => {
                         clock = None;
-                        own.insert(self.timing.now())
+                        own.insert(self.timing.running())
                     }
                 };
                 self.ops[k].alone(w, t, clock, |op, w| op.run(w, t))?;

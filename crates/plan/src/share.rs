@@ -15,7 +15,7 @@ pub enum Span {
     /// Also reads those that its lists name ([`World::list_rows`]): all ranks evaluate them alike.
     Listed,
     /// Calls [`World::whole`] for what it needs, and changes all rows alike on all ranks.
-    Asks,
+    Requested,
     /// All ranks do the same to all rows.
     #[default]
     All,
@@ -27,14 +27,14 @@ impl std::fmt::Display for Span {
             Span::Own => "own",
             Span::Near => "near",
             Span::Listed => "listed",
-            Span::Asks => "asked",
+            Span::Requested => "asked",
             Span::All => "all",
         })
     }
 }
 
 /// The fields of which an op of all rows has all of them up to date: those it touches, or all where particles come, go or change places.
-fn asked(needs: &Needs) -> Fields {
+fn current_fields(needs: &Needs) -> Fields {
     match needs.changes(TAG) {
         true => Fields::ALL,
         false if needs.changes(FAMILIES) => needs.touched() | SITES,
@@ -48,10 +48,10 @@ pub(super) fn before(w: &mut World, span: Span, needs: impl Iterator<Item = Need
         return;
     }
     match span {
-        Span::All => needs.for_each(|needs| w.whole(asked(&needs))),
+        Span::All => needs.for_each(|needs| w.whole(current_fields(&needs))),
         Span::Near => needs.for_each(|needs| w.halo(needs.read_alone(), Halo::Near)),
         Span::Listed => needs.for_each(|needs| w.halo(needs.read_alone(), Halo::Listed)),
-        Span::Own | Span::Asks => {}
+        Span::Own | Span::Requested => {}
     }
     if let Some(share) = &mut w.share {
         share.narrow = matches!(span, Span::Own | Span::Near | Span::Listed);

@@ -32,7 +32,7 @@ impl StepPlan {
     }
 
     /// Whether the step before has made the beginning of this one.
-    pub fn goes_on(&mut self) -> bool {
+    pub fn take_begun(&mut self) -> bool {
         std::mem::take(&mut self.begun)
     }
 
@@ -46,7 +46,7 @@ impl StepPlan {
         use Stage::{InitialIntegrate, PostIntegrate};
         let Self { timing, ops, .. } = self;
         timing.step(|| ops.iter().map(|p| p.meter.time).sum());
-        if !self.goes_on() {
+        if !self.take_begun() {
             self.run(w, t, &[InitialIntegrate])?;
         }
         let ending = self.ending(t);
@@ -142,8 +142,9 @@ impl StepPlan {
         if w.share.is_none() {
             return Some(0..w.n());
         }
-        let told = t.told && order.iter().any(|&k| self.ops[k].about.tells);
-        let plain = w.grains_dealt().is_some() && !told && self.ops[force].span(w, t) == Span::Asks;
+        let collective = t.collective && order.iter().any(|&k| self.ops[k].about.collective);
+        let plain =
+            w.grains_dealt().is_some() && !collective && self.ops[force].span(w, t) == Span::Requested;
         match &w.share.as_ref().filter(|_| plain)?.own[..] {
             [rows] => Some(rows.clone()),
             _ => None,
@@ -239,8 +240,8 @@ impl StepPlan {
             let (passed, last) = self.offer(w, t, (ending, &order[at..]), &more);
             if !self.rooms.ops.is_empty() {
                 let Self { rooms: Rooms { acts, ops, came, .. }, ops: all, .. } = self;
-                let tells = t.told && ops.iter().any(|&k| all[k].about.tells);
-                let span = if tells { Span::All } else { Span::Own };
+                let collective = t.collective && ops.iter().any(|&k| all[k].about.collective);
+                let span = if collective { Span::All } else { Span::Own };
                 let before = w.traffic();
                 share::before(w, span, ops.iter().map(|&k| all[k].about.needs));
                 fuse(w, Acts::new(acts, ops), came);
@@ -252,15 +253,15 @@ impl StepPlan {
                 }
                 self.fused(w, t, last, clock.runs().then(|| clock.lap()));
                 // The next op may have been queried too.
-                let asked = &order[at..order.len().min(at + passed + 1)];
-                end_watch(w, asked.iter().map(|&k| self.ops[k].stated()));
+                let queried = &order[at..order.len().min(at + passed + 1)];
+                end_watch(w, queried.iter().map(|&k| self.ops[k].stated()));
             }
             at += passed;
             if passed > 0 {
                 continue;
             }
             let (k, p) = (order[at], &mut self.ops[order[at]]);
-            let on = last == Some(k) && t.phase.levels == 1 && p.about.goes_on;
+            let on = last == Some(k) && t.phase.levels == 1 && p.about.begins_next;
             if !self.begun && clears != Some(k) {
                 match on {
                     true => {

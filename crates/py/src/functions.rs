@@ -37,7 +37,7 @@ impl Library {
 }
 
 impl Functions for Library {
-    fn work_off(&self, code: &str, name: &str) -> Result<(), String> {
+    fn execute(&self, code: &str, name: &str) -> Result<(), String> {
         Python::attach(|py| {
             let run = || -> PyResult<()> {
                 let builtins = py.import("builtins")?;

@@ -3,7 +3,7 @@
 use super::values;
 use perigrain::session::Rows;
 use perigrain::world::Outside;
-use perigrain::world::outside::{Asked, Each, Told};
+use perigrain::world::outside::{Each, HostCall, HostValues};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
@@ -18,7 +18,7 @@ pub struct Hook(Mutex<State>);
 #[derive(Default)]
 struct State {
     function: Option<Py<PyAny>>,
-    told: Told,
+    values: HostValues,
     /// What was said of each particle and nobody has asked for yet.
     each: Each,
     /// What the function has ended with.
@@ -57,10 +57,10 @@ impl Hook {
 }
 
 impl Outside for Hook {
-    fn call(&self, asked: Asked<'_>) -> Option<Result<(), String>> {
+    fn call(&self, call: HostCall<'_>) -> Option<Result<(), String>> {
         Python::attach(|py| {
             let function = self.state().function.as_ref().map(|function| function.clone_ref(py))?;
-            Some(called(py, &function, asked).map_err(|e| {
+            Some(called(py, &function, call).map_err(|e| {
                 let words = e.to_string();
                 self.state().raised = Some(e);
                 words
@@ -68,8 +68,8 @@ impl Outside for Hook {
         })
     }
 
-    fn told(&self) -> Told {
-        self.state().told.clone()
+    fn values(&self) -> HostValues {
+        self.state().values.clone()
     }
 
     fn each(&self) -> Each {
@@ -78,14 +78,14 @@ impl Outside for Hook {
 }
 
 /// Hands Python copies, and takes the forces over if it ends well.
-fn called(py: Python<'_>, function: &Py<PyAny>, asked: Asked<'_>) -> PyResult<()> {
-    let ids: Vec<i32> = asked.ids.iter().map(|&id| id as i32).collect();
+fn called(py: Python<'_>, function: &Py<PyAny>, call: HostCall<'_>) -> PyResult<()> {
+    let ids: Vec<i32> = call.ids.iter().map(|&id| id as i32).collect();
     let reals = |list: &[[f64; 3]]| values::reals(py, list.as_flattened());
-    let f = PyByteArray::from(reals(asked.f).as_any())?;
-    function.call1(py, (asked.step, values::wholes(py, &ids), reals(asked.x), f.clone()))?;
+    let f = PyByteArray::from(reals(call.f).as_any())?;
+    function.call1(py, (call.step, values::wholes(py, &ids), reals(call.x), f.clone()))?;
     match values::taken(&f.to_vec(), false)? {
-        Rows::Reals(list) if list.len() == 3 * asked.f.len() => {
-            asked.f.as_flattened_mut().copy_from_slice(&list);
+        Rows::Reals(list) if list.len() == 3 * call.f.len() => {
+            call.f.as_flattened_mut().copy_from_slice(&list);
             Ok(())
         }
         _ => Err(PyValueError::new_err("there are more or fewer forces than particles")),
@@ -118,12 +118,12 @@ impl Handle {
 
     /// Says the energy of the forces.
     fn energy(&self, energy: f64) {
-        self.0.state().told.energy = energy;
+        self.0.state().values.energy = energy;
     }
 
     /// Says their virial.
     fn virial(&self, virial: [f64; 6]) {
-        self.0.state().told.virial = virial;
+        self.0.state().values.virial = virial;
     }
 
     /// Says energies and virials of particles, for the call that is under way.
@@ -143,7 +143,7 @@ impl Handle {
 
     /// Sets one of the values, from 1.
     fn value(&self, index: usize, value: f64) {
-        let list = &mut self.0.state().told.vector;
+        let list = &mut self.0.state().values.vector;
         list.resize(list.len().max(index), 0.0);
         if let Some(own) = index.checked_sub(1).and_then(|k| list.get_mut(k)) {
             *own = value;

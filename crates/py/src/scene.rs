@@ -51,7 +51,12 @@ impl Scene {
     }
 
     /// Something short, done at once; `lent` says whether columns that are looked at must be kept from moving.
-    fn ask<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
+    fn with_session<T>(
+        &self,
+        py: Python<'_>,
+        lent: bool,
+        job: impl FnOnce(&mut Session) -> Deck<T>,
+    ) -> PyResult<T> {
         if self.lock(py)?.moment {
             return Err(errors::within(py));
         }
@@ -158,12 +163,12 @@ impl Scene {
 
     /// The value of a formula or of a word of thermo output.
     fn number(&self, py: Python<'_>, formula: &str) -> PyResult<f64> {
-        self.ask(py, true, |session| session.number(formula))
+        self.with_session(py, true, |session| session.number(formula))
     }
 
     /// A text with its variables replaced.
     fn expand(&self, py: Python<'_>, text: &str) -> PyResult<String> {
-        self.ask(py, true, |session| session.expand(text))
+        self.with_session(py, true, |session| session.expand(text))
     }
 
     /// A variable's kind and value.
@@ -172,18 +177,18 @@ impl Scene {
         py: Python<'py>,
         name: &str,
     ) -> PyResult<Option<(&'static str, Bound<'py, PyAny>)>> {
-        let told = self.ask(py, true, |session| session.variable(name))?;
-        told.map(|told| values::told(py, told)).transpose()
+        let value = self.with_session(py, true, |session| session.variable(name))?;
+        value.map(|value| values::variable(py, value)).transpose()
     }
 
     /// Sets a variable of style internal.
     fn set_number(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {
-        self.ask(py, false, |session| session.set_number(name, value))
+        self.with_session(py, false, |session| session.set_number(name, value))
     }
 
     /// Sets a variable of style string.
     fn set_text(&self, py: Python<'_>, name: &str, text: &str) -> PyResult<()> {
-        self.ask(py, false, |session| session.set_text(name, text))
+        self.with_session(py, false, |session| session.set_text(name, text))
     }
 
     /// A column of particles in memory.
@@ -209,7 +214,7 @@ impl Scene {
 
     /// All values of a compute.
     fn compute<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyTuple>> {
-        let (slot, n) = self.ask(py, true, |session| {
+        let (slot, n) = self.with_session(py, true, |session| {
             let slot = session.compute_values(id)?.clone();
             Ok((slot, session.world.n()))
         })?;
@@ -218,7 +223,7 @@ impl Scene {
 
     /// All values of a fix.
     fn fix<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyTuple>> {
-        let (slot, n) = self.ask(py, true, |session| {
+        let (slot, n) = self.with_session(py, true, |session| {
             let slot = session.fix_values(id)?.clone();
             Ok((slot, session.world.n()))
         })?;
@@ -271,12 +276,12 @@ impl Scene {
         let x = values::threes(&x)?;
         let v = v.map(|list| values::threes(&list)).transpose()?;
         let new = Newcomers { ids, kinds, x, v, images, open };
-        self.ask(py, true, |session| session.make_particles(&new))
+        self.with_session(py, true, |session| session.make_particles(&new))
     }
 
     /// Gives an empty box other corners, and a triclinic one other tilts (xy, xz, yz).
     fn reset_box(&self, py: Python<'_>, lo: [f64; 3], hi: [f64; 3], tilt: [f64; 3]) -> PyResult<()> {
-        self.ask(py, true, |session| session.reset_box(lo, hi, tilt))
+        self.with_session(py, true, |session| session.reset_box(lo, hi, tilt))
     }
 
     /// The box: corners, tilts (xy, xz, yz) and which axes repeat.
@@ -296,7 +301,7 @@ impl Scene {
 
     /// From now on all rows of step tables are kept.
     fn keep_rows(&self, py: Python<'_>) -> PyResult<()> {
-        self.ask(py, false, |session| {
+        self.with_session(py, false, |session| {
             session.keep_table_rows();
             Ok(())
         })
@@ -317,7 +322,7 @@ impl Scene {
 
     /// The latest row of the step table.
     fn last_row(&self, py: Python<'_>) -> PyResult<Option<Row>> {
-        let row = self.ask(py, false, |session| Ok(session.table_row().cloned()))?;
+        let row = self.with_session(py, false, |session| Ok(session.table_row().cloned()))?;
         let Some(row) = row else { return Ok(None) };
         let mut values = vec![];
         for (name, value) in row.values {
@@ -332,7 +337,7 @@ impl Scene {
 
     /// The ids of a category; `None` if there is no such category.
     fn ids(&self, py: Python<'_>, category: &str) -> PyResult<Option<Vec<String>>> {
-        self.ask(py, false, |session| Ok(session.ids(category)))
+        self.with_session(py, false, |session| Ok(session.ids(category)))
     }
 
     /// 1 for each particle in a group, 0 for the others.
@@ -357,7 +362,7 @@ impl Scene {
     /// What a fix external talks to from now on: functions and what they say.
     fn outside(&self, py: Python<'_>, id: &str) -> PyResult<Handle> {
         let known = self.lock(py)?.hooks.get(id).cloned();
-        let hook = self.ask(py, false, |session| {
+        let hook = self.with_session(py, false, |session| {
             let program = |hook: &Arc<Hook>| -> Arc<dyn Outside> { hook.clone() };
             if let Some(hook) = known.filter(|hook| session.talks(id, &program(hook))) {
                 return Ok(hook);
@@ -380,12 +385,12 @@ impl Scene {
         virial: Option<&[u8]>,
     ) -> PyResult<()> {
         let each = each_of(energy, virial)?;
-        self.ask(py, false, |session| session.told_each(id, each))
+        self.with_session(py, false, |session| session.set_each(id, each))
     }
 
     /// Refuses an index behind the values that a fix offers.
     fn has_value(&self, py: Python<'_>, id: &str, index: usize) -> PyResult<()> {
-        self.ask(py, false, |session| session.has_value(id, index))
+        self.with_session(py, false, |session| session.has_value(id, index))
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
@@ -416,7 +421,7 @@ impl Scene {
 
     /// Hands all output to the system.
     fn flush(&self, py: Python<'_>) -> PyResult<()> {
-        self.ask(py, false, |session| session.flush())
+        self.with_session(py, false, |session| session.flush())
     }
 
     /// Ends the scene; what is looked at belongs to who looks.
@@ -427,7 +432,7 @@ impl Scene {
             return Ok(());
         }
         if let Some(session) = &mut inner.session {
-            // A log that cannot be written has been told of before.
+            // A log that cannot be written has been value of before.
             let _ = session.flush();
         }
         inner.screen.show(py);

@@ -1,6 +1,6 @@
 //! Values between Rust and Python: lists of numbers travel as bytes, which become arrays of `ctypes` or numpy there.
 
-use perigrain::session::{Global, Order, Rows, Told};
+use perigrain::session::{Global, Order, Rows, VariableValue};
 use perigrain::world::Slot;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -77,12 +77,12 @@ pub fn global<'py>(py: Python<'py>, global: Global) -> PyResult<(i32, Bound<'py,
 }
 
 /// A variable's kind and value.
-pub fn told<'py>(py: Python<'py>, told: Told) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
-    Ok(match told {
-        Told::Number(a) => ("number", a.into_pyobject(py)?.into_any()),
-        Told::Vector(list) => ("vector", reals(py, &list).into_any()),
-        Told::Particles(list) => ("particles", reals(py, &list).into_any()),
-        Told::Text(text) => ("text", text.into_pyobject(py)?.into_any()),
+pub fn variable<'py>(py: Python<'py>, value: VariableValue) -> PyResult<(&'static str, Bound<'py, PyAny>)> {
+    Ok(match value {
+        VariableValue::Number(a) => ("number", a.into_pyobject(py)?.into_any()),
+        VariableValue::Vector(list) => ("vector", reals(py, &list).into_any()),
+        VariableValue::Particles(list) => ("particles", reals(py, &list).into_any()),
+        VariableValue::Text(text) => ("text", text.into_pyobject(py)?.into_any()),
     })
 }
 

@@ -80,7 +80,7 @@ pub struct ActCx<'a> {
     /// The whole line, for messages.
     pub span: Span,
     /// Lines for screen and log, as `Created 64 atoms`.
-    pub said: &'a mut Vec<String>,
+    pub lines: &'a mut Vec<String>,
     /// Declaring lines that a file held, with its text: executed right after the act.
     pub then: &'a mut Vec<(Command, Arc<Source>)>,
     /// Warnings.
@@ -89,15 +89,15 @@ pub struct ActCx<'a> {
 
 /// The refusal of a value that would put something other than numbers into a scene: whose, which, of which particle.
 pub fn no_number(of: impl std::fmt::Display, value: f64, tag: Option<u32>, at: Span) -> Diagnostic {
-    let whom = tag.map_or(String::new(), |tag| format!(" for particle {tag}"));
-    Diagnostic::error(Code::NOT_FINITE, at, format!("`{of}` is {value}{whom}"))
+    let particle = tag.map_or(String::new(), |tag| format!(" for particle {tag}"));
+    Diagnostic::error(Code::NOT_FINITE, at, format!("`{of}` is {value}{particle}"))
         .help("its formula goes beyond the largest number, or takes the difference of two such values")
 }
 
 impl ActCx<'_> {
     /// Writes a line to screen and log.
-    pub fn say(&mut self, line: impl Into<String>) {
-        self.said.push(line.into());
+    pub fn print(&mut self, line: impl Into<String>) {
+        self.lines.push(line.into());
     }
 
     /// Leaves a warning or note.

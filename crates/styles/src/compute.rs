@@ -41,7 +41,7 @@ pub trait Compute: DynClone + Send {
     }
 
     /// Captures the same for particles made since, when a run begins.
-    fn welcome(&self, _w: &mut World) {}
+    fn particles_joined(&self, _w: &mut World) {}
 
     /// Discards what `declare` captured.
     fn remove(&self, _w: &mut World) {}

@@ -59,7 +59,7 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
 }
 
 /// Makes walls report the springs of their contacts, from the next step on.
-pub fn ask_walls(w: &mut World) {
+pub fn request_wall_springs(w: &mut World) {
     if !w.parts.wall_springs.always {
         w.parts.wall_springs.always = true;
         w.touch();
@@ -68,8 +68,8 @@ pub fn ask_walls(w: &mut World) {
 
 /// Visits the contacts with walls, as reported last; only those whose step `fresh` accepts.
 pub(crate) fn add_walls(w: &World, fresh: impl Fn(i64) -> bool, mut each: impl FnMut(usize, &WallSpring)) {
-    let told = || w.parts.wall_springs.lists.values().filter(|told| fresh(told.step));
-    let springs = || told().flat_map(|told| &told.list);
+    let reports = || w.parts.wall_springs.lists.values().filter(|report| fresh(report.step));
+    let springs = || reports().flat_map(|report| &report.list);
     if springs().next().is_none() {
         return;
     }

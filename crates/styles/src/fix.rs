@@ -126,7 +126,7 @@ pub trait Fix: DynClone + Send {
     fn remove(&self, _w: &mut World) {}
 
     /// Takes note of particles that another fix has made during a run.
-    fn welcome(&self, _w: &mut World) {}
+    fn particles_joined(&self, _w: &mut World) {}
 
     /// Stops its rigid bodies, each by itself (`velocity … zero … rigid ID`).
     ///

@@ -8,7 +8,7 @@ use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
-use perigrain_world::contacts::PairDeeds;
+use perigrain_world::contacts::PairWork;
 use perigrain_world::{BODY_ENERGY, Constant, Named, World};
 use powers::Powers;
 
@@ -81,24 +81,24 @@ struct Pairs {
 
 impl Pairs {
     /// At the present velocities.
-    fn now(w: &World, step: i64) -> Self {
-        let told = w.parts.pair_deeds.iter().flat_map(Named::values).filter(|told| told.step == step);
-        told.fold(Self::default(), |sum, told| sum.plus(Self::of_style(w, told)))
+    fn measure(w: &World, step: i64) -> Self {
+        let work = w.parts.pair_work.iter().flat_map(Named::values).filter(|work| work.step == step);
+        work.fold(Self::default(), |sum, work| sum.plus(Self::of_style(w, work)))
     }
 
-    fn of_style(w: &World, told: &PairDeeds) -> Self {
+    fn of_style(w: &World, work: &PairWork) -> Self {
         let p = &w.particles;
         let chunk = |range: std::ops::Range<usize>| {
             let mut sum = Self::default();
             for i in range {
-                sum.damping -= dot(told.damping[i], p.v[i]);
-                sum.across -= dot(told.across[i], p.v[i]) + dot(told.torque[i], p.omega[i]);
-                sum.pressing -= told.pressing.get(i).map_or(0.0, |f| dot(*f, p.v[i]));
+                sum.damping -= dot(work.damping[i], p.v[i]);
+                sum.across -= dot(work.across[i], p.v[i]) + dot(work.torque[i], p.omega[i]);
+                sum.pressing -= work.pressing.get(i).map_or(0.0, |f| dot(*f, p.v[i]));
             }
             sum
         };
-        let sum = par::reduce(p.len().min(told.damping.len()), chunk, Self::plus).unwrap_or_default();
-        Self { held: told.held, ..sum }
+        let sum = par::reduce(p.len().min(work.damping.len()), chunk, Self::plus).unwrap_or_default();
+        Self { held: work.held, ..sum }
     }
 
     fn plus(self, more: Self) -> Self {
@@ -136,7 +136,7 @@ struct Walls {
 
 impl Walls {
     /// At the present velocities.
-    fn now(w: &World) -> Self {
+    fn measure(w: &World) -> Self {
         let (p, mut sum) = (&w.particles, Self::default());
         for c in w.parts.wall_touches.iter().flat_map(Named::values).flatten() {
             let i = c.grain as usize;
@@ -211,7 +211,7 @@ pub fn open(w: &mut World) -> Result<()> {
     }
     w.bonds.counts_losses |= w.memo.contains(*BOOK);
     w.parts.wall_touches.get_or_insert_default();
-    w.parts.pair_deeds.get_or_insert_default();
+    w.parts.pair_work.get_or_insert_default();
     Ok(())
 }
 
@@ -230,7 +230,7 @@ fn of_bodies(w: &World) -> [f64; 3] {
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
     w.parts.wall_touches = None;
-    w.parts.pair_deeds = None;
+    w.parts.pair_work = None;
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 
@@ -329,7 +329,7 @@ fn held(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<[f64; 2]> {
 /// equations of motion move; all others are driven. The first step opens the book, as does every step before which a
 /// deck has changed the scene.
 pub fn account(w: &mut World, t: &Tick, free: u32) {
-    let powers = Powers::now(w, free);
+    let powers = Powers::measure(w, free);
     let [own, spin, weight] = of_bodies(w);
     // Rigid bodies are driven: what moves them besides forces is nothing, whatever their masses are.
     let driven = powers.driven + weight;
@@ -337,7 +337,7 @@ pub fn account(w: &mut World, t: &Tick, free: u32) {
     let mut book = known.unwrap_or_default();
     // Where nothing has changed since the last run contacts have nothing new to report.
     if !t.unchanged || known.is_none() {
-        (book.walls, book.pairs) = (Walls::now(w), Pairs::now(w, t.step));
+        (book.walls, book.pairs) = (Walls::measure(w), Pairs::measure(w, t.step));
     }
     let (walls, pairs) = (book.walls, book.pairs);
     let pressing = pairs.pressing + walls.pressing;

@@ -178,12 +178,12 @@ impl Chosen {
     }
 
     /// The particles that are meant at this moment: regions may move. Of a region that is gone there are none.
-    pub fn now<'w>(&self, w: &'w World) -> ChosenNow<'w> {
+    pub fn resolve<'w>(&self, w: &'w World) -> ResolvedChoice<'w> {
         match self.region {
-            None => ChosenNow { bit: self.bit, region: None },
+            None => ResolvedChoice { bit: self.bit, region: None },
             Some(key) => {
                 let region = w.regions.get(key);
-                ChosenNow { bit: if region.is_some() { self.bit } else { 0 }, region }
+                ResolvedChoice { bit: if region.is_some() { self.bit } else { 0 }, region }
             }
         }
     }
@@ -191,12 +191,12 @@ impl Chosen {
 
 /// The particles that are meant at one moment.
 #[derive(Clone, Copy)]
-pub struct ChosenNow<'w> {
+pub struct ResolvedChoice<'w> {
     bit: u32,
     region: Option<&'w Region>,
 }
 
-impl ChosenNow<'_> {
+impl ResolvedChoice<'_> {
     /// Whether a particle with these group bits at this place is meant.
     #[inline]
     pub fn has(&self, mask: u32, x: [f64; 3]) -> bool {
@@ -235,7 +235,7 @@ fn change_column<const N: usize>(
     chosen: &Chosen,
     change: impl Fn(&World, usize, &mut [f64; 3]) -> [f64; N] + Sync,
 ) -> [f64; N] {
-    let chosen = chosen.now(world);
+    let chosen = chosen.resolve(world);
     let columns = (column, &world.particles.x[..], &world.particles.mask[..]);
     let chunk = |start: usize, (f, x, mask): (&mut [[f64; 3]], &[[f64; 3]], &[u32])| {
         let mut total = [0.0; N];
@@ -260,14 +260,14 @@ fn change_column<const N: usize>(
 pub fn add_virial(w: &mut World, t: &Tick, chosen: &Chosen, of: impl Fn(&World, usize) -> [f64; 6] + Sync) {
     let (x, mask) = (&w.particles.x, &w.particles.mask);
     if t.virial {
-        let now = chosen.now(w);
+        let now = chosen.resolve(w);
         let one = |i: usize| if now.has(mask[i], x[i]) { of(w, i) } else { [0.0; 6] };
         let total = sum(w, GroupId::ALL, one);
         w.tally.fixes = add(w.tally.fixes, total);
     }
     if t.atom_virial {
         let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
-        let (now, p) = (chosen.now(w), &w.particles);
+        let (now, p) = (chosen.resolve(w), &w.particles);
         for (i, own) in atoms.iter_mut().enumerate().filter(|(i, _)| now.has(p.mask[*i], p.x[*i])) {
             *own = add(*own, of(w, i));
         }

@@ -107,7 +107,7 @@ pub struct Deck<'a> {
 
 impl Deck<'_> {
     /// Density and diameter, where the deck has set both.
-    pub fn said(&self) -> Option<(f64, f64)> {
+    pub fn density_and_diameter(&self) -> Option<(f64, f64)> {
         self.density.zip(self.diameter)
     }
 }

@@ -429,11 +429,11 @@ mod tests {
             // No eigenvalue is above the bound, and blocks give a sharper bound than sums.
             let dt = |factor: f64| factor * p.exceeded_by(1e9).unwrap();
             assert!(!p.is_stable(dt(1.001)));
-            let sums_say = (1..1000)
+            let sums_limit = (1..1000)
                 .map(|k| 1e-3 * f64::from(k))
                 .rfind(|part| p.all_sums(dt(*part)).iter().all(|s| *s <= 4.0));
-            let blocks_say = (1..1000).map(|k| 1e-3 * f64::from(k)).rfind(|part| p.is_stable(dt(*part)));
-            assert!(blocks_say > sums_say, "{blocks_say:?} {sums_say:?}");
+            let blocks_limit = (1..1000).map(|k| 1e-3 * f64::from(k)).rfind(|part| p.is_stable(dt(*part)));
+            assert!(blocks_limit > sums_limit, "{blocks_limit:?} {sums_limit:?}");
         }
     }
 }

@@ -49,7 +49,7 @@ impl Interaction {
 
 /// A request to a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ask {
+pub enum Request {
     /// Every pair that acts, with the forces that the particles felt in the evaluation just made; `setup`: it was that
     /// of a run's setup.
     Felt {
@@ -63,10 +63,10 @@ pub enum Ask {
     Idle,
 }
 
-impl Ask {
+impl Request {
     /// All pairs within the cutoff of their types, or only those that act.
     pub fn idle(idle: bool) -> Self {
-        if idle { Ask::Idle } else { Ask::Acting }
+        if idle { Request::Idle } else { Request::Acting }
     }
 }
 
@@ -109,7 +109,7 @@ pub trait Probe: Send {
     ///
     /// # Errors
     /// What is missing in the scene.
-    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>>;
+    fn look(&mut self, w: &World, request: Request) -> Result<Vec<Interaction>>;
 
     /// Calls `take` with the springs of each contact.
     ///
@@ -143,10 +143,10 @@ pub trait Probe: Send {
 ///
 /// # Errors
 /// As [`Probe::look`].
-pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, ask: Ask) -> Result<Vec<Interaction>> {
+pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, request: Request) -> Result<Vec<Interaction>> {
     let mut all: Vec<Interaction> = vec![];
     for p in probes.iter_mut() {
-        all.append(&mut p.look(w, ask)?);
+        all.append(&mut p.look(w, request)?);
     }
     if probes.len() < 2 {
         return Ok(all);

@@ -268,13 +268,13 @@ pub trait SealCx {
     /// The temperature that knows the flow which compute `r` takes away: itself, or that of its `bias`.
     fn bias(&self, r: &ValueRef) -> Option<Box<dyn crate::Compute>>;
     /// Energies must be tallied whenever `when` fires.
-    fn ask_energy(&mut self, when: &When);
+    fn request_energy(&mut self, when: &When);
     /// The virial must be tallied whenever `when` fires.
-    fn ask_virial(&mut self, when: &When);
+    fn request_virial(&mut self, when: &When);
     /// Per-particle energies must be tallied whenever `when` fires.
-    fn ask_atom_energy(&mut self, when: &When);
+    fn request_atom_energy(&mut self, when: &When);
     /// Per-particle virials must be tallied whenever `when` fires.
-    fn ask_atom_virial(&mut self, when: &When);
+    fn request_atom_virial(&mut self, when: &When);
     /// Probes of the pair styles for single pairs. The caller's op reads `contacts`.
     ///
     /// # Errors

@@ -77,8 +77,8 @@ where
 
     /// Begins the next step as well where [`Tick::on`] is set.
     #[must_use]
-    pub fn going_on(mut self) -> Self {
-        self.about.goes_on = true;
+    pub fn beginning_next(mut self) -> Self {
+        self.about.begins_next = true;
         self
     }
 
@@ -92,7 +92,7 @@ where
     ) -> Self {
         self.fusing =
             Some(Fusing { offer: Box::new(offer), took: Box::new(took), alone: Default::default() });
-        self.about.tells = true;
+        self.about.collective = true;
         self
     }
 
@@ -112,8 +112,8 @@ where
 
     /// Requests the rows it needs by [`World::whole`], on all ranks alike.
     #[must_use]
-    pub fn asking(mut self) -> Self {
-        self.span = Span::Asks;
+    pub fn requesting_rows(mut self) -> Self {
+        self.span = Span::Requested;
         self
     }
 
@@ -127,14 +127,14 @@ where
     /// Makes sums over particles that others may read.
     #[must_use]
     pub fn with_sums(mut self) -> Self {
-        self.about.tells = true;
+        self.about.collective = true;
         self
     }
 
     /// What comes of blocks of particles is read by the account of ways alone.
     #[must_use]
     pub fn without_sums(mut self) -> Self {
-        self.about.tells = false;
+        self.about.collective = false;
         self
     }
 

@@ -22,11 +22,11 @@ struct Around {
 ///
 /// # Errors
 /// The first such particle.
-pub fn check_volumes(w: &World, who: &[usize], span: Span) -> Result<()> {
+pub fn check_volumes(w: &World, chosen: &[usize], span: Span) -> Result<()> {
     let [a, b, c] = w.lattice.spacing;
     let p = &w.particles;
     let unset = |i: &&usize| p.volume[**i] == 1.0 && !(0.01..=100.0).contains(&(a * b * c));
-    let Some(&i) = who.iter().find(unset) else { return Ok(()) };
+    let Some(&i) = chosen.iter().find(unset) else { return Ok(()) };
     let text = format!(
         "particle {} (type {}) has no volume yet, which its sphere is made from",
         p.tag[i], p.kind[i]

@@ -228,10 +228,10 @@ impl SealCx for Bench {
     fn bias(&self, _r: &ValueRef) -> Option<Box<dyn Compute>> {
         None
     }
-    fn ask_energy(&mut self, _when: &When) {}
-    fn ask_virial(&mut self, _when: &When) {}
-    fn ask_atom_energy(&mut self, _when: &When) {}
-    fn ask_atom_virial(&mut self, _when: &When) {}
+    fn request_energy(&mut self, _when: &When) {}
+    fn request_virial(&mut self, _when: &When) {}
+    fn request_atom_energy(&mut self, _when: &When) {}
+    fn request_atom_virial(&mut self, _when: &When) {}
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
         let probes = self.pair.as_ref().map_or(Ok(vec![]), |p| p.probes(&self.world, false));
         Ok(probes?.into_iter().map(|(_, probe)| probe).collect())

@@ -25,7 +25,7 @@ pub struct Deep {
     /// Overlap over the smaller radius.
     pub part: f64,
     /// Whether the warning has been given.
-    pub told: bool,
+    pub warned: bool,
 }
 
 /// Turns a contact's history around, from one grain's view to the other's: displacements across the normal, the first three
@@ -166,12 +166,12 @@ pub struct WallSprings {
     /// Whether walls report at each step (compute and fix dt/critical).
     pub always: bool,
     /// By the fix's ID.
-    pub lists: Named<ToldSprings>,
+    pub lists: Named<ReportedSprings>,
 }
 
 /// The report of one wall.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ToldSprings {
+pub struct ReportedSprings {
     /// When.
     pub step: i64,
     /// Of each contact.
@@ -209,7 +209,7 @@ pub struct WallTouch {
 /// What the contacts of a pair style did at a step beside the elastic forces of overlaps, as the ledger of energy books it: sums by
 /// particle, since power is force times velocity.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct PairDeeds {
+pub struct PairWork {
     /// When.
     pub step: i64,
     /// Damping along the normals [force].
@@ -224,7 +224,7 @@ pub struct PairDeeds {
     pub held: f64,
 }
 
-impl PairDeeds {
+impl PairWork {
     /// Nothing yet, of `n` particles; whether a law `flows`.
     pub fn begin(&mut self, n: usize, step: i64, flows: bool) {
         (self.step, self.held) = (step, 0.0);
@@ -246,7 +246,7 @@ pub struct Pressed {
     /// The time step then.
     pub dt: f64,
     /// Whether the warning that it is too long has been given.
-    pub told: bool,
+    pub warned: bool,
 }
 
 /// The springs of a particle's contact with a wall.

@@ -201,7 +201,7 @@ impl Domain {
     }
 
     /// This box with these corners, as LAMMPS prints it.
-    pub fn told(&self, lo: [f64; 3], hi: [f64; 3]) -> String {
+    pub fn describe(&self, lo: [f64; 3], hi: [f64; 3]) -> String {
         let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
         match self.tilt {
             None => format!("orthogonal box = ({}) to ({})", text(lo), text(hi)),

@@ -9,14 +9,14 @@ pub enum Index {
 }
 
 /// No particle has this id.
-const NOBODY: u32 = u32::MAX;
+const NO_PARTICLE: u32 = u32::MAX;
 
 impl Index {
     /// Of these ids.
     pub fn new(tags: &[u32]) -> Self {
         let most = tags.iter().max().map_or(0, |m| *m as usize);
         if most <= 4 * tags.len() {
-            let mut table = vec![NOBODY; most + 1];
+            let mut table = vec![NO_PARTICLE; most + 1];
             for (place, tag) in tags.iter().enumerate() {
                 table[*tag as usize] = place as u32;
             }
@@ -28,7 +28,7 @@ impl Index {
     /// The place of an id.
     pub fn find(&self, tag: u32, tags: &[u32]) -> Option<usize> {
         match self {
-            Self::Table(table) => table.get(tag as usize).filter(|p| **p != NOBODY).map(|p| *p as usize),
+            Self::Table(table) => table.get(tag as usize).filter(|p| **p != NO_PARTICLE).map(|p| *p as usize),
             Self::Sorted(order) => {
                 let k = order.binary_search_by_key(&tag, |&i| tags[i as usize]).ok()?;
                 Some(order[k] as usize)

@@ -81,7 +81,7 @@ pub use promises::{Promise, Promises};
 pub use properties::Properties;
 pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
-pub use resume::{Resume, Said};
+pub use resume::{DeclaredLine, Resume};
 pub use settings::{Compat, MOST_SHORT, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use share::{Dealings, Share};
 pub use slots::{Offers, Slot, SlotId, Slots};
@@ -194,7 +194,7 @@ pub struct Parts {
     /// Contacts with each wall at the last step, by the fix's ID; empty without a ledger of energy.
     pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
     /// The same of the contacts of each pair style.
-    pub pair_deeds: Option<Named<contacts::PairDeeds>>,
+    pub pair_work: Option<Named<contacts::PairWork>>,
     /// All energy of a scene of grains as the run began, where nothing does work on it.
     pub budget: Option<f64>,
     /// What walls look like, by the fix's ID.

@@ -364,17 +364,17 @@ impl Acting {
     /// An op begins to act.
     #[inline]
     pub fn op() -> Self {
-        Self::now(true)
+        Self::begin(true)
     }
 
     /// A formula or text of the deck, which names what it wants, begins to be read.
     #[inline]
     pub fn text() -> Self {
-        Self::now(false)
+        Self::begin(false)
     }
 
     #[inline]
-    fn now(step: bool) -> Self {
+    fn begin(step: bool) -> Self {
         #[cfg(not(debug_assertions))]
         let _ = step;
         Self {

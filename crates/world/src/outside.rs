@@ -5,7 +5,7 @@ use perigrain_base::math::vec3::Vec3;
 use std::fmt::Debug;
 
 /// What the program is shown when it is called, and the forces it may change.
-pub struct Asked<'a> {
+pub struct HostCall<'a> {
     /// The present step.
     pub step: i64,
     /// Identities of all particles, in the order in which they stand.
@@ -18,7 +18,7 @@ pub struct Asked<'a> {
 
 /// Values the program sets besides forces; they hold until it sets others.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
+pub struct HostValues {
     /// The potential energy of its forces [energy].
     pub energy: f64,
     /// Their virial [energy]: xx yy zz xy xz yz.
@@ -44,10 +44,10 @@ pub trait Outside: Debug + Send + Sync {
     ///
     /// # Errors
     /// The program's own words on why it failed.
-    fn call(&self, asked: Asked<'_>) -> Option<Result<(), String>>;
+    fn call(&self, call: HostCall<'_>) -> Option<Result<(), String>>;
 
     /// The present values.
-    fn told(&self) -> Told;
+    fn values(&self) -> HostValues;
 
     /// The per-particle values set since the last call.
     fn each(&self) -> Each {

@@ -1,6 +1,6 @@
 //! Files that a checked deck would have written: a check writes nothing.
 
-use super::{Said, World};
+use super::{DeclaredLine, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ pub enum Promise {
     /// This text.
     Text(String),
     /// This scene, which holds no particles, and the lines of its pair style.
-    Scene(Arc<World>, Vec<Said>),
+    Scene(Arc<World>, Vec<DeclaredLine>),
     /// Known only in a run.
     Unseen,
 }

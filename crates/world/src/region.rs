@@ -45,7 +45,7 @@ pub struct Given {
 }
 
 /// Returns a variable's present value; `None` where it is not known (`perigrain check`).
-pub type Ask<'a> = dyn FnMut(&Variable) -> Result<Option<f64>> + 'a;
+pub type ReadVariable<'a> = dyn FnMut(&Variable) -> Result<Option<f64>> + 'a;
 
 impl Region {
     /// The inside of a shape, all faces closed, at rest.
@@ -126,9 +126,9 @@ impl Region {
     ///
     /// # Errors
     /// Variables that have no value, and values that make no shape.
-    pub fn place(&mut self, ask: &mut Ask) -> Result<()> {
+    pub fn place(&mut self, read: &mut ReadVariable) -> Result<()> {
         for given in &self.given {
-            if let Some(value) = ask(&given.variable)? {
+            if let Some(value) = read(&given.variable)? {
                 self.shape.set(given.number, given.scale * value);
             }
         }
@@ -140,10 +140,10 @@ impl Region {
             );
         }
         if let Some(motion) = &mut self.motion {
-            motion.place(ask)?;
+            motion.place(read)?;
         }
         if let Shape::Union(parts) | Shape::Intersect(parts) = &mut self.shape {
-            parts.iter_mut().try_for_each(|part| part.place(ask))?;
+            parts.iter_mut().try_for_each(|part| part.place(read))?;
         }
         Ok(())
     }

@@ -18,7 +18,8 @@ pub struct Resume {
 
 /// A line of a deck and the lattice in force at that line: its distances may be in spacings.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Said {
+#[serde(rename = "Said")]
+pub struct DeclaredLine {
     /// The words, the first being the command.
     pub words: Vec<String>,
     /// The lattice.

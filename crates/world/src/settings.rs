@@ -43,7 +43,7 @@ impl Compat {
     }
 
     /// The words of a log's first line about it, after the number of threads.
-    pub fn told(self) -> String {
+    pub fn describe(self) -> String {
         if self.lammps() { format!(", compat {}", self.name()) } else { String::new() }
     }
 }
@@ -69,7 +69,8 @@ pub struct NeighborSettings {
     /// Extra reach of the lists [length].
     pub skin: f64,
     /// The deck has set that distance.
-    pub said: bool,
+    #[serde(rename = "said")]
+    pub skin_set: bool,
     /// The deck has chosen `multi`, which changes nothing but which words may follow.
     #[serde(skip)]
     pub multi: bool,
@@ -93,7 +94,7 @@ impl Default for NeighborSettings {
     fn default() -> Self {
         Self {
             skin: 0.3,
-            said: false,
+            skin_set: false,
             multi: false,
             delay: 0,
             every: 1,
@@ -265,7 +266,7 @@ impl Settings {
     /// Seconds left until the limit of `timer timeout`: negative behind it, 0 without one.
     pub fn time_left(&self) -> f64 {
         let Some(end) = self.deadline else { return 0.0 };
-        comm::told::number(|| {
+        comm::broadcast::number(|| {
             let now = Instant::now();
             match end.checked_duration_since(now) {
                 Some(left) => left.as_secs_f64(),
@@ -276,7 +277,7 @@ impl Settings {
 
     /// Whether the limit of `timer timeout` has passed.
     pub fn timed_out(&self) -> bool {
-        self.deadline.is_some() && comm::told::truth(|| self.is_late())
+        self.deadline.is_some() && comm::broadcast::truth(|| self.is_late())
     }
 
     /// As [`Settings::timed_out`], by this rank's own clock.

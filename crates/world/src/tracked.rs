@@ -98,11 +98,11 @@ impl<'a, T> Lent<'a, T> {
     #[inline]
     pub fn none() -> Self {
         #[cfg(debug_assertions)]
-        static NOBODY: AtomicU8 = AtomicU8::new(0);
+        static NO_MARKS: AtomicU8 = AtomicU8::new(0);
         Lent {
             rows: &mut [],
             #[cfg(debug_assertions)]
-            marks: &NOBODY,
+            marks: &NO_MARKS,
         }
     }
 

@@ -35,7 +35,7 @@ pub struct Seen {
 
 impl Seen {
     /// Positions were compared just now, with this result [length].
-    pub fn now(account: Travel, moved: f64) -> Self {
+    pub fn measured(account: Travel, moved: f64) -> Self {
         Self { account, moved }
     }
 
@@ -54,13 +54,13 @@ mod tests {
     #[test]
     fn the_account_bounds_what_was_seen() {
         let mut travel = Travel::default();
-        assert!(!Seen::now(travel, 0.0).within(travel, 1.0), "no run yet");
+        assert!(!Seen::measured(travel, 0.0).within(travel, 1.0), "no run yet");
         travel.begin(true);
-        let seen = Seen::now(travel, 0.25);
+        let seen = Seen::measured(travel, 0.25);
         assert!(seen.within(travel, 0.5));
         travel.went(0.25);
         assert!(!seen.within(travel, 0.5) && seen.within(travel, 0.51));
-        let later = Seen::now(travel, 0.1);
+        let later = Seen::measured(travel, 0.1);
         assert!(later.within(travel, 0.2));
         travel.went(f64::NAN);
         assert!(!later.within(travel, f64::MAX));
@@ -72,13 +72,13 @@ mod tests {
         travel.begin(true);
         let before = travel;
         travel.went(0.1);
-        let seen = Seen::now(travel, 0.0);
+        let seen = Seen::measured(travel, 0.0);
         assert!(!seen.within(before, 1.0));
         travel.begin(true);
         travel.went(0.2);
         assert!(!seen.within(travel, 1.0));
         travel.begin(false);
         travel.went(0.1);
-        assert!(!Seen::now(travel, 0.0).within(travel, 1.0));
+        assert!(!Seen::measured(travel, 0.0).within(travel, 1.0));
     }
 }

@@ -8,7 +8,7 @@ use super::args::{Target, Usage};
 use super::pager::width;
 use super::progress::{Tally, colors_wanted};
 use super::sweeping::show::Show;
-use super::sweeping::{axes, counts, idle, listen, of_deck, prepared, said, serve, status, usage};
+use super::sweeping::{axes, counts, exit_code, idle, listen, of_deck, prepared, serve, status, usage};
 use super::{FAILED, INTERRUPTED, OK, deck, ranks};
 use crate::bench::norm::Norm;
 use crate::bench::{Bench, Found, Measure, picture, table};
@@ -39,7 +39,7 @@ pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
 
 fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usage> {
     if request.sweep.status {
-        return Ok(said(status(&request.sweep.folder(ENDING)), &Sources::default()));
+        return Ok(exit_code(status(&request.sweep.folder(ENDING)), &Sources::default()));
     }
     let mut sources = Sources::default();
     let given = match axes(&request.sweep, &mut sources) {
@@ -47,14 +47,14 @@ fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usa
         Err(problems) if problems.0.iter().all(|d| d.span.is_none() && d.code != Code::NO_FILE) => {
             return Err(usage(problems));
         }
-        Err(problems) => return Ok(said(Err(problems), &sources)),
+        Err(problems) => return Ok(exit_code(Err(problems), &sources)),
     };
     let prepared = deck::read(&request.sweep.options.deck)
         .and_then(|(_, text)| Ok((of_deck(&request.sweep, given, &text, &mut sources)?, text)))
         .and_then(|(swept, text)| bench(request, swept, text));
     let mut bench = match prepared {
         Ok(bench) => bench,
-        Err(problems) => return Ok(said(Err(problems), &sources)),
+        Err(problems) => return Ok(exit_code(Err(problems), &sources)),
     };
     bench.sweep.ranks = ranks;
     if bench.axes.is_empty() {
@@ -63,12 +63,12 @@ fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usa
     }
     let left_out = match leave_out(request, &mut bench) {
         Ok(left_out) => left_out,
-        Err((problems, sources)) => return Ok(said(Err(problems), &sources)),
+        Err((problems, sources)) => return Ok(exit_code(Err(problems), &sources)),
     };
     if bench.measures.is_empty() || bench.axes.is_empty() {
         return Ok(FAILED);
     }
-    Ok(said(run(request, &bench, left_out), &Sources::default()))
+    Ok(exit_code(run(request, &bench, left_out), &Sources::default()))
 }
 
 /// The bench of the words of the command line.
@@ -134,10 +134,10 @@ fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     let quiet = request.sweep.options.screen == Target::None;
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
-    if let Some(said) = bench.sweep.ranks.as_ref().and_then(|ranks| idle(ranks, bench.sweep.jobs.len()))
+    if let Some(idle_ranks) = bench.sweep.ranks.as_ref().and_then(|ranks| idle(ranks, bench.sweep.jobs.len()))
         && !quiet
     {
-        super::show(&format!("{said}\n"));
+        super::show(&format!("{idle_ranks}\n"));
     }
     let (results, found) = measured(bench, request.sweep.anew, quiet, &stop)?;
     let Some(found) = found else {
@@ -148,7 +148,7 @@ fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     };
     let pictures = table::write(bench, &found)?;
     if !quiet {
-        super::show(&told(bench, &found, &pictures));
+        super::show(&summary(bench, &found, &pictures));
     }
     complain(&found);
     Ok(if found.is_whole() && results.all_ok() && !left_out { OK } else { FAILED })
@@ -166,7 +166,7 @@ fn measured(
 ) -> Result<(sweep::Results, Option<Found>)> {
     let make = |runs: &sweep::Sweep, quiet: bool| {
         let mut show = Show { jobs: &runs.jobs, quiet, tally: Tally::default() };
-        let results = sweep::work_off(runs, anew, &mut show, stop);
+        let results = sweep::execute(runs, anew, &mut show, stop);
         show.tally.clear();
         results
     };
@@ -202,7 +202,7 @@ fn beside(runs: &sweep::Sweep) -> String {
     match &runs.ranks {
         Some(ranks) => {
             let each = if at_once == 1 { "one run".into() } else { format!("{at_once} runs") };
-            format!(", {}, {each} at once on each, which disturb each other on one host", ranks.said())
+            format!(", {}, {each} at once on each, which disturb each other on one host", ranks.describe())
         }
         None if at_once > 1 => format!(", {at_once} runs at once, which disturb each other"),
         None => String::new(),
@@ -210,7 +210,7 @@ fn beside(runs: &sweep::Sweep) -> String {
 }
 
 /// Table, pictures and where they are.
-fn told(bench: &Bench, found: &Found, pictures: &[String]) -> String {
+fn summary(bench: &Bench, found: &Found, pictures: &[String]) -> String {
     let mut text = table::text(bench, found, width(WIDTH), SHOWN);
     let colours = std::io::stdout().is_terminal() && colors_wanted();
     for k in 0..bench.measures.len() {

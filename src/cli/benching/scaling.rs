@@ -49,7 +49,7 @@ pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
         return Err(Usage::new("machines need cores and a bandwidth, and a time is at least 0"));
     }
     let own = std::thread::available_parallelism().map_or(1, usize::from);
-    let (wires, (_, alone)) = (wires()?, said(&[], Some("units si\n"))?);
+    let (wires, (_, alone)) = (wires()?, output_of(&[], Some("units si\n"))?);
     show(&format!(
         "measured on {} with {own} core(s), the least of {}; forecast in brackets\n\n",
         comm::host(),
@@ -120,8 +120,8 @@ struct Run {
 /// The fastest of several runs under these switches.
 fn run(kind: &Kind, repeat: usize, switches: &[&str]) -> Result<Run, Usage> {
     let once = || {
-        let (said, memory) = said(switches, Some(kind.deck))?;
-        read(&said, memory)
+        let (text, memory) = output_of(switches, Some(kind.deck))?;
+        read(&text, memory)
             .ok_or_else(|| Usage::new(format!("a run of `{}` does not report its time", kind.name)))
     };
     let runs: Result<Vec<Run>, Usage> = (0..repeat).map(|_| once()).collect();
@@ -130,7 +130,7 @@ fn run(kind: &Kind, repeat: usize, switches: &[&str]) -> Result<Run, Usage> {
 }
 
 /// What this program prints under these words, with a deck on standard input if there is one, and the most memory that it had [byte].
-fn said(words: &[&str], deck: Option<&str>) -> Result<(String, f64), Usage> {
+fn output_of(words: &[&str], deck: Option<&str>) -> Result<(String, f64), Usage> {
     let failed = |e: &dyn std::fmt::Display| Usage::new(format!("a run cannot be made: {e}"));
     let mut command = Starter::itself().map_err(|e| failed(&e))?.command();
     comm::set_apart(&mut command);
@@ -161,12 +161,12 @@ fn most(process: u32) -> Option<f64> {
 }
 
 /// The last loop of a run with so much memory.
-fn read(said: &str, memory: f64) -> Option<Run> {
-    let last = said.lines().rfind(|line| line.starts_with("Loop time of "))?;
+fn read(text: &str, memory: f64) -> Option<Run> {
+    let last = text.lines().rfind(|line| line.starts_with("Loop time of "))?;
     let words: Vec<f64> = last.split_whitespace().map(|w| w.parse().unwrap_or(f64::NAN)).collect();
     let (time, steps, particles) = (*words.get(3)?, *words.get(8)?, *words.get(11)?);
     // The line behind it begins with the part of a processor that the process had.
-    let used = said.lines().rev().find_map(|line| line.split_once("% CPU use"))?.0.trim();
+    let used = text.lines().rev().find_map(|line| line.split_once("% CPU use"))?.0.trim();
     let seconds = time / (steps * particles);
     let run = Run { particles, seconds, processor: seconds * used.parse::<f64>().ok()? / 100.0, memory };
     run.seconds.is_finite().then_some(run)
@@ -174,9 +174,9 @@ fn read(said: &str, memory: f64) -> Option<Run> {
 
 /// What two ranks of this machine need for a message.
 fn wires() -> Result<Machine, Usage> {
-    let (said, _) = said(&["ranks", "-ranks", "2"], None)?;
+    let (text, _) = output_of(&["ranks", "-ranks", "2"], None)?;
     let microseconds = |of: &str| {
-        let line = said.lines().find(|line| line.starts_with("exchange") && line.contains(of))?;
+        let line = text.lines().find(|line| line.starts_with("exchange") && line.contains(of))?;
         line.split_whitespace().nth(1)?.parse::<f64>().ok()
     };
     let (Some(short), Some(long)) = (microseconds(" for 8 bytes"), microseconds(" for 1048576 bytes")) else {

@@ -77,7 +77,7 @@ fn first(wanted: &Wanted, ranks: Option<Ranks>) -> Result<u8, Usage> {
     }
     let manner = Manner { ranks, ..manner(wanted)? };
     if let Some(ranks) = &manner.ranks {
-        show(&format!("the runs are shared out to {}\n", ranks.said()));
+        show(&format!("the runs are shared out to {}\n", ranks.describe()));
     }
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
@@ -123,7 +123,7 @@ fn manner(wanted: &Wanted) -> Result<Manner, Usage> {
         repeat: wanted.repeat.map(|n| n.max(1)),
         lammps,
         program,
-        telling: std::io::stderr().is_terminal(),
+        reports_progress: std::io::stderr().is_terminal(),
         ranks: None,
     })
 }

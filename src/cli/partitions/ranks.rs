@@ -29,17 +29,17 @@ pub fn first(o: &Options, ranks: &Ranks) -> std::io::Result<u8> {
         }
         log.as_mut().map_or(Ok(()), |log| log.write_all(text.as_bytes()))
     };
-    say(format!("Running on {of} partitions of processors, {}\n", ranks.said()))?;
+    say(format!("Running on {of} partitions of processors, {}\n", ranks.describe()))?;
     let mut team = Team::new()?;
     for (number, rank) in places.iter().enumerate() {
         match rank {
             0 => team.start(number)?,
-            _ => ranks.say(*rank, &["start".into(), number.to_string()]),
+            _ => ranks.send(*rank, &["start".into(), number.to_string()]),
         }
     }
     let (mut codes, mut turns) = (vec![None; of], Turns { next: vec![], of });
     while codes.contains(&None) {
-        for (desk, number, round) in team.asked() {
+        for (desk, number, round) in team.waiting() {
             debug_assert!(number < of);
             answer(desk, turns.take(round));
         }
@@ -50,7 +50,7 @@ pub fn first(o: &Options, ranks: &Ranks) -> std::io::Result<u8> {
                 Ok(Some(words)) => match read(&words) {
                     Some(("turn", number, round)) => {
                         let turn = turns.take(round);
-                        ranks.say(rank, &["turn".into(), number.to_string(), turn.to_string()]);
+                        ranks.send(rank, &["turn".into(), number.to_string(), turn.to_string()]);
                     }
                     Some(("end", number, code)) if number < of => codes[number] = Some(code as u8),
                     _ => {}
@@ -88,7 +88,7 @@ pub fn serve(ranks: &Ranks) -> u8 {
     };
     let mut desks: Vec<(usize, UnixStream)> = vec![];
     let say = |what: &str, number: usize, value: usize| {
-        ranks.say(0, &[what.into(), number.to_string(), value.to_string()]);
+        ranks.send(0, &[what.into(), number.to_string(), value.to_string()]);
     };
     loop {
         match ranks.hear(0) {
@@ -113,7 +113,7 @@ pub fn serve(ranks: &Ranks) -> u8 {
                 _ => {}
             },
         }
-        for (desk, number, round) in team.asked() {
+        for (desk, number, round) in team.waiting() {
             desks.push((number, desk));
             say("turn", number, round);
         }
@@ -185,7 +185,7 @@ impl Team {
     }
 
     /// Partitions that wait for a turn, each with the round and the stream for the answer.
-    fn asked(&self) -> Vec<(UnixStream, usize, usize)> {
+    fn waiting(&self) -> Vec<(UnixStream, usize, usize)> {
         let one = |mut desk: UnixStream| {
             let mut words = [0; 16];
             desk.set_nonblocking(false).and_then(|()| desk.read_exact(&mut words)).ok()?;
@@ -228,7 +228,7 @@ fn answer(mut desk: UnixStream, turn: usize) {
 }
 
 /// Requests the next turn of a round from this partition's rank.
-pub fn ask(path: &Path, world: &World, round: u64) -> std::io::Result<usize> {
+pub fn request_turn(path: &Path, world: &World, round: u64) -> std::io::Result<usize> {
     let mut desk = UnixStream::connect(path)?;
     desk.write_all(&(world.number as u64).to_le_bytes())?;
     desk.write_all(&round.to_le_bytes())?;

@@ -14,7 +14,7 @@ pub enum Meant {
     /// This line, and how long it takes.
     Timed(String),
     /// Nothing here: what to write instead.
-    Told(String),
+    Hint(String),
 }
 
 /// Programs that a user types from habit of the shell.
@@ -36,8 +36,8 @@ pub fn meant(line: &str) -> Meant {
         "%time" | "%timeit" | "time" if !rest.is_empty() => {
             Meant::Timed(line[first.len()..].trim_start().into())
         }
-        "history" => Meant::Told("arrow up goes through earlier lines, and Ctrl-R searches them".into()),
-        _ if PROGRAMS.contains(first) => Meant::Told(format!("write `shell {line}`")),
+        "history" => Meant::Hint("arrow up goes through earlier lines, and Ctrl-R searches them".into()),
+        _ if PROGRAMS.contains(first) => Meant::Hint(format!("write `shell {line}`")),
         word => match word.chars().next() {
             Some('?') => Meant::Help(
                 owned(&words)
@@ -47,13 +47,13 @@ pub fn meant(line: &str) -> Meant {
                     .map(String::from)
                     .collect(),
             ),
-            Some('!') => Meant::Told(format!("write `shell {}`", line[1..].trim_start())),
-            Some('%') => Meant::Told("of such words the prompt has `%time LINE` alone".into()),
+            Some('!') => Meant::Hint(format!("write `shell {}`", line[1..].trim_start())),
+            Some('%') => Meant::Hint("of such words the prompt has `%time LINE` alone".into()),
             _ if line.ends_with('?') && words.len() <= 2 => {
                 Meant::Help(line.trim_end_matches('?').split_whitespace().map(String::from).collect())
             }
             _ if COLON.iter().any(|(name, _)| name[1..] == *word) => {
-                Meant::Told(format!("commands of the prompt begin with a colon: write `:{line}`"))
+                Meant::Hint(format!("commands of the prompt begin with a colon: write `:{line}`"))
             }
             _ => Meant::Deck,
         },
@@ -68,7 +68,7 @@ mod tests {
     fn habits_work_or_are_told() {
         let help = |words: &[&str]| Meant::Help(words.iter().map(|w| (*w).to_string()).collect());
         let told = |line: &str| match meant(line) {
-            Meant::Told(text) => text,
+            Meant::Hint(text) => text,
             other => format!("{other:?}"),
         };
         assert_eq!([meant("?"), meant("help"), meant("? ")], [help(&[]), help(&[]), help(&[])]);

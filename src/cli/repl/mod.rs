@@ -137,18 +137,18 @@ impl Repl {
             Meant::Leave => return Some(0),
             Meant::Help(about) => match self.help(&about) {
                 Ok(text) => pager::page(&text),
-                outcome => self.tell(outcome),
+                outcome => self.show_outcome(outcome),
             },
-            Meant::Told(text) => self.tell(Err(text)),
+            Meant::Hint(text) => self.show_outcome(Err(text)),
             Meant::Timed(rest) => {
                 let begin = Instant::now();
                 let status = self.line(&rest);
-                self.say(&format!("(that took {})", duration(begin.elapsed().as_secs_f64())));
+                self.print(&format!("(that took {})", duration(begin.elapsed().as_secs_f64())));
                 return status;
             }
             Meant::Deck if line.trim_start().starts_with(':') => {
                 let outcome = self.colon(&words);
-                self.tell(outcome);
+                self.show_outcome(outcome);
             }
             Meant::Deck => return self.deck_line(line),
         }
@@ -166,7 +166,7 @@ impl Repl {
             (Ok(heard), Some(state)) => {
                 let dropped = self.undo.push(line, state, mark);
                 if dropped > 0 {
-                    self.say(&format!(
+                    self.print(&format!(
                         "({dropped} line(s) can no longer be undone: snapshots may take 1 GiB)"
                     ));
                 }
@@ -174,7 +174,7 @@ impl Repl {
             }
             (Ok(heard), None) => {
                 self.undo.forget();
-                self.say(
+                self.print(
                     "(the scene is too large for snapshots of 1 GiB: nothing before here can be undone)",
                 );
                 heard
@@ -186,7 +186,7 @@ impl Repl {
                         self.session.restore(&state);
                         self.log.tables(|t| t.back_to(mark));
                     }
-                    None => self.say(
+                    None => self.print(
                         "(the scene is too large for a snapshot: what the line did before it failed stays)",
                     ),
                 }
@@ -221,7 +221,7 @@ impl Repl {
         })
     }
 
-    fn tell(&mut self, outcome: std::result::Result<String, String>) {
+    fn show_outcome(&mut self, outcome: std::result::Result<String, String>) {
         match outcome {
             Ok(text) => super::show(&text),
             Err(text) => {
@@ -235,7 +235,7 @@ impl Repl {
         }
     }
 
-    fn say(&self, text: &str) {
+    fn print(&self, text: &str) {
         self.log.to_screen(text);
     }
 

@@ -28,7 +28,7 @@ pub struct Sheet {
 }
 
 /// What a page is about.
-pub struct Told<'a> {
+pub struct Subject<'a> {
     /// The command line.
     pub options: &'a Options,
     /// The deck's text.
@@ -69,7 +69,7 @@ impl Sheet {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&mut self, told: Told) -> Result<()> {
+    pub fn write(&mut self, told: Subject) -> Result<()> {
         let page = report::html(&of_run(told, self.begin.elapsed(), self.since));
         self.put(&page)
     }
@@ -85,7 +85,7 @@ impl Sheet {
     }
 
     /// The message once it is written.
-    pub fn said(&self) -> String {
+    pub fn message(&self) -> String {
         format!("Report in {}", self.path.display())
     }
 }
@@ -101,7 +101,7 @@ pub(super) fn title(deck: &Deck) -> String {
 }
 
 /// The report about a run.
-fn of_run(told: Told, wall: Duration, since: SystemTime) -> Report {
+fn of_run(told: Subject, wall: Duration, since: SystemTime) -> Report {
     let (o, s) = (told.options, told.session);
     let name = deck::name(&o.deck);
     let mut r = Report::new(title(&o.deck));
@@ -118,7 +118,7 @@ fn of_run(told: Told, wall: Duration, since: SystemTime) -> Report {
     let mut names: Vec<&String> = r.tables.0.iter().flat_map(|t| &t.columns).collect();
     names.dedup();
     r.columns = names.into_iter().filter_map(|name| Some((name.clone(), s.column_is(name)?))).collect();
-    r.said = s.notes.0.iter().map(|d| weighed(d, s)).collect();
+    r.messages = s.notes.0.iter().map(|d| weighed(d, s)).collect();
     r.parts = s.spent().parts.clone();
     r.plan = s.plan.as_ref().map(|plan| explain::text(plan, true));
     r.gallery = report::gathered(s.spent().pictures.iter().map(String::as_str), since);

@@ -50,14 +50,14 @@ pub fn report(wanted: &Wanted) -> std::result::Result<u8, Usage> {
 
 fn made(wanted: &Wanted) -> Result<()> {
     let mut sheet = Sheet::open(wanted.out.clone())?;
-    let page = report::html(&told(&wanted.files)?);
+    let page = report::html(&report_of(&wanted.files)?);
     sheet.put(&page)?;
-    crate::cli::show(&format!("{}\n", sheet.said()));
+    crate::cli::show(&format!("{}\n", sheet.message()));
     Ok(())
 }
 
 /// The report of these files.
-fn told(files: &[PathBuf]) -> Result<Report> {
+fn report_of(files: &[PathBuf]) -> Result<Report> {
     let name = files[0].file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
     let mut r = Report::new(name);
     let mut film = Film::default();
@@ -116,7 +116,7 @@ fn add_log(path: &Path, r: &mut Report) -> Result<()> {
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let told = report::log::read(&text);
     r.tables.0.extend(told.tables.0);
-    r.said.extend(told.said);
+    r.messages.extend(told.messages);
     r.ended = told.ended;
     if !told.origin.is_empty() {
         r.origin = told.origin;

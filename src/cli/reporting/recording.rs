@@ -57,8 +57,8 @@ impl Recorder {
 }
 
 impl Watch for Recorder {
-    fn asked(&mut self, steps: i64) {
-        self.bar.asked(steps);
+    fn requested(&mut self, steps: i64) {
+        self.bar.requested(steps);
     }
 
     fn begins(&mut self, w: &World) {

@@ -47,7 +47,7 @@ pub(super) fn serve(ranks: &Ranks) -> u8 {
 
 fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usage> {
     if request.status {
-        return Ok(said(status(&request.folder(ENDING)), &Sources::default()));
+        return Ok(exit_code(status(&request.folder(ENDING)), &Sources::default()));
     }
     let mut sources = Sources::default();
     let axes = match axes(request, &mut sources) {
@@ -55,15 +55,15 @@ fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usa
         Err(problems) if problems.0.iter().all(|d| d.span.is_none() && d.code != Code::NO_FILE) => {
             return Err(usage(problems));
         }
-        Err(problems) => return Ok(said(Err(problems), &sources)),
+        Err(problems) => return Ok(exit_code(Err(problems), &sources)),
     };
     let text = match deck::read(&request.options.deck) {
         Ok((_, text)) => text,
-        Err(problems) => return Ok(said(Err(problems), &sources)),
+        Err(problems) => return Ok(exit_code(Err(problems), &sources)),
     };
     let swept = match of_deck(request, axes, &text, &mut sources) {
         Ok(swept) => swept,
-        Err(problems) => return Ok(said(Err(problems), &sources)),
+        Err(problems) => return Ok(exit_code(Err(problems), &sources)),
     };
     if swept.axes.is_empty() {
         let usage = Usage::new("a sweep needs values to go through");
@@ -73,13 +73,13 @@ fn first(request: &Request, ranks: Option<Ranks>) -> std::result::Result<u8, Usa
     }
     let sweep = match prepared(request, swept, text) {
         Ok(sweep) => Sweep { ranks, ..sweep },
-        Err(problems) => return Ok(said(Err(problems), &Sources::default())),
+        Err(problems) => return Ok(exit_code(Err(problems), &Sources::default())),
     };
     let ahead = sweep::look_ahead(&sweep);
     if ahead.problems.has_errors() {
-        return Ok(said(Err(ahead.problems), &ahead.sources));
+        return Ok(exit_code(Err(ahead.problems), &ahead.sources));
     }
-    Ok(said(run(request, &sweep), &Sources::default()))
+    Ok(exit_code(run(request, &sweep), &Sources::default()))
 }
 
 /// The first of some problems, as one of the command line.
@@ -92,7 +92,7 @@ pub(super) fn usage(problems: Diagnostics) -> Usage {
 }
 
 /// The exit code; problems are printed.
-pub(super) fn said(outcome: Result<u8>, sources: &Sources) -> u8 {
+pub(super) fn exit_code(outcome: Result<u8>, sources: &Sources) -> u8 {
     outcome.unwrap_or_else(|problems| {
         deck::print(&problems, sources);
         FAILED
@@ -179,7 +179,7 @@ pub(super) fn prepared(request: &Request, swept: Swept, text: String) -> Result<
         threads: o.threads.unwrap_or(0),
         retry: request.retry,
         program,
-        telling: std::io::stderr().is_terminal() && o.screen != Target::None,
+        reports_progress: std::io::stderr().is_terminal() && o.screen != Target::None,
         ranks: None,
     })
 }
@@ -189,10 +189,10 @@ fn run(request: &Request, sweep: &Sweep) -> Result<u8> {
     let mut show = Show { jobs: &sweep.jobs, quiet, tally: Tally::default() };
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
-    if let Some(said) = sweep.ranks.as_ref().and_then(|ranks| idle(ranks, sweep.jobs.len())) {
-        show.say(&said);
+    if let Some(idle_ranks) = sweep.ranks.as_ref().and_then(|ranks| idle(ranks, sweep.jobs.len())) {
+        show.print(&idle_ranks);
     }
-    let results = sweep::work_off(sweep, request.anew, &mut show, &stop);
+    let results = sweep::execute(sweep, request.anew, &mut show, &stop);
     show.tally.clear();
     let results = results?;
     if !quiet {
@@ -209,7 +209,11 @@ fn run(request: &Request, sweep: &Sweep) -> Result<u8> {
 pub(super) fn idle(ranks: &Ranks, runs: usize) -> Option<String> {
     let more = ranks.size().checked_sub(runs).filter(|more| *more > 0)?;
     let have = if more == 1 { "1 rank has".into() } else { format!("{more} ranks have") };
-    Some(format!("{}, {runs} run{}: {have} nothing to do", ranks.said(), if runs == 1 { "" } else { "s" }))
+    Some(format!(
+        "{}, {runs} run{}: {have} nothing to do",
+        ranks.describe(),
+        if runs == 1 { "" } else { "s" }
+    ))
 }
 
 /// The first Ctrl-C or request to end stops all runs, the second one the program at once.

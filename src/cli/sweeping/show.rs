@@ -18,7 +18,7 @@ pub struct Show<'a> {
 }
 
 impl Show<'_> {
-    pub(super) fn say(&self, text: &str) {
+    pub(super) fn print(&self, text: &str) {
         if !self.quiet {
             // A reader that closes early is no failure.
             let _ = writeln!(self.tally.around(std::io::stdout()), "{text}");
@@ -28,7 +28,7 @@ impl Show<'_> {
 
 impl Watch for Show<'_> {
     fn resumed(&mut self, done: usize, state: &State) {
-        self.say(&format!("continuing: {done} of {} runs are done", state.jobs));
+        self.print(&format!("continuing: {done} of {} runs are done", state.jobs));
     }
 
     fn note(&mut self, note: &Diagnostics) {
@@ -43,7 +43,7 @@ impl Watch for Show<'_> {
             Some(problem) => text += &format!("  {problem}"),
             None => text += &format!("  {}", duration(outcome.seconds)),
         }
-        self.say(&text);
+        self.print(&text);
         self.waited(state);
     }
 

@@ -38,7 +38,7 @@ pub struct Live {
     running: AtomicBool,
     over: AtomicBool,
     /// The reader knows that it is over, and has all of it.
-    told: AtomicBool,
+    end_seen: AtomicBool,
     heard: Mutex<Option<Instant>>,
 }
 
@@ -73,7 +73,7 @@ impl Live {
         let newer = latest.1.clone().filter(|_| latest.0 > since);
         if newer.is_none() {
             self.wanted.store(true, Ordering::Relaxed);
-            self.told.fetch_or(self.over.load(Ordering::Relaxed), Ordering::Relaxed);
+            self.end_seen.fetch_or(self.over.load(Ordering::Relaxed), Ordering::Relaxed);
         }
         newer.map(|frame| (latest.0, frame))
     }
@@ -146,7 +146,7 @@ impl Live {
 
     /// Whether there is a reader and the end has not been shown yet.
     pub fn is_awaited(&self) -> bool {
-        !self.told.load(Ordering::Relaxed) && lock(&self.heard).is_some_and(|t| t.elapsed() < GONE)
+        !self.end_seen.load(Ordering::Relaxed) && lock(&self.heard).is_some_and(|t| t.elapsed() < GONE)
     }
 }
 

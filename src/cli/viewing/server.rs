@@ -79,10 +79,10 @@ impl Server {
         stream.set_write_timeout(Some(PATIENCE))?;
         let head = head(stream)?;
         match allowed(&head, self.address.port(), &self.token) {
-            Err((status, why)) => say(stream, status, "text/plain", why.as_bytes()),
+            Err((status, why)) => respond(stream, status, "text/plain", why.as_bytes()),
             Ok(question) => match answer(&question) {
-                Some(a) => say(stream, "200 OK", a.kind, &a.body),
-                None => say(stream, "404 Not Found", "text/plain", b"there is no such thing here\n"),
+                Some(a) => respond(stream, "200 OK", a.kind, &a.body),
+                None => respond(stream, "404 Not Found", "text/plain", b"there is no such thing here\n"),
             },
         }
     }
@@ -141,7 +141,7 @@ fn same(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |d, (a, b)| d | (a ^ b)) == 0
 }
 
-fn say(mut stream: &TcpStream, status: &str, kind: &str, body: &[u8]) -> std::io::Result<()> {
+fn respond(mut stream: &TcpStream, status: &str, kind: &str, body: &[u8]) -> std::io::Result<()> {
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\nCache-Control: no-store\r\n\
          X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\nCross-Origin-Resource-Policy: same-origin\r\n\r\n",
@@ -162,7 +162,7 @@ pub fn token() -> String {
 mod tests {
     use super::*;
 
-    fn ask(lines: &[&str]) -> Result<Question, &'static str> {
+    fn request(lines: &[&str]) -> Result<Question, &'static str> {
         let head: Vec<String> = lines.iter().map(ToString::to_string).collect();
         allowed(&head, 8080, "secret").map_err(|(_, why)| why)
     }
@@ -171,8 +171,8 @@ mod tests {
     fn only_the_page_itself_is_answered() {
         let get = "GET /state?token=secret&since=7 HTTP/1.1";
         let question = Question { acts: false, path: "/state".into(), since: 7 };
-        assert_eq!(ask(&[get, "Host: 127.0.0.1:8080"]), Ok(question.clone()));
-        assert_eq!(ask(&[get, "HOST: localhost:8080", "origin: http://localhost:8080"]), Ok(question));
+        assert_eq!(request(&[get, "Host: 127.0.0.1:8080"]), Ok(question.clone()));
+        assert_eq!(request(&[get, "HOST: localhost:8080", "origin: http://localhost:8080"]), Ok(question));
         for (lines, why) in [
             (&[get][..], "host"),
             (&[get, "Host: evil.example:8080"], "host"),
@@ -184,9 +184,9 @@ mod tests {
             (&["PUT /?token=secret HTTP/1.1", "Host: 127.0.0.1:8080"], "POST"),
             (&["", "Host: 127.0.0.1:8080"], "POST"),
         ] {
-            assert!(ask(lines).unwrap_err().contains(why), "{lines:?}");
+            assert!(request(lines).unwrap_err().contains(why), "{lines:?}");
         }
-        assert!(ask(&[]).is_err());
+        assert!(request(&[]).is_err());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! What ops can request while a plan is made.
 
 use super::Sealer;
-use crate::graph::said;
+use crate::graph::texts;
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{RefKind, ValueRef};
 use perigrain_output::log::Log;
@@ -74,18 +74,18 @@ impl SealCx for Sealer<'_> {
     }
 
     fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
-        self.ask(span);
+        self.at_word(span);
         let norm = self.graph.thermo.normalized(self.world);
         self.keyword_as(name, span, stage, when, norm)
     }
 
     fn text(&mut self, text: &str, span: Span, stage: Stage, when: &When) -> Result<Text> {
         let vars = self.vars.clone();
-        said::text(self, vars, text, span, stage, when)
+        texts::text(self, vars, text, span, stage, when)
     }
 
     fn steps(&mut self, r: &ValueRef) -> Result<When> {
-        said::steps(self.world, &self.vars, r)
+        texts::steps(self.world, &self.vars, r)
     }
 
     fn test(
@@ -96,7 +96,7 @@ impl SealCx for Sealer<'_> {
         when: &When,
     ) -> Result<PlaceTest> {
         let vars = self.vars.clone();
-        said::test(self, vars, r, sets, stage, when)
+        texts::test(self, vars, r, sets, stage, when)
     }
 
     fn pulls(&self) -> Vec<Pull> {
@@ -145,23 +145,23 @@ impl SealCx for Sealer<'_> {
         self.graph.bond.as_ref().map(|b| b.force.clone())
     }
 
-    fn ask_energy(&mut self, when: &When) {
-        self.tallies.get_or_insert(self.asking);
+    fn request_energy(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.word);
         self.plan.energy.push(when.clone());
     }
 
-    fn ask_virial(&mut self, when: &When) {
-        self.tallies.get_or_insert(self.asking);
+    fn request_virial(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.word);
         self.plan.virial.push(when.clone());
     }
 
-    fn ask_atom_energy(&mut self, when: &When) {
-        self.tallies.get_or_insert(self.asking);
+    fn request_atom_energy(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.word);
         self.plan.atom_energy.push(when.clone());
     }
 
-    fn ask_atom_virial(&mut self, when: &When) {
-        self.tallies.get_or_insert(self.asking);
+    fn request_atom_virial(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.word);
         self.plan.atom_virial.push(when.clone());
     }
 

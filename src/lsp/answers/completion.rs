@@ -89,7 +89,7 @@ pub fn resolve(mut item: Value) -> Value {
             let typed: Vec<&str> = typed.iter().map(String::as_str).collect();
             knowing::place(&typed, &Default::default()).and_then(|(place, page)| {
                 let declared = place.offers.iter().find_map(|offer| offer.about(&word));
-                declared.or_else(|| knowing::told_of(page.doc.text, &word))
+                declared.or_else(|| knowing::sentence_on(page.doc.text, &word))
             })
         }
         _ => None,

@@ -3,8 +3,8 @@
 pub mod completion;
 pub mod finding;
 pub mod fixes;
+pub mod hover;
 pub mod outline;
-pub mod telling;
 
 use crate::manual::Page;
 

@@ -31,7 +31,7 @@ impl Session {
     ///
     /// # Errors
     /// No such fix, or fewer values than particles.
-    pub fn told_each(&mut self, id: &str, each: Each) -> Result<()> {
+    pub fn set_each(&mut self, id: &str, each: Each) -> Result<()> {
         self.known_fix(id)?;
         external::Kept::new(id).keep(&mut self.world, id, each)
     }

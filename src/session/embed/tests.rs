@@ -1,7 +1,7 @@
 //! Requests of a host to a session, on two spheres and a chain.
 
 use super::columns::{packed, unpacked};
-use super::{Column, Global, Newcomers, Order, Rows, Told};
+use super::{Column, Global, Newcomers, Order, Rows, VariableValue};
 use crate::session::{Options, Session};
 
 const SPHERES: &str = "units si\natom_style sphere\nboundary p p f\nregion b block 0 1 0 1 0 1\ncreate_box 2 b\n\
@@ -20,14 +20,14 @@ fn spheres() -> Session {
 #[test]
 fn values_are_told_by_kind() {
     let mut s = spheres();
-    assert_eq!(s.variable("e").unwrap(), Some(Told::Number(0.0)));
-    assert_eq!(s.variable("a").unwrap(), Some(Told::Particles(vec![0.6, 1.4])));
-    assert_eq!(s.variable("s").unwrap(), Some(Told::Text("hello".into())));
-    assert_eq!(s.variable("v").unwrap(), Some(Told::Vector(vec![1.0, 2.0, 3.0])));
+    assert_eq!(s.variable("e").unwrap(), Some(VariableValue::Number(0.0)));
+    assert_eq!(s.variable("a").unwrap(), Some(VariableValue::Particles(vec![0.6, 1.4])));
+    assert_eq!(s.variable("s").unwrap(), Some(VariableValue::Text("hello".into())));
+    assert_eq!(s.variable("v").unwrap(), Some(VariableValue::Vector(vec![1.0, 2.0, 3.0])));
     assert_eq!(s.variable("nosuch").unwrap(), None);
     s.set_number("int", 4.5).unwrap();
     s.set_text("s", "other").unwrap();
-    assert_eq!(s.variable("int").unwrap(), Some(Told::Number(4.5)));
+    assert_eq!(s.variable("int").unwrap(), Some(VariableValue::Number(4.5)));
     assert_eq!(s.expand("${s} $(2*v_int:%.6g)").unwrap(), "other 9");
     for (name, known) in [("e", "equal"), ("nosuch", "no variable")] {
         assert!(s.set_number(name, 1.0).unwrap_err().to_string().contains(known), "{name}");
@@ -152,7 +152,7 @@ fn a_file_in_between_may_jump_and_names_files_beside_it() {
     std::fs::write(folder.path().join("in.beside"), "variable found string yes\n").unwrap();
     let mut s = Session::new(Options::default()).unwrap();
     s.eval_file(&deck).unwrap();
-    assert_eq!(s.variable("found").unwrap(), Some(Told::Text("yes".into())));
+    assert_eq!(s.variable("found").unwrap(), Some(VariableValue::Text("yes".into())));
     assert!(s.eval_file(&folder.path().join("nosuch")).is_err());
     assert!(s.eval("typed", "include in.beside\n").is_err(), "the folder was the file's alone");
 }

@@ -29,7 +29,7 @@ pub fn first(own: impl FnOnce() -> Result<Vec<u8>>) -> Result<Vec<u8>> {
         return own();
     }
     let mut failed = None;
-    let mut told = comm::told::bytes(|| match own() {
+    let mut told = comm::broadcast::bytes(|| match own() {
         Ok(mut bytes) => {
             bytes.push(FINE);
             bytes

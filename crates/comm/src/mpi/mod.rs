@@ -210,7 +210,7 @@ impl Comm for Mpi {
         }
     }
 
-    fn tell(&self, bytes: &mut Vec<u8>) {
+    fn broadcast(&self, bytes: &mut Vec<u8>) {
         let mut length = (bytes.len() as u64).to_le_bytes();
         self.broadcast(&mut length, 0);
         if self.rank > 0 {

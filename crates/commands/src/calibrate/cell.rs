@@ -2,8 +2,8 @@
 
 use super::Line;
 use super::found::lines;
+use super::messages::{percent, warn_loose, warn_unfinished};
 use super::scene::Scene;
-use super::telling::{percent, warn_loose, warn_unfinished};
 use super::words::Words;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::general;
@@ -78,15 +78,15 @@ pub fn periodic(cx: &mut ActCx, line: &Line, scene: &Scene) -> Result<()> {
         0.0,
     ];
     line.found.keep(cx.world, numbers, &[], Some(&c));
-    cx.say(format!(
+    cx.print(format!(
         "calibrate periodic {}: {} particles, {} bonds in a cell of volume {}",
         line.id,
         scene.places.len(),
         scene.network.bonds(),
         general(volume, 5)
     ));
-    lines(&c).for_each(|line| cx.say(line));
-    cx.say(format!(
+    lines(&c).for_each(|line| cx.print(line));
+    cx.print(format!(
         "  E {}   nu {}   K {} (mean field {})   G {}   within {} % (estimate)   {iterations} iterations, {:.2} s",
         general(m.mean_young(), 5),
         general(m.mean_poisson(), 3),

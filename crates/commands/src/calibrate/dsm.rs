@@ -2,9 +2,9 @@
 
 use super::Line;
 use super::found::NUMBERS;
+use super::messages::{self, count, percent, warn_loose, warn_sticking, warn_unfinished};
 use super::scene::Scene;
 use super::setup::{Response, Setup};
-use super::telling::{self, count, percent, warn_loose, warn_sticking, warn_unfinished};
 use super::touch::Hertz;
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -40,8 +40,8 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     if words.fields {
         line.found.keep_motion(cx.world, &scene.places, &r.field);
     }
-    say(cx, line, scene, &setup, &r);
-    cx.say(format!(
+    log_summary(cx, line, scene, &setup, &r);
+    cx.print(format!(
         "  energy: {}   {}{} iterations, {:.2} s",
         shares(&r),
         r.steps.map_or(String::new(), |n| format!("{n} steps of Newton, ")),
@@ -61,7 +61,7 @@ pub fn numbers(setup: &Setup, r: &Response) -> [f64; NUMBERS] {
     [k, r.young, r.poisson, lower, upper, k * setup.delta, setup.delta, r.iterations as f64, share, out]
 }
 
-fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) {
+fn log_summary(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) {
     let words = &line.words;
     let end = |end: usize| match words.holds[end] {
         Hold::Wall => format!("{} at a wall", r.at_walls[end]),
@@ -80,9 +80,9 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
             format!("; {} ({}) without support left out", count(pieces, "piece"), count(n, "particle"))
         }
     };
-    cx.say(format!(
+    cx.print(format!(
         "{}{contacts}; ends held: {} + {}{without}",
-        telling::head("dsm", line, scene),
+        messages::head("dsm", line, scene),
         end(0),
         end(1)
     ));
@@ -92,10 +92,10 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
         (None, Method::Paper(_)) => "by the residual".to_string(),
         (None, _) => format!("within {} % (estimate)", percent(r.open)),
     };
-    cx.say(format!(
+    cx.print(format!(
         "  K {}   {within}   {}   length {} (body {}), area {}",
         general(r.stiffness, 5),
-        telling::moduli(r.young, r.poisson),
+        messages::moduli(r.young, r.poisson),
         general(setup.ends.free_length(), 5),
         general(setup.lengths[1], 5),
         general(setup.area, 5)

@@ -4,9 +4,9 @@
 //! energy); of ν by the adjoint field.
 
 use super::Line;
+use super::messages::{count, warn_unfinished};
 use super::model::Model;
-use super::scene::{Said, Scene};
-use super::telling::{count, warn_unfinished};
+use super::scene::{BondQuery, Scene};
 use super::touch::Hertz;
 use super::words::{Quantity, Target, Words};
 use nalgebra::{DMatrix, DVector};
@@ -43,7 +43,7 @@ pub fn run(
     let mut model = Model::new(cx.world, line, &scene, hertz, cx.span)?;
     let mut params = vec![0.0; words.vary.len()];
     let (mut solves, mut breaks, mut best) = (0, 0, None::<(f64, Vec<f64>)>);
-    cx.say(format!(
+    cx.print(format!(
         "calibrate fit {}: {}, {}, {} particles, {} bonds",
         line.id,
         count(params.len(), "coefficient"),
@@ -63,7 +63,7 @@ pub fn run(
             breaks += model.crumble(&scene, words, now.as_ref(), cx.span)?;
             wrong = misses(words, &model);
         }
-        say_solve(cx, solves, words, &model, &values(style, words, &params)?);
+        log_solve(cx, solves, words, &model, &values(style, words, &params)?);
         let worst = largest(&wrong);
         if worst <= words.tol {
             break;
@@ -98,7 +98,7 @@ pub fn run(
                 // Too few targets leave a direction open: the step is the shortest one, and a note names the direction.
                 let (step, open) = shortest(&slopes, &wrong);
                 if solves == 1 {
-                    say_open(cx, words, &open);
+                    log_open_directions(cx, words, &open);
                 }
                 if let (1, true, Some(power)) =
                     (words.vary.len(), model.linear(), uniform(&changes[0], &scene))
@@ -118,7 +118,7 @@ pub fn run(
         params = from.iter().zip(&step).map(|(p, s)| p + s.clamp(-LONGEST, LONGEST)).collect();
     }
     warn_unfinished(cx, words, model.done);
-    model.tell(cx, line, &scene, hertz);
+    model.warn(cx, line, &scene, hertz);
     let now = tuned(style, words, &params)?;
     set(cx, words, now.as_ref(), &format!("calibrate fit {}", line.id))?;
     line.found.keep(cx.world, model.numbers(), &values(style, words, &params)?, model.tensor());
@@ -127,7 +127,7 @@ pub fn run(
         took += &format!(", {}", count(breaks, "broken bond"));
     }
     let seconds = began.elapsed().as_secs_f64();
-    cx.say(format!("  {}   {took}, {seconds:.2} s", reached(words, &model)));
+    cx.print(format!("  {}   {took}, {seconds:.2} s", reached(words, &model)));
     Ok(())
 }
 
@@ -157,8 +157,8 @@ fn proportional(style: &dyn BondForce, scene: &Scene, words: &Words) -> bool {
     let factors =
         words.vary.iter().map(|vary| if vary.name == STRENGTH { std::f64::consts::LN_2 } else { 0.0 });
     let Ok(twice) = tuned(style, words, &factors.collect::<Vec<_>>()) else { return false };
-    let used = |style: &dyn BondForce, said: &Said| style.used(&said.bearing([1.0; 4]));
-    scene.bonds.iter().all(|said| match (used(style, said), used(twice.as_ref(), said)) {
+    let used = |style: &dyn BondForce, query: &BondQuery| style.used(&query.bearing([1.0; 4]));
+    scene.bonds.iter().all(|query| match (used(style, query), used(twice.as_ref(), query)) {
         (Some(once), Some(half)) => (once - 2.0 * half).abs() <= 1e-9 * once,
         (once, half) => once.is_none() && half.is_none(),
     })
@@ -226,12 +226,12 @@ fn changes(style: &dyn BondForce, scene: &Scene, words: &Words) -> Result<Vec<Ve
             Ok(scene
                 .bonds
                 .iter()
-                .map(|said| {
-                    if said.kind != vary.kind {
+                .map(|query| {
+                    if query.kind != vary.kind {
                         return [0.0; 4];
                     }
                     let of = |style: &dyn BondForce| {
-                        style.stiffness(said.kind, said.length, said.radii).unwrap_or_default()
+                        style.stiffness(query.kind, query.length, query.radii).unwrap_or_default()
                     };
                     let (a, b) = (of(less.as_ref()), of(more.as_ref()));
                     [
@@ -333,19 +333,19 @@ fn reached(words: &Words, model: &Model) -> String {
     words.targets.iter().filter_map(one).collect::<Vec<_>>().join("   ")
 }
 
-fn say_solve(cx: &mut ActCx, solve: usize, words: &Words, model: &Model, values: &[f64]) {
+fn log_solve(cx: &mut ActCx, solve: usize, words: &Words, model: &Model, values: &[f64]) {
     let given: Vec<String> = (words.vary.iter().zip(values))
         .map(|(v, value)| format!("{} of type {} {}", v.name, v.kind, general(*value, 6)))
         .collect();
-    cx.say(format!("  solve {solve}: {}   gives {}", given.join("   "), reached(words, model)));
+    cx.print(format!("  solve {solve}: {}   gives {}", given.join("   "), reached(words, model)));
 }
 
-fn say_open(cx: &mut ActCx, words: &Words, open: &[Vec<f64>]) {
+fn log_open_directions(cx: &mut ActCx, words: &Words, open: &[Vec<f64>]) {
     for direction in open {
         let powers: Vec<String> = (words.vary.iter().zip(direction))
             .map(|(v, a)| format!("{} of type {} ^ {}", v.name, v.kind, general(*a, 3)))
             .collect();
-        cx.say(format!("  the targets leave open: {}", powers.join(" · ")));
+        cx.print(format!("  the targets leave open: {}", powers.join(" · ")));
     }
 }
 
@@ -379,7 +379,7 @@ fn set(cx: &mut ActCx, words: &Words, style: &dyn BondForce, source: &str) -> Re
             })
             .collect();
         let span = all[0].span.to(all[all.len() - 1].span);
-        cx.say(format!("  {text}"));
+        cx.print(format!("  {text}"));
         let from = Arc::new(Source { name: source.to_string(), text: text.clone() });
         cx.then.push((Command { name: all.remove(0), args: all, span, text }, from));
     }

@@ -4,12 +4,12 @@ use super::Line;
 use super::cell::{cell, moduli, solve_cell};
 use super::dsm::numbers;
 use super::found::NUMBERS;
+use super::messages::warn_sticking;
 use super::scene::Scene;
 use super::setup::{Response, Setup};
 use super::softer::warn_softer;
 use super::ste::{Estimated, Estimator};
 use super::strength::{self, Tested, broken};
-use super::telling::warn_sticking;
 use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -91,7 +91,7 @@ impl Model {
     }
 
     /// Warns of contacts with high loads that cannot slip, and of an estimate where none holds.
-    pub fn tell(&self, cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) {
+    pub fn warn(&self, cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) {
         match &self.kind {
             Kind::Dsm { setup, solved: Some(r), .. } => warn_sticking(cx, &line.words, setup, r),
             Kind::Ste { found: Some(e), .. } => warn_softer(cx, line, scene, hertz, e),

@@ -22,14 +22,14 @@ pub struct Scene {
     /// Its bonds.
     pub network: Network,
     /// Queries to the bond style, one per bond, in the order of the network; only where bonds are to be varied or to break.
-    pub bonds: Vec<Said>,
+    pub bonds: Vec<BondQuery>,
     /// Edges of the box, zero where it does not repeat.
     pub period: Vec3,
 }
 
 /// A query to a bond style about one bond.
 #[derive(Clone, Copy, Debug)]
-pub struct Said {
+pub struct BondQuery {
     /// Type.
     pub kind: u16,
     /// Length at rest [length].
@@ -40,7 +40,7 @@ pub struct Said {
     pub ids: [u32; 2],
 }
 
-impl Said {
+impl BondQuery {
     /// The bond, as it bears this.
     pub fn bearing(&self, bears: Modes) -> Loaded {
         let Self { kind, length, radii, ids } = *self;
@@ -77,9 +77,9 @@ impl Scene {
         let joined = |k: usize| ends[k].map(|row| places[row as usize]);
         // `apart` is first less second.
         let vector = |k: usize| apart(w, &period, joined(k)).map(|a| -a);
-        let said = |k: usize| {
+        let query = |k: usize| {
             let bond = &w.bonds.list[listed[k] as usize];
-            Said {
+            BondQuery {
                 kind: bond.kind as u16,
                 length: if bond.length > 0.0 { bond.length } else { length(vector(k)) },
                 radii: joined(k).map(|i| p.radius.get(i).copied().unwrap_or(0.0)),
@@ -87,12 +87,12 @@ impl Scene {
             }
         };
         for k in 0..ends.len() {
-            check(w, &said(k), length(vector(k)), joined(k), style, span)?;
+            check(w, &query(k), length(vector(k)), joined(k), style, span)?;
         }
-        let mut network = Network::new(places.len(), &ends, |k| (vector(k), stiffness(style, &said(k))));
+        let mut network = Network::new(places.len(), &ends, |k| (vector(k), stiffness(style, &query(k))));
         // The origin of bonds no longer matters once the style has been queried.
         let origin = std::mem::take(&mut network.pairs.origin);
-        let bonds = origin.into_iter().filter(|_| varied).map(|k| said(k as usize)).collect();
+        let bonds = origin.into_iter().filter(|_| varied).map(|k| query(k as usize)).collect();
         let x = places.iter().map(|i| p.x[*i]).collect();
         // Particles without a radius reach half way to their partners.
         let half =
@@ -152,27 +152,27 @@ impl Scene {
 
     /// Gives the bonds the stiffnesses of a style.
     pub fn restyle(&mut self, style: &dyn BondForce) {
-        for (k, said) in self.network.k.iter_mut().zip(&self.bonds) {
-            *k = stiffness(style, said);
+        for (k, query) in self.network.k.iter_mut().zip(&self.bonds) {
+            *k = stiffness(style, query);
         }
     }
 }
 
-fn stiffness(style: &dyn BondForce, said: &Said) -> perigrain_bonded::stiffness::Stiffness {
-    style.stiffness(said.kind, said.length, said.radii).unwrap_or_default()
+fn stiffness(style: &dyn BondForce, query: &BondQuery) -> perigrain_bonded::stiffness::Stiffness {
+    style.stiffness(query.kind, query.length, query.radii).unwrap_or_default()
 }
 
 /// Refuses bonds without a stiffness, and ends on top of each other.
 fn check(
     w: &World,
-    said: &Said,
+    query: &BondQuery,
     apart: f64,
     ends: [usize; 2],
     style: &dyn BondForce,
     span: Span,
 ) -> Result<()> {
     let [a, b] = ends.map(|i| w.particles.tag[i]);
-    let (name, kind) = (style.name(), said.kind);
+    let (name, kind) = (style.name(), query.kind);
     if apart.is_nan() || apart <= 0.0 {
         return fail(Code::CONFLICT, span, format!("the bonded particles {a} and {b} are in one place"));
     }
@@ -182,7 +182,7 @@ fn check(
             .help(format!("add `bond_coeff {kind} …` before this line"))
             .into());
     }
-    let Some(k) = style.stiffness(kind, said.length, said.radii) else {
+    let Some(k) = style.stiffness(kind, query.length, query.radii) else {
         let text = format!("bonds of bond_style {name} have no stiffness for small displacements");
         return Err(Diagnostic::error(Code::CONFLICT, span, text)
             .help("bond_style bpm/beam, bpm/rotational, bpm/spring and harmonic have one")

@@ -3,10 +3,10 @@
 use super::Line;
 use super::cell::moduli;
 use super::found::{NUMBERS, lines};
+use super::messages;
 use super::scene::Scene;
 use super::setup::ends;
 use super::softer::warn_softer;
-use super::telling;
 use super::touch::{self, Hertz};
 use super::words::{Map, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -283,12 +283,12 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
         0 => String::new(),
         n => format!("; {n} particles with fewer than three independent bonds left out"),
     };
-    cx.say(format!("{}{contacts}{without}", telling::head("ste", line, scene)));
-    lines(&e.tensor).for_each(|line| cx.say(line));
-    cx.say(format!(
+    cx.print(format!("{}{contacts}{without}", messages::head("ste", line, scene)));
+    lines(&e.tensor).for_each(|line| cx.print(line));
+    cx.print(format!(
         "  K {}   {}   length {}, area {}   order {}, {:.2} s",
         general(e.stiffness, 5),
-        telling::moduli(e.young, e.poisson),
+        messages::moduli(e.young, e.poisson),
         general(body.length, 5),
         general(body.area, 5),
         words.order,

@@ -2,9 +2,9 @@
 
 use super::Line;
 use super::found::NUMBERS;
-use super::scene::{Said, Scene};
+use super::messages::{self, count, warn_loose, warn_unfinished};
+use super::scene::{BondQuery, Scene};
 use super::setup::Setup;
-use super::telling::{self, count, warn_loose, warn_unfinished};
 use super::words::{BREAKING_IN_FITS, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::general;
@@ -38,13 +38,13 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, style: &dyn BondForce) ->
     if words.fields {
         line.found.keep_motion(cx.world, &scene.places, &path.field);
     }
-    cx.say(format!(
+    cx.print(format!(
         "{}; ends held: {} + {}",
-        telling::head("strength", line, scene),
+        messages::head("strength", line, scene),
         setup.ends.members[0].len(),
         setup.ends.members[1].len()
     ));
-    cx.say(format!(
+    cx.print(format!(
         "  largest force {}   stress {}   at strain {}   after {}; the first at force {}",
         general(numbers[0], 5),
         general(numbers[1], 5),
@@ -52,14 +52,14 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, style: &dyn BondForce) ->
         count(tested.before, "broken bond"),
         general(numbers[9], 5)
     ));
-    cx.say(format!(
+    cx.print(format!(
         "  K {}   {}   length {}, area {}",
         general(whole.stiffness, 5),
-        telling::moduli(whole.young, whole.poisson),
+        messages::moduli(whole.young, whole.poisson),
         general(setup.ends.free_length(), 5),
         general(setup.area, 5)
     ));
-    cx.say(format!(
+    cx.print(format!(
         "  {} of {} until {}   energy set free {}   {} iterations, {:.2} s",
         count(tested.all, "broken bond"),
         scene.network.bonds(),
@@ -109,8 +109,8 @@ pub fn broken(
     field: Vec<Six>,
     span: Span,
 ) -> Result<Path> {
-    let used = |said: &Said, bears: &Modes| style.used(&said.bearing(*bears));
-    if !scene.bonds.iter().any(|said| used(said, &[1.0; 4]).is_some()) {
+    let used = |query: &BondQuery, bears: &Modes| style.used(&query.bearing(*bears));
+    if !scene.bonds.iter().any(|query| used(query, &[1.0; 4]).is_some()) {
         let text = format!("bonds of bond_style {} break under no load", style.name());
         let help =
             "give them a strength: `strength S1 S2` behind the coefficients of bpm/beam, with `break yes`";

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Diagnostics, Result, fail};
 use perigrain_bonded::stiffness::{Beam, Shear, Stiffness};
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::Op;
-use perigrain_styles::probe::{Ask, Interaction, Probe};
+use perigrain_styles::probe::{Interaction, Probe, Request};
 use perigrain_styles::pull::{Pull, Stretched};
 use perigrain_styles::{
     ActCx, BondForce, BuildCx, CommandStyle, Flow, Motion, Names, SealCx, Shape, UseKind, Values,
@@ -83,7 +83,7 @@ impl Probe for Law {
     fn listed(&self, _w: &World) -> Result<Vec<[u32; 2]>> {
         Ok(vec![])
     }
-    fn look(&mut self, _w: &World, _ask: Ask) -> Result<Vec<Interaction>> {
+    fn look(&mut self, _w: &World, _request: Request) -> Result<Vec<Interaction>> {
         Ok(vec![])
     }
     fn pressed(&self, _types: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 3]> {
@@ -147,7 +147,7 @@ impl Values for Declared {
 #[derive(Debug)]
 pub struct Did {
     pub numbers: Vec<f64>,
-    pub said: Vec<String>,
+    pub lines: Vec<String>,
     pub then: Vec<String>,
     pub notes: Vec<String>,
 }
@@ -174,18 +174,18 @@ pub fn act_with(w: &mut World, line: &str, beams: Beams, law: Law) -> Result<Did
     let act = Calibrate.parse(&mut args, &cx)?;
     args.finish()?;
     let (id, _) = act.leaves().unwrap();
-    let (mut said, mut then) = (vec![], vec![]);
+    let (mut lines, mut then) = (vec![], vec![]);
     act.apply(&mut ActCx {
         world: w,
         values: &mut declared,
         span: line.span,
-        said: &mut said,
+        lines: &mut lines,
         then: &mut then,
         notes: &notes,
     })?;
     Ok(Did {
         numbers: w.memo.get(Key::new(&format!("calibrate {id}"))).unwrap().clone(),
-        said,
+        lines,
         then: then.into_iter().map(|(line, _)| line.text).collect(),
         notes: notes.into_inner().0.into_iter().map(|n| n.message).collect(),
     })

@@ -69,7 +69,7 @@ fn blocks_of_a_lattice_between_ends() {
     let did = act(&mut w, "calibrate dsm a all tol 0.01 bound yes fields yes", Beams::standard(2)).unwrap();
     let [k, lower] = [did.numbers[0], did.numbers[3]];
     assert!(lower <= 5430321.8781 && k >= 5430321.8781 && k - lower <= 0.01 * k, "{did:?}");
-    assert!(did.said[0].contains("256 particles, 1176 bonds; ends held: 32 + 32"), "{did:?}");
+    assert!(did.lines[0].contains("256 particles, 1176 bonds; ends held: 32 + 32"), "{did:?}");
     let u = w.columns.get_vector(Key::new("calibrate a/0")).unwrap();
     let top = |i: &usize| w.particles.x[*i][2] > 3.4 * A;
     assert!(
@@ -148,7 +148,7 @@ fn one_type_is_fitted_by_one_solve() {
         near(found[0], 1e9 * (2.0e4f64 / k).powf(1.0 / power), 2e-10);
         near(did.numbers[0], 2.0e4, 1e-12);
         near(did.numbers[10], found[0], 1e-12);
-        assert!(did.said.iter().filter(|l| l.contains("solve ")).count() == 1, "{did:?}");
+        assert!(did.lines.iter().filter(|l| l.contains("solve ")).count() == 1, "{did:?}");
         // The other way round.
         let mut beams = Beams::standard(2);
         beams.0.insert(1, [found[0], 0.2, 0.4e-3]);
@@ -161,7 +161,7 @@ fn one_type_is_fitted_by_one_solve() {
         act(&mut w, "calibrate fit f all target E 2.0e9 vary bond 1 radius tol 1e-8", Beams::standard(2))
             .unwrap();
     near(did.numbers[1], 2.0e9, 1e-8);
-    assert!(did.said.iter().filter(|l| l.contains("solve ")).count() <= 5, "{did:?}");
+    assert!(did.lines.iter().filter(|l| l.contains("solve ")).count() <= 5, "{did:?}");
     for method in ["ste", "periodic"] {
         let mut w = cells("fcc", A, [3; 3], "p p p");
         let line = format!("calibrate fit f all target E 936256.307 vary bond 1 E method {method} tol 1e-8");
@@ -203,10 +203,10 @@ fn two_types_meet_two_targets() {
             "calibrate fit f all target K {k} target nu {nu} vary bond 1 E vary bond 2 E method {method} tol 1e-4 {ends}"
         );
         let did = act(&mut w, &line, start).unwrap();
-        println!("{}", did.said.join("\n"));
+        println!("{}", did.lines.join("\n"));
         near(did.numbers[0], k, 1.1e-4);
         near(did.numbers[2], nu, 1.1e-4);
-        let solves = did.said.iter().filter(|l| l.contains("solve ")).count();
+        let solves = did.lines.iter().filter(|l| l.contains("solve ")).count();
         assert!(solves <= 6, "{did:?}");
         for (k, (line, e)) in did.then.iter().zip([1e9, 3e9]).enumerate() {
             let set = line.split(' ').nth(2).unwrap().parse().unwrap();
@@ -220,7 +220,7 @@ fn two_types_meet_two_targets() {
         "calibrate fit f all target K 1e6 vary bond 1 E vary bond 2 E tol 1e-6",
         Beams::standard(2),
     );
-    assert!(did.unwrap().said.iter().any(|l| l.contains("leave open: E of type 1 ^")));
+    assert!(did.unwrap().lines.iter().any(|l| l.contains("leave open: E of type 1 ^")));
 }
 
 /// Two spheres of 1 mm with a bond along z.
@@ -255,15 +255,16 @@ fn a_pair_between_walls() {
             near(did.numbers[5], -f, 2e-10);
             near(did.numbers[6], 2e-3 * strain, 1e-10);
             if line.contains("tol") {
-                let steps = did.said[2].split(" steps of Newton").next().unwrap().rsplit(' ').next().unwrap();
+                let steps =
+                    did.lines[2].split(" steps of Newton").next().unwrap().rsplit(' ').next().unwrap();
                 assert!(steps.parse::<usize>().unwrap() <= 6 && did.notes.is_empty(), "{did:?}");
                 // Hertz' springs hold 2/5 F δ each, the bond ½ F²/k.
                 let walls = 0.8 * f * (f / 31056499.69f64).powf(2.0 / 3.0);
                 let bond = 0.5 * f * f / 502654.824574;
                 near(did.numbers[8], walls / (walls + bond), 1e-8);
                 assert!(
-                    did.said[0].contains("ends held: 1 at a wall + 1 at a wall")
-                        && did.said[2].contains("walls ")
+                    did.lines[0].contains("ends held: 1 at a wall + 1 at a wall")
+                        && did.lines[2].contains("walls ")
                 );
             }
         }
@@ -291,7 +292,7 @@ fn contacts_carry_load_beside_bonds() {
         did.numbers[0] > 1.001 * bare.numbers[0] && did.numbers[8] > 0.0 && did.numbers[4].is_nan(),
         "{did:?}"
     );
-    assert!(did.said[0].contains(" contacts;") && did.notes.is_empty());
+    assert!(did.lines[0].contains(" contacts;") && did.notes.is_empty());
     // Pulled, most contacts open; neighbours in planes across come closer.
     let pulled =
         act_with(&mut w, "calibrate dsm a all strain 0.02 tol 1e-6", Beams::standard(2), Law::Hertz).unwrap();
@@ -413,7 +414,7 @@ fn pieces_and_loose_particles_are_told() {
     w.bonds.retain(|b| b.ends.iter().filter(|e| pair.contains(e)).count() != 1);
     let did = act(&mut w, "calibrate dsm a all", Beams::standard(2)).unwrap();
     assert_eq!((pair.len(), did.numbers[9]), (2, 2.0));
-    assert!(did.said[0].contains("1 piece (2 particles) without support left out"), "{did:?}");
+    assert!(did.lines[0].contains("1 piece (2 particles) without support left out"), "{did:?}");
     // Springs alone: a corner with two of its three bonds left moves across both.
     let mut beams = Beams::standard(2);
     beams.0.insert(1, [1e9, f64::INFINITY, 0.4e-3]);

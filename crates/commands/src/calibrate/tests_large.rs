@@ -13,7 +13,7 @@ fn a_pair_between_walls_does_not_turn() {
         near(did.numbers[0], 57814.74222, 1e-9);
         near(did.numbers[5], -2.31258968887, 1e-9);
         assert!(did.numbers[4].is_nan() && did.notes.is_empty(), "{did:?}");
-        assert!(did.said[0].contains("ends held: 1 at a wall + 1 at a wall"));
+        assert!(did.lines[0].contains("ends held: 1 at a wall + 1 at a wall"));
     }
     let line = "calibrate fit f all target K 57814.74222 vary bond 1 E strain -0.02 low wall high wall tol 1e-8 large yes";
     let mut start = Beams::standard(1);
@@ -30,7 +30,7 @@ fn friction_between_nothing_and_sticking() {
         let line = format!("calibrate dsm a all strain -0.01 tol 1e-5 {words}");
         let did = act_with(&mut w, &line, Beams::standard(2), Law::Hertz).unwrap();
         assert!(did.notes.is_empty(), "{words}: {did:?}");
-        (did.numbers[0], did.said[0].clone())
+        (did.numbers[0], did.lines[0].clone())
     };
     let all = [k("mu 0"), k("mu 0.1"), k("mu 0.1 steps 4"), k("large yes")];
     assert!(all[0].0 < all[1].0 && all[1].0 < all[3].0, "{all:?}");
@@ -56,10 +56,10 @@ fn contacts_that_bear_much_and_stick_are_told() {
         act_with(&mut w, &line, soft.clone(), law).unwrap().notes
     };
     let stuck = "contacts bear ";
-    let said = notes("dsm a all strain -0.02", Law::Hertz);
+    let warnings = notes("dsm a all strain -0.02", Law::Hertz);
     assert!(
-        said.len() == 1 && said[0].starts_with(stuck) && said[0].contains(" none of them slips"),
-        "{said:?}"
+        warnings.len() == 1 && warnings[0].starts_with(stuck) && warnings[0].contains(" none of them slips"),
+        "{warnings:?}"
     );
     assert!(
         notes("fit a all strain -0.02 target K 3e6 vary bond 1 E", Law::Hertz)[0]
@@ -112,7 +112,7 @@ fn words_that_do_not_go_together() {
             "`target nu` is for small displacements of bonds alone | leave `large` and `mu` out",
         ),
     ] {
-        let said = refused(&w, line, Beams::standard(2));
-        assert!(said.contains(wanted), "{line}: {said}");
+        let warnings = refused(&w, line, Beams::standard(2));
+        assert!(warnings.contains(wanted), "{line}: {warnings}");
     }
 }

@@ -25,7 +25,7 @@ const DENSEST: f64 = 0.75;
 /// A packing whose diameters must become smaller than so much of what they should be has failed.
 const SMALLEST: f64 = 0.9;
 /// Spheres that reach so far through walls are worth a line.
-const TOLD: f64 = 1e-3;
+const REPORTED: f64 = 1e-3;
 
 /// A parsed line.
 pub struct Pack {
@@ -262,7 +262,7 @@ impl Pack {
                 format!("region `{}` is so thin that places in it are not found at random", self.name.text);
             return fail(Code::BAD_VALUE, self.name.span, text);
         };
-        self.tell(cx, &packing, volume)?;
+        self.log_summary(cx, &packing, volume)?;
         let kept = self.kept(cx, &room, &packing, volume, &mut stream)?;
         let shrunk = packing.came.shrunk;
         let own = |radius: f64| self.types.get(self.sizes.kind_of(2.0 * radius / shrunk)).copied();
@@ -328,7 +328,7 @@ impl Pack {
     }
 
     /// Logs a summary of the packing.
-    fn tell(&self, cx: &mut ActCx, p: &Packing, volume: f64) -> Result<()> {
+    fn log_summary(&self, cx: &mut ActCx, p: &Packing, volume: f64) -> Result<()> {
         let came = &p.came;
         let mean = 2.0 * p.radius.iter().sum::<f64>() / p.radius.len() as f64;
         if came.beyond > THROUGH * mean {
@@ -353,21 +353,21 @@ impl Pack {
         }
         let percent = |part: f64| format!("{} %", general(100.0 * part, 3));
         let n = p.x.len();
-        cx.say(format!(
+        cx.print(format!(
             "Packed {n} spheres in {} rounds: share {} of a volume of {}",
             came.rounds,
             general(solid(&p.radius) / volume, 5),
             general(volume, 6)
         ));
         let (average, most) = (percent(came.mean), percent(came.largest));
-        self.tell_of_sizes(cx, p);
-        cx.say(format!("  overlap of spheres that touch {average} on average, {most} at most"));
+        self.log_sizes(cx, p);
+        cx.print(format!("  overlap of spheres that touch {average} on average, {most} at most"));
         let less = percent(1.0 - came.shrunk);
         if came.shrunk < 1.0 {
-            cx.say(format!("  diameters are {less} smaller than requested, so that nothing overlaps"));
+            cx.print(format!("  diameters are {less} smaller than requested, so that nothing overlaps"));
         }
-        if came.beyond > TOLD * mean {
-            cx.say(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));
+        if came.beyond > REPORTED * mean {
+            cx.print(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));
         }
         if !came.reached {
             let (rounds, share) = (self.goal.rounds, general(self.share(volume), 4));
@@ -393,14 +393,18 @@ impl Pack {
     }
 
     /// Logs how many spheres of each size a mixture has, and their parts of the mass.
-    fn tell_of_sizes(&self, cx: &mut ActCx, p: &Packing) {
+    fn log_sizes(&self, cx: &mut ActCx, p: &Packing) {
         let Sizes::Mix(parts) = &self.sizes else { return };
         let all = solid(&p.radius);
         for (k, (diameter, _)) in parts.iter().enumerate() {
             let of_size = |r: &&f64| self.sizes.kind_of(2.0 * **r / p.came.shrunk) == k;
             let radii: Vec<f64> = p.radius.iter().filter(of_size).copied().collect();
             let part = general(100.0 * solid(&radii) / all, 3);
-            cx.say(format!("  {} of diameter {}, {part} % of the mass", radii.len(), general(*diameter, 6)));
+            cx.print(format!(
+                "  {} of diameter {}, {part} % of the mass",
+                radii.len(),
+                general(*diameter, 6)
+            ));
         }
     }
 
@@ -423,13 +427,13 @@ impl Pack {
             return Err(d.help("write a smaller porosity, another seed, or a shorter wavelength").into());
         };
         let radii: Vec<f64> = left.kept.iter().map(|&k| p.radius[k]).collect();
-        cx.say(format!(
+        cx.print(format!(
             "  left an aggregate of {} spheres, porosity {}; {} more were lost as not connected",
             left.kept.len(),
             general(1.0 - solid(&radii) / volume, 5),
             left.lost
         ));
-        cx.say(format!(
+        cx.print(format!(
             "  one part from end to end along {}, over gaps of up to {LINK} diameters",
             ["x", "y", "z"][left.axis]
         ));

@@ -18,14 +18,14 @@ const GENERATOR: u32 = 94;
 const ALIKE: f64 = 0.03;
 /// Parts that are given farther than so many spacings are reported, if they are more than so much of the whole.
 const FAR: f64 = 1.8;
-const TOLD: f64 = 1e-3;
+const REPORTED: f64 = 1e-3;
 
 /// The volumes of new particles.
 pub struct Shares {
     /// Of each of them [length³].
     pub each: Vec<f64>,
     /// The log line about them.
-    pub said: String,
+    pub line: String,
     /// What is odd about them.
     pub warning: Option<Diagnostic>,
 }
@@ -116,7 +116,7 @@ pub fn cut(lattice: &Lattice, domain: &Domain, region: &Region, new: &[New], spa
             n => shares.each[n as usize] += volume,
         }
     }
-    Ok(shares.told(lattice, span))
+    Ok(shares.share(lattice, span))
 }
 
 /// The region with all its faces closed: what is open concerns walls.
@@ -294,7 +294,7 @@ impl Given {
         far
     }
 
-    fn told(self, lattice: &Lattice, span: Span) -> Shares {
+    fn share(self, lattice: &Lattice, span: Span) -> Shares {
         let sum: f64 = self.each.iter().sum();
         let whole = volume(lattice) / lattice.basis.len() as f64;
         let said = format!(
@@ -305,7 +305,7 @@ impl Given {
             general(self.moved, 4),
             self.parts
         );
-        let warning = (self.far > TOLD * sum).then(|| {
+        let warning = (self.far > REPORTED * sum).then(|| {
             let text = format!(
                 "{} of the volume {} went to particles farther than {FAR} spacings away",
                 general(self.far, 4),
@@ -314,7 +314,7 @@ impl Given {
             let d = Diagnostic::warning(Code::SUSPICIOUS, span, text);
             d.help("the region has parts thinner than the lattice: make that finer, or shift it by `origin`")
         });
-        Shares { each: self.each, said, warning }
+        Shares { each: self.each, line: said, warning }
     }
 }
 

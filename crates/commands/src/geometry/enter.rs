@@ -36,7 +36,7 @@ impl<'a> Newcomers<'a> {
     pub fn new(cx: &mut ActCx, making: &'a Making, count: usize) -> Result<Self> {
         let domain = cx.world.domain()?.clone();
         if let Some(line) = memory::forecast(cx.world, count as f64)? {
-            cx.say(line);
+            cx.print(line);
         }
         let last = cx.world.particles.last_tag();
         if u32::try_from(count).ok().and_then(|n| last.checked_add(n)).is_none() {
@@ -89,7 +89,7 @@ impl<'a> Newcomers<'a> {
     pub fn enter(mut self, cx: &mut ActCx, what: &str, checking: bool) -> Result<usize> {
         let (count, all) = (self.particles.len(), self.all());
         if self.outside > 0 {
-            self.tell_outside(cx, what)?;
+            self.report_outside(cx, what)?;
         }
         let bit = self.group(cx)?;
         let first = cx.world.n();
@@ -100,7 +100,7 @@ impl<'a> Newcomers<'a> {
         for mask in self.particles.mask.iter_mut() {
             *mask |= bit;
         }
-        self.tell(cx, count, all);
+        self.log_summary(cx, count, all);
         let w = &mut *cx.world;
         common::join(w, std::mem::take(&mut self.particles));
         w.spread_type_masses();
@@ -109,7 +109,7 @@ impl<'a> Newcomers<'a> {
     }
 
     /// Reports particles outside of the box; refuses if all are.
-    fn tell_outside(&self, cx: &ActCx, what: &str) -> Result<()> {
+    fn report_outside(&self, cx: &ActCx, what: &str) -> Result<()> {
         let text = |x: [f64; 3]| x.map(|x| general(x, 6)).join(" ");
         let places = format!("they reach from ({}) to ({})", text(self.seen[0]), text(self.seen[1]));
         let range = format!("the box from ({}) to ({})", text(self.domain.lo), text(self.domain.hi));
@@ -164,10 +164,10 @@ impl<'a> Newcomers<'a> {
         }
     }
 
-    fn tell(&self, cx: &mut ActCx, count: usize, all: usize) {
-        cx.say(format!("Created {count} atoms"));
+    fn log_summary(&self, cx: &mut ActCx, count: usize, all: usize) {
+        cx.print(format!("Created {count} atoms"));
         if count < all {
-            cx.say(format!("  {} more lie outside of the box", all - count));
+            cx.print(format!("  {} more lie outside of the box", all - count));
         }
         let mut types: Vec<(usize, f64)> = vec![(0, 0.0); cx.world.types];
         for (kind, v) in self.particles.kind.iter().zip(&self.volumes) {
@@ -177,7 +177,7 @@ impl<'a> Newcomers<'a> {
             }
         }
         for (k, (n, sum)) in types.iter().enumerate().filter(|(_, (n, _))| *n > 0) {
-            cx.say(format!("  type {}: {n} atoms, volume {}", k + 1, general(*sum, 10)));
+            cx.print(format!("  type {}: {n} atoms, volume {}", k + 1, general(*sum, 10)));
         }
     }
 }

@@ -211,16 +211,16 @@ fn read(cx: &mut ActCx, file: &Word, step: i64, at: Span, wish: &Wish) -> Result
     let Some((list, s)) = found else { return Ok(()) };
     let before = cx.world.n();
     let counts = enter(cx.world, &s, &list, wish);
-    tell(cx, &s, before, counts);
+    log_summary(cx, &s, before, counts);
     Ok(())
 }
 
-fn tell(cx: &mut ActCx, s: &Snapshot, before: usize, [purged, replaced, trimmed, added]: [usize; 4]) {
-    cx.say("Scanning dump file ...");
-    cx.say("Reading snapshot from dump file ...");
+fn log_summary(cx: &mut ActCx, s: &Snapshot, before: usize, [purged, replaced, trimmed, added]: [usize; 4]) {
+    cx.print("Scanning dump file ...");
+    cx.print("Reading snapshot from dump file ...");
     if let Some(d) = &*cx.world.domain {
-        let line = format!("  {}", d.told(d.lo, d.hi));
-        cx.say(line);
+        let line = format!("  {}", d.describe(d.lo, d.hi));
+        cx.print(line);
     }
     let after = cx.world.n();
     for (count, what) in [
@@ -232,6 +232,6 @@ fn tell(cx: &mut ActCx, s: &Snapshot, before: usize, [purged, replaced, trimmed,
         (added, "added"),
         (after, "after read"),
     ] {
-        cx.say(format!("  {count} atoms {what}"));
+        cx.print(format!("  {count} atoms {what}"));
     }
 }

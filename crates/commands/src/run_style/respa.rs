@@ -12,7 +12,7 @@ const ORDER: [&str; 6] = ["bond", "angle", "dihedral", "improper", "pair", "kspa
 
 /// A line's choices of levels, from 0; `None` where it makes none.
 #[derive(Default)]
-struct Said {
+struct Choices {
     levels: [Option<(usize, Span)>; 6],
     subs: Option<(Vec<usize>, Span)>,
 }
@@ -34,7 +34,7 @@ pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
         super::refuse_many(all, span)?;
         loops.push(times);
     }
-    let mut said = Said::default();
+    let mut said = Choices::default();
     while let Some(word) = a.next() {
         match word.text.as_str() {
             "inner" | "middle" | "outer" => return Err(not_split(word)),
@@ -78,7 +78,7 @@ fn not_split(word: &Word) -> perigrain_base::diag::Diagnostics {
         .into()
 }
 
-impl Said {
+impl Choices {
     /// LAMMPS' defaults, and its order.
     fn settle(self, loops: Vec<i64>) -> Result<(RunStyle, Vec<String>)> {
         let outermost = loops.len();
@@ -110,7 +110,7 @@ impl Said {
                     .into());
             }
         }
-        let said = told(&levels, subs.as_deref(), outermost);
+        let said = describe(&levels, subs.as_deref(), outermost);
         if outermost == 0 {
             return Ok((RunStyle::Verlet, said));
         }
@@ -124,7 +124,7 @@ impl Said {
 }
 
 /// LAMMPS' lines about its levels.
-fn told(levels: &[usize; 6], subs: Option<&[usize]>, outermost: usize) -> Vec<String> {
+fn describe(levels: &[usize; 6], subs: Option<&[usize]>, outermost: usize) -> Vec<String> {
     let mut lines = vec!["Respa levels:".to_string()];
     for level in 0..=outermost {
         let mut line = format!("  {} =", level + 1);

@@ -176,11 +176,11 @@ pub fn apply(cx: &mut ActCx, choice: &Choice, items: &[Item]) -> Result<()> {
     let chosen = chosen(choice, cx.world);
     // Constants were checked when the line was read: only variables can still turn out wrong.
     let before = items.iter().any(Item::has_variable).then(|| cx.world.particles.clone());
-    cx.say("Setting atom values ...");
+    cx.print("Setting atom values ...");
     for item in items {
         let done = change_particles(cx, item, &chosen);
         match done {
-            Ok(count) => cx.say(format!("  {count} settings made for {}", item.keyword)),
+            Ok(count) => cx.print(format!("  {count} settings made for {}", item.keyword)),
             Err(d) => {
                 if let Some(before) = before {
                     cx.world.particles = before;

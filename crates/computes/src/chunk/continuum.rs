@@ -12,7 +12,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::common::orthogonal;
 use perigrain_styles::matter::check_masses;
-use perigrain_styles::probe::{Ask, look_all};
+use perigrain_styles::probe::{Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{Bins, BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{
@@ -255,7 +255,7 @@ impl Compute for Declared {
                 );
                 return fail(Code::BAD_VALUE, span, text);
             }
-            let pairs = look_all(&mut probes, w, Ask::Acting)?;
+            let pairs = look_all(&mut probes, w, Request::Acting)?;
             let scope = Scope {
                 w,
                 group: me.group,

@@ -82,11 +82,11 @@ impl Rules {
     }
 
     /// Whether some rule needs to know which particles belong to solids.
-    pub fn ask_for_bodies(&self) -> bool {
-        let asks = |r: &Rule| {
+    pub fn needs_bodies(&self) -> bool {
+        let needs = |r: &Rule| {
             r.average == Average::Body || r.curvature == Curvature::Impactor || r.law.arm == Arm::Point
         };
-        self.any(asks)
+        self.any(needs)
     }
 
     /// Whether `is` holds for some rule.

@@ -177,9 +177,9 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 self.add(cx, count / N, lane);
             }
             if let Some(deeds) = &cx.deeds {
-                self.tell(deeds, count);
+                self.book(deeds, count);
                 if law.flows() {
-                    self.tell_flow::<W>(cx, &deeds[2], law, count, list);
+                    self.book_flow::<W>(cx, &deeds[2], law, count, list);
                 }
             }
         }
@@ -314,7 +314,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
 
     /// Adds the work of the first contacts to the sums of the energy ledger.
     #[inline(always)]
-    unsafe fn tell(&self, deeds: &[par::Shared<Vec3>; 3], count: usize) {
+    unsafe fn book(&self, deeds: &[par::Shared<Vec3>; 3], count: usize) {
         let (damping, across): (*mut f64, *mut f64) = (deeds[0].as_ptr().cast(), deeds[1].as_ptr().cast());
         for at in 0..count {
             let (group, lane) = (at / N, at % N);
@@ -367,7 +367,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
     /// Adds the elastic forces and the stored energy of a dissipative law, for the first contacts, which must
     /// have been evaluated: scalar code and not inlined, as for heat.
     #[inline(never)]
-    unsafe fn tell_flow<const W: usize>(
+    unsafe fn book_flow<const W: usize>(
         &self,
         cx: &Cx,
         pressing: &par::Shared<Vec3>,

@@ -202,7 +202,7 @@ impl ListValidity {
         self.renew(lists, grains, &worn);
         self.looked = grains.period;
         let left = self.nearer.iter().copied().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
-        self.since = Seen::now(grains.travel, 0.5 * left);
+        self.since = Seen::measured(grains.travel, 0.5 * left);
         worn
     }
 

@@ -40,7 +40,7 @@ impl Fast {
         par::threads() == 1 && self.len() > par::CHUNK && self.in_order && self.large() == 0 && !self.timed
     }
 
-    /// Begins an evaluation like [`Fast::run`] without virial, with the same bits, for [`Fast::go_on`].
+    /// Begins an evaluation like [`Fast::run`] without virial, with the same bits, for [`Fast::advance`].
     pub fn begin_per_tile(&mut self, grains: &Grains, step: Advance, store: bool) -> PerTile {
         self.begin(grains);
         let to_come = &mut self.waiting.to_come;
@@ -51,7 +51,7 @@ impl Fast {
 
     /// Adds forces and torques of the contacts of some more tiles to `f` and `torque`; returns whether there
     /// were any. [`Fast::ready`] then gives the grains whose sums are complete.
-    pub fn go_on(&mut self, p: &mut PerTile, grains: &Grains, wrench: [&mut [Vec3]; 2]) -> bool {
+    pub fn advance(&mut self, p: &mut PerTile, grains: &Grains, wrench: [&mut [Vec3]; 2]) -> bool {
         let some = self.some_from(p.done);
         if some.is_empty() {
             self.now += if p.store { 1.0 } else { 0.0 };
@@ -91,7 +91,7 @@ impl Fast {
         done..end
     }
 
-    /// The grains of this part whose sums have become complete since the last [`Fast::go_on`].
+    /// The grains of this part whose sums have become complete since the last [`Fast::advance`].
     pub fn ready(&self, part: usize) -> Option<Range<usize>> {
         self.waiting.ready.get(part).map(|tile| self.members[*tile].clone())
     }

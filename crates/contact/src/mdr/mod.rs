@@ -88,7 +88,7 @@ pub const WALL: usize = side::WIDTH;
 
 /// Normal results of a contact for the rest of the law: force, stiffness for damping, area, and returnable
 /// energy (if an energy ledger is kept). These numbers are at the end of the history.
-pub const TOLD: usize = 4;
+pub const PRECOMPUTED: usize = 4;
 
 /// After a setup, which only evaluates forces: restores `rows` of `width` numbers to `before`; LAMMPS keeps
 /// the largest depths it has seen.

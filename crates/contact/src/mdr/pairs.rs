@@ -63,7 +63,7 @@ impl Meetings {
         self.seen.iter_mut().zip(&self.open).for_each(|(c, open)| c.open = *open);
     }
 
-    /// Evaluates all contacts; `told` receives the results that the rest of the law needs: [`TOLD`] numbers
+    /// Evaluates all contacts; `precomputed` receives the results that the rest of the law needs: [`PRECOMPUTED`] numbers
     /// at the end of each row of `width`.
     pub fn press(
         &mut self,
@@ -71,12 +71,12 @@ impl Meetings {
         radius: &[f64],
         s: &mut State,
         memory: &mut Contacts,
-        told: (&mut [f64], usize),
+        precomputed: (&mut [f64], usize),
         manner: Manner,
     ) {
         // Every element is written.
         self.deeds.resize(self.seen.len(), Default::default());
-        let (rows, width) = told;
+        let (rows, width) = precomputed;
         self.grains.clear();
         self.grains.extend(radius.iter().enumerate().map(|(k, r)| s.grain(m, k, *r)));
         let (grains, form) = (&self.grains[..], Form::here());
@@ -86,8 +86,8 @@ impl Meetings {
             par::Rows { data: rows, width },
             &self.seen[..],
         );
-        par::each(columns, |_, (deeds, memory, told, seen)| {
-            let press = Press { m, manner, grains, seen, memory: memory.data, told, deeds };
+        par::each(columns, |_, (deeds, memory, precomputed, seen)| {
+            let press = Press { m, manner, grains, seen, memory: memory.data, precomputed, deeds };
             // SAFETY: the processor supports this form, and the columns are as long as `Press` requires.
             unsafe { form.run(press) };
         });

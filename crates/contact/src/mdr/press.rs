@@ -4,7 +4,7 @@ use super::deeds::{Deed, side};
 use super::pairs::cut;
 use super::side::{Side, WIDTH};
 use super::state::Grain;
-use super::{Manner, Material, PAIR, TOLD};
+use super::{Manner, Material, PAIR, PRECOMPUTED};
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::real::Real;
@@ -36,8 +36,8 @@ pub(super) struct Press<'a> {
     pub seen: &'a [Contact],
     /// [`PAIR`] numbers of each contact.
     pub memory: &'a mut [f64],
-    /// Results for the rest of the law: [`TOLD`] numbers at the end of each row.
-    pub told: par::Rows<'a, f64>,
+    /// Results for the rest of the law: [`PRECOMPUTED`] numbers at the end of each row.
+    pub precomputed: par::Rows<'a, f64>,
     pub deeds: &'a mut [[Deed; 2]],
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Press<'a> {
 struct Places<const N: usize> {
     grains: [[*mut f64; N]; 2],
     memory: [*mut f64; N],
-    told: [*mut f64; N],
+    precomputed: [*mut f64; N],
     deeds: [*mut f64; N],
 }
 
@@ -55,15 +55,20 @@ impl InLanes for Press<'_> {
     /// The columns must have one row per contact.
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        let Self { m, manner, grains, seen, memory, told, deeds } = self;
-        let width = told.width;
+        let Self { m, manner, grains, seen, memory, precomputed, deeds } = self;
+        let width = precomputed.width;
         assert!(memory.len() == seen.len() * PAIR && deeds.len() == seen.len());
-        assert!(told.data.len() == seen.len() * width && width >= TOLD);
-        let (memory, told, deeds) = (memory.as_mut_ptr(), told.data.as_mut_ptr(), deeds.as_mut_ptr());
+        assert!(precomputed.data.len() == seen.len() * width && width >= PRECOMPUTED);
+        let (memory, precomputed, deeds) =
+            (memory.as_mut_ptr(), precomputed.data.as_mut_ptr(), deeds.as_mut_ptr());
         for first in (0..seen.len()).step_by(N) {
             let (null, mut at) = (std::ptr::null_mut(), [0; N]);
-            let mut places =
-                Places::<N> { grains: [[null; N]; 2], memory: [null; N], told: [null; N], deeds: [null; N] };
+            let mut places = Places::<N> {
+                grains: [[null; N]; 2],
+                memory: [null; N],
+                precomputed: [null; N],
+                deeds: [null; N],
+            };
             for lane in 0..N {
                 // Lanes beyond the last contact repeat it and write identical values.
                 let k = (first + lane).min(seen.len() - 1);
@@ -76,7 +81,7 @@ impl InLanes for Press<'_> {
                 // SAFETY: these rows of column k exist, as checked above.
                 unsafe {
                     places.memory[lane] = memory.add(k * PAIR);
-                    places.told[lane] = told.add((k + 1) * width - TOLD);
+                    places.precomputed[lane] = precomputed.add((k + 1) * width - PRECOMPUTED);
                     places.deeds[lane] = deeds.add(k).cast();
                 }
             }
@@ -135,13 +140,13 @@ unsafe fn press<const N: usize, V: Lanes<N>>(
         let (plastic, energies) = (sides.plastic.0, deed.energy.0);
         let mut damped = contact * (2.0 * m.plane());
         if manner.takes_before() {
-            damped = load_rows::<V, N>(&at.told, 0)[1];
+            damped = load_rows::<V, N>(&at.precomputed, 0)[1];
         }
         let mut energy = V::all(0.0);
         if manner.booked {
             energy = given_back(grains.radius.0, largest, plastic, energies);
         }
-        store_rows(&at.told, 0, [force, damped, area, energy]);
+        store_rows(&at.precomputed, 0, [force, damped, area, energy]);
     }
 }
 

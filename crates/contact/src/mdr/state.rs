@@ -135,7 +135,7 @@ impl State {
     }
 
     /// Initializes new grains.
-    pub fn welcome(&mut self, radius: &[f64]) {
+    pub fn add_grains(&mut self, radius: &[f64]) {
         for (k, &r) in radius.iter().enumerate() {
             if self.first[k] != 0.0 {
                 continue;
@@ -204,7 +204,7 @@ pub fn begin(w: &mut World, at: (i64, bool), m: &Material) -> State {
     let (step, setup) = (at.0 as f64, at.1);
     let n = w.n();
     let mut state = State::take(&mut w.columns, n);
-    state.welcome(&w.particles.radius);
+    state.add_grains(&w.particles.radius);
     if !setup && !begun(w, at) {
         state.begin(m, &mut w.particles.radius);
         w.memo.insert(*PLASTIC_BEGUN, vec![step]);

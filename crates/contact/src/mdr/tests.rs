@@ -245,7 +245,7 @@ fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
         Grain { first: 1.0, volume, left_volume: 0.9 * volume, area_before: part, mean, radius }
     };
     let grains: Vec<Grain> = (0..=CONTACTS).map(grain).collect();
-    let (mut memory, mut told) = (vec![0.0; CONTACTS * PAIR], vec![0.0; CONTACTS * (TOLD + 1)]);
+    let (mut memory, mut precomputed) = (vec![0.0; CONTACTS * PAIR], vec![0.0; CONTACTS * (PRECOMPUTED + 1)]);
     let mut deeds = vec![[Deed::default(); 2]; CONTACTS];
     for step in 0..160 {
         let contact = |k: usize| {
@@ -262,11 +262,13 @@ fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
         let seen: Vec<Contact> = (0..CONTACTS).map(contact).collect();
         let manner = Manner { lammps: setup, setup: setup && step == 159, booked: step % 2 == 1 };
         let groups = if form.is_some() { CONTACTS } else { 1 };
-        let columns = memory.chunks_mut(groups * PAIR).zip(told.chunks_mut(groups * (TOLD + 1)));
-        for ((seen, deeds), (memory, told)) in seen.chunks(groups).zip(deeds.chunks_mut(groups)).zip(columns)
+        let columns =
+            memory.chunks_mut(groups * PAIR).zip(precomputed.chunks_mut(groups * (PRECOMPUTED + 1)));
+        for ((seen, deeds), (memory, precomputed)) in
+            seen.chunks(groups).zip(deeds.chunks_mut(groups)).zip(columns)
         {
-            let told = perigrain_base::par::Rows { data: told, width: TOLD + 1 };
-            let press = Press { m, manner, grains: &grains, seen, memory, told, deeds };
+            let precomputed = perigrain_base::par::Rows { data: precomputed, width: PRECOMPUTED + 1 };
+            let press = Press { m, manner, grains: &grains, seen, memory, precomputed, deeds };
             // SAFETY: the processor supports this form.
             unsafe { form.unwrap_or(Form::Plain).run(press) };
         }
@@ -275,7 +277,7 @@ fn pressed(m: &Material, form: Option<Form>, setup: bool) -> [Vec<f64>; 3] {
         .iter()
         .flatten()
         .flat_map(|d| [d.strain, d.cap, d.area, d.surface, d.displaced, d.covered, d.stress, d.energy]);
-    [memory, told, done.collect()]
+    [memory, precomputed, done.collect()]
 }
 
 #[test]
@@ -300,18 +302,18 @@ fn a_contact_of_like_grains_is_pressed_as_by_a_wall() {
     let volume = 4.0 / 3.0 * PI;
     let (first, radius, left_volume) = (1.0, 1.0, volume);
     let grain = Grain { first, volume, left_volume, area_before: 0.0, mean: 0.0, radius };
-    let (mut one, mut memory, mut told) = (Side::default(), vec![0.0; PAIR], vec![0.0; TOLD]);
+    let (mut one, mut memory, mut precomputed) = (Side::default(), vec![0.0; PAIR], vec![0.0; PRECOMPUTED]);
     let (mut deeds, normal) = (vec![[Deed::default(); 2]], [0.0, 0.0, 1.0]);
     for depth in there_and_back(0.04) {
         let seen = [Contact { ends: [0, 1], normal, overlap: 2.0 * depth, depths: [depth; 2], open: 1.0 }];
         let manner = Manner::default();
         let (force, contact, _) = deeds::side(&m, &grain, depth, &mut one, 1.0, manner);
         let (grains, memory) = (&[grain; 2], &mut memory[..]);
-        let row = perigrain_base::par::Rows { data: &mut told[..], width: TOLD };
-        let press = Press { m: &m, manner, grains, seen: &seen, memory, told: row, deeds: &mut deeds };
+        let row = perigrain_base::par::Rows { data: &mut precomputed[..], width: PRECOMPUTED };
+        let press = Press { m: &m, manner, grains, seen: &seen, memory, precomputed: row, deeds: &mut deeds };
         // SAFETY: the processor supports this form.
         unsafe { Form::here().run(press) };
-        assert_eq!(told[..2], [force, 2.0 * m.plane() * (2.0 * contact)], "{depth}");
+        assert_eq!(precomputed[..2], [force, 2.0 * m.plane() * (2.0 * contact)], "{depth}");
         assert_eq!(Side::read(&memory[..]), one);
     }
 }

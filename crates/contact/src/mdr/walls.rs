@@ -2,7 +2,7 @@
 
 use super::deeds::{Deed, side};
 use super::side::{Side, WIDTH};
-use super::{Manner, Material, State, TOLD};
+use super::{Manner, Material, PRECOMPUTED, State};
 use perigrain_base::math::elementary::exp;
 use perigrain_world::contacts::Contacts;
 
@@ -27,7 +27,7 @@ pub fn gather(
     }
 }
 
-/// Presses grain `k` with the wall; `told` receives the results that the rest of the law needs.
+/// Presses grain `k` with the wall; `precomputed` receives the results that the rest of the law needs.
 pub fn press(
     m: &Material,
     s: &State,
@@ -35,7 +35,7 @@ pub fn press(
     radius: f64,
     depth: f64,
     memory: &mut [f64],
-    told: &mut [f64],
+    precomputed: &mut [f64],
     manner: Manner,
 ) -> Deed {
     let mut one = Side::read(&memory[..WIDTH]);
@@ -43,7 +43,7 @@ pub fn press(
     one.write(memory);
     let far = far_pushed(one.first_depth, s.first[k]);
     let force = force * far;
-    let damped = if manner.takes_before() { told[1] } else { 0.5 * m.plane() * a };
-    told[..TOLD].copy_from_slice(&[force, damped, one.area, deed.energy * far]);
+    let damped = if manner.takes_before() { precomputed[1] } else { 0.5 * m.plane() * a };
+    precomputed[..PRECOMPUTED].copy_from_slice(&[force, damped, one.area, deed.energy * far]);
     deed
 }

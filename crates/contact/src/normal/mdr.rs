@@ -3,7 +3,7 @@
 
 use super::hertz::Hertz;
 use super::{Bound, Geometry, Normal, NormalLaw, Number, Push, Real, Role, Style};
-use crate::mdr::{Material, TOLD};
+use crate::mdr::{Material, PRECOMPUTED};
 
 /// The style.
 pub const MDR: Style = Style {
@@ -73,9 +73,9 @@ pub struct Mdr {
 }
 
 impl NormalLaw for Mdr {
-    const IS_TOLD: bool = true;
+    const IS_PRECOMPUTED: bool = true;
     const FLOWS: bool = true;
-    const MEMORY: usize = TOLD;
+    const MEMORY: usize = PRECOMPUTED;
 
     #[inline(always)]
     fn push<R: Real>(&self, g: &Geometry<R>, _a: R, memory: &mut [R]) -> Push<R> {
@@ -85,7 +85,7 @@ impl NormalLaw for Mdr {
 
     /// Energy that both sides return if they unload now; available if an energy ledger is kept.
     fn energy(&self, _g: &Geometry, memory: &[f64]) -> f64 {
-        memory[TOLD - 1]
+        memory[PRECOMPUTED - 1]
     }
 
     /// The stiffness of elastic grains with this overlap.

@@ -40,7 +40,7 @@ pub trait NormalLaw: Copy + Debug + PartialEq {
     /// Whether the normal load for friction is the force plus [`Push::hold`] instead of the damped force.
     const STICKS: bool = false;
     /// Whether the force is computed elsewhere and read from the history.
-    const IS_TOLD: bool = false;
+    const IS_PRECOMPUTED: bool = false;
     /// Whether the work of the force apart from [`NormalLaw::energy`] is plastic flow and new surface, which
     /// the energy ledger records as such.
     const FLOWS: bool = false;
@@ -115,9 +115,9 @@ macro_rules! normal_laws {
                 match self { $(Self::$Law(_) => $module::$Law::STICKS,)* }
             }
 
-            /// See [`NormalLaw::IS_TOLD`].
-            pub fn is_told(&self) -> bool {
-                match self { $(Self::$Law(_) => $module::$Law::IS_TOLD,)* }
+            /// See [`NormalLaw::IS_PRECOMPUTED`].
+            pub fn is_precomputed(&self) -> bool {
+                match self { $(Self::$Law(_) => $module::$Law::IS_PRECOMPUTED,)* }
             }
 
             /// See [`NormalLaw::FLOWS`].

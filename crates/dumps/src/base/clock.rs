@@ -15,7 +15,7 @@ pub(super) enum Clock {
     /// Multiples of a time.
     Multiples(f64),
     /// A variable, which is asked when a run begins and after each snapshot.
-    Asked(Text, ValueRef),
+    Named(Text, ValueRef),
 }
 
 impl Clock {
@@ -30,11 +30,11 @@ impl Clock {
         if t.setup {
             let multiple = match self {
                 Clock::Multiples(every) => (now - (now / *every).round() * *every).abs() <= near,
-                Clock::Asked(..) => false,
+                Clock::Named(..) => false,
             };
             state.next_time = Some(match self {
                 Clock::Multiples(every) => ((now / *every).floor() + 1.0) * *every,
-                Clock::Asked(text, r) => later(text, r, w)?,
+                Clock::Named(text, r) => later(text, r, w)?,
             });
             let unwritten = if multiple { state.last != Some(t.step) } else { state.last.is_none() };
             return Ok(unwritten && (multiple || first));
@@ -53,7 +53,7 @@ impl Clock {
                     next
                 }
             }
-            Clock::Asked(text, r) => later(text, r, w)?,
+            Clock::Named(text, r) => later(text, r, w)?,
         });
         Ok(true)
     }

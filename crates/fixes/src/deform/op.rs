@@ -55,7 +55,7 @@ impl Shape {
 }
 
 /// Stores the rates of lengths, lower faces and tilts in the world.
-pub fn tell(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], remap: Remap) {
+pub fn store_streaming(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], remap: Remap) {
     let remapped = f64::from(u8::from(remap == Remap::Positions));
     let row = w.memo.get_or(key, Vec::new);
     row.clear();
@@ -157,7 +157,7 @@ impl Op for Move {
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let shape = Shape::at(&self.tracks, &self.leans, w, t)?;
-        tell(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
+        store_streaming(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
         let flow = shape.flow(&self.tracks, &self.leans, (w, self.group), t.setup);
         let Shape { lo, hi, tilt, .. } = shape;
         // Particles of a flat scene stay in their plane.

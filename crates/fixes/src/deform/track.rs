@@ -52,7 +52,7 @@ impl Track {
 }
 
 /// For runs that share a ramp, the state when the line was read: lower faces, upper faces, tilts.
-fn said<'a>(fix: &Declared, w: &'a World) -> Option<&'a Vec<f64>> {
+fn stored_start<'a>(fix: &Declared, w: &'a World) -> Option<&'a Vec<f64>> {
     w.memo.get(fix.key()).filter(|m| w.clock.first != w.clock.start && m.len() >= 6)
 }
 
@@ -61,10 +61,10 @@ fn said<'a>(fix: &Declared, w: &'a World) -> Option<&'a Vec<f64>> {
 /// # Errors
 /// There is no box.
 pub fn start(fix: &Declared, w: &World) -> Result<([f64; 3], [f64; 3])> {
-    let (domain, said) = (w.domain()?, said(fix, w));
-    let at = |k: usize, now: f64| said.and_then(|m| m.get(k)).copied().unwrap_or(now);
+    let (domain, stored) = (w.domain()?, stored_start(fix, w));
+    let at = |k: usize, now: f64| stored.and_then(|m| m.get(k)).copied().unwrap_or(now);
     let (now, tilt) = (domain.lengths(), domain.tilt.unwrap_or_default());
-    let length = |d: usize| said.map_or(now[d], |m| m[d + 3] - m[d]);
+    let length = |d: usize| stored.map_or(now[d], |m| m[d + 3] - m[d]);
     Ok(([0, 1, 2].map(|k| at(k + 6, tilt[k])), [0, 1, 2].map(length)))
 }
 
@@ -75,8 +75,8 @@ pub fn start(fix: &Declared, w: &World) -> Result<([f64; 3], [f64; 3])> {
 pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track; 3]> {
     let w = cx.world();
     let (clock, domain) = (w.clock.clone(), w.domain()?.clone());
-    let said = said(fix, w);
-    let face = |k: usize, now: f64| said.map_or(now, |m| m[k]);
+    let stored = stored_start(fix, w);
+    let face = |k: usize, now: f64| stored.map_or(now, |m| m[k]);
     let start = [0, 1, 2].map(|d| [face(d, domain.lo[d]), face(d + 3, domain.hi[d])]);
     let time = (clock.stop - clock.start) as f64 * clock.dt;
     let followers = fix.motions.iter().flatten().filter(|m| matches!(m, Motion::Volume)).count();

@@ -18,7 +18,7 @@ const KEYWORDS: [&str; 20] = [
 type Bounded = (Region, ([f64; 3], [f64; 3]));
 
 /// Values of the keywords, in the units of the line.
-struct Said {
+struct Keywords {
     region: Option<Bounded>,
     variable: Option<ValueRef>,
     sets: [Option<ValueRef>; 3],
@@ -52,37 +52,43 @@ pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Depositing> {
         test: None,
     };
     let (sets, molecules) = ([None, None, None], molecules::Words::default());
-    let mut said = Said { region: None, variable: None, sets, lattice: true, molecules };
+    let mut keywords = Keywords { region: None, variable: None, sets, lattice: true, molecules };
     let start = args.here();
     while let Some(word) = args.next() {
-        keyword(word, args, cx, &mut fix, &mut said)?;
+        keyword(word, args, cx, &mut fix, &mut keywords)?;
     }
-    fix.molecules = said.molecules.finish(kind, at, cx)?;
-    let Some((region, corners)) = said.region else {
+    fix.molecules = keywords.molecules.finish(kind, at, cx)?;
+    let Some((region, corners)) = keywords.region else {
         let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix deposit needs `region ID`");
         return Err(d.help("it is the region where particles may appear").into());
     };
     (fix.region, fix.corners) = (region, corners);
-    fix.test = match (said.variable, said.sets.iter().any(Option::is_some)) {
+    fix.test = match (keywords.variable, keywords.sets.iter().any(Option::is_some)) {
         (None, false) => None,
-        (Some(variable), true) => Some((variable, said.sets)),
+        (Some(variable), true) => Some((variable, keywords.sets)),
         _ => {
             let text = "`var` and `set` belong together";
             let d = Diagnostic::error(Code::INCOMPLETE, start.to(args.here()), text);
             return Err(d.help("write for example `var test set x xx`").into());
         }
     };
-    scale(&mut fix, scales(cx.world, said.lattice), cx.world.settings.two_dimensional);
+    scale(&mut fix, scales(cx.world, keywords.lattice), cx.world.settings.two_dimensional);
     Ok(fix)
 }
 
-fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, fix: &mut Depositing, said: &mut Said) -> Result<()> {
+fn keyword(
+    word: &Word,
+    args: &mut Args,
+    cx: &BuildCx,
+    fix: &mut Depositing,
+    keywords: &mut Keywords,
+) -> Result<()> {
     match word.text.as_str() {
-        "region" => said.region = Some(region(args.expect("the region's ID")?, cx)?),
-        "var" => said.variable = Some(variable(args, cx, true)?),
+        "region" => keywords.region = Some(region(args.expect("the region's ID")?, cx)?),
+        "var" => keywords.variable = Some(variable(args, cx, true)?),
         "set" => {
             let d = axis(args, "the coordinate")?;
-            said.sets[d] = Some(variable(args, cx, false)?);
+            keywords.sets[d] = Some(variable(args, cx, false)?);
         }
         "id" => fix.ids = Ids::take(args)?,
         "global" => fix.height = Height::Global(pair(args, "distance")?),
@@ -100,8 +106,8 @@ fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, fix: &mut Depositing, sai
         "vy" => fix.velocity[1] = pair(args, "velocity")?,
         "vz" => fix.velocity[2] = pair(args, "velocity")?,
         "target" => fix.target = Some([args.number("x")?, args.number("y")?, args.number("z")?]),
-        "units" => said.lattice = units_lattice(args)?,
-        "mol" | "molfrac" | "rigid" | "shake" | "orient" => said.molecules.take(word, args, cx)?,
+        "units" => keywords.lattice = units_lattice(args)?,
+        "mol" | "molfrac" | "rigid" | "shake" | "orient" => keywords.molecules.take(word, args, cx)?,
         _ => return Err(bad_keyword(args, word, &KEYWORDS, &[])),
     }
     Ok(())

@@ -64,7 +64,7 @@ pub enum Body {
 
 impl Form<Reading> {
     /// The indenter in this step, wrapped into a periodic box.
-    pub fn now(&self, w: &World) -> Result<Body> {
+    pub fn present(&self, w: &World) -> Result<Body> {
         let wrapped = |mut x: [f64; 3]| {
             if let Some(d) = &*w.domain {
                 d.wrap(&mut x, &mut [0; 3]);

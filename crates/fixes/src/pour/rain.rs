@@ -172,7 +172,7 @@ impl Op for Rain {
         About::new(&self.name, Stage::Exchange, Needs::new().read(X | RADIUS).write(Fields::ALL))
     }
     fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
-        Rows::Asks
+        Rows::Requested
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let Some(mut account) = Account::load(w, self.key).filter(|a| a.next == Some(t.step)) else {

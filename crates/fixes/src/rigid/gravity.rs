@@ -63,7 +63,7 @@ impl Weight {
         let pulling: Vec<&Gravity> = all.iter().filter(other).collect();
         let note = match named {
             Some(_) => named.filter(shares).map(|g| twice(g, span)),
-            None => pulling.iter().copied().find(shares).map(|g| told(fix, g, lammps, span)),
+            None => pulling.iter().copied().find(shares).map(|g| mass_warning(fix, g, lammps, span)),
         };
         note.into_iter().for_each(|note| w.parts.notes.push(note));
         // LAMMPS leaves gravity on particles unchanged.
@@ -80,7 +80,7 @@ impl Weight {
     }
 
     /// The current accelerations.
-    pub fn now(&self, w: &World) -> Pulls {
+    pub fn accelerations(&self, w: &World) -> Pulls {
         let at = |slot: SlotId| w.slots.get(slot).vector.first_chunk().copied().unwrap_or([0.0; 3]);
         Pulls {
             centre: self.named.map(at),
@@ -98,7 +98,7 @@ fn twice(g: &Gravity, span: Span) -> Diagnostic {
 }
 
 /// The warning that gravity acts on particles whose masses differ from the body's.
-fn told(fix: &Declared, g: &Gravity, lammps: bool, span: Span) -> Diagnostic {
+fn mass_warning(fix: &Declared, g: &Gravity, lammps: bool, span: Span) -> Diagnostic {
     let source = if fix.infile.is_some() { "`infile`" } else { "the template" };
     let help = format!("write `gravity {}` here and `disable` at the end of fix gravity", g.id);
     if lammps {

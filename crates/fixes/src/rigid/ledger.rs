@@ -11,11 +11,11 @@ use perigrain_world::World;
 impl Declared {
     /// Records twice the kinetic energies of translation and rotation, and the power of gravity, in excess of
     /// those of the particles, which the ledger counts itself.
-    pub fn tell_ledger(&self, w: &mut World, crew: &Crew, bodies: &[Body]) {
+    pub fn book_in_ledger(&self, w: &mut World, crew: &Crew, bodies: &[Body]) {
         if !ledger::is_open(w) || (!self.gives() && crew.weight.is_none()) {
             return;
         }
-        let (p, masses, pulls) = (&w.particles, Masses::of(w), crew.weight.now(w));
+        let (p, masses, pulls) = (&w.particles, Masses::of(w), crew.weight.accelerations(w));
         let mut beyond = [0.0; 3];
         for (k, b) in bodies.iter().enumerate() {
             beyond[0] += b.mass * dot(b.v, b.v);

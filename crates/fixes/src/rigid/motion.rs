@@ -133,12 +133,12 @@ impl Declared {
         }
         let bodies = self.load(w);
         self.publish(w, t, slot, &bodies);
-        self.tell_ledger(w, crew, &bodies);
+        self.book_in_ledger(w, crew, &bodies);
     }
 
     /// The end of a step and the beginning of the next one, when no virial is requested and nothing reads the
     /// velocities in between.
-    pub fn go_on(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
+    pub fn begin_next(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
         if w.is_narrow() || w.slots.get(slot).offers == Offers::default() {
             self.move_bodies(w, t, crew, Part::Both);
         } else {
@@ -169,7 +169,7 @@ impl Declared {
             edges: w.edges(),
             p: &w.particles,
             masses: Masses::of(w),
-            pulls: crew.weight.now(w),
+            pulls: crew.weight.accelerations(w),
             first: &crew.first,
             members: &crew.members,
             which: own.is_some().then_some(&crew.own.bodies[..]),

@@ -72,7 +72,7 @@ impl Declared {
 
     /// The rows whose values an op of this part of a step needs.
     pub fn span(&self, w: &mut World, t: &Tick) -> Span {
-        if self.shares(w, t) { Span::Asks } else { Span::All }
+        if self.shares(w, t) { Span::Requested } else { Span::All }
     }
 
     /// Restricts the current op to the bodies of this rank, if it shares the work.

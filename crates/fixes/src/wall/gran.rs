@@ -211,7 +211,7 @@ impl Form for Flat {
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
-        self.tell_beyond(fix, cx)?;
+        self.warn_beyond(fix, cx)?;
         let stands = match &self.place {
             Place::Planes(pair) => {
                 // Plastic grains need their walls before any forces.
@@ -234,7 +234,7 @@ impl Form for Flat {
 
 impl Flat {
     /// Warns of grains on the far side of a plane, which would push them out.
-    fn tell_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
+    fn warn_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
         let Place::Planes(pair) = &self.place else { return Ok(()) };
         let (axis, [lo, hi]) = (pair.axis, pair.fixed());
         let p = &cx.world().particles;
@@ -280,7 +280,7 @@ impl Running {
             elapsed.store(w, self.key);
         }
         let lammps = (t.step as f64 - elapsed.origin) * t.dt;
-        let time = if w.settings.lammps() { lammps } else { elapsed.now() };
+        let time = if w.settings.lammps() { lammps } else { elapsed.time() };
         let before = self.offset;
         match (motion, &self.stands) {
             (Motion::Wiggle(axis, amplitude, omega), _) => {

@@ -13,7 +13,7 @@ use perigrain_contact::{Advance, Granular};
 use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::contacts::{Contacts, ToldSprings};
+use perigrain_world::contacts::{Contacts, ReportedSprings};
 use perigrain_world::field::{
     self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL, V,
     WALL_CONTACTS, X,
@@ -249,7 +249,7 @@ impl WallOp {
         }
         if self.peace.is_worth_a_look(t.step) {
             let room = self.room(w);
-            self.peace.begin(t.step, Seen::now(*w.travel, 0.0), room);
+            self.peace.begin(t.step, Seen::measured(*w.travel, 0.0), room);
         }
     }
 
@@ -401,7 +401,7 @@ impl Op for WallOp {
             .add(F | TORQUE)
             .write(WALL_CONTACTS | FACTS | SLOTS)
             .keep(MEMO | field::COLUMNS);
-        About { tells: true, ..About::new(&self.name, Stage::PostForce, needs) }
+        About { collective: true, ..About::new(&self.name, Stage::PostForce, needs) }
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
@@ -442,7 +442,7 @@ impl Op for WallOp {
         let booked = w.parts.wall_touches.is_some();
         let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
         if let Some(list) = springs {
-            w.parts.wall_springs.lists.insert(self.key.of(), ToldSprings { step: t.step, list });
+            w.parts.wall_springs.lists.insert(self.key.of(), ReportedSprings { step: t.step, list });
         }
         if let Some((all, touches)) = w.parts.wall_touches.as_mut().zip(touches) {
             all.insert(self.key.of(), touches);

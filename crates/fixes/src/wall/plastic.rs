@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_contact::Model;
-use perigrain_contact::mdr::{self, Manner, Material, State, TOLD, WALL};
+use perigrain_contact::mdr::{self, Manner, Material, PRECOMPUTED, State, WALL};
 use perigrain_contact::normal::{plastic, plastic_grain};
 use perigrain_contact::walls::WallSweep;
 use perigrain_plan::Tick;
@@ -96,7 +96,7 @@ impl Plastic {
         for (c, (own, told)) in touching.iter().zip(rows) {
             let k = c.grain as usize;
             let radius = w.particles.radius[k];
-            let (depth, told) = (radius - c.near.distance, &mut told[width - TOLD..]);
+            let (depth, told) = (radius - c.near.distance, &mut told[width - PRECOMPUTED..]);
             let deed = mdr::press(&self.material, &state, k, radius, depth, own, told, manner);
             let mut sum = mdr::Sum::default();
             sum.add(&deed, c.near.normal);

@@ -138,7 +138,7 @@ pub(super) fn os_info() -> String {
         other => other,
     };
     let release = || std::fs::read_to_string("/proc/sys/kernel/osrelease").ok();
-    let release = perigrain_base::comm::told::text(release).unwrap_or_default();
+    let release = perigrain_base::comm::broadcast::text(release).unwrap_or_default();
     format!("{name} {} {}", release.trim(), std::env::consts::ARCH)
 }
 

@@ -34,7 +34,7 @@ pub(super) enum Special {
     Setting,
     TypeLabel,
     Timeout,
-    Ask(Question),
+    Query(Question),
 }
 
 /// A function with its name and what it reads.
@@ -74,9 +74,9 @@ pub(super) static SPECIALS: &[Row] = &[
     row("label2type", Special::TypeLabel, &["kind", "label"]),
     row("is_typelabel", Special::TypeLabel, &["kind", "label"]),
     row("is_timeout", Special::Timeout, &[]),
-    row("is_active", Special::Ask(Question::Active), &["category", "feature"]),
-    row("is_available", Special::Ask(Question::Available), &["category", "feature"]),
-    row("is_defined", Special::Ask(Question::Defined), &["category", "name"]),
+    row("is_active", Special::Query(Question::Active), &["category", "feature"]),
+    row("is_available", Special::Query(Question::Available), &["category", "feature"]),
+    row("is_defined", Special::Query(Question::Defined), &["category", "name"]),
 ];
 
 /// The function of this name.
@@ -140,11 +140,11 @@ pub(super) fn value(
             vars.event();
             Ok(truth(env.timed_out()))
         }
-        Special::Ask(Question::Defined) if word(0) == "variable" && vars.is_adrift(word(1)) => {
+        Special::Query(Question::Defined) if word(0) == "variable" && vars.is_adrift(word(1)) => {
             Ok(Value::Unknown)
         }
-        Special::Ask(Question::Defined) if word(0) == "variable" => Ok(truth(vars.kind(word(1)).is_some())),
-        Special::Ask(q) => env.answer(q, name(0), name(1)).map(truth),
+        Special::Query(Question::Defined) if word(0) == "variable" => Ok(truth(vars.kind(word(1)).is_some())),
+        Special::Query(q) => env.answer(q, name(0), name(1)).map(truth),
     }
 }
 

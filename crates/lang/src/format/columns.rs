@@ -198,9 +198,9 @@ fn run_of(rows: &[Row<'_>], k: usize) -> usize {
     }
     let mut below = rows[k].comment.map_or(0, |comment| comment.column);
     let more = rows[k + 1..].iter().take_while(|row| {
-        let goes_on =
+        let continues =
             row.is_comment() && row.comment.is_some_and(|comment| comment.column == below && below > 0);
-        let takes = goes_on || behind_words(row);
+        let takes = continues || behind_words(row);
         below = row.comment.map_or(0, |comment| comment.column);
         takes
     });

@@ -1,6 +1,6 @@
 //! What would never end or take all memory is refused, and long lines are read in the time of their length.
 
-use super::says;
+use super::output_of;
 use std::time::Instant;
 
 #[test]
@@ -14,7 +14,7 @@ fn a_tree_of_variables_is_not_evaluated_without_end() {
                 )
             })
             .collect();
-        says(&format!("variable v0 equal 1\nvariable s0 format v0 %g\n{lines}print ${{v40}}\n"))
+        output_of(&format!("variable v0 equal 1\nvariable s0 format v0 %g\n{lines}print ${{v40}}\n"))
     };
     for last in ["v", "s"] {
         let said = tree("equal", last);
@@ -25,13 +25,13 @@ fn a_tree_of_variables_is_not_evaluated_without_end() {
 
 #[test]
 fn a_circle_through_a_format_is_one() {
-    let said = says("variable a equal 1\nvariable b format a %g\nvariable a equal v_b\nprint ${a}\n");
+    let said = output_of("variable a equal 1\nvariable b format a %g\nvariable a equal v_b\nprint ${a}\n");
     assert!(said.contains("variable `a` depends on itself"), "{said}");
 }
 
 #[test]
 fn a_text_that_doubles_comes_to_an_end() {
-    let said = says(
+    let said = output_of(
         "variable s string x\nvariable i loop 60\nlabel a\nvariable s string ${s}${s}\nnext i\njump SELF a\nprint end\n",
     );
     assert!(said.contains("the line would be longer than 16777216 characters"), "{}", said.len());
@@ -42,7 +42,7 @@ fn seconds(parts: usize) -> f64 {
     let line = format!("variable x index a &\n{}z\nprint done\n", "$(1) bcd &\n".repeat(parts));
     let once = || {
         let begin = Instant::now();
-        assert_eq!(says(&line), "done\n");
+        assert_eq!(output_of(&line), "done\n");
         begin.elapsed().as_secs_f64()
     };
     (0..2).map(|_| once()).fold(f64::INFINITY, f64::min)

@@ -137,7 +137,7 @@ impl Run {
     }
 }
 
-fn says(deck: &str) -> String {
+fn output_of(deck: &str) -> String {
     Run::new().deck(deck)
 }
 
@@ -165,7 +165,7 @@ fn loops_and_branches_as_lammps_does() {
     // as LAMMPS prints it
     let expected =
         "pass 1 hello 2.000\nfirst\npass 2 hello 4.000\ntwo\n2 again\npass 3 hello 6.000\nthree\nend\n";
-    assert_eq!(says(deck), expected);
+    assert_eq!(output_of(deck), expected);
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn variables_as_lammps_has_them() {
         ("print $((1+2)*3)\nprint $(1+2:%.3f)z\n", "9\n3.000z\n"),
         ("variable a atom x*2\nprint $(v_a[2]+v_a[3])\n", "8\n"),
     ] {
-        assert_eq!(says(deck), expected, "{deck}");
+        assert_eq!(output_of(deck), expected, "{deck}");
     }
 }
 
@@ -248,16 +248,16 @@ fn quit_ends_with_its_status() {
 
 #[test]
 fn messages_show_use_and_definition() {
-    let out = says("variable radius index 0.5x\nvariable r2 equal v_radius*2\nprint ${r2}\n");
+    let out = output_of("variable radius index 0.5x\nvariable r2 equal v_radius*2\nprint ${r2}\n");
     assert!(out.contains("variable `radius` holds `0.5x`"), "{out}");
     // the word in the formula, the definition, and the place that refers to it
     assert!(
         out.contains("deck:2:19") && out.contains("defined here") && out.contains("evaluated here"),
         "{out}"
     );
-    let out = says("variable alpha equal 2\nprint $alpha\n");
+    let out = output_of("variable alpha equal 2\nprint $alpha\n");
     assert!(out.contains("names of more than one letter need braces: ${alpha}"), "{out}");
-    let out = says("variable a equal 1\nprint a &\n  ${b}\n");
+    let out = output_of("variable a equal 1\nprint a &\n  ${b}\n");
     assert!(out.contains("deck:3:3"), "{out}");
 }
 

@@ -9,14 +9,14 @@ proptest! {
     /// Whatever the bytes, a deck is read or refused.
     #[test]
     fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        says(&String::from_utf8_lossy(&bytes));
+        output_of(&String::from_utf8_lossy(&bytes));
     }
 
     /// The same for texts made of the language's own pieces.
     #[test]
     fn any_pieces(pieces in prop::collection::vec(prop::sample::select(PIECES), 0..40)) {
         let text = pieces.concat();
-        says(&text);
+        output_of(&text);
         let mut world = World { check: text.len() % 2 == 0, ..World::default() };
         if let Ok(e) = Expr::parse(&text, Span::default()) {
             let _ = e.eval(&Vars::new(), &mut world);
@@ -43,7 +43,7 @@ proptest! {
     /// Loops made of any lines end or are refused; a deck that runs for long changes something in each turn.
     #[test]
     fn any_loop(body in prop::collection::vec(prop::sample::select(LOOP), 0..8)) {
-        let out = says(&format!("variable i loop 5\nlabel top\n{}jump SELF top\n", body.concat()));
+        let out = output_of(&format!("variable i loop 5\nlabel top\n{}jump SELF top\n", body.concat()));
         let grows = body.iter().any(|l| l.contains("$n") || l.contains("random") || l.contains("delete"));
         prop_assert!(grows || !out.contains("endless"), "{out}");
     }

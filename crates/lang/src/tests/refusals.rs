@@ -1,10 +1,10 @@
 //! What LAMMPS refuses is refused here, with words that help.
 
-use super::says;
+use super::output_of;
 
 #[test]
 fn conditions_as_lammps_has_them() {
-    let holds = |c: &str| says(&format!("if \"{c}\" then \"print yes\" else \"print no\"\n"));
+    let holds = |c: &str| output_of(&format!("if \"{c}\" then \"print yes\" else \"print no\"\n"));
     for (condition, expected) in [
         ("a==a", "yes\n"),
         ("a==b", "no\n"),
@@ -108,7 +108,7 @@ fn refusals_of_lines() {
         ("if \"1>0\" then\n", "is missing"),
         ("if 0 then \"print a\" else \"print b\" elif 1 \"print c\"\n", "can never be reached"),
     ] {
-        let out = says(deck);
+        let out = output_of(deck);
         assert!(out.starts_with("error") && out.contains(said), "{deck}{out}");
     }
 }

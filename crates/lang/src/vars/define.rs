@@ -7,7 +7,7 @@ use crate::command::{Command, Word};
 use crate::flow::Files;
 use crate::substitute::{float_format, substitute_known};
 use crate::value::Env;
-use perigrain_base::comm::told;
+use perigrain_base::comm::broadcast;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::math::cformat::Spec;
 use std::time::Instant;
@@ -145,7 +145,7 @@ impl Vars {
                 Data::Formula(self.formula(&text, span)?)
             }
             Kind::Python => Data::Python(args.expect("the function's name")?.text.clone()),
-            Kind::Timer => Data::Number(told::number(|| BIRTH.elapsed().as_secs_f64())),
+            Kind::Timer => Data::Number(broadcast::number(|| BIRTH.elapsed().as_secs_f64())),
             Kind::Internal => Data::Number(args.number("the value")?),
         };
         args.finish()?;

@@ -59,7 +59,7 @@ impl Lines {
         self.cursor = self.cursor.detached();
     }
 
-    pub fn now(&self) -> &str {
+    pub fn current(&self) -> &str {
         self.lines.get(self.cursor.at()).map_or("", String::as_str)
     }
 
@@ -178,7 +178,7 @@ mod tests {
         let lines = Lines::read("f", text, Span::default()).unwrap();
         assert_eq!(&lines.lines[..], ["1.5 two", "hello", "\"q r\" s", "7"]);
         assert!(lines.advance() && lines.advance() && lines.advance());
-        assert_eq!(lines.now(), "7");
+        assert_eq!(lines.current(), "7");
         assert!(!lines.advance() && lines.is_over());
         assert!(Lines::read("f", "# only this\n\n", Span::default()).is_err());
     }

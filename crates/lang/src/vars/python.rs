@@ -20,7 +20,7 @@ pub trait Functions: Debug + Send + Sync {
     ///
     /// # Errors
     /// The program's own words on why it failed.
-    fn work_off(&self, code: &str, name: &str) -> std::result::Result<(), String>;
+    fn execute(&self, code: &str, name: &str) -> std::result::Result<(), String>;
 
     /// Whether there is a function of this name.
     fn has(&self, function: &str) -> bool;
@@ -28,7 +28,7 @@ pub trait Functions: Debug + Send + Sync {
     /// Calls a function.
     ///
     /// # Errors
-    /// As [`Functions::work_off`].
+    /// As [`Functions::execute`].
     fn call(&self, function: &str, given: &[Given]) -> std::result::Result<Given, String>;
 }
 
@@ -74,7 +74,7 @@ pub struct Function {
 
 /// The request of a `python` command.
 #[derive(Debug)]
-pub enum Asked<'a> {
+pub enum PythonCommand<'a> {
     /// A function is made known, after code if there is some.
     Known(String, Function, Option<Source<'a>>),
     /// A function is called.
@@ -98,18 +98,18 @@ const KEYS: [&str; 7] = ["input", "return", "format", "length", "file", "here", 
 ///
 /// # Errors
 /// Every mistake in them.
-pub fn asked<'a>(args: &mut Args<'a>) -> Result<Asked<'a>> {
+pub fn read_command<'a>(args: &mut Args<'a>) -> Result<PythonCommand<'a>> {
     let name = args.expect("a function's name, or source")?;
     if name.text == "source" {
         let word = args.expect("a file, or here with code")?;
         let code =
             if word.text == "here" { Source::Here(args.expect("the code")?) } else { Source::File(word) };
         args.finish()?;
-        return Ok(Asked::Source(code));
+        return Ok(PythonCommand::Source(code));
     }
     if args.eat("invoke") {
         args.finish()?;
-        return Ok(Asked::Invoked(name.text.clone()));
+        return Ok(PythonCommand::Invoked(name.text.clone()));
     }
     let (mut inputs, mut gives, mut code, mut there) = (vec![], None, None, false);
     let mut format: Option<&Word> = None;
@@ -147,7 +147,7 @@ pub fn asked<'a>(args: &mut Args<'a>) -> Result<Asked<'a>> {
     let kinds = kinds(format, inputs.len() + usize::from(gives.is_some()), args.here())?;
     let gives = gives.zip(kinds.get(inputs.len()).copied());
     let inputs = inputs.into_iter().zip(kinds).collect();
-    Ok(Asked::Known(name.text.clone(), Function { inputs, gives }, code))
+    Ok(PythonCommand::Known(name.text.clone(), Function { inputs, gives }, code))
 }
 
 fn input(word: &Word) -> Result<Input> {

@@ -6,7 +6,7 @@ use crate::expr::{Trail, Yields, element};
 use crate::number::{self, printf, value_text};
 use crate::reference::{RefKind, ValueRef};
 use crate::value::{Env, Value};
-use perigrain_base::comm::told;
+use perigrain_base::comm::broadcast;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 
 /// A variable's value as text.
@@ -68,10 +68,10 @@ impl Vars {
             Data::Text(t) => Some(t.clone()),
             Data::Getenv(key) => {
                 let own = self.environment.get(key).cloned();
-                let system = || told::text(|| std::env::var(key).ok());
+                let system = || broadcast::text(|| std::env::var(key).ok());
                 Some(own.or_else(system).unwrap_or_default())
             }
-            Data::Lines(l) => Some(l.now().to_owned()),
+            Data::Lines(l) => Some(l.current().to_owned()),
             Data::Number(v) => Some(value_text(env.control(name).unwrap_or(*v))),
             Data::Formula(e) if variable.kind == Kind::Equal => {
                 let own = below(name);
@@ -117,7 +117,7 @@ impl Vars {
             Data::Python(function) => {
                 self.inputs(name).fold(function.clone(), |text, input| text + " v_" + input)
             }
-            Data::Lines(l) => format!("{} (now {})", l.path(), l.now()),
+            Data::Lines(l) => format!("{} (now {})", l.path(), l.current()),
             Data::Atoms(a) => a.path().to_owned(),
             Data::Format { name, format } => format!("{name} {format}"),
             Data::Formula(e) => e.text().to_owned(),

@@ -61,9 +61,9 @@ impl Raster {
         let bins = Bins::new(&discs, width, height);
         let (stop, cut) = (stop::present(), AtomicBool::new(false));
         let ends = || {
-            let asked = stop.asked();
-            cut.fetch_or(asked, Ordering::Relaxed);
-            asked
+            let ends = stop.must_end();
+            cut.fetch_or(ends, Ordering::Relaxed);
+            ends
         };
         let strips = make(height.div_ceil(TILE), |row| bins.strip(&discs, row, width, height, ends));
         Self { discs, projection, width, height, strips, cut: cut.into_inner() }

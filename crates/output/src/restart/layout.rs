@@ -19,22 +19,22 @@ const VARIANTS: u32 = 32;
 pub fn fingerprint<T: for<'de> Deserialize<'de>>() -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for variant in 0..VARIANTS {
-        let mut asked = Asked { text: String::new(), variant, depth: 0 };
-        let outcome = T::deserialize(&mut asked);
-        hasher.update(asked.text.as_bytes());
+        let mut recorder = Recorder { text: String::new(), variant, depth: 0 };
+        let outcome = T::deserialize(&mut recorder);
+        hasher.update(recorder.text.as_bytes());
         hasher.update(&[u8::from(outcome.is_ok())]);
     }
     hasher.finalize()
 }
 
 /// Records each request and answers with zeros, one element per list, and one variant of each enum.
-struct Asked {
+struct Recorder {
     text: String,
     variant: u32,
     depth: usize,
 }
 
-impl Asked {
+impl Recorder {
     fn note(&mut self, what: &str) {
         self.text.push_str(what);
         self.text.push(' ');
@@ -62,7 +62,7 @@ macro_rules! plain {
     };
 }
 
-impl<'de> Deserializer<'de> for &mut Asked {
+impl<'de> Deserializer<'de> for &mut Recorder {
     type Error = Error;
 
     plain! {
@@ -130,12 +130,12 @@ impl<'de> Deserializer<'de> for &mut Asked {
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         self.note("list");
         let left = self.some();
-        self.deeper(|me| visitor.visit_seq(Elements { asked: me, left }))
+        self.deeper(|me| visitor.visit_seq(Elements { recorder: me, left }))
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Error> {
         self.note(&format!("tuple {len}"));
-        self.deeper(|me| visitor.visit_seq(Elements { asked: me, left: len }))
+        self.deeper(|me| visitor.visit_seq(Elements { recorder: me, left: len }))
     }
 
     fn deserialize_tuple_struct<V: Visitor<'de>>(
@@ -151,7 +151,7 @@ impl<'de> Deserializer<'de> for &mut Asked {
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         self.note("map");
         let left = self.some();
-        self.deeper(|me| visitor.visit_map(Elements { asked: me, left }))
+        self.deeper(|me| visitor.visit_map(Elements { recorder: me, left }))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -173,7 +173,7 @@ impl<'de> Deserializer<'de> for &mut Asked {
         self.note(&format!("{name} {}", variants.join(" ")));
         let last = (variants.len() as u32).saturating_sub(1);
         let index = if self.depth < DEEPEST { self.variant.min(last) } else { 0 };
-        self.deeper(|me| visitor.visit_enum(Chosen { asked: me, index }))
+        self.deeper(|me| visitor.visit_enum(Chosen { recorder: me, index }))
     }
 
     fn is_human_readable(&self) -> bool {
@@ -183,7 +183,7 @@ impl<'de> Deserializer<'de> for &mut Asked {
 
 /// The elements of a list, tuple or map.
 struct Elements<'a> {
-    asked: &'a mut Asked,
+    recorder: &'a mut Recorder,
     left: usize,
 }
 
@@ -195,7 +195,7 @@ impl<'de> SeqAccess<'de> for Elements<'_> {
             return Ok(None);
         }
         self.left -= 1;
-        seed.deserialize(&mut *self.asked).map(Some)
+        seed.deserialize(&mut *self.recorder).map(Some)
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -211,13 +211,13 @@ impl<'de> MapAccess<'de> for Elements<'_> {
     }
 
     fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, Error> {
-        seed.deserialize(&mut *self.asked)
+        seed.deserialize(&mut *self.recorder)
     }
 }
 
 /// One variant of an enum.
 struct Chosen<'a> {
-    asked: &'a mut Asked,
+    recorder: &'a mut Recorder,
     index: u32,
 }
 
@@ -235,16 +235,16 @@ impl<'de> VariantAccess<'de> for Chosen<'_> {
     type Error = Error;
 
     fn unit_variant(self) -> Result<(), Error> {
-        self.asked.note("nothing");
+        self.recorder.note("nothing");
         Ok(())
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
-        seed.deserialize(self.asked)
+        seed.deserialize(self.recorder)
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Error> {
-        self.asked.deserialize_tuple(len, visitor)
+        self.recorder.deserialize_tuple(len, visitor)
     }
 
     fn struct_variant<V: Visitor<'de>>(
@@ -252,7 +252,7 @@ impl<'de> VariantAccess<'de> for Chosen<'_> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.asked.deserialize_struct("variant", fields, visitor)
+        self.recorder.deserialize_struct("variant", fields, visitor)
     }
 }
 

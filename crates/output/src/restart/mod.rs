@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use super::file::{replace_durably, trouble};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_world::{Said, World};
+use perigrain_world::{DeclaredLine, World};
 
 const MAGIC: [u8; 8] = *b"PERIGRN\x1a";
 const END: [u8; 8] = *b"\x1aGRNDONE";
@@ -43,7 +43,7 @@ pub struct Saving<'a> {
     /// Whether forces, bonds and contact history are those of the scene as it stands.
     pub standing: bool,
     /// The pair style's lines.
-    pub pair: &'a [Said],
+    pub pair: &'a [DeclaredLine],
     /// All lines that decide about forces.
     pub declared: &'a [String],
 }
@@ -58,7 +58,7 @@ pub struct Saved {
     /// See [`Saving`].
     pub standing: bool,
     /// See [`Saving`].
-    pub pair: Vec<Said>,
+    pub pair: Vec<DeclaredLine>,
     /// See [`Saving`].
     pub declared: Vec<String>,
 }

@@ -402,7 +402,7 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
-        if self.deal(w, t).is_some() { Rows::Asks } else { Rows::All }
+        if self.deal(w, t).is_some() { Rows::Requested } else { Rows::All }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

@@ -49,23 +49,23 @@ struct Declared {
 /// A spring as the deck's line set it.
 #[derive(Clone, Copy)]
 struct Spring {
-    said: [f64; 2],
+    declared: [f64; 2],
     /// Where fixes leave what they have changed.
     keys: [Numbers; 2],
 }
 
 impl Spring {
-    fn new(kind: u16, said: [f64; 2]) -> Self {
+    fn new(kind: u16, declared: [f64; 2]) -> Self {
         let keys = ["k", "r0"].map(|name| {
             let (style, name, types) = ("harmonic".to_string(), name.to_string(), (kind, kind));
             Coefficient { bond: true, style, name, types }.key()
         });
-        Self { said, keys }
+        Self { declared, keys }
     }
 
     /// As fixes have changed it.
-    fn now(&self, w: &World) -> [f64; 2] {
-        std::array::from_fn(|k| w.adapted(self.keys[k]).unwrap_or(self.said[k]))
+    fn adapted(&self, w: &World) -> [f64; 2] {
+        std::array::from_fn(|k| w.adapted(self.keys[k]).unwrap_or(self.declared[k]))
     }
 }
 
@@ -73,9 +73,9 @@ impl Spring {
 #[derive(Clone)]
 struct Adapting {
     /// As the deck's lines set them.
-    said: Declared,
+    declared: Declared,
     /// As fixes have changed them.
-    now: BTreeMap<u16, [f64; 2]>,
+    adapted: BTreeMap<u16, [f64; 2]>,
 }
 
 impl Driven<0> for Adapting {
@@ -86,7 +86,7 @@ impl Driven<0> for Adapting {
         Harmonic
     }
     fn coeffs(&self, kind: u16) -> Option<[f64; 2]> {
-        self.now.get(&kind).copied()
+        self.adapted.get(&kind).copied()
     }
     fn measures(&self) -> bool {
         false
@@ -107,8 +107,8 @@ impl Driven<0> for Adapting {
         true
     }
     fn adapt(&mut self, w: &World) {
-        for (now, spring) in self.now.values_mut().zip(self.said.springs.values()) {
-            *now = spring.now(w);
+        for (now, spring) in self.adapted.values_mut().zip(self.declared.springs.values()) {
+            *now = spring.adapted(w);
         }
     }
 }
@@ -133,8 +133,8 @@ impl BondForce for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let now = self.springs.iter().map(|(kind, s)| (*kind, s.said)).collect();
-        let law = Adapting { said: self.clone(), now };
+        let adapted = self.springs.iter().map(|(kind, s)| (*kind, s.declared)).collect();
+        let law = Adapting { declared: self.clone(), adapted };
         Ok(vec![Box::new(Bonded::new(law, cx.span()))])
     }
 
@@ -143,17 +143,17 @@ impl BondForce for Declared {
     }
 
     fn coefficient(&self, name: &str, kind: u16) -> Option<f64> {
-        let [k, r0] = self.springs.get(&kind)?.said;
+        let [k, r0] = self.springs.get(&kind)?.declared;
         Some(if name == "k" { k } else { r0 })
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
-        let now = self.springs.get(&bond.kind)?.now(w);
-        pull_of(&Adapting { said: self.clone(), now: [(bond.kind, now)].into() }, w, bond)
+        let now = self.springs.get(&bond.kind)?.adapted(w);
+        pull_of(&Adapting { declared: self.clone(), adapted: [(bond.kind, now)].into() }, w, bond)
     }
 
     fn stiffness(&self, kind: u16, _length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
-        let [k, _] = self.springs.get(&kind)?.said;
+        let [k, _] = self.springs.get(&kind)?.declared;
         Some(Stiffness { normal: 2.0 * k, ..Stiffness::default() })
     }
 
@@ -163,13 +163,13 @@ impl BondForce for Declared {
 
     fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
         let mut tuned = self.clone();
-        let k = tuned.springs.get_mut(&kind).filter(|_| name == "k").map(|s| &mut s.said[0])?;
+        let k = tuned.springs.get_mut(&kind).filter(|_| name == "k").map(|s| &mut s.declared[0])?;
         *k *= factor;
         let k = *k;
         Some((Box::new(tuned), k))
     }
 
     fn written(&self, kind: u16) -> Option<String> {
-        self.springs.get(&kind).map(|s| s.said.map(|a| general(a, 16)).join(" "))
+        self.springs.get(&kind).map(|s| s.declared.map(|a| general(a, 16)).join(" "))
     }
 }

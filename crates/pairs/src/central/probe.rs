@@ -5,15 +5,15 @@ use crate::shared::{built_at, near};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::scale;
 use perigrain_neigh::list::{Pair, difference};
-use perigrain_styles::probe::{Ask, Interaction, Probe};
+use perigrain_styles::probe::{Interaction, Probe, Request};
 use perigrain_world::{Allowed, World};
 
 /// Evaluates single pairs.
-pub struct Asked<L> {
+pub struct CentralProbe<L> {
     table: Table<L>,
 }
 
-impl<L: Law> Asked<L> {
+impl<L: Law> CentralProbe<L> {
     /// With these coefficients.
     pub fn new(table: Table<L>) -> Self {
         Self { table }
@@ -24,7 +24,7 @@ impl<L: Law> Asked<L> {
     }
 }
 
-impl<L: Law> Probe for Asked<L> {
+impl<L: Law> Probe for CentralProbe<L> {
     fn name(&self) -> &'static str {
         L::NAME
     }
@@ -41,7 +41,7 @@ impl<L: Law> Probe for Asked<L> {
         Ok(self.list(w).iter().map(|p| [p.i, p.j]).collect())
     }
 
-    fn look(&mut self, w: &World, _ask: Ask) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, _request: Request) -> Result<Vec<Interaction>> {
         self.table.renew(w);
         self.table.weigh(w);
         let interaction = |pair: &Pair| {

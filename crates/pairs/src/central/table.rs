@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 /// The coefficients of a pair of types.
 #[derive(Clone)]
 struct Entry {
-    said: Coeff,
+    declared: Coeff,
     now: Coeff,
     /// No line of the deck names these two types together.
     mixed: bool,
@@ -51,14 +51,14 @@ impl<L: Law> Table<L> {
         let types = w.types;
         let (mut entries, mut wanted) = (vec![None; types * types], Wanted::new(types));
         let mut farthest: f64 = 0.0;
-        for ((i, j), (said, mixed)) in style.pairs(types) {
+        for ((i, j), (declared, mixed)) in style.pairs(types) {
             let of = |name: &&str| {
                 let (style, name) = (L::NAME.to_string(), (*name).to_string());
                 Coefficient { bond: false, style, name, types: (i, j) }.key()
             };
-            let entry = Entry { said, now: said, mixed, keys: L::NUMBERS.iter().map(of).collect() };
-            wanted.set(i, j, Reach::Fixed(said.cutoff));
-            farthest = farthest.max(said.cutoff);
+            let entry = Entry { declared, now: declared, mixed, keys: L::NUMBERS.iter().map(of).collect() };
+            wanted.set(i, j, Reach::Fixed(declared.cutoff));
+            farthest = farthest.max(declared.cutoff);
             for (a, b) in [(i, j), (j, i)] {
                 entries[place(types, a, b)] = Some(entry.clone());
             }
@@ -74,7 +74,7 @@ impl<L: Law> Table<L> {
         }
         self.adapted = w.adaptations();
         let own = |entry: &Entry| {
-            let mut now = entry.said;
+            let mut now = entry.declared;
             for (number, key) in now.own.iter_mut().zip(&entry.keys) {
                 *number = w.adapted(*key).unwrap_or(*number);
             }

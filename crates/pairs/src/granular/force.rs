@@ -17,7 +17,7 @@ use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_plan::{About, Needs, Op, Span, Stage, Tick};
 use perigrain_world::Fields;
-use perigrain_world::contacts::{Contacts, Deep, PairDeeds};
+use perigrain_world::contacts::{Contacts, Deep, PairWork};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
@@ -95,7 +95,7 @@ impl Force {
     /// The solid each particle belongs to, where some rule needs it.
     fn find_bodies(&mut self, w: &World) {
         self.plain.body.clear();
-        let asked = self.rules.ask_for_bodies();
+        let asked = self.rules.needs_bodies();
         if let (true, Some(families)) = (asked, &*w.families) {
             self.plain.body = solids(families, w.n());
         }
@@ -109,7 +109,7 @@ impl Force {
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let mut heat = Heating::take(w, &self.rules);
-        let mut deeds = begin_deeds(w, t, self.key, &self.rules);
+        let mut deeds = begin_pair_work(w, t, self.key, &self.rules);
         let before = deeds.as_ref().map(|_| torque.to_vec());
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
         let grains = Grains { mass, v, omega, ..grains(w, period, &[], &self.frozen)? };
@@ -128,7 +128,7 @@ impl Force {
             let rows = all.torque.iter_mut().zip(&*w.particles.torque).zip(&before);
             rows.for_each(|((own, now), before)| *own = sub(*now, *before));
             all.held = fast.held();
-            keep_deeds(w, self.key, all);
+            keep_pair_work(w, self.key, all);
         }
         if let Some(heat) = heat {
             heat.give(w);
@@ -155,7 +155,7 @@ impl Force {
         (period, store, anew): (Periods, bool, bool),
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
-        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_deeds.is_none();
+        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_work.is_none();
         let alone = self.lent.is_none();
         let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_tile());
         let Some(fast) = fast else { return Ok(false) };
@@ -170,7 +170,7 @@ impl Force {
             let p = &mut w.particles;
             let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
             let seen = grains(w, period, &[], &self.frozen)?;
-            let more = fast.go_on(&mut per_tile, &seen, [&mut f, &mut torque]);
+            let more = fast.advance(&mut per_tile, &seen, [&mut f, &mut torque]);
             (w.particles.f, w.particles.torque) = (f, torque);
             if !more {
                 break;
@@ -233,7 +233,7 @@ impl Force {
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let manner =
             Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
-        let deeds = begin_deeds(w, t, self.key, &self.rules);
+        let deeds = begin_pair_work(w, t, self.key, &self.rules);
         let (plain, press) = (&mut self.plain, &mut self.press);
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
         let grains = Grains { mass, v, omega, ..grains(w, period, &plain.body, &self.frozen)? };
@@ -244,7 +244,7 @@ impl Force {
         }
         plain.sweep.act(&grains, &self.rules, &mut memory, step);
         let told = deeds.map(|mut all| {
-            plain.sweep.tell(&grains, &self.rules, &memory, &mut all);
+            plain.sweep.book(&grains, &self.rules, &memory, &mut all);
             all
         });
         // Plastic grains are made for deep contacts.
@@ -253,7 +253,7 @@ impl Force {
             Some(press) => {
                 press.check(w, &plain.sweep, t)?;
                 press.end(w);
-                kept.map(|before| press.told(before, &memory))
+                kept.map(|before| press.with_results(before, &memory))
             }
             None => kept,
         };
@@ -263,7 +263,7 @@ impl Force {
         }
         report(w, t, deep);
         if let Some(all) = told {
-            keep_deeds(w, self.key, all);
+            keep_pair_work(w, self.key, all);
         }
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
@@ -354,9 +354,9 @@ impl Op for Force {
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Span {
         if self.wanted_deal(w).is_some() {
-            return Span::Asks;
+            return Span::Requested;
         }
-        let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_deeds.is_some();
+        let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_work.is_some();
         let plain = !asked && !t.setup && self.press.is_none() && !conducts(&self.rules);
         let listed = self.generation == Some(w.rebuild.past().generation);
         if !plain || !listed || w.grains_dealt().is_some() {
@@ -399,7 +399,7 @@ impl Op for Force {
 /// The laws in the form of the fast loop; `None` where some rule does not fit it.
 fn laws(rules: &Rules, wanted: &Wanted, types: usize) -> Option<Laws> {
     let plain = rules.any(|r| {
-        r.law.is_told()
+        r.law.is_precomputed()
             || r.average != Average::None
             || r.curvature != Curvature::Both
             || r.law.arm == Arm::Point
@@ -438,19 +438,19 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
 }
 
 /// Room for what contacts report to the ledger of energy, where there is one.
-fn begin_deeds(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairDeeds> {
+fn begin_pair_work(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairWork> {
     // Opening a memory that does not exist writes it.
-    w.parts.pair_deeds.as_ref()?;
+    w.parts.pair_work.as_ref()?;
     let n = w.n();
-    let all = w.parts.pair_deeds.as_mut()?;
-    let mut own = std::mem::take(all.get_or(key.of(), PairDeeds::default));
+    let all = w.parts.pair_work.as_mut()?;
+    let mut own = std::mem::take(all.get_or(key.of(), PairWork::default));
     own.begin(n, t.step, rules.any(|r| r.law.flows()));
     Some(own)
 }
 
 /// Books what they reported in the ledger.
-fn keep_deeds(w: &mut World, key: Key<Contacts>, own: PairDeeds) {
-    if let Some(all) = &mut w.parts.pair_deeds {
+fn keep_pair_work(w: &mut World, key: Key<Contacts>, own: PairWork) {
+    if let Some(all) = &mut w.parts.pair_work {
         all.insert(key.of(), own);
     }
 }
@@ -458,6 +458,6 @@ fn keep_deeds(w: &mut World, key: Key<Contacts>, own: PairDeeds) {
 /// Keeps the first grains that were seen too deep in each other.
 fn report(w: &mut World, t: &Tick, deep: Option<([u32; 2], f64)>) {
     if let (Some((ids, part)), None) = (deep, &w.parts.deep) {
-        w.parts.deep = Some(Deep { step: t.step, ids, part, told: false });
+        w.parts.deep = Some(Deep { step: t.step, ids, part, warned: false });
     }
 }

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Grains, Sweep};
-use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, State, TOLD, begin, undo};
+use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, PRECOMPUTED, State, begin, undo};
 use perigrain_plan::Tick;
 use perigrain_world::World;
 use perigrain_world::contacts::{Contacts, PLASTIC};
@@ -62,11 +62,11 @@ impl Press {
     }
 
     /// Combines the contact history `before` a setup with the evaluation data of that setup, which probes of single pairs need.
-    pub fn told(&mut self, mut before: Contacts, after: &Contacts) -> Contacts {
+    pub fn with_results(&mut self, mut before: Contacts, after: &Contacts) -> Contacts {
         let width = after.width;
         before.carry(&after.keys, width, &mut self.spare);
         let rows = before.history.chunks_exact_mut(width).zip(after.history.chunks_exact(width));
-        rows.for_each(|(old, new)| old[width - TOLD..].copy_from_slice(&new[width - TOLD..]));
+        rows.for_each(|(old, new)| old[width - PRECOMPUTED..].copy_from_slice(&new[width - PRECOMPUTED..]));
         before
     }
 

@@ -32,10 +32,10 @@ pub fn virial_of_all(fast: &Fast) -> [f64; 6] {
 /// Lets all ranks know which grains overlapped too far first: those of smallest ids in the first step in which some did on any rank.
 pub fn agree_on_deep(w: &mut World) {
     let own = w.parts.deep;
-    if own.is_some_and(|deep| deep.told) {
+    if own.is_some_and(|deep| deep.warned) {
         return;
     }
     let all = rows::of_all(own.map(|deep| (deep.ids, [deep.step as f64, deep.part])));
-    let deep = |(ids, [step, part]): rows::Row<2, 2>| Deep { step: step as i64, ids, part, told: false };
+    let deep = |(ids, [step, part]): rows::Row<2, 2>| Deep { step: step as i64, ids, part, warned: false };
     w.parts.deep = all.into_iter().map(deep).min_by_key(|deep| (deep.step, deep.ids));
 }

@@ -7,7 +7,7 @@ use perigrain_neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
 use perigrain_peri::families::{Families, ForceUnit, PeriView};
 use perigrain_styles::near::bonds;
 use perigrain_styles::peri_view::view;
-use perigrain_styles::probe::{Ask, Interaction, Probe};
+use perigrain_styles::probe::{Interaction, Probe, Request};
 use perigrain_world::World;
 
 /// Evaluates the pairs of `peri/pmb` one by one.
@@ -64,7 +64,7 @@ impl Probe for BondProbe {
         Ok(near.iter().map(|p| [p.i, p.j]).collect())
     }
 
-    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, request: Request) -> Result<Vec<Interaction>> {
         let Some(families) = &*w.families else { return Ok(vec![]) };
         let view = view(w)?;
         let mut living = vec![];
@@ -78,7 +78,7 @@ impl Probe for BondProbe {
             let bonded = known && living.binary_search(&[pair.i.min(pair.j), pair.i.max(pair.j)]).is_ok();
             let r = length(d);
             let [force, energy] = law(families, &view, [pair.i as usize, pair.j as usize], r, bonded);
-            if ask == Ask::Idle || bonded || force != 0.0 {
+            if request == Request::Idle || bonded || force != 0.0 {
                 let force = scale(if r > 0.0 { force / r } else { 0.0 }, d);
                 all.push(Interaction { i: pair.i, j: pair.j, d, force, energy, ..Interaction::default() });
             }

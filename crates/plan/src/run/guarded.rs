@@ -86,7 +86,7 @@ impl Guarded {
         self.streak = 0;
         let line =
             format!("{name}: {why} at step {bad}; back to step {}, time step {step:.6e}", w.clock.step);
-        (self.guard.say)(&line)?;
+        (self.guard.write_line)(&line)?;
         Ok(Verdict::Back)
     }
 

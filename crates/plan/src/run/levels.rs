@@ -106,7 +106,7 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) ->
         return super::verlet::setup(plan, w, true);
     }
     let mut t = tick(w, true);
-    plan.ask(&mut t);
+    plan.request_sums(&mut t);
     plan.run(w, &l.at(&t, l.count() - 1), &[Stage::Neighbor])?;
     w.columns.forget_levels();
     for stages in first_forces(w) {
@@ -156,7 +156,7 @@ impl Waiting {
     /// # Errors
     /// The wait is over, and this many short steps are made in this many.
     fn check(&self, step: i64, made: i64, all: i64) -> Result<()> {
-        if !stop::present().asked() {
+        if !stop::present().must_end() {
             return Ok(());
         }
         let Some(since) = self.since.get() else {
@@ -188,7 +188,7 @@ fn level(
     let (first, last) = (here.phase.nested(), here.phase.outermost());
     exchange(w, l, k);
     let way = l.begin_path(plan, w, &here.phase, spins);
-    if !plan.goes_on() {
+    if !plan.take_begun() {
         plan.run(w, &here, &[Stage::InitialIntegrate])?;
     }
     if first && last {

@@ -65,7 +65,7 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, s: &Staggered)
         let mut t = tick(w, true);
         (t.unchanged, t.step) = (unchanged, w.clock.step);
         if m > 1 && !unchanged {
-            plan.ask(&mut t);
+            plan.request_sums(&mut t);
             plan.run(w, &t, &[Stage::Neighbor, Stage::PreForce])?;
             rare(plan, w, &t, m, s)?;
             plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;

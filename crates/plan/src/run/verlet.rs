@@ -41,7 +41,7 @@ pub struct Made {
 /// Observes a run step by step, for a progress bar or a film.
 pub trait Watch: Send {
     /// A run of `steps` steps was requested; it may be made in several stretches.
-    fn asked(&mut self, _steps: i64) {}
+    fn requested(&mut self, _steps: i64) {}
     /// A run begins; its setup comes next.
     fn begins(&mut self, _w: &World) {}
     /// A step is made.
@@ -64,7 +64,7 @@ pub trait Watch: Send {
 pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool) -> Result<()> {
     let mut t = tick(w, true);
     t.unchanged = unchanged;
-    plan.ask(&mut t);
+    plan.request_sums(&mut t);
     if unchanged {
         w.rebuild.builds = 0;
         w.rebuild.dangerous = 0;
@@ -165,7 +165,7 @@ pub(super) fn steps(
             // A step whose first half is made is made as it was begun.
             if !plan.begun() {
                 w.settings.agree_at(w.clock.step);
-                ended = ended.or_else(|| Early::asked(w));
+                ended = ended.or_else(|| Early::requested(w));
                 if ended.is_some() && !Early::one_more(w, first) {
                     break;
                 }
@@ -174,7 +174,7 @@ pub(super) fn steps(
             let builds = w.rebuild.builds;
             w.clock.step += 1;
             let mut t = tick(w, false);
-            plan.ask(&mut t);
+            plan.request_sums(&mut t);
             let looked = watch.looks(w);
             match &mut guard {
                 None => {
@@ -232,7 +232,7 @@ enum Early {
 
 impl Early {
     /// Whether the run has to end, and why.
-    fn asked(w: &World) -> Option<Self> {
+    fn requested(w: &World) -> Option<Self> {
         if w.settings.stops() {
             return Some(Self::Interrupted);
         }
@@ -269,7 +269,7 @@ pub fn look(
             break;
         }
         let mut shown = tick(w, steps == 0);
-        plan.ask(&mut shown);
+        plan.request_sums(&mut shown);
         let forces = Tick { setup: true, ..shown.clone() };
         plan.run(w, &forces, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
         if shown.setup {

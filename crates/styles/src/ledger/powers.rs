@@ -19,7 +19,7 @@ pub struct Powers {
 
 impl Powers {
     /// At the present velocities; `free` are the bits of groups that equations of motion move.
-    pub fn now(w: &World, free: u32) -> Self {
+    pub fn measure(w: &World, free: u32) -> Self {
         let (p, masses) = (&w.particles, Masses::of(w));
         let columns = |keys: &[Constant<Vec<Vec3>>; 3]| {
             [0, 1, 2].map(|k| w.columns.get_vector(*keys[k]).filter(|column| column.len() == p.len()))

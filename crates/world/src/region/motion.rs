@@ -1,6 +1,6 @@
 //! Regions that are shifted and turned by variables.
 
-use super::Ask;
+use super::ReadVariable;
 use perigrain_base::diag::{Result, Span};
 use perigrain_base::math::vec3::{cross, dot, scale, sub};
 
@@ -81,16 +81,16 @@ impl Motion {
     }
 
     /// Evaluates displacement and angle.
-    pub(super) fn place(&mut self, ask: &mut Ask) -> Result<()> {
+    pub(super) fn place(&mut self, read: &mut ReadVariable) -> Result<()> {
         for (now, variable) in self.now.iter_mut().zip(&self.shift) {
             if let Some(variable) = variable
-                && let Some(value) = ask(variable)?
+                && let Some(value) = read(variable)?
             {
                 *now = value;
             }
         }
         if let Some(turn) = &mut self.turn
-            && let Some(angle) = ask(&turn.variable)?
+            && let Some(angle) = read(&turn.variable)?
         {
             turn.angle = angle.into();
         }

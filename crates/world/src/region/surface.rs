@@ -46,7 +46,7 @@ struct Search<'s> {
     dt: f64,
     lammps: bool,
     /// All surfaces near enough: sides and what other parts hide do not count.
-    anyone: bool,
+    unfiltered: bool,
     out: &'s mut Vec<Near>,
 }
 
@@ -55,14 +55,14 @@ impl Region {
     /// region's side, in the order of the parts.
     pub fn near(&self, x: Vec3, reach: f64, look: &Look, out: &mut Vec<Near>) {
         let (before, dt) = look.before.map_or((None, 1.0), |(r, dt)| (Some(r), dt));
-        let mut search = Search { x, reach, dt, lammps: look.lammps, anyone: false, out };
+        let mut search = Search { x, reach, dt, lammps: look.lammps, unfiltered: false, out };
         self.search(&mut search, false, 0, before);
     }
 
     /// Whether some surface of the region, seen from whatever side, is nearer than `reach` to `x`.
     pub fn close(&self, x: Vec3, reach: f64, spare: &mut Vec<Near>) -> bool {
         spare.clear();
-        let mut search = Search { x, reach, dt: 1.0, lammps: false, anyone: true, out: spare };
+        let mut search = Search { x, reach, dt: 1.0, lammps: false, unfiltered: true, out: spare };
         self.search(&mut search, false, 0, None);
         !spare.is_empty()
     }
@@ -93,7 +93,7 @@ impl Region {
             }
             Shape::Intersect(parts) => combined(parts, s, outside, base, before, false),
             // Which place it is does not matter.
-            Shape::Mesh(solid) if s.anyone => {
+            Shape::Mesh(solid) if s.unfiltered => {
                 let at = self.motion.as_ref().map_or(s.x, |m| m.undo(s.x));
                 if solid.close(at, s.reach) {
                     s.out.push(Near {
@@ -106,7 +106,7 @@ impl Region {
                 }
             }
             shape => {
-                let side = match (self.open != 0 || s.anyone, outside) {
+                let side = match (self.open != 0 || s.unfiltered, outside) {
                     (true, _) => Side::Both,
                     (false, true) => Side::Outer,
                     (false, false) => Side::Inner,
@@ -224,7 +224,7 @@ fn combined(parts: &[Region], s: &mut Search, flip: bool, base: u32, before: Opt
         let from = s.out.len();
         part.search(s, flip, base, then.get(k));
         base += part.parts();
-        if s.anyone {
+        if s.unfiltered {
             continue;
         }
         let mut at = from;

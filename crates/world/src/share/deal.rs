@@ -207,8 +207,8 @@ impl World {
                     return vec![];
                 }
                 let wanted = wanted(&share.alone, me, named(of).into_iter());
-                let asked = asked(&*share.comm, &wanted);
-                links(&asked, &wanted)
+                let requested = requested_rows(&*share.comm, &wanted);
+                links(&requested, &wanted)
             }),
             (What::Bodies, Some(families)) => {
                 let listed = named(&share.listed[Halo::Listed as usize]).into_iter();
@@ -332,21 +332,21 @@ fn wanted(alone: &[Vec<Range<usize>>], me: usize, listed: impl Iterator<Item = u
 }
 
 /// The rows of this rank that each other rank needs, when this one needs these of theirs.
-fn asked(comm: &dyn Comm, wanted: &[Vec<u32>]) -> Vec<Vec<u32>> {
+fn requested_rows(comm: &dyn Comm, wanted: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let letter = |rows: &Vec<u32>| {
         let mut bytes = vec![];
         put(&mut bytes, rows);
         bytes
     };
     let out = wanted.iter().map(letter).enumerate().filter(|(_, bytes)| !bytes.is_empty()).collect();
-    let mut asked = vec![vec![]; wanted.len()];
+    let mut requested = vec![vec![]; wanted.len()];
     for (from, bytes) in comm.exchange(out) {
         let mut rest = &bytes[..];
         while let Some([row]) = next(&mut rest) {
-            asked[from].push(row);
+            requested[from].push(row);
         }
     }
-    asked
+    requested
 }
 
 #[cfg(test)]

@@ -21,11 +21,11 @@ pub struct Nearby {
 impl Nearby {
     /// Finds pairs whose surfaces are at most `gap` apart; positions lie within a period of the room.
     pub fn find(room: &Room, x: &[Vec3], radius: &[f64], gap: f64) -> Self {
-        let everyone: Vec<u32> = (0..x.len() as u32).collect();
+        let all: Vec<u32> = (0..x.len() as u32).collect();
         let largest = radius.iter().copied().fold(0.0, f64::max);
         let mean = radius.iter().sum::<f64>() / radius.len().max(1) as f64;
         let mut grid = Grid::default();
-        grid.fill(x, &everyone, 0.62 * (mean + largest + gap));
+        grid.fill(x, &all, 0.62 * (mean + largest + gap));
         let images = room.images();
         let shortest = room.repeats().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
         let rows = |range: std::ops::Range<usize>| {

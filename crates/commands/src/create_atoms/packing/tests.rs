@@ -45,7 +45,7 @@ fn share(room: &Room, p: &Packing) -> f64 {
 }
 
 /// Whether the largest and the mean overlap match the outcome, to rounding.
-fn says_the_truth(room: &Room, p: &Packing) {
+fn matches_outcome(room: &Room, p: &Packing) {
     let over: Vec<f64> = gaps(room, p).into_iter().filter(|g| *g < 0.0).map(|g| -g).collect();
     let largest = over.iter().copied().fold(0.0, f64::max);
     let mean = over.iter().sum::<f64>() / over.len().max(1) as f64;
@@ -67,7 +67,7 @@ fn the_share_is_reached_with_overlaps_below_a_thousandth() {
         // Whole spheres: to half of one.
         assert!((share(&room, &p) - 0.58).abs() < 0.5 * PI / 6.0 / 12f64.powi(3));
         assert!(p.came.reached && p.came.mean < 1e-3 && p.came.largest < 0.02, "{:?}", p.came);
-        says_the_truth(&room, &p);
+        matches_outcome(&room, &p);
     }
 }
 
@@ -76,7 +76,7 @@ fn a_box_of_two_diameters_repeats_rightly() {
     let room = cube(2.01, Face::Periodic);
     let p = packed(&room, 0.4, Sizes::Mono(1.0), 6, &Goal { overlap: Some(1e-6), rounds: 3000 });
     assert!(p.x.len() == 6 && p.came.reached, "{:?}", p.came);
-    says_the_truth(&room, &p);
+    matches_outcome(&room, &p);
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn two_sizes_lie_between_each_other() {
     let radius: Vec<f64> = (0..1150).map(|k| if k % 23 < 3 { 0.8 } else { 0.4 }).collect();
     let p = pack(&room, radius, &mut stream, &PLAIN).unwrap();
     assert!(p.came.reached, "{:?}", p.came);
-    says_the_truth(&room, &p);
+    matches_outcome(&room, &p);
     assert_eq!(p.radius.iter().filter(|r| **r == 0.8).count(), 150);
 }
 
@@ -198,7 +198,7 @@ fn spheres_keep_inside_of_regions() {
         let room = Room::new(&domain([10.0; 3], faces), region).unwrap();
         let p = packed(&room, 0.5, Sizes::Mono(0.8), 21, &PLAIN);
         assert!(p.came.reached && p.came.beyond < 1e-3, "{region:?} {:?}", p.came);
-        says_the_truth(&room, &p);
+        matches_outcome(&room, &p);
         assert!(p.x.iter().all(|x| region.contains(*x)));
     }
     // Open along z: the tube has no ends there, and spheres lie across the face.
@@ -225,7 +225,7 @@ fn leaning_boxes_are_packed_through_their_faces() {
         // Sample points of the ball's box: a hundred along each edge.
         assert!((room.volume() / volume - 1.0).abs() < 2e-3, "{} {volume}", room.volume());
         assert!(p.came.reached, "{:?}", p.came);
-        says_the_truth(&room, &p);
+        matches_outcome(&room, &p);
         assert!(p.x.iter().all(|x| leaning.holds(x) || region == &ball), "{faces:?}");
         assert!(p.x.iter().all(|x| region.contains(*x)));
         // Where the box repeats spheres lie across its faces.
@@ -302,7 +302,7 @@ fn spheres_of_an_opal_lie_between_the_pores() {
         let (room, pores) = opal(0.97, axis, face, 10.0);
         let p = packed(&room, 0.5, Sizes::Mono(0.5), 77, &PLAIN);
         assert!(p.x.len() > 1000);
-        says_the_truth(&room, &p);
+        matches_outcome(&room, &p);
         // In wedges between pores and faces spheres are pushed to and fro: a little of that is left.
         assert!(p.came.beyond < 0.01, "{:?}", p.came);
         assert!(p.x.iter().all(|x| pores.distance(*x) > 0.24));

@@ -155,7 +155,7 @@ impl Running {
             elapsed.follow(t.step, t.dt);
             elapsed.store(w, self.key);
         }
-        let (time, before) = (elapsed.now(), (self.shift, self.angle));
+        let (time, before) = (elapsed.time(), (self.shift, self.angle));
         match &self.motion {
             Motion::Rest => {}
             Motion::Linear(v) => (self.shift, self.velocity) = (scale(time, *v), *v),

@@ -19,7 +19,7 @@ impl Force {
     /// The present deal of grains to ranks, where contacts can be shared out with it.
     pub(super) fn wanted_deal(&self, w: &World) -> Option<u64> {
         let plain = self.fast.is_some() && self.press.is_none() && !conducts(&self.rules);
-        w.grains_dealt().filter(|_| plain && w.parts.past().pair_deeds.is_none())
+        w.grains_dealt().filter(|_| plain && w.parts.past().pair_work.is_none())
     }
 
     /// Whether the lists are those of one of several ranks.

@@ -112,7 +112,7 @@ struct Search<'a> {
     alpha: f64,
     first: i64,
     /// Iterations that the deck requests.
-    asked: i64,
+    requested: i64,
     /// The time step before FIRE changed it.
     dt: f64,
     interrupted: bool,
@@ -149,7 +149,7 @@ pub fn minimize(
         evaluations: 0,
         alpha: 0.0,
         first,
-        asked: last - first,
+        requested: last - first,
         dt,
         interrupted: false,
         farthest,
@@ -198,7 +198,7 @@ impl Search<'_> {
             self.w.particles.v.fill([0.0; 3]);
         }
         let mut t = tick(self.w, true);
-        self.plan.ask(&mut t);
+        self.plan.request_sums(&mut t);
         let forces = [Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce, Stage::EndOfStep];
         self.plan.run(self.w, &t, &forces)?;
         self.energy = (self.read)(self.w);
@@ -215,7 +215,7 @@ impl Search<'_> {
             // Springs of contacts grow there by the time step that the deck named, whatever FIRE makes of it.
             t.dt = self.dt;
         }
-        self.plan.ask(&mut t);
+        self.plan.request_sums(&mut t);
         let forces = [Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce, Stage::EndOfStep];
         let (plan, w) = (&mut *self.plan, &mut *self.w);
         par::inside(|| plan.run(w, &t, &forces)).map_err(|e| thrown(e, self.farthest))?;
@@ -258,10 +258,10 @@ impl Search<'_> {
     /// Output of an iteration that is not the end for another reason than their number.
     fn output(&mut self) -> Result<()> {
         let mut t = tick(self.w, false);
-        self.plan.ask(&mut t);
+        self.plan.request_sums(&mut t);
         self.plan.run(self.w, &t, &[Stage::Output])?;
         let c = &self.w.clock;
-        let (done, total) = (c.step - self.first, self.asked);
+        let (done, total) = (c.step - self.first, self.requested);
         self.watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
         if self.watch.looks(self.w) {
             self.watch.scene(self.w);
@@ -274,7 +274,7 @@ impl Search<'_> {
         self.w.clock.last = self.w.clock.step;
         self.energy = self.look(true, false)?;
         let mut t = Tick { ending: true, ..tick(self.w, false) };
-        self.plan.ask(&mut t);
+        self.plan.request_sums(&mut t);
         self.plan.run(self.w, &t, &[Stage::Output])
     }
 

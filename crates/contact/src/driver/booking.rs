@@ -2,11 +2,11 @@
 
 use super::{Grains, Rules, Sweep};
 use perigrain_base::math::vec3::{add, dot, scale, sub};
-use perigrain_world::contacts::{Contacts, PairDeeds};
+use perigrain_world::contacts::{Contacts, PairWork};
 
 impl Sweep {
     /// Adds the contributions of the last evaluation; `memory` is from that evaluation.
-    pub fn tell(&self, grains: &Grains, rules: &Rules, memory: &Contacts, all: &mut PairDeeds) {
+    pub fn book(&self, grains: &Grains, rules: &Rules, memory: &Contacts, all: &mut PairWork) {
         self.each(grains, rules, memory, |c| {
             let (i, j, n) = (c.pair.i as usize, c.pair.j as usize, c.geometry.normal);
             let [push, held] = c.law.pressing(&c.geometry, c.history).map(|a| c.share * a);

@@ -15,13 +15,13 @@ pub fn seal(s: &mut Sealer) {
     }
     let fixes = graph.fixes.iter().map(|f| f.fix.clone()).collect();
     let computes = graph.computes.iter().map(|c| c.compute.clone()).collect();
-    let op = Welcome { fixes, computes, roster: s.world().rebuild.roster };
+    let op = Joined { fixes, computes, roster: s.world().rebuild.roster };
     let span = s.span();
     s.add(vec![Box::new(op)], span);
 }
 
 /// Notifies fixes and computes when particles have joined.
-struct Welcome {
+struct Joined {
     fixes: Vec<Box<dyn Fix>>,
     computes: Vec<Box<dyn Compute>>,
     /// The roster at the last notification.
@@ -31,19 +31,19 @@ struct Welcome {
 /// What is noted of particles that have joined.
 const NOTED: Fields = BOX.and(X).and(V).and(QUAT).and(IMAGE).and(MASK).and(RADIUS).and(MASS);
 
-impl Op for Welcome {
+impl Op for Joined {
     fn about(&self) -> About {
-        About::new("welcome", Stage::Exchange, Needs::new().read(NOTED | MEMO | LISTS).keep(COLUMNS))
+        About::new("joined", Stage::Exchange, Needs::new().read(NOTED | MEMO | LISTS).keep(COLUMNS))
     }
     fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
-        Rows::Asks
+        Rows::Requested
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {
             w.whole(NOTED);
             self.roster = w.rebuild.roster;
-            self.fixes.iter().for_each(|f| f.welcome(w));
-            self.computes.iter().for_each(|c| c.welcome(w));
+            self.fixes.iter().for_each(|f| f.particles_joined(w));
+            self.computes.iter().for_each(|c| c.particles_joined(w));
         }
         Ok(())
     }

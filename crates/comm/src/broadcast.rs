@@ -9,7 +9,7 @@ pub fn number(own: impl FnOnce() -> f64) -> f64 {
     }
     let comm = present();
     let mut bytes = if comm.rank() == 0 { own().to_le_bytes().to_vec() } else { vec![] };
-    comm.tell(&mut bytes);
+    comm.broadcast(&mut bytes);
     let mut value = [0; 8];
     value.copy_from_slice(&bytes[..8]);
     f64::from_le_bytes(value)
@@ -27,7 +27,7 @@ pub fn bytes(own: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
     }
     let comm = present();
     let mut bytes = if comm.rank() == 0 { own() } else { vec![] };
-    comm.tell(&mut bytes);
+    comm.broadcast(&mut bytes);
     bytes
 }
 
