@@ -405,8 +405,8 @@ impl Session {
         self.fixless |= outcome.is_err() && cmd.name.text == "fix";
         self.print_notes()?;
         if stop.has_cut() {
-            let told = outcome.err().unwrap_or_default();
-            return self.cut_short(&stop, line, cmd.span, &told).map(|()| None);
+            let problems = outcome.err().unwrap_or_default();
+            return self.cut_short(&stop, line, cmd.span, &problems).map(|()| None);
         }
         outcome.map_err(|e| {
             checking::with_origins(belongs::add_places(self.sources.adopt(e), cmd).at(cmd.span), cmd)

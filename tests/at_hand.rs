@@ -51,8 +51,8 @@ fn examples_are_listed_shown_and_copied() {
 fn a_mistyped_subcommand_is_taken_for_one() {
     let folder = tempfile::tempdir().unwrap();
     let o = perigrain(folder.path(), &["chekc", "in.fall"]);
-    let said = "error: `chekc` is no subcommand, and there is no such deck\n  = help: did you mean `perigrain check in.fall`?\n";
-    assert_eq!((o.status.code(), err(&o).as_str()), (Some(2), said));
+    let printed = "error: `chekc` is no subcommand, and there is no such deck\n  = help: did you mean `perigrain check in.fall`?\n";
+    assert_eq!((o.status.code(), err(&o).as_str()), (Some(2), printed));
     fs::write(folder.path().join("chekc"), "print \"a deck\"\n").unwrap();
     assert!(out(&perigrain(folder.path(), &["chekc", "-log", "none"])).contains("a deck\n"));
 }
@@ -142,12 +142,12 @@ fn decks_are_laid_out_anew_and_written_only_where_they_change() {
     assert_eq!(fs::metadata(path("in.tidy")).unwrap().modified().unwrap(), before);
 
     let o = perigrain(folder.path(), &["fmt", "in.open", "in.bytes", "in.none", "in.tidy"]);
-    let said = err(&o);
+    let printed = err(&o);
     assert_eq!((o.status.code(), out(&o).as_str()), (Some(1), ""));
     for part in
         ["in.open:1:8", "in.open:2:8", "PG0136", "`in.bytes` is no text", "cannot read the deck `in.none`"]
     {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(printed.contains(part), "{part}: {printed}");
     }
     assert_eq!(fs::read_to_string(path("in.open")).unwrap(), "print  \"a\nprint  'b\n");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);

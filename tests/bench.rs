@@ -41,7 +41,7 @@ fn timed(folder: &Path, args: &[&str]) -> Output {
     command.output().unwrap()
 }
 
-fn said(o: &Output) -> String {
+fn output_of(o: &Output) -> String {
     String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr)
 }
 
@@ -73,7 +73,7 @@ fn steps_halved_show_the_order_of_velocity_verlet() {
         "-repeat", "2",
     ];
     let o = bench(at, &args);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     // Differences to the finest run, whose own error is reckoned with: the next term is of fourth order, 0.1 % at these steps.
     let orders = column(at, "in.x.bench/bench.csv", "v_place_order_n");
     assert!(orders[0].is_none() && orders[3].is_none(), "{orders:?}");
@@ -81,7 +81,7 @@ fn steps_halved_show_the_order_of_velocity_verlet() {
     // The energy is no column of the deck's own table, and has a series all the same.
     let orders = column(at, "in.x.bench/bench.csv", "c_k_order_n");
     assert!((orders[2].unwrap() - 2.0).abs() < 5e-3, "{orders:?}");
-    let text = said(&o);
+    let text = output_of(&o);
     for words in ["order in n", "reference", "Pareto front", "the least of 2", "a n: order 2.00"] {
         assert!(text.contains(words), "{words}: {text}");
     }
@@ -93,7 +93,7 @@ fn steps_halved_show_the_order_of_velocity_verlet() {
     // Nothing is left to do; where a run is missing it is made.
     let before = read(at, "in.x.bench/bench.csv");
     let o = bench(at, &args);
-    assert!(o.status.success() && said(&o).contains("8 of 8 runs are done"), "{}", said(&o));
+    assert!(o.status.success() && output_of(&o).contains("8 of 8 runs are done"), "{}", output_of(&o));
     assert_eq!(read(at, "in.x.bench/bench.csv"), before);
     let journal = read(at, "in.x.bench/journal");
     // Killed in the fifth run.
@@ -104,9 +104,9 @@ fn steps_halved_show_the_order_of_velocity_verlet() {
         fs::remove_dir_all(at.join("in.x.bench").join(run)).unwrap();
     }
     let o = bench(at, &args);
-    assert!(o.status.success() && said(&o).contains("4 of 8 runs are done"), "{}", said(&o));
+    assert!(o.status.success() && output_of(&o).contains("4 of 8 runs are done"), "{}", output_of(&o));
     let o = bench(at, &["in.x", "-status"]);
-    assert!(said(&o).contains("8 runs ok"), "{}", said(&o));
+    assert!(output_of(&o).contains("8 runs ok"), "{}", output_of(&o));
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn short_runs_are_made_again_until_they_have_taken_50_ms() {
     let at = folder.path();
     let args = ["in.x", "-each", "n", "2000", "4000", "-measure", "v_place"];
     let o = timed(at, &args);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let [seconds, runs] = ["seconds", "repeats"].map(|name| column(at, "in.x.bench/bench.csv", name));
     for (s, n) in seconds.into_iter().zip(runs) {
         let (s, n) = (s.unwrap(), n.unwrap());
@@ -125,7 +125,7 @@ fn short_runs_are_made_again_until_they_have_taken_50_ms() {
     }
     // Nothing is left to do.
     let o = timed(at, &args);
-    assert!(o.status.success() && said(&o).contains("2 of 2 runs are done"), "{}", said(&o));
+    assert!(o.status.success() && output_of(&o).contains("2 of 2 runs are done"), "{}", output_of(&o));
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn closed_forms_and_files_are_references_too() {
     let run = |more: &[&str]| bench(at, &[&knob[..], more].concat());
     // A form that changes over time, and a number at the end.
     let o = run(&["-against", "form", "v_exact", "-norm", "max", "-out", "a"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let errors = column(at, "a/bench.csv", "v_place_error");
     // Velocity Verlet's phase is ahead by t dt²/24: 2.1e-4 sin 2 at n = 20.
     assert!((errors[0].unwrap() - 0.05f64.powi(2) / 12.0 * 2f64.sin()).abs() < 2e-6, "{errors:?}");
@@ -144,26 +144,26 @@ fn closed_forms_and_files_are_references_too() {
     let orders = column(at, "a/bench.csv", "v_place_order_n");
     assert!(orders[1].is_none() && (orders[2].unwrap() - 2.0).abs() < 2e-2, "{orders:?}");
     let o = run(&["-against", "form", "cos(2)", "-norm", "end", "-out", "b"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(column(at, "b/bench.csv", "v_place_error")[0], errors[0]);
     // Its own log, and a table.
     let log = "b/0002-n=40/log.lammps";
     let o = run(&["-against", "file", log, "-norm", "max", "-out", "c"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let errors = column(at, "c/bench.csv", "v_place_error");
     assert!(errors[0].unwrap() > 1e-5 && errors[1].unwrap() < 1e-8, "a log has eight digits: {errors:?}");
     let rows: Vec<String> =
         (0..=40).map(|k| f64::from(k) * 0.05).map(|t| format!("{t},{}\n", t.cos())).collect();
     fs::write(at.join("exact.csv"), format!("time,v_place\n{}", rows.concat())).unwrap();
     let o = run(&["-against", "file", "exact.csv", "-norm", "max", "-out", "d"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let close = column(at, "d/bench.csv", "v_place_error")[0].unwrap()
         / column(at, "a/bench.csv", "v_place_error")[0].unwrap();
     assert!((close - 1.0).abs() < 1e-6, "{close}");
 }
 
 #[test]
-fn what_is_not_there_is_named_and_the_rest_goes_on() {
+fn what_is_not_there_is_named_and_the_rest_continues() {
     let folder = with_deck(DECK);
     let at = folder.path();
     let o = bench(
@@ -173,7 +173,7 @@ fn what_is_not_there_is_named_and_the_rest_goes_on() {
             "v_place", "c_q",
         ],
     );
-    let text = said(&o);
+    let text = output_of(&o);
     assert_eq!(o.status.code(), Some(1), "{text}");
     for words in [
         "the deck never uses the variable `nn`",
@@ -214,12 +214,12 @@ fn what_is_not_there_is_named_and_the_rest_goes_on() {
                 file.trim_end_matches(".csv"),
             ],
         );
-        assert!(o.status.code() == Some(1) && said(&o).contains(words), "{file}: {}", said(&o));
+        assert!(o.status.code() == Some(1) && output_of(&o).contains(words), "{file}: {}", output_of(&o));
     }
     // A run that fails is named, the others are measured.
     let o =
         bench(at, &["in.x", "-each", "n", "10", "20", "0", "40", "-measure", "v_place", "-out", "failing"]);
-    let text = said(&o);
+    let text = output_of(&o);
     assert!(o.status.code() == Some(1) && text.contains("n=0: in.x:"), "{text}");
     assert!(column(at, "failing/bench.csv", "v_place_error")[1].is_some());
     // Nothing to turn, nothing to measure, a deck that is wrong.
@@ -227,7 +227,7 @@ fn what_is_not_there_is_named_and_the_rest_goes_on() {
     assert_eq!(bench(at, &["in.x", "-each", "n", "1", "2"]).status.code(), Some(2));
     fs::write(at.join("in.bad"), "variable n index 1\nunitz $n\n").unwrap();
     let o = bench(at, &["in.bad", "-each", "n", "1", "2", "-measure", "pe"]);
-    assert!(o.status.code() == Some(1) && said(&o).contains("in.bad:2:1"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("in.bad:2:1"), "{}", output_of(&o));
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn threads_and_layouts_are_knobs_and_laws_have_their_own_finest_run() {
             "v_place", "-against", "finest", "n",
         ],
     );
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(column(at, "in.x.bench/bench.csv", "threads")[0], Some(1.0));
     assert_eq!(column(at, "in.x.bench/bench.csv", "threads")[6], Some(2.0));
     let errors = column(at, "in.x.bench/bench.csv", "v_place_error");
@@ -257,9 +257,9 @@ fn the_suite_writes_its_page_and_a_lammps_stands_beside() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let o = bench(at, &["-suite", "-list"]);
-    assert!(o.status.success() && said(&o).lines().count() >= 8, "{}", said(&o));
+    assert!(o.status.success() && output_of(&o).lines().count() >= 8, "{}", output_of(&o));
     let o = bench(at, &["--suite", "--only", "hertz", "-markdown", "page.md"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let page = read(at, "page.md");
     for words in [
         "# Benchmarks",
@@ -283,7 +283,7 @@ fn rows_of_bonds_bend_as_rods_to_second_order() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let o = bench(at, &["-suite", "-only", "bonded_wave", "-markdown", "page.md"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let csv = "bench.suite/bonded_wave/bench.csv";
     let orders: Vec<f64> = column(at, csv, "frequency_order_N").into_iter().flatten().collect();
     // 2.11 and 1.96, in steps of three lengths.
@@ -311,7 +311,7 @@ fn runs_of_lammps_are_read_from_its_log() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let o = bench(at, &["-suite", "-only", "hertz", "-lammps", &lammps(at, false), "-markdown", "a.md"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let page = read(at, "a.md");
     assert!(page.contains("LAMMPS (22 Jul 2025)") && page.contains("LAMMPS takes "), "{page}");
     let csv = "bench.suite/hertz_impact/bench.csv";
@@ -324,7 +324,7 @@ fn runs_of_lammps_are_read_from_its_log() {
         at,
         &["-suite", "-only", "hertz", "-lammps", &lammps(at, true), "-markdown", "b.md", "-out", "b"],
     );
-    let text = said(&o);
+    let text = output_of(&o);
     assert!(
         o.status.code() == Some(1) && text.contains("program=lammps N=25 and 5 more: LAMMPS: ERROR"),
         "{text}"

@@ -158,8 +158,8 @@ fn decks_in_the_text_run_and_draw_their_pictures() {
     let work = || {
         loop {
             let Some(deck) = left.lock().unwrap().pop() else { return };
-            if let Some(said) = judge(&deck) {
-                let _ = writeln!(wrong.lock().unwrap(), "{}:\n{said}", deck.page.display());
+            if let Some(printed) = judge(&deck) {
+                let _ = writeln!(wrong.lock().unwrap(), "{}:\n{printed}", deck.page.display());
             }
         }
     };
@@ -310,7 +310,7 @@ fn blocks_fit_the_page() {
 }
 
 #[test]
-fn pages_say_which_question_they_answer() {
+fn pages_state_the_question_they_answer() {
     for (page, text) in pages_in("howto").into_iter().chain(pages_in("theory")) {
         let first = text.lines().nth(2).unwrap();
         let asks = first.starts_with('*') && first.ends_with("?*");

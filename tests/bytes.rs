@@ -164,7 +164,7 @@ proptest! {
     }
 
     #[test]
-    fn a_scene_goes_on_in_any_way(deck in words()) {
+    fn a_scene_continues_in_any_way(deck in words()) {
         swallow(&format!("{SCENE}run 1\n{deck}\nrun 1\n"));
     }
 

@@ -34,10 +34,10 @@ fn ten_planted_mistakes_are_all_found_at_once() {
     // Once to load what is loaded once; then as long as a check of an open file in an editor takes.
     check(deck, Path::new("."));
     let begin = Instant::now();
-    let (said, session) = check(deck, Path::new("."));
+    let (printed, session) = check(deck, Path::new("."));
     let time = begin.elapsed();
     let mut found = String::new();
-    for d in said.iter().filter(|d| d.severity == Severity::Error) {
+    for d in printed.iter().filter(|d| d.severity == Severity::Error) {
         let span = d.span.unwrap();
         let (line, column) = session.sources.place(span);
         let _ = writeln!(
@@ -86,7 +86,7 @@ const RIGHTLY: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn nothing_is_said_against_decks_that_are_right() {
+fn decks_that_are_right_give_no_messages() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let below = |folder: &str| {
         let entries = fs::read_dir(root.join(folder)).unwrap();
@@ -103,10 +103,10 @@ fn nothing_is_said_against_decks_that_are_right() {
     let (mut wrong, mut count) = (String::new(), 0);
     for path in decks.filter(|p| !p.to_string_lossy().contains("data.")) {
         let text = fs::read_to_string(&path).unwrap();
-        let (said, _) = check(&text, path.parent().unwrap());
+        let (printed, _) = check(&text, path.parent().unwrap());
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         count += 1;
-        for d in said.iter().filter(|d| d.severity > Severity::Note) {
+        for d in printed.iter().filter(|d| d.severity > Severity::Note) {
             if !RIGHTLY.iter().any(|(n, part)| *n == name && d.message.contains(part)) {
                 let _ = writeln!(wrong, "{name}: {}", d.message);
             }
@@ -127,9 +127,9 @@ fn small_good_decks_are_good_for_check_too() {
         let text = fs::read_to_string(&file).unwrap();
         for block in text.split("--- ").skip(1) {
             let (name, deck) = block.split_once('\n').unwrap();
-            let (said, _) = check(&deck.replace("@scene\n", &format!("{SCENE}\n")), Path::new("."));
+            let (printed, _) = check(&deck.replace("@scene\n", &format!("{SCENE}\n")), Path::new("."));
             count += 1;
-            for d in said.iter().filter(|d| d.severity > Severity::Note) {
+            for d in printed.iter().filter(|d| d.severity > Severity::Note) {
                 let expected = ["# warning", "# check warning"]
                     .iter()
                     .any(|w| deck.contains(&format!("{w}: {}", d.message)));
@@ -160,8 +160,8 @@ fn small_good_decks_have_plans() {
             for block in text.split("--- ").skip(1) {
                 let (name, deck) = block.split_once('\n').unwrap();
                 let deck = deck.replace("@scene\n", &format!("{SCENE}\n"));
-                let (said, _) = looked_at(Mode::Plan, &deck, Path::new("."));
-                for d in said.iter().filter(|d| d.severity == Severity::Error) {
+                let (printed, _) = looked_at(Mode::Plan, &deck, Path::new("."));
+                for d in printed.iter().filter(|d| d.severity == Severity::Error) {
                     let file = file.file_name().unwrap().to_string_lossy();
                     let _ = writeln!(wrong.lock().unwrap(), "{file} {name}: {}", d.message);
                 }
@@ -176,13 +176,13 @@ fn small_good_decks_have_plans() {
 /// Warnings of one deck as `line:from-to message`.
 #[track_caller]
 fn warns(deck: &str, wanted: &[&str]) {
-    let (said, session) = check(deck, Path::new("."));
+    let (printed, session) = check(deck, Path::new("."));
     let text = |d: &Diagnostic| {
         let span = d.span.unwrap();
         let (line, column) = session.sources.place(span);
         format!("{line}:{column} {}", d.message)
     };
-    let found: Vec<String> = said.iter().filter(|d| d.severity > Severity::Note).map(text).collect();
+    let found: Vec<String> = printed.iter().filter(|d| d.severity > Severity::Note).map(text).collect();
     assert_eq!(found.len(), wanted.len(), "{found:?}");
     for w in wanted {
         assert!(found.iter().any(|f| f.starts_with(w)), "{w} is not among {found:?}");
@@ -200,7 +200,7 @@ fn the_time_step_is_held_against_the_stiffest_bonds() {
 }
 
 #[test]
-fn a_fix_that_moves_to_another_group_is_told() {
+fn a_fix_that_moves_to_another_group_gives_a_warning() {
     let deck = format!("{SCENE}\ngroup few id 1:9\nfix d all viscous 1\nfix d GROUP viscous 2\nrun 10\n");
     warns(&deck.replace("GROUP", "few"), &["18:7 fix `d` concerns another group"]);
     warns(&deck.replace("GROUP", "all").replace("group few id 1:9", ""), &[]);
@@ -249,7 +249,7 @@ fn warnings_are_given_where_they_belong_and_nowhere_near() {
 }
 
 #[test]
-fn what_only_a_run_can_tell_is_no_mistake() {
+fn what_only_a_run_determines_is_no_mistake() {
     let deck = "run 10\nvariable n equal count(all)-count(all)\nvariable a equal 1/v_n\nvariable l equal ln(-v_n)\n\
         print \"$(v_a) $(c_thermo_pe/0) $(x[1]/(x[2]-x[2]))\"\nvariable i loop 3 ${n}\nlabel turn\nvariable k equal $(v_i+1)\n\
         next i\njump SELF turn\nif \"${k} == 1\" then \"unfix 1\" else \"unfix 1\"\nlabel wait\nvariable m loop 3\nlabel more\n\
@@ -258,15 +258,15 @@ fn what_only_a_run_can_tell_is_no_mistake() {
         fix 2 all ave/time ${n} 1 ${n} c_thermo_pe\nif \"0 && ${n}\" then nonsense\nregion r sphere 0 0 0 $(-v_n)\n\
         create_atoms 1 region r\nfix 1 all nve\nrun ${n}\nrun 10 upto\nrun 10 start 10 stop 40\nrun 1000000 every 1 NULL\n";
     for mode in [Mode::Check, Mode::Plan] {
-        let (said, session) = looked_at(mode, &format!("{SCENE}\n{deck}"), Path::new("."));
-        let errors: Vec<_> = said.iter().filter(|d| d.severity == Severity::Error).collect();
+        let (printed, session) = looked_at(mode, &format!("{SCENE}\n{deck}"), Path::new("."));
+        let errors: Vec<_> = printed.iter().filter(|d| d.severity == Severity::Error).collect();
         assert!(errors.is_empty(), "{mode:?}: {errors:?}");
         assert!(session.world.n() <= 125);
     }
 }
 
 #[test]
-fn lines_behind_quit_and_names_nobody_uses() {
+fn lines_behind_quit_and_unused_names() {
     warns("units si\nquit\n# the rest\n\nrun 100\nrun 200\n", &["5:1 this line is never reached"]);
     warns("units si\nif \"1 > 2\" then quit\nprint a\n", &[]);
     warns("jump SELF end\nquit\nlabel end\nprint a\n", &[]);
@@ -277,9 +277,9 @@ fn lines_behind_quit_and_names_nobody_uses() {
 
 #[test]
 fn a_value_put_in_shows_where_it_comes_from() {
-    let (said, session) =
+    let (printed, session) =
         check(&format!("variable s string nve/spher\n{SCENE}\nfix 2 all $s\n"), Path::new("."));
-    let d = said.iter().find(|d| d.severity == Severity::Error).unwrap();
+    let d = printed.iter().find(|d| d.severity == Severity::Error).unwrap();
     assert_eq!(session.sources.place(d.span.unwrap()), (17, 11));
     assert_eq!(session.sources.place(d.labels[0].span).0, 1);
 }

@@ -45,7 +45,7 @@ fn a_deck_is_an_argument_a_switch_or_standard_input() {
 }
 
 #[test]
-fn screen_log_echo_and_variables_go_where_the_switches_say() {
+fn screen_log_echo_and_variables_follow_the_switches() {
     let folder = tempfile::tempdir().unwrap();
     let args =
         ["-log", "a.log", "-screen", "none", "-echo", "none", "-var", "v", "35", "70", "-nc", "-sf", "omp"];
@@ -59,7 +59,7 @@ fn screen_log_echo_and_variables_go_where_the_switches_say() {
 }
 
 #[test]
-fn exit_codes_say_how_it_ended() {
+fn exit_codes_show_how_it_ended() {
     let folder = tempfile::tempdir().unwrap();
     let code = |args: &[&str], deck: &str| perigrain(folder.path(), args, deck).status.code();
     assert_eq!(code(&["-log", "none"], "quit 3\n"), Some(3));
@@ -75,7 +75,7 @@ fn exit_codes_say_how_it_ended() {
 }
 
 #[test]
-fn the_version_says_what_was_built_and_which_lanes_are_in_use() {
+fn the_version_shows_the_build_and_the_lanes_in_use() {
     let folder = tempfile::tempdir().unwrap();
     for switch in ["-version", "--version", "-V"] {
         let o = perigrain(folder.path(), &[switch], "");
@@ -140,10 +140,16 @@ fn a_plan_writes_no_file_and_overwrites_none() {
     let o = perigrain(folder.path(), &["plan", "in.deck"], "");
     assert_eq!(o.status.code(), Some(0), "{}", err(&o));
     // Three of the four runs have the same plan, which is printed once.
-    let told = out(&o);
-    let plans = told.lines().filter(|l| l.trim() == "initial integrate").count();
-    assert!(plans == 2 && told.contains("used once") && told.contains("used 3 times"), "{told}");
-    assert!(!told.contains("not shown") && !told.contains("what only a run determines"), "{told}");
+    let plans_text = out(&o);
+    let plans = plans_text.lines().filter(|l| l.trim() == "initial integrate").count();
+    assert!(
+        plans == 2 && plans_text.contains("used once") && plans_text.contains("used 3 times"),
+        "{plans_text}"
+    );
+    assert!(
+        !plans_text.contains("not shown") && !plans_text.contains("what only a run determines"),
+        "{plans_text}"
+    );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     assert_eq!(fs::read_to_string(folder.path().join("run.restart")).unwrap(), "old");
 }

@@ -22,7 +22,7 @@ fn cramped(folder: &Path, kilobytes: u32, line: &str, log: &str) -> String {
 }
 
 #[test]
-fn what_cannot_be_written_is_told_in_the_words_of_the_system() {
+fn write_errors_have_the_words_of_the_system() {
     let folder = tempfile::tempdir().unwrap();
     for (line, path) in [
         ("write_restart a.restart", "a.restart"),
@@ -37,14 +37,17 @@ fn what_cannot_be_written_is_told_in_the_words_of_the_system() {
     ] {
         // Packed, 1000 places on a lattice are small.
         let packed = path.ends_with(".gz") || path.ends_with(".vtu");
-        let said = cramped(folder.path(), if packed { 1 } else { 8 }, line, "none");
-        assert!(said.contains("File too large") && said.contains(&format!("`{path}`")), "{line}: {said}");
+        let printed = cramped(folder.path(), if packed { 1 } else { 8 }, line, "none");
+        assert!(
+            printed.contains("File too large") && printed.contains(&format!("`{path}`")),
+            "{line}: {printed}"
+        );
         let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         assert!(left.iter().all(|n| !n.to_string_lossy().ends_with(".part")), "{line}: {left:?}");
     }
     let lines: String = (0..900).map(|k| format!("print \"line {k} of a long log\"\n")).collect();
-    let said = cramped(folder.path(), 8, &lines, "a.log");
-    assert!(said.contains("`a.log`") && said.contains("File too large"), "{said}");
+    let printed = cramped(folder.path(), 8, &lines, "a.log");
+    assert!(printed.contains("`a.log`") && printed.contains("File too large"), "{printed}");
 }
 
 #[test]
@@ -55,8 +58,11 @@ fn a_full_disk_is_named() {
         ("print \"on the log\"", "/dev/full"),
         ("print \"on a file\" file /dev/full", "none"),
     ] {
-        let said = cramped(folder.path(), 10_000, line, log);
-        assert!(said.contains("`/dev/full`") && said.contains("No space left on device"), "{line}: {said}");
+        let printed = cramped(folder.path(), 10_000, line, log);
+        assert!(
+            printed.contains("`/dev/full`") && printed.contains("No space left on device"),
+            "{line}: {printed}"
+        );
     }
 }
 

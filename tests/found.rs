@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// The output of the program for these words on a terminal of 80 columns, pages shown as they are.
-fn said(folder: &Path, args: &str) -> String {
+fn output_of(folder: &Path, args: &str) -> String {
     shown(folder, 80, "print a\n", args, &[("PAGER", "cat"), ("NO_COLOR", "1")]).replace('\r', "")
 }
 
@@ -14,13 +14,13 @@ fn said(folder: &Path, args: &str) -> String {
 fn a_mistyped_subcommand_is_taken_for_one() {
     let folder = tempfile::tempdir().unwrap();
     let meant = |deck: &str| format!("did you mean `perigrain check {deck}`?");
-    assert!(said(folder.path(), "chekc in.fall").contains(&meant("in.fall")));
+    assert!(output_of(folder.path(), "chekc in.fall").contains(&meant("in.fall")));
     // Also where there is such a deck, which is not run.
-    let text = said(folder.path(), "chekc in.deck; ls");
+    let text = output_of(folder.path(), "chekc in.deck; ls");
     assert!(text.contains("`chekc` is no subcommand") && text.contains(&meant("in.deck")), "{text}");
     assert!(!text.contains("already") && !text.contains("log.lammps"), "{text}");
     // Whose file it is, is run.
-    assert!(said(folder.path(), "--version; cp in.deck chekc; exec \"$0\" chekc").contains("\na\n"));
+    assert!(output_of(folder.path(), "--version; cp in.deck chekc; exec \"$0\" chekc").contains("\na\n"));
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn what_is_missing_or_wrong_is_named() {
         ("examples copy hoper", "did you mean `hopper`?"),
         ("help granualr", "did you mean `granular`?"),
     ] {
-        let text = said(folder.path(), args);
+        let text = output_of(folder.path(), args);
         assert!(text.contains(wanted), "{args}: {text}");
     }
 }
@@ -43,7 +43,7 @@ fn what_is_missing_or_wrong_is_named() {
 #[test]
 fn help_goes_by_topics_through_a_pager() {
     let folder = tempfile::tempdir().unwrap();
-    let text = said(folder.path(), "help");
+    let text = output_of(folder.path(), "help");
     let heads: Vec<&str> = text.lines().filter(|l| !l.is_empty() && !l.starts_with(' ')).collect();
     for head in ["subcommands:", "topics", "commands", "pair_style", "fix", "compute", "dump"] {
         assert!(heads.contains(&head), "{head}: {heads:?}");
@@ -83,18 +83,18 @@ fn help_searches_names_and_texts() {
         // Words that no page has beside each other.
         ("help crack speed", "\n  compute crack "),
     ] {
-        let text = said(folder.path(), args);
+        let text = output_of(folder.path(), args);
         assert!(text.contains(wanted), "{args}: {text}");
     }
 }
 
 #[test]
-fn a_word_that_is_known_elsewhere_is_told_where_it_belongs() {
+fn a_word_that_is_known_elsewhere_is_named_with_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let deck = "units si\natom_style sphere\npair_style granular hertz/material 1e7 0.5 0.3\n";
     let text = shown(folder.path(), 100, deck, PLAIN, &[("NO_COLOR", "1")]);
-    let told = "`hertz/material` is a normal model of granular contacts: it stands in pair_coeff";
-    assert!(text.contains(told) && text.contains("in.deck:3:"), "{text}");
+    let hint = "`hertz/material` is a normal model of granular contacts: it stands in pair_coeff";
+    assert!(text.contains(hint) && text.contains("in.deck:3:"), "{text}");
     let text = shown(
         folder.path(),
         100,
@@ -108,13 +108,14 @@ fn a_word_that_is_known_elsewhere_is_told_where_it_belongs() {
 #[test]
 fn examples_and_new_decks_are_written_here() {
     let folder = tempfile::tempdir().unwrap();
-    let list = said(folder.path(), "examples list");
+    let list = output_of(folder.path(), "examples list");
     assert!(list.contains("\n  hopper ") && list.contains("perigrain examples copy NAME"), "{list}");
     assert_eq!(too_wide(&list, 80), None);
-    let text = said(folder.path(), "examples copy hopper && \"$0\" check hopper/in.hopper; echo code $?");
+    let text =
+        output_of(folder.path(), "examples copy hopper && \"$0\" check hopper/in.hopper; echo code $?");
     assert!(text.contains("run it: perigrain hopper/in.hopper\n"), "{text}");
     assert!(text.ends_with("code 0\n"), "{text}");
-    let text = said(folder.path(), "new in.mine && exec \"$0\" check in.mine");
+    let text = output_of(folder.path(), "new in.mine && exec \"$0\" check in.mine");
     assert!(
         text.contains("run it: perigrain in.mine\n") && text.contains("in.mine: no problems found"),
         "{text}"
@@ -128,10 +129,10 @@ fn shells_and_man_get_their_pages() {
     for (shell, wanted) in
         [("bash", "complete -F _perigrain"), ("zsh", "#compdef perigrain"), ("fish", "complete -c perigrain")]
     {
-        let text = said(folder.path(), &format!("completions {shell}"));
+        let text = output_of(folder.path(), &format!("completions {shell}"));
         assert!(text.contains(wanted) && text.contains("sweep"), "{shell}");
     }
-    assert!(said(folder.path(), "man").contains(".TH perigrain 1"));
-    let text = said(folder.path(), "man pages && ls pages");
+    assert!(output_of(folder.path(), "man").contains(".TH perigrain 1"));
+    let text = output_of(folder.path(), "man pages && ls pages");
     assert!(text.contains("perigrain.1") && text.contains("perigrain-check.1"), "{text}");
 }

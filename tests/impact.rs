@@ -37,9 +37,10 @@ fn printed(word: &str, text: &str) -> Vec<f64> {
     let deck = folder.path().join("in.deck");
     std::fs::write(&deck, text).unwrap();
     let out = Command::new(env!("CARGO_BIN_EXE_perigrain")).arg(&deck).current_dir(&folder).output().unwrap();
-    let said = String::from_utf8_lossy(&out.stdout).into_owned();
-    let line = said.lines().find(|l| l.starts_with(word));
-    let line = line.unwrap_or_else(|| panic!("no {word}:\n{said}\n{}", String::from_utf8_lossy(&out.stderr)));
+    let printed = String::from_utf8_lossy(&out.stdout).into_owned();
+    let line = printed.lines().find(|l| l.starts_with(word));
+    let line =
+        line.unwrap_or_else(|| panic!("no {word}:\n{printed}\n{}", String::from_utf8_lossy(&out.stderr)));
     line.split(' ').filter_map(|w| w.parse().ok()).collect()
 }
 

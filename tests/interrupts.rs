@@ -30,13 +30,13 @@ fn the_first_ends_a_run_at_a_whole_step_and_the_deck() {
     let (_, behind) = text.split_once("^C").unwrap_or_else(|| panic!("{text}"));
     assert!(behind.starts_with("\r\x1b[2K"), "{text}");
     let lines: Vec<&str> = text.lines().map(|l| l.rsplit("\x1b[2K").next().unwrap_or(l)).collect();
-    let told = lines.iter().position(|l| l.starts_with("Interrupted at step ")).unwrap();
-    assert!(lines[..told].iter().any(|l| l.contains(" steps in ") && l.contains(" steps/s, ")), "{text}");
+    let notice = lines.iter().position(|l| l.starts_with("Interrupted at step ")).unwrap();
+    assert!(lines[..notice].iter().any(|l| l.contains(" steps in ") && l.contains(" steps/s, ")), "{text}");
     assert!(!text.contains("\nthen ") && text.ends_with("code 130\r\n"), "{text}");
 }
 
 #[test]
-fn one_while_a_scene_is_built_is_told() {
+fn one_while_a_scene_is_built_is_confirmed() {
     let folder = tempfile::tempdir().unwrap();
     let mut p = start(folder.path(), 100, &(slow(8000) + "print \"then\"\n"), WITH_CODE, &[]);
     p.exp_string("Setting atom values").unwrap();
@@ -65,7 +65,7 @@ fn the_second_ends_the_program_at_once() {
 }
 
 #[test]
-fn at_the_prompt_the_second_is_told_on_a_line_of_its_own() {
+fn at_the_prompt_the_second_is_confirmed_on_a_line_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let mut p = start(folder.path(), 200, &stubborn(), "repl in.deck -threads 1", &[("NO_COLOR", "1")]);
     p.exp_string("of memory").unwrap();
@@ -74,8 +74,8 @@ fn at_the_prompt_the_second_is_told_on_a_line_of_its_own() {
         p.send_control('c').unwrap();
     }
     let text = p.exp_string("perigrain> ").unwrap();
-    let told = "stopping at the end of this step; Ctrl-\\ ends at once";
-    assert!(text.contains(&format!("\n{told}\r\n")), "{text:?}");
+    let notice = "stopping at the end of this step; Ctrl-\\ ends at once";
+    assert!(text.contains(&format!("\n{notice}\r\n")), "{text:?}");
     // And the session continues.
     p.send_line("print \"atoms $(atoms)\"").unwrap();
     p.exp_string("\natoms 27\r\n").unwrap();

@@ -17,7 +17,7 @@ struct Client<W: Write, R: Read> {
     to: W,
     from: BufReader<R>,
     next: i64,
-    told: BTreeMap<String, Value>,
+    published: BTreeMap<String, Value>,
 }
 
 /// A server in this process, and what it ends with.
@@ -49,7 +49,7 @@ fn message(from: &mut impl BufRead) -> Option<Value> {
 
 impl<W: Write, R: Read> Client<W, R> {
     fn new(to: W, from: R) -> Self {
-        Self { to, from: BufReader::new(from), next: 0, told: BTreeMap::new() }
+        Self { to, from: BufReader::new(from), next: 0, published: BTreeMap::new() }
     }
 
     fn begin(&mut self) {
@@ -89,7 +89,7 @@ impl<W: Write, R: Read> Client<W, R> {
     fn keep(&mut self, heard: Value) {
         if heard["method"] == "textDocument/publishDiagnostics" {
             let uri = heard["params"]["uri"].as_str().unwrap().to_string();
-            self.told.insert(uri, heard["params"].clone());
+            self.published.insert(uri, heard["params"].clone());
         }
     }
 
@@ -125,8 +125,10 @@ impl<W: Write, R: Read> Client<W, R> {
     /// The problems of a file in the version given, once they are published.
     fn problems(&mut self, uri: &str, version: i64) -> Vec<Value> {
         loop {
-            if let Some(told) = self.told.get(uri).filter(|told| told["version"] == version) {
-                return told["diagnostics"].as_array().unwrap().clone();
+            if let Some(published) =
+                self.published.get(uri).filter(|published| published["version"] == version)
+            {
+                return published["diagnostics"].as_array().unwrap().clone();
             }
             let heard = message(&mut self.from).expect("problems");
             self.keep(heard);
@@ -195,7 +197,7 @@ fn hover_text(hover: &Value) -> &str {
 }
 
 #[test]
-fn problems_are_told_as_text_is_typed_and_go_when_it_is_right() {
+fn problems_are_published_as_text_is_typed_and_go_when_it_is_right() {
     let (mut client, server) = start();
     let uri = "untitled:Untitled-1";
     let text = format!("{DECK}\n# größe 𝕏\nvariable größe equal 1 # 𝕏\npair_sytle zero 1.0\n");
@@ -234,7 +236,7 @@ fn open_files_count_in_place_of_those_on_the_disk_and_belong_to_their_deck() {
     client.open(&uri("set.up"), "units lj\nvariable size equal 2\nuntis si\n");
     let inside = client.problems(&uri("set.up"), 1);
     assert!(inside.len() == 1 && inside[0]["code"] == "PG0102", "{inside:?}");
-    let main = &client.told[&uri("in.main")]["diagnostics"];
+    let main = &client.published[&uri("in.main")]["diagnostics"];
     assert!(main.as_array().unwrap().iter().all(|p| p["code"] != "PG0125"), "{main}");
     let definition = client.at(
         "textDocument/definition",
@@ -531,7 +533,7 @@ fn broken_clients_get_errors_and_no_panic() {
 }
 
 #[test]
-fn odd_files_are_told_about() {
+fn odd_files_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("in.self");
     let uri = format!("file://{}", path.display());
@@ -548,7 +550,7 @@ fn odd_files_are_told_about() {
     client.replace(&uri, 2, "include in.bytes\n");
     let problems = client.problems(&uri, 2);
     assert!(
-        client.told.values().any(|told| !told["diagnostics"].as_array().unwrap().is_empty()),
+        client.published.values().any(|published| !published["diagnostics"].as_array().unwrap().is_empty()),
         "{problems:?}"
     );
     client.end(server);
@@ -635,7 +637,8 @@ fn random_edits_do_no_harm() {
             // Long enough without an edit that this text is checked.
             client.problems(uri, edit);
         }
-        let failed = client.told.values().flat_map(|told| told["diagnostics"].as_array().unwrap());
+        let failed =
+            client.published.values().flat_map(|published| published["diagnostics"].as_array().unwrap());
         let failed: Vec<&Value> =
             failed.filter(|p| p["message"].as_str().unwrap().contains("please report")).collect();
         assert!(failed.is_empty(), "{failed:?}");

@@ -77,8 +77,9 @@ fn works_in(mode: Mode, name: &str, deck: &str) -> Result<String, String> {
 }
 
 /// The part of a session's output before the first run, which holds what examples print.
-fn own(said: &str) -> String {
-    said.lines()
+fn own(printed: &str) -> String {
+    printed
+        .lines()
         .filter(|l| !l.starts_with(' '))
         .take_while(|l| !l.starts_with("Loop time"))
         .fold(String::new(), |t, l| t + l + "\n")
@@ -93,17 +94,18 @@ fn every_example_runs() {
         let _folder = Folder::new(super::folder());
         let deck = deck(&title, page.doc.example);
         ran += 1;
-        if let Err(said) = works_in(Mode::Check, &title, &deck) {
-            let _ = writeln!(wrong, "--- check {title}\n{said}");
+        if let Err(printed) = works_in(Mode::Check, &title, &deck) {
+            let _ = writeln!(wrong, "--- check {title}\n{printed}");
         }
         match works(&title, &deck) {
-            Err(said) => {
-                let _ = writeln!(wrong, "--- {title}\n{said}");
+            Err(printed) => {
+                let _ = writeln!(wrong, "--- {title}\n{printed}");
             }
-            Ok(said) => {
+            Ok(printed) => {
                 for (_, line) in PRINTS.iter().filter(|(t, _)| *t == title) {
-                    if !said.lines().any(|l| l.trim() == *line) {
-                        let _ = writeln!(wrong, "--- {title}\ndoes not print {line:?} but\n{}", own(&said));
+                    if !printed.lines().any(|l| l.trim() == *line) {
+                        let _ =
+                            writeln!(wrong, "--- {title}\ndoes not print {line:?} but\n{}", own(&printed));
                     }
                 }
             }
@@ -122,8 +124,8 @@ fn calls_of_the_program_work() {
         for line in page.doc.example.lines() {
             let words = line.split_whitespace().skip(1);
             let output = Command::new(env!("CARGO_BIN_EXE_perigrain")).args(words).output().unwrap();
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{line}\n{said}");
+            let printed = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{line}\n{printed}");
         }
     }
 }
@@ -183,8 +185,8 @@ fn every_function_on_the_page_of_formulas_is_there() {
         };
         let _ = writeln!(deck, "print \"{name} $({name}({numbers}))\"");
     }
-    if let Err(said) = works("formulas", &deck) {
-        panic!("{said}");
+    if let Err(printed) = works("formulas", &deck) {
+        panic!("{printed}");
     }
 }
 
@@ -209,8 +211,8 @@ fn the_tour_shows_the_message_that_comes() {
         tour.split("```text\n").skip(1).filter_map(|block| block.split("```").next()).collect();
     let deck = blocks.iter().find(|b| b.starts_with("units")).unwrap();
     let shown = blocks.iter().find(|b| b.starts_with("error")).unwrap();
-    let said = works("in.fall", &deck.replacen("diameter", "diametre", 1)).unwrap_err();
-    assert_eq!(said.trim(), shown.trim());
+    let printed = works("in.fall", &deck.replacen("diameter", "diametre", 1)).unwrap_err();
+    assert_eq!(printed.trim(), shown.trim());
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn read(folder: &Path, name: &str) -> String {
 }
 
 #[test]
-fn partitions_are_told_apart_and_share_values_out() {
+fn partitions_are_distinguished_and_share_values_out() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     // Two rounds of values that are shared out, each given once.
@@ -23,10 +23,10 @@ fn partitions_are_told_apart_and_share_values_out() {
                 partition yes 2* print \"late\" file late.$w\npartition no *2 print \"not\" file not.$w\n";
     fs::write(at.join("in.p"), deck).unwrap();
     let o = perigrain(at, &["-in", "in.p", "-partition", "2x1", "1"]);
-    let said = String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr);
-    assert_eq!(o.status.code(), Some(0), "{said}");
-    assert_eq!(said, "Running on 3 partitions of processors\n");
-    assert_eq!(read(at, "log.lammps"), said);
+    let printed = String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr);
+    assert_eq!(o.status.code(), Some(0), "{printed}");
+    assert_eq!(printed, "Running on 3 partitions of processors\n");
+    assert_eq!(read(at, "log.lammps"), printed);
     for (number, w) in ["x", "y", "z"].iter().enumerate() {
         assert!(read(at, &format!("log.lammps.{number}")).contains(&format!("\nfrom {w}\n")), "{number}");
         assert!(read(at, &format!("screen.{number}")).contains(&format!("\nfrom {w}\n")), "{number}");
@@ -63,9 +63,9 @@ fn what_does_not_fit_the_partitions_is_refused() {
             .chain(args.split_whitespace())
             .collect();
         let o = perigrain(at, &args);
-        let said = String::from_utf8_lossy(&o.stderr);
-        assert!(o.status.code() == Some(code) && said.contains(why), "{deck}: {said}");
-        assert!(said.contains("in.p:1:"), "{said}");
+        let printed = String::from_utf8_lossy(&o.stderr);
+        assert!(o.status.code() == Some(code) && printed.contains(why), "{deck}: {printed}");
+        assert!(printed.contains("in.p:1:"), "{printed}");
         let check = perigrain(at, &[&["check"], &args[..]].concat());
         assert!(
             check.status.code() == Some(1) && String::from_utf8_lossy(&check.stderr).contains(why),

@@ -50,7 +50,7 @@ fn lines_with<'a>(text: &'a str, begin: &str) -> Vec<&'a str> {
 mod terminal;
 
 #[test]
-fn mistakes_are_shown_and_the_rest_goes_on() {
+fn mistakes_are_shown_and_the_rest_continues() {
     let folder = tempfile::tempdir().unwrap();
     let o = piped(
         folder.path(),
@@ -88,10 +88,10 @@ fn a_line_that_fails_changes_nothing() {
     let after = "run 100\nprint \"lost $(step) $(x[1]:%.6g)\"\ninclude in.half\nprint \"half $(atoms) $(is_defined(variable,a))\"\n\
         jump SELF\nrun 10\nprint \"ten $(step) $(x[1]:%.6g)\"\n:undo 99\n:undo\n";
     let o = piped(folder.path(), &format!("{deck}{after}"));
-    let (said, wrong) = (out(&o), err(&o));
-    assert!(said.lines().any(|l| l == "lost 0 0.5"), "{said}{wrong}");
-    assert!(lines_with(&said, "half 1").len() == 1 || wrong.contains("is_defined"), "{said}{wrong}");
-    assert!(said.lines().any(|l| l == "ten 10 0.6"), "{said}{wrong}");
+    let (printed, wrong) = (out(&o), err(&o));
+    assert!(printed.lines().any(|l| l == "lost 0 0.5"), "{printed}{wrong}");
+    assert!(lines_with(&printed, "half 1").len() == 1 || wrong.contains("is_defined"), "{printed}{wrong}");
+    assert!(printed.lines().any(|l| l == "ten 10 0.6"), "{printed}{wrong}");
     assert!(
         wrong.contains("`jump SELF` works there") && wrong.contains("there is no line to take back"),
         "{wrong}"
@@ -160,16 +160,16 @@ fn a_saved_session_is_a_deck_with_the_same_numbers() {
          velocity all scale 1\n:undo\nrun 10\n{state}:graph\n:plan\n:save s.in\n"
     );
     let o = piped(folder.path(), &lines);
-    let said = out(&o);
+    let printed = out(&o);
     assert!(
-        said.contains("taken back: velocity all scale 1") && said.contains("wrote s.in"),
-        "{said}\n{}",
+        printed.contains("taken back: velocity all scale 1") && printed.contains("wrote s.in"),
+        "{printed}\n{}",
         err(&o)
     );
-    assert!(said.contains("run      run 20") && said.contains("fix 1 nve"), "{said}");
+    assert!(printed.contains("run      run 20") && printed.contains("fix 1 nve"), "{printed}");
     let again = program(folder.path(), &["s.in", "-log", "none"]).output().unwrap();
     assert_eq!(again.status.code(), Some(0), "{}", err(&again));
-    assert_eq!(lines_with(&out(&again), "state "), lines_with(&said, "state "));
+    assert_eq!(lines_with(&out(&again), "state "), lines_with(&printed, "state "));
 }
 
 #[test]

@@ -105,7 +105,7 @@ fn asked(session: &mut Session, steps: usize) -> usize {
     ignore = "checks of debug builds allocate memory: cargo test --release --test quiet_alloc"
 )]
 #[test]
-fn a_quiet_step_asks_for_no_memory() {
+fn a_quiet_step_allocates_no_memory() {
     for (name, deck) in [("grains", GRAINS), ("free", FREE), ("solid", SOLID)] {
         let mut session = Session::new(Options { log: Log::silent(), ..Options::default() }).unwrap();
         session.run_text(name, deck).unwrap();

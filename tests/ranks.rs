@@ -37,7 +37,7 @@ fn perigrain(folder: &Path, args: &[&str]) -> Output {
     start(folder, PERIGRAIN, args).wait_with_output().unwrap()
 }
 
-pub fn said(o: &Output) -> String {
+pub fn output_of(o: &Output) -> String {
     String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr)
 }
 
@@ -94,7 +94,7 @@ pub fn left_by(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     let o = perigrain(folder.path(), &[&["-in", "in.deck", "-screen", "none"], words].concat());
-    assert!(o.status.success(), "{words:?}: {}\n{deck}", said(&o));
+    assert!(o.status.success(), "{words:?}: {}\n{deck}", output_of(&o));
     files(folder.path())
 }
 
@@ -213,7 +213,7 @@ fn forces_are_all_known_where_energies_of_particles_are() {
 
 /// What acts in every step of a measured plan on ranks: op, of which rows, how often all rows of something were handed to all in quiet
 /// steps.
-fn exchanged(said: &str) -> Vec<(String, String, u64)> {
+fn exchanged(printed: &str) -> Vec<(String, String, u64)> {
     let of = |line: &str| {
         let (op, rest) = line.trim().split_once("every step")?;
         let (rows, rest) = rest.split_once(" rows: ")?;
@@ -221,7 +221,7 @@ fn exchanged(said: &str) -> Vec<(String, String, u64)> {
         let gathers = rest.split(' ').next()?.parse().ok()?;
         Some((op.trim().to_string(), rows, gathers))
     };
-    said.lines().filter_map(of).collect()
+    printed.lines().filter_map(of).collect()
 }
 
 /// The measured plans of a deck's runs on three ranks.
@@ -232,8 +232,8 @@ fn measured(folder: &Path, words: &[&str]) -> Vec<(String, String, u64)> {
 /// The same on so many.
 fn measured_on(ranks: &str, folder: &Path, words: &[&str]) -> Vec<(String, String, u64)> {
     let o = perigrain(folder, &[&["plan", "--measure", "-ranks", ranks, "-threads", "1"], words].concat());
-    assert!(o.status.success(), "{words:?}: {}", said(&o));
-    exchanged(&said(&o))
+    assert!(o.status.success(), "{words:?}: {}", output_of(&o));
+    exchanged(&output_of(&o))
 }
 
 #[test]
@@ -280,7 +280,7 @@ fn every_example_has_the_same_bytes_on_any_number_of_ranks() {
                     .chain(args.split_whitespace())
                     .collect();
             let o = perigrain(folder.path(), &words);
-            assert!(o.status.success(), "{words:?}: {}", said(&o));
+            assert!(o.status.success(), "{words:?}: {}", output_of(&o));
             files(folder.path())
         };
         let alone = folder(&[]);
@@ -349,7 +349,7 @@ fn what_is_read_back_is_the_first_ranks() {
 }
 
 #[test]
-fn a_mistake_is_told_once() {
+fn a_mistake_is_reported_once() {
     let folder = tempfile::tempdir().unwrap();
     for (deck, code, part) in [
         ("units si\nregoin a block 0 1 0 1 0 1\n", 1, "did you mean"),
@@ -361,12 +361,12 @@ fn a_mistake_is_told_once() {
         fs::write(folder.path().join("in.deck"), deck).unwrap();
         let alone = perigrain(folder.path(), &["-in", "in.deck", "-threads", "1"]);
         let several = perigrain(folder.path(), &["-in", "in.deck", "-ranks", "3", "-threads", "1"]);
-        assert_eq!(several.status.code(), Some(code), "{deck}: {}", said(&several));
-        assert!(said(&several).contains(part), "{}", said(&several));
+        assert_eq!(several.status.code(), Some(code), "{deck}: {}", output_of(&several));
+        assert!(output_of(&several).contains(part), "{}", output_of(&several));
         assert_eq!(alone.stderr, several.stderr, "{deck}");
     }
     let o = perigrain(folder.path(), &["-ranks", "9999", "-in", "in.deck"]);
-    assert!(o.status.code() == Some(2) && said(&o).contains("at most 256"), "{}", said(&o));
+    assert!(o.status.code() == Some(2) && output_of(&o).contains("at most 256"), "{}", output_of(&o));
 }
 
 /// A deck that runs until something ends it, and leaves a restart file.
@@ -421,7 +421,7 @@ fn a_rank_that_is_killed_ends_all_and_is_named() {
         let o = first.wait_with_output().unwrap();
         assert!(!o.status.success() && begin.elapsed() < Duration::from_secs(10));
         if victim > 0 {
-            assert!(said(&o).contains(&format!("rank {victim} has ended")), "{}", said(&o));
+            assert!(output_of(&o).contains(&format!("rank {victim} has ended")), "{}", output_of(&o));
         }
         wait_for("all are gone", || {
             ranks.iter().all(|pid| {
@@ -447,9 +447,9 @@ fn a_request_to_end_at_any_rank_leaves_the_restart_file_of_one_step() {
         });
         signal("-TERM", ranks[asked]);
         let o = first.wait_with_output().unwrap();
-        assert_eq!(o.status.code(), Some(130), "{}", said(&o));
-        assert!(said(&o).contains("Interrupted"), "{}", said(&o));
-        assert!(folder.path().join("a.restart").exists(), "{}", said(&o));
+        assert_eq!(o.status.code(), Some(130), "{}", output_of(&o));
+        assert!(output_of(&o).contains("Interrupted"), "{}", output_of(&o));
+        assert!(folder.path().join("a.restart").exists(), "{}", output_of(&o));
     }
 }
 
@@ -466,7 +466,7 @@ fn processes_of_a_launcher_that_cannot_join_are_refused() {
     };
     let o = launched(&["-in", "in.deck"], "/no/such/libmpi.so");
     assert_eq!(o.status.code(), Some(2));
-    let words = said(&o);
+    let words = output_of(&o);
     assert!(
         words.contains("error: Open MPI has started 2 processes, which cannot join")
             && words.contains("PERIGRAIN_MPI=none"),
@@ -475,17 +475,21 @@ fn processes_of_a_launcher_that_cannot_join_are_refused() {
     assert_eq!(fs::read_to_string(folder.path().join("log.lammps")).unwrap(), "an earlier log\n");
     // A library that is none.
     let o = launched(&["-in", "in.deck"], "libc.so.6");
-    assert!(o.status.code() == Some(2) && said(&o).contains("has no MPI_Init_thread"), "{}", said(&o));
+    assert!(
+        o.status.code() == Some(2) && output_of(&o).contains("has no MPI_Init_thread"),
+        "{}",
+        output_of(&o)
+    );
     for (args, why) in [
         (&["check", "in.deck"][..], "this is work for one"),
         (&["-in", "in.deck", "-ranks", "2"], "`-ranks` would start more of them"),
         (&["repl"], "lines are typed into one"),
     ] {
         let o = launched(args, "");
-        assert!(o.status.code() == Some(2) && said(&o).contains(why), "{args:?}: {}", said(&o));
+        assert!(o.status.code() == Some(2) && output_of(&o).contains(why), "{args:?}: {}", output_of(&o));
     }
     let o = launched(&["-in", "in.deck"], "none");
-    assert!(o.status.success() && said(&o).contains("hello"), "each by itself: {}", said(&o));
+    assert!(o.status.success() && output_of(&o).contains("hello"), "each by itself: {}", output_of(&o));
 }
 
 /// Where the launchers of Debian's packages are.
@@ -520,27 +524,31 @@ fn real_launchers_have_the_same_bytes() {
                 [own, &["-n", "2", PERIGRAIN, "-in", "in.deck", "-screen", "none", "-threads", "1"], list]
                     .concat();
             let o = start(folder.path(), launcher, &words).wait_with_output().unwrap();
-            assert!(o.status.success(), "{launcher}: {}", said(&o));
+            assert!(o.status.success(), "{launcher}: {}", output_of(&o));
             same(&alone, &files(folder.path()), &format!("{} by {launcher}", scene.name));
         }
         let folder = tempfile::tempdir().unwrap();
         let o = start(folder.path(), launcher, &[own, &["-n", "3", PERIGRAIN, "ranks"]].concat())
             .wait_with_output()
             .unwrap();
-        assert!(said(&o).contains(library) && said(&o).contains("3 ranks on 1 host"), "{}", said(&o));
+        assert!(
+            output_of(&o).contains(library) && output_of(&o).contains("3 ranks on 1 host"),
+            "{}",
+            output_of(&o)
+        );
         // Processes with another environment run the deck of the first one.
         fs::write(folder.path().join("in.deck"), "variable a getenv OWN\nprint \"OWN is $a\"\n").unwrap();
         let one = |own: &'static str| ["-n", "1", "env", own, PERIGRAIN, "-in", "in.deck"];
         let words = [own, &one("OWN=1"), &[":"], &one("OWN=2")].concat();
         let o = start(folder.path(), launcher, &words).wait_with_output().unwrap();
-        assert!(o.status.success() && said(&o).matches("OWN is 1").count() == 1, "{}", said(&o));
+        assert!(o.status.success() && output_of(&o).matches("OWN is 1").count() == 1, "{}", output_of(&o));
         // One that was started with other words does not.
         let words = [own, &one("OWN=1"), &[":"], &one("OWN=2"), &["-var", "x", "1"]].concat();
         let o = start(folder.path(), launcher, &words).wait_with_output().unwrap();
         assert!(
-            !o.status.success() && said(&o).matches("was started with other words").count() == 1,
+            !o.status.success() && output_of(&o).matches("was started with other words").count() == 1,
             "{}",
-            said(&o)
+            output_of(&o)
         );
     }
 }
@@ -549,6 +557,6 @@ fn real_launchers_have_the_same_bytes() {
 fn nothing_is_linked_against_mpi() {
     let o = Command::new("ldd").arg(PERIGRAIN).output();
     if let Ok(o) = o {
-        assert!(!said(&o).contains("mpi"), "{}", said(&o));
+        assert!(!output_of(&o).contains("mpi"), "{}", output_of(&o));
     }
 }

@@ -76,7 +76,7 @@ fn a_run_leaves_a_page_of_all_that_it_was() {
 }
 
 #[test]
-fn a_run_that_fails_has_a_page_that_says_why() {
+fn a_failed_run_has_a_page_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("in.bad"), DECK.replace("run 100", "run 10\nunfix <g>")).unwrap();
     let o = perigrain(folder.path(), &["in.bad", "-report", "run.html"]);
@@ -181,7 +181,7 @@ fn a_page_is_made_from_a_log_and_a_dump() {
 }
 
 #[test]
-fn what_is_odd_about_logs_and_dumps_is_said_on_the_page_or_refused() {
+fn odd_logs_and_dumps_are_noted_on_the_page_or_refused() {
     let folder = after_a_run();
     let home = folder.path();
     let read = |name: &str| fs::read_to_string(home.join(name)).unwrap();
@@ -194,7 +194,7 @@ fn what_is_odd_about_logs_and_dumps_is_said_on_the_page_or_refused() {
     write("words.dump", &dump.replace("0.", "zero."));
     write("head.dump", "ITEM: TIMESTEP\n");
     write("empty", "");
-    for (args, said) in [
+    for (args, printed) in [
         (&["cut.log", "d.dump"][..], "it has no end"),
         (&["log.lammps", "cut.dump"], "can be read up to some snapshot only"),
         (&["log.lammps", "other.dump"], "the dump seems to be of another run"),
@@ -206,9 +206,9 @@ fn what_is_odd_about_logs_and_dumps_is_said_on_the_page_or_refused() {
         let all: Vec<&str> = ["report"].iter().chain(args).chain(&["-o", "run.html"]).copied().collect();
         let o = perigrain(home, &all);
         assert_eq!(o.status.code(), Some(0), "{args:?}: {}", err(&o));
-        assert!(read("run.html").contains(said), "{args:?}: {said}");
+        assert!(read("run.html").contains(printed), "{args:?}: {printed}");
     }
-    for (args, code, said) in [
+    for (args, code, printed) in [
         (&["report", "no.log"][..], 1, "cannot read `no.log`"),
         (&["report", "head.dump"], 1, "the file ends where the step should be"),
         (&["report", "words.dump"], 1, "zero"),
@@ -218,7 +218,7 @@ fn what_is_odd_about_logs_and_dumps_is_said_on_the_page_or_refused() {
     ] {
         let o = perigrain(home, args);
         assert_eq!(o.status.code(), Some(code), "{args:?}: {}", err(&o));
-        assert!(err(&o).contains(said), "{args:?}: {}", err(&o));
+        assert!(err(&o).contains(printed), "{args:?}: {}", err(&o));
     }
     assert_eq!(read("log.lammps"), log);
 }
@@ -233,7 +233,7 @@ fn asked(address: &str, lines: &str) -> String {
 }
 
 #[test]
-fn a_run_is_looked_at_paused_and_stopped_while_it_goes_on() {
+fn a_run_is_shown_paused_and_stopped_while_it_runs() {
     let folder = tempfile::tempdir().unwrap();
     let home = folder.path();
     // Without weight they stay in their box however long it takes.

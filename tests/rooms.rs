@@ -64,7 +64,7 @@ const LONGEST: usize = 600;
 const LARGEST: usize = 25_000;
 
 #[test]
-fn crates_know_only_what_the_table_says() {
+fn crates_depend_only_on_what_the_table_lists() {
     let mut wrong = String::new();
     for name in crates() {
         let Some((_, allowed)) = ARROWS.iter().find(|(known, _)| *known == name) else {

@@ -19,8 +19,8 @@ fn outcome(lines: &str, switches: &[&str]) -> (Option<i32>, usize) {
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-    (output.status.code(), said.matches("energy has grown beyond reason").count())
+    let printed = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    (output.status.code(), printed.matches("energy has grown beyond reason").count())
 }
 
 #[test]

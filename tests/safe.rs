@@ -39,12 +39,12 @@ fn perigrain(folder: &Path, deck: &str, switches: &[&str]) -> (Option<i32>, Stri
 #[track_caller]
 fn refused(folder: &Path, lines: &str, switches: &[&str], part: &str) {
     let deck = format!("{SCENE}{lines}\n");
-    let (code, _, said) = perigrain(folder, &deck, switches);
+    let (code, _, printed) = perigrain(folder, &deck, switches);
     assert!(
-        code == Some(1) && said.contains("error[PG0207]") && said.contains(part),
-        "{lines}: {code:?}\n{said}"
+        code == Some(1) && printed.contains("error[PG0207]") && printed.contains(part),
+        "{lines}: {code:?}\n{printed}"
     );
-    assert!(said.contains("in.deck:"), "{lines} has no place:\n{said}");
+    assert!(printed.contains("in.deck:"), "{lines} has no place:\n{printed}");
 }
 
 #[test]
@@ -103,16 +103,16 @@ fn nothing_outside_of_the_folder_is_touched() {
 }
 
 #[test]
-fn what_is_inside_goes_on_as_ever() {
+fn what_is_inside_continues_as_ever() {
     let outer = folders();
     let folder = outer.path().join("deck");
     let deck = format!(
         "{SCENE}include part\ninclude here\ninclude ./sub/../part\nprint x file sub/x\nwrite_data sub/data\nrestart 1 r.*\n\
          dump d all custom 1 d.*.txt id\nmaterial steel E 2e11 nu 0.25 rho 7800\nprint $(is_file(part))\nrun 2\nlog new.log\n"
     );
-    let (code, said, problems) = perigrain(&folder, &deck, &["-safe"]);
-    assert_eq!((code, &*problems), (Some(0), ""), "{said}");
-    assert_eq!(said.lines().filter(|l| *l == "part").count(), 3);
+    let (code, printed, problems) = perigrain(&folder, &deck, &["-safe"]);
+    assert_eq!((code, &*problems), (Some(0), ""), "{printed}");
+    assert_eq!(printed.lines().filter(|l| *l == "part").count(), 3);
     for name in ["sub/x", "sub/data", "r.1", "d.2.txt", "new.log"] {
         assert!(folder.join(name).is_file(), "{name}");
     }
@@ -156,6 +156,6 @@ fn limits_end_a_deck() {
     }
     // The memory that a line is about to request is forecast.
     let many = format!("{SCENE}lattice sc 1e6\ncreate_atoms 1 box\n");
-    let (code, _, said) = perigrain(&folder, &many, &["-limit", "memory", "200"]);
-    assert!(code == Some(1) && said.contains("0.2 GB are free"), "{said}");
+    let (code, _, printed) = perigrain(&folder, &many, &["-limit", "memory", "200"]);
+    assert!(code == Some(1) && printed.contains("0.2 GB are free"), "{printed}");
 }

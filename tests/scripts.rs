@@ -61,10 +61,10 @@ struct Block {
 #[test]
 fn bad_decks_are_refused() {
     each("bad", |block| {
-        let (code, said, left) = perigrain(&["-in", "in.deck", "-log", "log.deck"], &block.deck);
-        let said = messages(&said.1);
+        let (code, printed, left) = perigrain(&["-in", "in.deck", "-log", "log.deck"], &block.deck);
+        let printed = messages(&printed.1);
         let wanted: Vec<&Expected> = block.expected.iter().filter(|e| e.kind != Kind::Warning).collect();
-        let errors: Vec<&Message> = said.iter().filter(|m| m.severity == "error").collect();
+        let errors: Vec<&Message> = printed.iter().filter(|m| m.severity == "error").collect();
         let mut report = String::new();
         if code != Some(1) {
             let _ = writeln!(report, "  run: exit code {code:?}, not 1");
@@ -88,14 +88,14 @@ fn bad_decks_are_refused() {
             let _ = writeln!(report, "  run: left behind {left:?}");
         }
 
-        let (code, said, left) = perigrain(&["check", "in.deck"], &block.deck);
-        let said = messages(&said.1);
+        let (code, printed, left) = perigrain(&["check", "in.deck"], &block.deck);
+        let printed = messages(&printed.1);
         let refused = block.expected.iter().any(|e| e.kind == Kind::Error);
         if code != Some(i32::from(refused)) {
             let _ = writeln!(report, "  check: exit code {code:?}, not {}", i32::from(refused));
         }
-        report += &unmatched("check", &said, &block.expected, Kind::Error, "error");
-        report += &missing("check", &said, &block.expected, Kind::Warning, "warning");
+        report += &unmatched("check", &printed, &block.expected, Kind::Error, "error");
+        report += &missing("check", &printed, &block.expected, Kind::Warning, "warning");
         if !left.is_empty() {
             let _ = writeln!(report, "  check: left behind {left:?}");
         }
@@ -111,8 +111,8 @@ fn good_decks_run_and_print_what_they_promise() {
         if code != Some(0) {
             let _ = writeln!(report, "  exit code {code:?}:\n{err}");
         }
-        let said = messages(&err);
-        report += &unmatched("run", &said, &block.expected, Kind::Warning, "warning");
+        let printed = messages(&err);
+        report += &unmatched("run", &printed, &block.expected, Kind::Warning, "warning");
         // in the order of the expectations, other lines between them
         let mut printed = out.lines();
         for line in &block.prints {
@@ -256,9 +256,9 @@ fn fits(expected: &Expected, message: &Message) -> bool {
 }
 
 /// Expected messages that were not printed, and printed ones that were not expected.
-fn unmatched(what: &str, said: &[Message], expected: &[Expected], kind: Kind, severity: &str) -> String {
-    let mut report = missing(what, said, expected, kind, severity);
-    for m in said.iter().filter(|m| m.severity == severity) {
+fn unmatched(what: &str, printed: &[Message], expected: &[Expected], kind: Kind, severity: &str) -> String {
+    let mut report = missing(what, printed, expected, kind, severity);
+    for m in printed.iter().filter(|m| m.severity == severity) {
         if !expected.iter().any(|e| e.kind == kind && fits(e, m)) {
             let _ = writeln!(report, "  {what}: not expected: {m:?}");
         }
@@ -266,11 +266,11 @@ fn unmatched(what: &str, said: &[Message], expected: &[Expected], kind: Kind, se
     report
 }
 
-fn missing(what: &str, said: &[Message], expected: &[Expected], kind: Kind, severity: &str) -> String {
+fn missing(what: &str, printed: &[Message], expected: &[Expected], kind: Kind, severity: &str) -> String {
     let mut report = String::new();
     for e in expected.iter().filter(|e| e.kind == kind) {
-        if !said.iter().any(|m| m.severity == severity && fits(e, m)) {
-            let near = said.iter().find(|m| m.line == e.line);
+        if !printed.iter().any(|m| m.severity == severity && fits(e, m)) {
+            let near = printed.iter().find(|m| m.line == e.line);
             let _ = writeln!(report, "  {what}: wanted {e:?}\n       at that line: {near:?}");
         }
     }

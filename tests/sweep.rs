@@ -36,7 +36,7 @@ fn sweep(folder: &Path, args: &[&str]) -> Output {
     command.output().unwrap()
 }
 
-fn said(o: &Output) -> String {
+fn output_of(o: &Output) -> String {
     String::from_utf8_lossy(&o.stdout).into_owned() + &String::from_utf8_lossy(&o.stderr)
 }
 
@@ -61,7 +61,7 @@ fn every_combination_is_run_and_has_a_row() {
     let at = folder.path();
     let args = ["in.x", "-each", "v", "10", "20", "-each", "seed", "1..3", "-report", "c_k", "v_v"];
     let o = sweep(at, &args);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     let table = read(at, "in.x.sweep/table.csv");
     let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
     assert_eq!(rows[0].join(","), "run,v,seed,status,steps,atoms,step,pe,c_k,v_v,problem");
@@ -82,16 +82,16 @@ fn every_combination_is_run_and_has_a_row() {
     let log = read(at, "in.x.sweep/0002-v=10-seed=2/log.lammps");
     assert!(log.contains("Loop time") && log.contains("Total wall time"), "{log}");
     assert!(!at.join("in.x.sweep/0002-v=10-seed=2/output").exists());
-    assert!(said(&o).contains("6 runs ok"), "{}", said(&o));
+    assert!(output_of(&o).contains("6 runs ok"), "{}", output_of(&o));
 
     // Nothing is left to do, and nothing is done.
     let o = sweep(at, &args);
-    assert!(o.status.success() && said(&o).contains("6 of 6 runs are done"), "{}", said(&o));
+    assert!(o.status.success() && output_of(&o).contains("6 of 6 runs are done"), "{}", output_of(&o));
     assert_eq!((read(at, "in.x.sweep/table.csv"), begun(at)), (table.clone(), 6));
     let o = sweep(at, &["in.x.sweep", "-status"]);
-    assert!(said(&o).contains("in.x, 6 runs ok, not at work"), "{}", said(&o));
+    assert!(output_of(&o).contains("in.x, 6 runs ok, not at work"), "{}", output_of(&o));
     let anew = sweep(at, &[&args[..], &["-anew", "-jobs", "1", "-screen", "none"]].concat());
-    assert_eq!((anew.status.code(), said(&anew).as_str()), (Some(0), ""));
+    assert_eq!((anew.status.code(), output_of(&anew).as_str()), (Some(0), ""));
     assert_eq!(
         (read(at, "in.x.sweep/table.csv"), begun(at)),
         (table, 6),
@@ -104,24 +104,24 @@ fn tied_lists_and_tables_make_one_run_per_line() {
     let folder = with_deck("variable a index 0\nvariable b index 0\nprint \"$a-$b\" file said\nquit\n");
     let at = folder.path();
     let o = sweep(at, &["in.x", "-each", "a", "1", "2", "-each", "b", "3", "4", "-zip", "a", "b"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(read(at, "in.x.sweep/0002-a=2-b=4/said"), "2-4\n");
     fs::write(at.join("runs.csv"), "a,b\n1,\"x, y\"\n2,z\n").unwrap();
     let o = sweep(at, &["in.x", "-table", "runs.csv", "-out", "t"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(read(at, "t/0001-a=1-b=x_-y/said"), "1-x, y\n");
     assert!(read(at, "t/table.csv").contains("1,1,\"x, y\",ok,0,0,"));
 
     fs::write(at.join("runs.csv"), "a,b\n1,2\n3\n").unwrap();
     let o = sweep(at, &["in.x", "-table", "runs.csv", "-out", "u"]);
-    assert!(o.status.code() == Some(1) && said(&o).contains("runs.csv:3:1"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("runs.csv:3:1"), "{}", output_of(&o));
     let o = sweep(at, &["in.x", "-each", "a", "1", "2", "-each", "b", "3", "-zip", "a", "b", "-out", "u"]);
-    assert!(o.status.code() == Some(2) && said(&o).contains("equally long"), "{}", said(&o));
+    assert!(o.status.code() == Some(2) && output_of(&o).contains("equally long"), "{}", output_of(&o));
     assert!(!at.join("u").exists());
 }
 
 #[test]
-fn a_failing_run_is_one_line_and_the_rest_goes_on() {
+fn a_failing_run_is_one_line_and_the_rest_continues() {
     let deck =
         "variable f index a\nvariable n index 1\nprint \"x\" file $f\nif \"$n == 2\" then \"quit 3\"\nquit\n";
     let folder = with_deck(deck);
@@ -144,7 +144,7 @@ fn a_failing_run_is_one_line_and_the_rest_goes_on() {
         "1",
     ];
     let o = sweep(at, &args);
-    assert_eq!(o.status.code(), Some(1), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(1), "{}", output_of(&o));
     let table = read(at, "in.x.sweep/table.csv");
     let rows: Vec<&str> = table.lines().skip(1).collect();
     assert_eq!(rows.len(), 6);
@@ -160,7 +160,7 @@ fn a_failing_run_is_one_line_and_the_rest_goes_on() {
     assert!(log.contains("in.x:3:"), "{log}");
     // What has failed is tried again, what went well is not.
     let o = sweep(at, &args[..args.len() - 2]);
-    assert!(o.status.code() == Some(1) && begun(at) == 11 + 5, "{}", said(&o));
+    assert!(o.status.code() == Some(1) && begun(at) == 11 + 5, "{}", output_of(&o));
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn a_run_that_is_killed_takes_no_other_with_it() {
     let folder = with_deck(deck);
     fs::write(folder.path().join("kill.sh"), "kill -9 $PPID\n").unwrap();
     let o = sweep(folder.path(), &["in.x", "-each", "n", "1..3"]);
-    assert_eq!(o.status.code(), Some(1), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(1), "{}", output_of(&o));
     let table = read(folder.path(), "in.x.sweep/table.csv");
     assert!(table.contains("2,2,failed,0,0,the process crashed (signal 9)"), "{table}");
     assert!(table.contains("\n3,3,ok"), "{table}");
@@ -188,7 +188,7 @@ fn what_changed_since_is_refused_with_its_place() {
     let table = read(at, "in.x.sweep/table.csv");
     let refused = |args: &[&str], why: &str| {
         let o = sweep(at, args);
-        let text = said(&o);
+        let text = output_of(&o);
         assert!(o.status.code() == Some(1) && text.contains(why) && text.contains("-anew"), "{text}");
         assert_eq!(read(at, "in.x.sweep/table.csv"), table);
     };
@@ -203,12 +203,12 @@ fn what_changed_since_is_refused_with_its_place() {
     fs::write(at.join("in.x"), deck.replace("$m\"", "$m !\"")).unwrap();
     refused(&args, "line 3 was `print \"$n $m\" file said`, is `print \"$n $m !\" file said`");
     let o = sweep(at, &[&args[..], &["-anew"]].concat());
-    assert!(o.status.success(), "{}", said(&o));
+    assert!(o.status.success(), "{}", output_of(&o));
     assert_eq!(read(at, "in.x.sweep/0002-n=2/said"), "2 7 !\n");
 }
 
 #[test]
-fn a_torn_journal_is_named_and_what_it_told_of_is_done_again() {
+fn a_torn_journal_is_named_and_its_lost_runs_are_made_again() {
     let folder = with_deck("variable n index 1\nprint \"$n\" append ../ran\n");
     let at = folder.path();
     let args = ["in.x", "-each", "n", "1", "2", "3", "-jobs", "1"];
@@ -218,26 +218,30 @@ fn a_torn_journal_is_named_and_what_it_told_of_is_done_again() {
     fs::write(at.join("in.x.sweep/journal"), journal.replacen(" end\t0", " eNd\t0", 1) + "12345678 beg")
         .unwrap();
     let o = sweep(at, &args);
-    assert!(o.status.success() && said(&o).contains("journal`, line 3, is damaged"), "{}", said(&o));
-    assert!(said(&o).contains("3 of 3"), "the run had left its result: {}", said(&o));
+    assert!(
+        o.status.success() && output_of(&o).contains("journal`, line 3, is damaged"),
+        "{}",
+        output_of(&o)
+    );
+    assert!(output_of(&o).contains("3 of 3"), "the run had left its result: {}", output_of(&o));
     fs::remove_file(at.join("in.x.sweep/0001-n=1/.result")).unwrap();
     fs::write(at.join("in.x.sweep/journal"), journal.replacen(" end\t0", " eNd\t0", 1)).unwrap();
     let o = sweep(at, &args);
-    assert!(o.status.success() && said(&o).contains("2 of 3"), "{}", said(&o));
+    assert!(o.status.success() && output_of(&o).contains("2 of 3"), "{}", output_of(&o));
     assert_eq!(
         (read(at, "in.x.sweep/table.csv"), read(at, "in.x.sweep/ran").as_str()),
         (table, "1\n2\n3\n1\n")
     );
     fs::write(at.join("in.x.sweep/journal"), journal.replacen("sweep", "swEEp", 1)).unwrap();
     let o = sweep(at, &args);
-    assert!(o.status.code() == Some(1) && said(&o).contains("journal`, line 1"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("journal`, line 1"), "{}", output_of(&o));
     fs::write(at.join("in.x.sweep/journal"), "").unwrap();
     let o = sweep(at, &args);
-    assert!(o.status.code() == Some(1) && said(&o).contains("is in the way"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("is in the way"), "{}", output_of(&o));
 }
 
 #[test]
-fn what_would_go_wrong_in_every_run_is_said_before_the_first() {
+fn what_would_fail_in_every_run_is_reported_before_the_first() {
     let folder = with_deck(DECK);
     let at = folder.path();
     for (args, why) in [
@@ -248,14 +252,14 @@ fn what_would_go_wrong_in_every_run_is_said_before_the_first() {
         (&["in.x", "-each", "seed", "x", "y"], "in.x:14"),
     ] {
         let o = sweep(at, args);
-        assert!(o.status.code() == Some(1) && said(&o).contains(why), "{args:?}: {}", said(&o));
+        assert!(o.status.code() == Some(1) && output_of(&o).contains(why), "{args:?}: {}", output_of(&o));
     }
     for args in [&["in.x"][..], &["in.x", "-each", "v"], &["in.x", "-each", "v", "1", "-each", "v", "2"]] {
         assert_eq!(sweep(at, args).status.code(), Some(2), "{args:?}");
     }
     assert_eq!(fs::read_dir(at).unwrap().count(), 1, "nothing is left behind");
     let o = sweep(at, &["nowhere", "-status"]);
-    assert!(o.status.code() == Some(1) && said(&o).contains("nowhere"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("nowhere"), "{}", output_of(&o));
 }
 
 #[test]
@@ -273,24 +277,24 @@ fn one_sweep_at_a_time_works_in_a_folder() {
         assert!(first.try_wait().unwrap().is_none(), "ended by itself");
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    let status = said(&sweep(at, &["in.x.sweep", "-status"]));
+    let status = output_of(&sweep(at, &["in.x.sweep", "-status"]));
     assert!(status.contains("0 runs ok, 2 left, at work on 2"), "{status}");
     let o = sweep(at, &args[1..]);
     assert!(
-        o.status.code() == Some(1) && said(&o).contains("another sweep is at work in `in.x.sweep`"),
+        o.status.code() == Some(1) && output_of(&o).contains("another sweep is at work in `in.x.sweep`"),
         "{}",
-        said(&o)
+        output_of(&o)
     );
     // The sweep gets a request to end: nothing was done.
     Command::new("kill").args(["-TERM", &first.id().to_string()]).status().unwrap();
     assert_eq!(first.wait().unwrap().code(), Some(130));
-    assert!(said(&sweep(at, &["in.x.sweep", "-status"])).contains("0 runs ok, 2 left, not at work"));
+    assert!(output_of(&sweep(at, &["in.x.sweep", "-status"])).contains("0 runs ok, 2 left, not at work"));
 }
 
 /// Kills sweeps with signal 9 at moments that are as good as random, and starts them again.
 #[cfg(unix)]
 #[test]
-fn a_sweep_killed_at_any_moment_goes_on_and_does_nothing_twice_that_was_finished() {
+fn a_sweep_killed_at_any_moment_continues_and_repeats_no_finished_run() {
     let deck = format!("{DECK}print \"$v ${{seed}}\" append ../ran\n");
     let folder = with_deck(&deck);
     let at = folder.path();
@@ -299,7 +303,7 @@ fn a_sweep_killed_at_any_moment_goes_on_and_does_nothing_twice_that_was_finished
         "-screen", "none",
     ];
     let whole = sweep(at, &[&args[..], &["-out", "whole"]].concat());
-    assert_eq!(whole.status.code(), Some(0), "{}", said(&whole));
+    assert_eq!(whole.status.code(), Some(0), "{}", output_of(&whole));
     let mut kills = 0;
     for round in 0..20u64 {
         let mut child = Command::new(env!("CARGO_BIN_EXE_perigrain"))
@@ -316,7 +320,7 @@ fn a_sweep_killed_at_any_moment_goes_on_and_does_nothing_twice_that_was_finished
     }
     assert!(kills > 0, "killed while at work");
     let o = sweep(at, &args);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(read(at, "in.x.sweep/table.csv"), read(at, "whole/table.csv"));
     let journal = read(at, "in.x.sweep/journal");
     for run in 0..24 {
@@ -343,10 +347,10 @@ fn a_deck_may_carry_its_values() {
     let program = |args: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_perigrain")).args(args).current_dir(at).output().unwrap()
     };
-    let alone = said(&program(&["in.x", "-log", "none"]));
+    let alone = output_of(&program(&["in.x", "-log", "none"]));
     assert!(alone.contains("One of 6 runs, n=1 w=a: `perigrain sweep` makes all of them\n1a\n"), "{alone}");
     let o = sweep(at, &["in.x"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(read(at, "in.x.sweep/0006-n=3-w=b/said"), "3b\n");
     assert!(
         read(at, "in.x.sweep/table.csv")
@@ -354,7 +358,7 @@ fn a_deck_may_carry_its_values() {
     );
     assert!(!read(at, "in.x.sweep/0006-n=3-w=b/log.lammps").contains("One of"));
     let o = sweep(at, &["in.x", "-each", "n", "7", "-out", "other"]);
-    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(0), "{}", output_of(&o));
     assert_eq!(
         read(at, "other/0001-n=7/said"),
         "7a\n",
@@ -365,9 +369,9 @@ fn a_deck_may_carry_its_values() {
     let deck = "sweep each n 1..3\nif \"$n == 2\" then \"unita si\"\n";
     fs::write(at.join("in.y"), deck).unwrap();
     let o = program(&["check", "in.y"]);
-    assert!(o.status.code() == Some(1) && said(&o).contains("this is so with n=2"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("this is so with n=2"), "{}", output_of(&o));
     let o = sweep(at, &["in.y"]);
-    assert!(o.status.code() == Some(1) && said(&o).contains("2 runs ok, 1 failed"), "{}", said(&o));
+    assert!(o.status.code() == Some(1) && output_of(&o).contains("2 runs ok, 1 failed"), "{}", output_of(&o));
     for (line, why) in [
         ("sweep", "each, zip, table or report"),
         ("sweep each n", "in.z:1:"),
@@ -379,7 +383,7 @@ fn a_deck_may_carry_its_values() {
     ] {
         fs::write(at.join("in.z"), format!("{line}\nprint $n\n")).unwrap();
         for o in [program(&["check", "in.z"]), program(&["in.z", "-log", "none"]), sweep(at, &["in.z"])] {
-            assert!(o.status.code() == Some(1) && said(&o).contains(why), "{line}: {}", said(&o));
+            assert!(o.status.code() == Some(1) && output_of(&o).contains(why), "{line}: {}", output_of(&o));
         }
     }
 }

@@ -14,7 +14,7 @@ fn run(deck: &str) -> Result<String, String> {
 }
 
 /// The text that a deck prints after a word.
-fn said(log: &str, word: &str) -> f64 {
+fn output_of(log: &str, word: &str) -> f64 {
     let line =
         log.lines().find_map(|line| line.strip_prefix(word)).unwrap_or_else(|| panic!("no {word} in {log}"));
     line.trim().parse().unwrap()
@@ -42,7 +42,7 @@ fn grows(style: &str, law: &str, fix: &str, dt: f64) -> f64 {
          fix m all ave/time 1 100 100 c_k\nrun 100\nprint \"grown $(f_m/v_first)\""
     );
     match run(&body(style, law, &more)) {
-        Ok(log) => said(&log, "grown"),
+        Ok(log) => output_of(&log, "grown"),
         Err(e) => {
             assert!(e.contains("lost") || e.contains("finite"), "{e}");
             f64::INFINITY
@@ -77,7 +77,7 @@ fn runs_become_unstable_at_the_limit() {
                      thermo_style custom step c_e[4] c_l[4] c_e\nrun 0\nprint \"exact $(c_e[4]:%.9g)\"\nprint \"local $(c_l[4]:%.9g)\"\n\
                      print \"scalar $(c_e:%.9g)\"";
         let limits = run(&body(style, &law, asked)).unwrap();
-        let [exact, local, scalar] = ["exact", "local", "scalar"].map(|word| said(&limits, word));
+        let [exact, local, scalar] = ["exact", "local", "scalar"].map(|word| output_of(&limits, word));
         assert!(local < exact && local > 0.6 * exact && scalar == exact, "{law}: {local} {exact}");
         let [below, beyond] = [0.97, 1.06].map(|part| grows(style, &law, fix, part * exact));
         // Beside the limit a motion swings 1/√(1 − 0.97²) times as far; beyond it grows to double in each step.
@@ -87,17 +87,17 @@ fn runs_become_unstable_at_the_limit() {
 
 /// A body that breaks nowhere, or whose spheres do not overlap, draws no warning of overlaps; one whose bonds were met before neither.
 #[test]
-fn overlaps_are_told_of_once_where_bonds_break() {
+fn overlaps_give_one_warning_where_bonds_break() {
     let law = |strength: &str| {
         format!(
             "pair_style granular\npair_coeff * * hertz/material 1e9 0.9 0.2 tangential mindlin NULL 0.9 0.3 damping coeff_restitution\n\
              bond_style bpm/beam\nbond_coeff 1 1e9 0.2 ratio 0.8 {strength}"
         )
     };
-    let told = |law: &str| {
+    let warnings = |law: &str| {
         let log =
             run(&body("bpm/sphere", law, "fix 1 all nve/bpm/sphere\ntimestep 1e-9\nrun 1\nrun 1")).unwrap();
         log.matches("would come from nowhere").count()
     };
-    assert_eq!([told(&law("strength 1e8 1e8")), told(&law(""))], [1, 0]);
+    assert_eq!([warnings(&law("strength 1e8 1e8")), warnings(&law(""))], [1, 0]);
 }

@@ -6,11 +6,11 @@
 //! |---|---|
 //! | progress is that of the whole deck, over loops around `run` | `progress_is_that_of_the_whole_deck` |
 //! | a loop that reads the clock ends in sight; where the end is unknown, the bar is that of the run | the same |
-//! | nothing is drawn while the scene is built | `the_line_tells_how_far_it_is_and_what_is_left` |
+//! | nothing is drawn while the scene is built | `the_line_shows_progress_and_time_left` |
 //! | the step in the line is the present one | the same |
 //! | time left is learnt from the run, and never 0 s | the same |
 //! | the line fits a window that changes its size | `a_window_may_change_its_size` |
-//! | memory is forecast before the run | `a_run_ends_in_three_lines_and_setup_says_one_line_each` |
+//! | memory is forecast before the run | `a_run_ends_in_three_lines_and_setup_prints_one_line_each` |
 //! | a run ends in three lines: time and speed, where results are, what would make it faster | the same |
 //! | setup says what it made in one line each | the same |
 //! | LAMMPS' blocks stay in `log.lammps` | the same |
@@ -43,7 +43,7 @@ use super::pty::{GRAINS, PLAIN, shown, start, too_wide, width};
 use std::fs;
 
 #[test]
-fn a_run_ends_in_three_lines_and_setup_says_one_line_each() {
+fn a_run_ends_in_three_lines_and_setup_prints_one_line_each() {
     let folder = tempfile::tempdir().unwrap();
     let deck = format!(
         "{GRAINS}dump d all custom 5 run.dump id x\nrestart 10 run.*.restart\nrun 10\nrun 10\nrun 10 post no\n"
@@ -184,7 +184,7 @@ fn lines_of_its_own_break_between_words() {
 }
 
 #[test]
-fn the_line_tells_how_far_it_is_and_what_is_left() {
+fn the_line_shows_progress_and_time_left() {
     let folder = tempfile::tempdir().unwrap();
     // A scene whose building takes a while has no steps yet, and is no run.
     let deck = format!("{GRAINS}shell sleep 0.4\nthermo 0\nrun 1000000\n");
@@ -217,8 +217,8 @@ fn a_window_may_change_its_size() {
     // The window is made narrow when a line has been seen, and the run ends when a row of the table has been seen behind narrow
     // ones: however fast the machine is.
     let deck = format!("{GRAINS}thermo 20000\nrun 1000000000\n");
-    let told = "in.deck -threads 1 & read seen; stty cols 41; read seen; kill $!; wait";
-    let mut p = start(folder.path(), 120, &deck, told, &[]);
+    let arguments = "in.deck -threads 1 & read seen; stty cols 41; read seen; kill $!; wait";
+    let mut p = start(folder.path(), 120, &deck, arguments, &[]);
     let mut text = p.exp_string(" left").unwrap();
     let wide = text.lines().last().unwrap_or_default().to_string();
     assert!(wide.contains(" steps/s") && width(&wide) > 40, "{wide}");

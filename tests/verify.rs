@@ -96,11 +96,11 @@ fn cases_are_listed_chosen_and_shown() {
     let deck = out(&verify(folder.path(), &["-deck", "-only", "cattaneo"]));
     assert_eq!(deck, DECKS.iter().find(|d| d.0.contains("cattaneo")).unwrap().1);
     let o = verify(folder.path(), &["-only", "chung_oui_1"]);
-    let said = String::from_utf8_lossy(&o.stderr).into_owned();
+    let printed = String::from_utf8_lossy(&o.stderr).into_owned();
     assert_eq!(o.status.code(), Some(2));
     assert!(
-        said.contains("no case has `chung_oui_1`") && said.contains("did you mean `chung_ooi_1`?"),
-        "{said}"
+        printed.contains("no case has `chung_oui_1`") && printed.contains("did you mean `chung_ooi_1`?"),
+        "{printed}"
     );
     assert_eq!(
         verify(folder.path(), &["-only", "cattaneo", "-json", "no/such/folder"]).status.code(),

@@ -2,7 +2,7 @@
 //! dies is named.
 
 use crate::ranks::{
-    LAUNCHERS, children, deck_of, files, left_by, said, same, signal, start, wait_for, works,
+    LAUNCHERS, children, deck_of, files, left_by, output_of, same, signal, start, wait_for, works,
 };
 use crate::restart::scenes::SCENES;
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ fn table(folder: &Path, launcher: &[&str], own: &[&str], out: &str) -> String {
         [] => perigrain(folder, &args),
         _ => start(folder, launcher[0], &args[1..]).wait_with_output().unwrap(),
     };
-    assert_eq!(o.status.code(), Some(1), "{}", said(&o));
+    assert_eq!(o.status.code(), Some(1), "{}", output_of(&o));
     read(folder, &format!("{out}/table.csv"))
 }
 
@@ -84,7 +84,7 @@ fn a_sweep_on_ranks_has_the_table_of_one_process() {
 fn ranks_without_a_run_are_counted_once() {
     let folder = with_deck("variable n index 1\nprint \"$n\" file said\n");
     let o = perigrain(folder.path(), &["sweep", "in.x", "-each", "n", "1", "2", "-ranks", "5"]);
-    let words = said(&o);
+    let words = output_of(&o);
     assert!(o.status.success() && words.contains("5 ranks on 1 host, 2 runs: 3 ranks have nothing to do\n"));
     assert!(words.matches("nothing to do").count() == 1 && words.contains("2 runs ok"), "{words}");
     // Mistakes are reported once too.
@@ -96,8 +96,8 @@ fn ranks_without_a_run_are_counted_once() {
     ] {
         let alone = perigrain(folder.path(), args);
         let several = perigrain(folder.path(), &[args, &["-ranks", "3"]].concat());
-        assert!(said(&alone).contains(why), "{}", said(&alone));
-        let words = |o: &Output| said(o).replace(" -ranks 3", "");
+        assert!(output_of(&alone).contains(why), "{}", output_of(&alone));
+        let words = |o: &Output| output_of(o).replace(" -ranks 3", "");
         assert_eq!(
             (alone.status.code(), words(&alone)),
             (several.status.code(), words(&several)),
@@ -108,7 +108,7 @@ fn ranks_without_a_run_are_counted_once() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_goes_on() {
+fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_continues() {
     let folder = with_deck(DECK);
     let at = folder.path();
     let alone = table(at, &[], &[], "alone");
@@ -130,7 +130,7 @@ fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_goes_on() {
         signal("-9", ranks[victim]);
         let o = first.wait_with_output().unwrap();
         let named = format!("rank 1 on {} has ended without a message; it was making run 2 (n=2)", host());
-        assert!(!o.status.success() && said(&o).contains(&named) == (victim > 0), "{}", said(&o));
+        assert!(!o.status.success() && output_of(&o).contains(&named) == (victim > 0), "{}", output_of(&o));
         // The next sweep's logs are waited for, not these.
         for run in ["0001-n=1", "0002-n=2", "0003-n=3"] {
             fs::remove_dir_all(at.join("o").join(run)).unwrap_or_default();
@@ -141,7 +141,7 @@ fn a_rank_that_dies_is_named_with_its_run_and_the_sweep_goes_on() {
     let o = perigrain(at, &[&SWEEP[..], &["-out", "o"]].concat());
     let left = "under way when the sweep ended, and begun anew: ";
     let all: Vec<String> = (0..3).map(|k| format!("run {} at rank {k} on {}", k + 1, host())).collect();
-    assert!(said(&o).contains(&format!("{left}{}", all.join(", "))), "{}", said(&o));
+    assert!(output_of(&o).contains(&format!("{left}{}", all.join(", "))), "{}", output_of(&o));
     assert_eq!(read(at, "o/table.csv"), alone);
 }
 
@@ -162,7 +162,7 @@ fn partitions_on_ranks_share_values_out() {
             [] => perigrain(at, &args),
             _ => start(at, launcher[0], &args[1..]).wait_with_output().unwrap(),
         };
-        assert!(o.status.success(), "{}", said(&o));
+        assert!(o.status.success(), "{}", output_of(&o));
         let mut got: Vec<String> = vec![];
         let mut files = BTreeMap::new();
         for (number, w) in ["x", "y", "z"].iter().enumerate() {
@@ -173,7 +173,7 @@ fn partitions_on_ranks_share_values_out() {
         }
         got.sort();
         assert_eq!((got.concat().as_str(), files.values().all(|there| *there)), ("abcdefg", true));
-        (said(&o), read(at, "log.lammps"))
+        (output_of(&o), read(at, "log.lammps"))
     };
     for n in ["2", "3", "5"] {
         let (words, log) = run(&[], &["-ranks", n]);
@@ -185,18 +185,20 @@ fn partitions_on_ranks_share_values_out() {
     }
     let folder = with_deck("partition yes 2 quit 3\nvariable w world a b c\nprint $w file said.$w\n");
     let o = perigrain(folder.path(), &["-in", "in.x", "-p", "3x1", "-ranks", "2"]);
-    assert!(o.status.code() == Some(3) && said(&o).contains("partition 2 failed (exit code 3), rank 1 on "));
+    assert!(
+        o.status.code() == Some(3) && output_of(&o).contains("partition 2 failed (exit code 3), rank 1 on ")
+    );
     assert!(folder.path().join("said.a").exists() && folder.path().join("said.c").exists());
 }
 
 #[test]
-fn a_bench_on_ranks_says_how_many() {
+fn a_bench_on_ranks_prints_their_number() {
     let folder = with_deck(DECK);
     let words = "bench in.x -each n 1 2 -measure c_k -repeat 1 -ranks 2";
     let o = perigrain(folder.path(), &words.split(' ').collect::<Vec<_>>());
-    assert!(o.status.success(), "{}", said(&o));
+    assert!(o.status.success(), "{}", output_of(&o));
     let line = "2 ranks on 1 host, one run at once on each, which disturb each other on one host";
-    assert!(said(&o).contains(line), "{}", said(&o));
+    assert!(output_of(&o).contains(line), "{}", output_of(&o));
 }
 
 /// Runs the program on 2 + 2 ranks of two hosts; nothing where the machine allows no such thing.
@@ -223,7 +225,7 @@ fn two_hosts_have_the_bytes_of_one_process() {
         fs::write(folder.path().join("in.deck"), &deck).unwrap();
         let words = ["-in", "in.deck", "-screen", "none", "-threads", "1"];
         let Some(o) = on_two_hosts(folder.path(), &words) else { return };
-        assert!(o.status.success(), "{}: {}", scene.name, said(&o));
+        assert!(o.status.success(), "{}: {}", scene.name, output_of(&o));
         assert!(read(folder.path(), "log.lammps").contains("(4 ranks on 2 hosts of 1 thread(s))"));
         same(&alone, &files(folder.path()), &format!("{} on two hosts", scene.name));
     }
@@ -231,7 +233,7 @@ fn two_hosts_have_the_bytes_of_one_process() {
     let at = folder.path();
     let alone = table(at, &[], &[], "alone");
     let o = on_two_hosts(at, &[&SWEEP[..], &["-out", "two"]].concat()).unwrap();
-    assert_eq!((o.status.code(), read(at, "two/table.csv")), (Some(1), alone), "{}", said(&o));
+    assert_eq!((o.status.code(), read(at, "two/table.csv")), (Some(1), alone), "{}", output_of(&o));
     let journal = read(at, "two/journal");
     assert!(journal.contains("\trank 1 on one\n") && journal.contains("\trank 3 on two\n"), "{journal}");
 }
@@ -253,7 +255,7 @@ fn memory_of_all_ranks_of_a_machine_is_forecast_together() {
     );
     let folder = with_deck(&deck);
     let o = perigrain(folder.path(), &["-in", "in.x", "-log", "none", "-ranks", "5"]);
-    let words = said(&o);
+    let words = output_of(&o);
     assert_eq!(o.status.code(), Some(1), "{words}");
     assert!(words.contains("PG0203") && words.contains("start one on each machine"), "{words}");
     // A container may have less than one rank wants.

@@ -313,19 +313,19 @@ pub struct Run {
 
 /// What went wrong, once, with the first of the settings in which it did.
 fn failures(points: &[Point]) -> Vec<String> {
-    let mut said: Vec<(&str, String, usize)> = vec![];
+    let mut grouped: Vec<(&str, String, usize)> = vec![];
     for point in points {
         let Some(problem) = point.problem.as_deref() else { continue };
-        match said.iter_mut().find(|(other, ..)| *other == problem) {
+        match grouped.iter_mut().find(|(other, ..)| *other == problem) {
             Some((_, _, more)) => *more += 1,
-            None => said.push((problem, Job { vars: point.vars.clone() }.title(), 0)),
+            None => grouped.push((problem, Job { vars: point.vars.clone() }.title(), 0)),
         }
     }
     let sentence = |(problem, title, more): (&str, String, usize)| match more {
         0 => format!("{title}: {problem}"),
         n => format!("{title} and {n} more: {problem}"),
     };
-    said.into_iter().map(sentence).collect()
+    grouped.into_iter().map(sentence).collect()
 }
 
 fn remainder(rest: &mut usize, axis: &Axis) -> usize {

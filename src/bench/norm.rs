@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn norms_are_what_their_names_say() {
+    fn norms_match_their_names() {
         let pairs = [(1.0, 0.0), (-1.0, 2.0), (5.0, 4.0)];
         let of = |name: &str| Norm::named(name).unwrap().of(&pairs);
         assert_eq!((of("end"), of("rel"), of("max")), (1.0, 0.25, 3.0));

@@ -45,7 +45,7 @@ pub(super) fn errors(bench: &Bench, m: &Measure, runs: &[Run], problems: &mut Di
         _ => None,
     };
     let empty = file.as_ref().is_some_and(|s| s.times.is_empty());
-    let mut said: Vec<String> = vec![];
+    let mut reasons: Vec<String> = vec![];
     let mut out = vec![];
     for (point, run) in runs.iter().enumerate() {
         let mut error = Error { value: end(bench, run, &m.word), ..Error::default() };
@@ -58,12 +58,12 @@ pub(super) fn errors(bench: &Bench, m: &Measure, runs: &[Run], problems: &mut Di
         if run.outcome.is_some() && !empty && !error.is_reference {
             match compared(bench, m, run, reference.map(|k| &runs[k]), file.as_ref()) {
                 Ok(found) => error.error = Some(found),
-                Err(why) => said.extend((!said.contains(&why)).then_some(why)),
+                Err(why) => reasons.extend((!reasons.contains(&why)).then_some(why)),
             }
         }
         out.push(error);
     }
-    for why in said {
+    for why in reasons {
         problems.append(fault(Code::WRONG_KIND, format!("`{}` has no error: {why}", m.name)));
     }
     out
@@ -154,8 +154,8 @@ fn read(path: &Path, word: &str) -> Result<Series, String> {
     let text =
         std::fs::read_to_string(path).map_err(|e| format!("the reference `{name}` cannot be read: {e}"))?;
     if text.contains("Loop time of ") {
-        let told = lammps::read(&text);
-        return Series::of(&told.tables, word).ok_or_else(|| {
+        let log = lammps::read(&text);
+        return Series::of(&log.tables, word).ok_or_else(|| {
             format!("the reference `{name}` has no step table with the columns `time` and `{word}`")
         });
     }

@@ -70,10 +70,10 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     let mut written = Ok(());
     if let Some(sheet) = &mut sheet {
         let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
-        let told =
+        let subject =
             Subject { options: o, text: text.clone(), session: &session, outcome: &outcome, film, log };
         // The first rank reads the scene without the others.
-        written = comm::run_as(Arc::new(Alone), || sheet.write(told));
+        written = comm::run_as(Arc::new(Alone), || sheet.write(subject));
         if written.is_ok() {
             log.to_screen(&sheet.message());
         }
@@ -174,7 +174,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
         (o.version, "-version"),
         (o.world.is_some(), "-world"),
     ];
-    if let Some((_, switch)) = alone.iter().find(|(said, _)| *said) {
+    if let Some((_, switch)) = alone.iter().find(|(given, _)| *given) {
         let usage =
             Usage::new(format!("`{switch}` concerns a whole process, which is not perigrain's own here"));
         return Err(usage.help("leave it out, or start the program `perigrain`"));
@@ -234,8 +234,8 @@ pub(super) fn catch_interrupts(session: &Session, progress: &Progress) {
     let _ = ctrlc::set_handler(move || {
         progress.heard();
         if stop.swap(true, Ordering::Relaxed) {
-            let told = "stopping at the end of this step; Ctrl-\\ ends at once";
-            let _ = writeln!(progress.around(stderr()), "{told}");
+            let notice = "stopping at the end of this step; Ctrl-\\ ends at once";
+            let _ = writeln!(progress.around(stderr()), "{notice}");
         }
     });
 }
@@ -326,11 +326,11 @@ pub(super) fn open_screen(log: &Log, o: &Options, progress: &Progress) -> Result
 /// Where memory is not there, or `-limit memory` does not allow it, the program ends with a message in place of an abort.
 pub(super) fn report_lack_of_memory(log: &Log) {
     let log = log.clone();
-    memory::speaks(move |said| {
+    memory::speaks(move |problem| {
         let mut sources = Sources::default();
-        let said = sources.adopt(said.into());
-        log.last_words(render::plain(&said, &sources).trim_end());
-        print(&said, &sources);
+        let problem = sources.adopt(problem.into());
+        log.last_words(render::plain(&problem, &sources).trim_end());
+        print(&problem, &sources);
     });
 }
 

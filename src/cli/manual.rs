@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_without_a_page_find_those_that_speak_of_them() {
+    fn words_without_a_page_find_the_pages_that_contain_them() {
         let walls = page("wall").unwrap();
         assert!(
             walls.starts_with("# Pages named so: `wall`") && walls.contains("\n  fix wall/gran "),

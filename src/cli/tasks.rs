@@ -211,12 +211,12 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
         return Ok(Task::Text(version()));
     }
     let task = at_terminal(task)?;
-    let said = |o: &Options| match (&o.report, o.view) {
+    let page = |o: &Options| match (&o.report, o.view) {
         (Some(_), _) => Some(("-report", " FILE")),
         (None, Some(_)) => Some(("-view", "")),
         (None, None) => None,
     };
-    if let (Some((switch, file)), Some(what)) = (task.options().and_then(said), task.shows_no_run()) {
+    if let (Some((switch, file)), Some(what)) = (task.options().and_then(page), task.shows_no_run()) {
         let usage = Usage::new(format!("`{switch}` shows a run, and {what}"));
         return Err(usage.help(format!("write `perigrain -in DECK {switch}{file}`")));
     }

@@ -31,13 +31,14 @@ fn restate(graph: &mut Graph, w: &mut World, old: &PairNode, cx: &Context) -> Re
     // What there is to note has been noted.
     let (notes, uses) = Default::default();
     let cx = &Context { notes: &notes, uses: &uses, ..*cx };
-    let outcome = old.lines.iter().filter(|said| said.words[0] != "pair_style").try_for_each(|said| {
-        w.lattice = said.lattice.clone();
-        let mut words = said.words.iter().map(|text| Word::new(text.as_str(), cx.span));
-        let Some(name) = words.next() else { return Ok(()) };
-        let cmd = Command { name, args: words.collect(), span: cx.span, text: said.words.join(" ") };
-        declare(graph, w, &cmd, cx).map(drop)
-    });
+    let outcome =
+        old.lines.iter().filter(|declared| declared.words[0] != "pair_style").try_for_each(|declared| {
+            w.lattice = declared.lattice.clone();
+            let mut words = declared.words.iter().map(|text| Word::new(text.as_str(), cx.span));
+            let Some(name) = words.next() else { return Ok(()) };
+            let cmd = Command { name, args: words.collect(), span: cx.span, text: declared.words.join(" ") };
+            declare(graph, w, &cmd, cx).map(drop)
+        });
     w.lattice = lattice;
     outcome
 }

@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_said_in_all_turns_count() {
+    fn numbers_given_in_all_turns_count() {
         let mut r = Record::default();
         for (turn, density) in [2, 5, 3].into_iter().enumerate() {
             let mut set = line(0, None, &format!("set type {turn} density {density}"), &[]);

@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn placeholders_tell_what_a_word_names() {
+    fn placeholders_give_the_kind_of_a_word() {
         let of = |line: &str, k: usize| named(&line.split_whitespace().collect::<Vec<_>>(), k);
         assert_eq!(of("create_atoms 1 region r", 3), Some(Named::Region));
         assert_eq!(of("velocity ball set 0 0 0", 1), Some(Named::Group));
@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn pages_tell_of_their_keywords() {
+    fn pages_describe_their_keywords() {
         let text =
             "Keywords:\n\n* `size W H` pixels (1280 960), `up x`; `legend yes|no` what.\n* `map NAME` all.";
         assert_eq!(sentence_on(text, "size").as_deref(), Some("`size W H` pixels (1280 960)"));

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_tell_the_ends_apart() {
+    fn labels_distinguish_the_ends() {
         let text = plot(&[Curve { name: "z", points: vec![[0.0, 0.9], [1.0, 0.89998]] }], "step", false, 80);
         assert!(text.contains("0.9000000 ┤") && text.contains("0.8999800 ┤"), "{text}");
     }

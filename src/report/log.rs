@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_tells_how_it_ended_and_what_it_warned_of() {
+    fn a_log_has_its_end_and_its_warnings() {
         let text = "LAMMPS (22 Jul 2025)\nWARNING: odd\n   Step          KinEng\n  0  1.5\n  10  1.25\n\
                     Loop time of 0.5 on 1 procs for 10 steps with 7 atoms\nTotal wall time: 0:00:01\n";
         let content = read(text);

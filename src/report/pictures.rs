@@ -140,8 +140,8 @@ mod tests {
         let steps: Vec<u8> = gallery.pictures.iter().map(|p| p.bytes[0]).collect();
         assert_eq!(steps, [2, 5, 8, 11, 14, 17, 20, 23, 26, 29]);
         let left = gallery.left_out.join("\n");
-        for said in ["10 of 30 are shown", "b.jpg: 4.0 MB are too much", "c.ppm: no browser"] {
-            assert!(left.contains(said), "{left}");
+        for part in ["10 of 30 are shown", "b.jpg: 4.0 MB are too much", "c.ppm: no browser"] {
+            assert!(left.contains(part), "{left}");
         }
         assert!(gallery.pictures[0].html().contains("data:image/png;base64,Ag==\""));
         let later = SystemTime::now() + std::time::Duration::from_secs(60);

@@ -45,7 +45,7 @@ fn a_page_needs_nothing_else() {
 }
 
 #[test]
-fn an_empty_report_says_what_there_is_not() {
+fn an_empty_report_names_what_is_missing() {
     let page = html(&Report::new("nothing"));
     assert!(page.contains("There is no step table"), "{page}");
     assert!(!page.contains("id=\"pictures\"") && !page.contains("id=\"deck\""));

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn loops_are_added_up_and_what_hangs_on_a_run_is_unknown() {
+    fn loops_are_added_up_and_what_depends_on_a_run_is_unknown() {
         let turns = "variable k loop 4\nlabel a\nrun 100\nnext k\njump SELF a\nrun 300 every 50 NULL\n";
         assert_eq!(steps(turns), Some((700, false)));
         // A run before may end earlier.
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn loops_that_ask_the_clock_have_an_end() {
+    fn loops_that_read_the_clock_have_an_end() {
         let turns = |condition: &str| {
             format!(
                 "timestep 0.01\nvariable t equal time\nvariable tend index 2.5\nrun 20\nlabel a\nrun 100\n\

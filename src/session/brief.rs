@@ -13,8 +13,8 @@ const EMPTY: [&str; 7] = [
 ];
 
 /// The lines of a command as one; `None` where they have no content.
-pub(super) fn one_line(said: &[String]) -> Option<String> {
-    let told: Vec<&str> = said
+pub(super) fn one_line(lines: &[String]) -> Option<String> {
+    let shown: Vec<&str> = lines
         .iter()
         .flat_map(|s| s.lines())
         .map(str::trim)
@@ -22,8 +22,8 @@ pub(super) fn one_line(said: &[String]) -> Option<String> {
         .collect();
     // `reading atoms ...` is printed before the number of them.
     let begins = |s: &str| s.starts_with("reading ") && s.ends_with(" ...");
-    let told: Vec<&str> = told.into_iter().filter(|s| !begins(s)).collect();
-    let (head, rest) = told.split_first()?;
+    let shown: Vec<&str> = shown.into_iter().filter(|s| !begins(s)).collect();
+    let (head, rest) = shown.split_first()?;
     let open =
         head.strip_suffix(" ...").or_else(|| head.strip_suffix("...")).or_else(|| head.strip_suffix(':'));
     let rest = rest.join(", ");
@@ -39,13 +39,13 @@ pub(super) fn one_line(said: &[String]) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn line(said: &[&str]) -> Option<String> {
-        one_line(&said.iter().map(|s| (*s).to_string()).collect::<Vec<_>>())
+    fn line(lines: &[&str]) -> Option<String> {
+        one_line(&lines.iter().map(|s| (*s).to_string()).collect::<Vec<_>>())
     }
 
     #[test]
     fn blocks_become_lines() {
-        let of = |said: &[&str]| line(said).unwrap_or_default();
+        let of = |lines: &[&str]| line(lines).unwrap_or_default();
         let set =
             ["Setting atom values ...", "  8 settings made for diameter", "  8 settings made for density"];
         assert_eq!(

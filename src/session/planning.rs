@@ -196,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_plans_are_told_once_with_their_runs() {
+    fn equal_plans_are_printed_once_with_their_runs() {
         let mut sources = Sources::default();
         let file = sources.add("in.d", "run 1\nrun 2\nrun 3\n");
         let at = |k: usize| Span::new(file, 6 * k, 6 * k + 5);

@@ -131,9 +131,9 @@ mod tests {
         let mut sources = Sources::default();
         sources.add("in.deck", deck);
         let found = unused(&sources, &["given".into()]);
-        let said: Vec<String> =
+        let found: Vec<String> =
             found.0.iter().map(|d| format!("{} {}", d.span.unwrap().start, d.message)).collect();
-        assert_eq!(said, wanted, "{deck}");
+        assert_eq!(found, wanted, "{deck}");
     }
 
     #[test]

@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn differences_are_said_with_their_place() {
+    fn differences_are_reported_with_their_place() {
         let old = head();
         let say =
             |new: Head, deck: (&str, &str)| old.difference(&new, (Some(deck.0), deck.1)).unwrap_or_default();

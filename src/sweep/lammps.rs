@@ -99,8 +99,8 @@ pub(super) fn outcome(home: &Path, report: &[String], seconds: f64, threads: usi
     if let Some((columns, row)) = content.tables.last() {
         out.row = columns.iter().cloned().zip(row.values.iter().copied()).collect();
     }
-    let said = || std::fs::read_to_string(home.join(OUTPUT)).unwrap_or_default();
-    let last = || said().lines().rev().map(str::trim).find(|l| !l.is_empty()).map(String::from);
+    let output = || std::fs::read_to_string(home.join(OUTPUT)).unwrap_or_default();
+    let last = || output().lines().rev().map(str::trim).find(|l| !l.is_empty()).map(String::from);
     out.problem = match (content.error, text.contains("Total wall time")) {
         (Some(error), _) => Some(format!("LAMMPS: {error}")),
         (None, true) => None,
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_tells_tables_times_and_errors() {
+    fn a_log_has_tables_times_and_errors() {
         let text = "LAMMPS (22 Jul 2025)\n   Step          Time          KinEng         v_x      \n\
                     WARNING: something\n         0   0              1.5            2\n        10   0.1            1.25           3\n\
                     Loop time of 0.5 on 1 procs for 10 steps with 7 atoms\nStep Time KinEng v_x\n10 0.1 1.25 3\n20 0.2 1 4\n\

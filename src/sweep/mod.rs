@@ -352,7 +352,7 @@ impl<'a> Work<'a> {
             .collect();
         waiting.iter().for_each(|k| self.outcomes[*k] = None);
         let mut written = Instant::now();
-        let mut told = Instant::now();
+        let mut shown = Instant::now();
         self.write_table(watch);
         while !stop.load(Ordering::Relaxed) {
             while let Some(rank) = self.crew.room()
@@ -384,9 +384,9 @@ impl<'a> Work<'a> {
                 self.write_table(watch);
                 written = Instant::now();
             }
-            if told.elapsed() > Duration::from_millis(200) {
+            if shown.elapsed() > Duration::from_millis(200) {
                 watch.waited(&self.state());
-                told = Instant::now();
+                shown = Instant::now();
             }
         }
         Ok(())

@@ -86,7 +86,7 @@ impl Ranks {
         while !there.is_empty() && Instant::now() < end {
             there.retain(|from| match self.hear(*from) {
                 // Other messages come too late.
-                Ok(said) => said.is_none_or(|said| said[0] != "bye"),
+                Ok(letter) => letter.is_none_or(|letter| letter[0] != "bye"),
                 Err(Gone) => {
                     all = false;
                     false

@@ -114,7 +114,9 @@ pub fn run(case: &Case) -> Outcome {
     let nothing = |check: &Check| row(check, (f64::NAN, f64::NAN), None, 1.0);
     let (rows, points, failure) = match outcome {
         Ok((rows, points)) => (rows, points, None),
-        Err(said) => (case.check.iter().map(nothing).collect(), vec![vec![]; case.curve.len()], Some(said)),
+        Err(output) => {
+            (case.check.iter().map(nothing).collect(), vec![vec![]; case.curve.len()], Some(output))
+        }
     };
     Outcome { case: case.clone(), rows, points, failure, seconds }
 }
@@ -153,9 +155,9 @@ fn measured(case: &Case) -> Result<Measured, String> {
 }
 
 /// The points of every curve, from the lines the deck printed.
-fn curves(case: &Case, said: &str) -> Result<Vec<Vec<Point>>, String> {
+fn curves(case: &Case, output: &str) -> Result<Vec<Vec<Point>>, String> {
     let mut all = vec![vec![]; case.curve.len()];
-    for line in said.lines().filter_map(|line| line.strip_prefix("curve ")) {
+    for line in output.lines().filter_map(|line| line.strip_prefix("curve ")) {
         let mut words = line.split_whitespace();
         let name = words.next().unwrap_or_default();
         let Some(at) = case.curve.iter().position(|c| c.name == name) else {

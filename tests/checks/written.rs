@@ -5,7 +5,7 @@ use perigrain::diag::{Code, Severity};
 use std::fs;
 
 /// The results of a check of a deck in a folder of its own that has these files: errors, and whether it ended early.
-fn said(deck: &str, files: &[(&str, &str)]) -> (Vec<String>, bool) {
+fn output_of(deck: &str, files: &[(&str, &str)]) -> (Vec<String>, bool) {
     let dir = tempfile::tempdir().unwrap();
     for (name, text) in files {
         fs::write(dir.path().join(name), text).unwrap();
@@ -45,23 +45,23 @@ fn a_file_the_deck_writes_is_neither_missed_nor_looked_into() {
     for writer in WRITERS {
         for (reader, ends) in READERS {
             let deck = format!("@scene\n{writer}\n{reader}\n");
-            assert_eq!(said(&deck, &[]), (vec![], ends), "{deck}");
+            assert_eq!(output_of(&deck, &[]), (vec![], ends), "{deck}");
             if writer.starts_with("shell") {
                 continue;
             }
             // One that is there is of an earlier run.
-            assert_eq!(said(&deck, &[("f", "a b\nc d e\n")]), (vec![], ends), "old file: {deck}");
+            assert_eq!(output_of(&deck, &[("f", "a b\nc d e\n")]), (vec![], ends), "old file: {deck}");
         }
     }
 }
 
 #[test]
-fn a_file_that_nobody_writes_is_missed() {
+fn a_file_without_a_writer_is_missed() {
     let other = "fix w all print 1 \"$(step)\" file @/g\ndump d all custom 1 @/g.* id\nrun 1";
     let more = ["create_atoms 1 mesh @/f", "rerun @/f dump x y z", "clear\nread_restart @/f"];
     for reader in READERS.iter().map(|r| r.0).chain(more) {
         for before in ["", other] {
-            let (errors, ended) = said(&format!("@scene\n{before}\n{reader}\n"), &[]);
+            let (errors, ended) = output_of(&format!("@scene\n{before}\n{reader}\n"), &[]);
             assert!(!ended && errors.iter().any(|e| e.contains("/f`")), "{reader}: {errors:?}");
         }
     }
@@ -70,14 +70,14 @@ fn a_file_that_nobody_writes_is_missed() {
 #[test]
 fn dumps_with_a_step_in_their_name_are_known() {
     let deck = "@scene\ndump d all custom 10 @/d.*.txt id x y z\nrun 20\nrerun @/d.20.txt dump x y z\n";
-    assert_eq!(said(deck, &[]), (vec![], false));
-    assert_eq!(said(&deck.replace("rerun @/d.20.txt", "rerun @/e.20.txt"), &[]).0.len(), 1);
+    assert_eq!(output_of(deck, &[]), (vec![], false));
+    assert_eq!(output_of(&deck.replace("rerun @/d.20.txt", "rerun @/e.20.txt"), &[]).0.len(), 1);
 }
 
 #[test]
 fn a_check_that_ends_early_keeps_what_it_found() {
     let deck = "@scene\nfxi 1 all nve\nlog @/f\ninclude @/f\nfxi 2 all nve\n";
-    let (errors, ended) = said(deck, &[]);
+    let (errors, ended) = output_of(deck, &[]);
     assert!(ended);
     assert_eq!(errors, ["unknown command `fxi`"]);
 }
@@ -85,7 +85,7 @@ fn a_check_that_ends_early_keeps_what_it_found() {
 #[test]
 fn a_branch_that_may_not_be_taken_does_not_end_a_check() {
     let deck = "@scene\nlog @/f\nif \"$(c_thermo_temp) > 1\" then \"include @/f\"\nfxi 2 all nve\n";
-    let (errors, ended) = said(deck, &[]);
+    let (errors, ended) = output_of(deck, &[]);
     assert!(!ended);
     assert_eq!(errors, ["unknown command `fxi`"]);
 }

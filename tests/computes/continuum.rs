@@ -159,7 +159,7 @@ fn stress_in_a_pile_is_the_weight_above() {
 }
 
 #[test]
-fn walls_of_a_boundary_must_tell_their_contacts() {
+fn walls_of_a_boundary_must_report_their_contacts() {
     let failing = |walls: &str| {
         let deck = format!("{}{FIELDS} boundary/fix\n{walls}\n{WRITE}", pile(0));
         let folder = tempfile::tempdir().unwrap();

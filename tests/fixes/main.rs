@@ -84,7 +84,7 @@ fn refused(lines: &str) -> String {
 
 #[test]
 fn pressures_that_steer_nothing_are_refused() {
-    for (lines, said) in [
+    for (lines, printed) in [
         ("fix d all deform/pressure 1 x pressure 1 0.1 couple yz", "none of these lengths has the style"),
         (
             "fix d all deform/pressure 1 x pressure 1 0.1 y pressure 2 0.1 couple xy",
@@ -104,7 +104,7 @@ fn pressures_that_steer_nothing_are_refused() {
         ("fix d all deform/pressure 1 x pressure 1 0.1\nfix_modify d bodyforces no", "[bodyforces] "),
     ] {
         let got = refused(lines);
-        assert!(got.contains(said), "{lines}: {got}");
+        assert!(got.contains(printed), "{lines}: {got}");
     }
 }
 

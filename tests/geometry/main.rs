@@ -141,7 +141,7 @@ fn flat_meshes_have_a_thickness() {
 }
 
 #[test]
-fn what_is_outside_is_left_out_and_said() {
+fn what_is_outside_is_left_out_with_a_warning() {
     let deck = format!("atom_style peri\n{BOX}read_mesh hexes.vtk type 1 shift 8 0 0\n");
     let (session, outcome) = outcome(&files(), &deck, Mode::Run);
     outcome.unwrap();
@@ -160,8 +160,8 @@ fn refused(folder: &Path, head: &str, line: &str) -> (usize, usize, String) {
         assert!(span.file != FileId::BROUGHT, "{line}");
         let in_deck = session.sources.get(span.file).unwrap().name.ends_with("in.deck");
         let (row, column) = if in_deck { (0, 0) } else { session.sources.place(span) };
-        let said = (row, column, d.message);
-        assert_eq!(*first.get_or_insert(said.clone()), said, "{mode:?}");
+        let printed = (row, column, d.message);
+        assert_eq!(*first.get_or_insert(printed.clone()), printed, "{mode:?}");
     }
     first.unwrap()
 }
@@ -188,7 +188,7 @@ fn mistakes_in_meshes_are_named() {
     fs::copy(files().join("binary.msh"), folder.path().join("binary.msh")).unwrap();
     fs::copy(files().join("tets_22.msh"), folder.path().join("tets.msh")).unwrap();
     fs::copy(files().join("tets.vtu"), folder.path().join("tets.vtu")).unwrap();
-    for (line, at, said) in [
+    for (line, at, printed) in [
         ("inside_out.inp type 1", (row, 1), "cell 1 is inside out: its volume is -0.16666"),
         ("flat.inp type 1", (row, 1), "cell 1 has no volume"),
         ("twice.inp type 1", (row + 1, 1), "cell 2 has the corners of cell 1"),
@@ -206,7 +206,7 @@ fn mistakes_in_meshes_are_named() {
         ("none.vtu type 1", (0, 0), "the mesh `none.vtu` cannot be read"),
     ] {
         let (row, column, message) = refused(folder.path(), "peri", &format!("read_mesh {line}"));
-        assert!(message.contains(said), "{line}: {message}");
+        assert!(message.contains(printed), "{line}: {message}");
         assert_eq!((row, column), at, "{line}: {message}");
     }
     let (row, _, message) = refused(folder.path(), "peri", "read_mesh cut.vtu type 1");
@@ -268,11 +268,11 @@ fn mistakes_in_tables_are_shown_in_the_file() {
         ("x,y", "1,2", "columns volume Vol", (1, 1), "names of columns must stand in the first line"),
         ("x,y", "x,y", "columns volume", (0, 0), "`columns` needs a property and the name of its column"),
     ];
-    for (from, to, line, at, said) in cases {
+    for (from, to, line, at, printed) in cases {
         assert!(TABLE.contains(from), "{from}");
         fs::write(folder.path().join("p.csv"), TABLE.replacen(from, to, 1)).unwrap();
         let (row, column, message) = refused(folder.path(), "peri", &format!("read_points p.csv {line}"));
-        assert!(message.contains(said), "{to}: {message}");
+        assert!(message.contains(printed), "{to}: {message}");
         assert!((row, column) == at || at.1 == 0 && row == at.0, "{to}: {row} {column} {message}");
     }
     fs::write(folder.path().join("p.csv"), "id,x,y,z\n3,0,0,0\n3,1,0,0\n").unwrap();
@@ -330,8 +330,8 @@ fn images_of_vtk_are_read_too() {
         );
         assert_eq!((w.n(), w.particles.volume[0], w.particles.x[2]), (3, 1.0, x), "{name}");
     }
-    let said = refused(folder.path(), "peri", "read_voxels cells.vti types 1:9 1 array gray").2;
-    assert!(said.contains("no array `gray`"), "{said}");
+    let printed = refused(folder.path(), "peri", "read_voxels cells.vti types 1:9 1 array gray").2;
+    assert!(printed.contains("no array `gray`"), "{printed}");
 }
 
 /// An image of 9 x 8 x 7 voxels as ParaView writes it, its array among the tags as text or raw behind them, in blocks or in one.
@@ -385,8 +385,8 @@ fn images_read_slice_by_slice_give_what_those_read_whole_do() {
     for way in ["raw", "packed"] {
         let bytes = image(way, &values);
         fs::write(folder.path().join("cut.vti"), &bytes[..bytes.len() - 300]).unwrap();
-        let said = refused(folder.path(), "peri", "read_voxels cut.vti types 1:9 1").2;
-        assert!(said.contains("cut off"), "{said}");
+        let printed = refused(folder.path(), "peri", "read_voxels cut.vti types 1:9 1").2;
+        assert!(printed.contains("cut off"), "{printed}");
     }
 }
 
@@ -423,7 +423,7 @@ fn mistakes_in_images_are_named() {
         "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4000000 4000000 9\nencoding: raw\nspacings: 1 1 1\n\n";
     fs::write(folder.path().join("huge.nrrd"), huge).unwrap();
     fs::write(folder.path().join("odd.nrrd"), huge.replace("uint8", "block")).unwrap();
-    for (line, row, said) in [
+    for (line, row, printed) in [
         ("nospacing.nrrd types 1:9 1", 0, "does not say how large its voxels are"),
         ("ct_5.png types 1:9 1", 0, "does not say how large its voxels are"),
         ("raw8.nrrd", 0, "which grey values are which types is missing"),
@@ -445,7 +445,7 @@ fn mistakes_in_images_are_named() {
         ("odd.nrrd types 0:255 1", 2, "NRRD's type `block`"),
     ] {
         let (at, _, message) = refused(folder.path(), "peri", &format!("read_voxels {line}"));
-        assert!(message.contains(said), "{line}: {message}");
+        assert!(message.contains(printed), "{line}: {message}");
         assert_eq!(at, row, "{line}");
     }
 }
@@ -479,6 +479,6 @@ fn more_particles_than_memory_are_refused_beforehand() {
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("about 1.000e6 particles would need 0.3 GB of memory"), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert!(printed.contains("about 1.000e6 particles would need 0.3 GB of memory"), "{printed}");
 }

@@ -59,7 +59,7 @@ fn step(e: f64, linear: bool) -> f64 {
 }
 
 #[test]
-fn what_is_asked_for_comes_out() {
+fn the_requested_restitution_comes_out() {
     for [e, cut] in CUT {
         for (normal, linear) in
             [(format!("hertz/material 5e7 {e} 0.3"), false), (format!("hooke 2e5 {e}"), true)]

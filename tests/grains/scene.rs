@@ -78,9 +78,9 @@ impl Scene {
     /// The value of one formula in `$(…)`.
     pub fn number(&mut self, formula: &str) -> f64 {
         self.say(&format!("print \"value {formula}\""));
-        let said = self.screen.text();
-        let line = said.lines().rev().find_map(|l| l.strip_prefix("value "));
-        line.and_then(|n| n.trim().parse().ok()).unwrap_or_else(|| panic!("{said}"))
+        let printed = self.screen.text();
+        let line = printed.lines().rev().find_map(|l| l.strip_prefix("value "));
+        line.and_then(|n| n.trim().parse().ok()).unwrap_or_else(|| panic!("{printed}"))
     }
 
     /// The particles.

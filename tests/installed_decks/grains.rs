@@ -209,15 +209,15 @@ fn rain(rain: &Rain) {
         .map(|(row, g)| row.into_iter().filter(|(name, _)| g.contains_key(name)).collect())
         .collect();
     compare(&shown, &golden, &rule).unwrap_or_else(|report| panic!("{}:\n{report}", rain.deck));
-    let said = log.lines().find_map(|l| l.strip_prefix("= ")).unwrap();
-    let said: Vec<f64> = said.split_whitespace().map(|w| w.parse().unwrap()).collect();
-    assert_eq!(said[0], rain.atoms, "{}: particles", rain.deck);
+    let printed = log.lines().find_map(|l| l.strip_prefix("= ")).unwrap();
+    let printed: Vec<f64> = printed.split_whitespace().map(|w| w.parse().unwrap()).collect();
+    assert_eq!(printed[0], rain.atoms, "{}: particles", rain.deck);
     for (k, (name, (mean, sd))) in
         [("height", rain.height), ("y", rain.y), ("energy", rain.energy)].iter().enumerate()
     {
         // Three standard deviations: what another seed makes of it.
-        let off = (said[k + 1] - mean).abs();
-        assert!(off <= 3.0 * sd, "{}: {name} {} is no such rain: {mean} ± {sd}", rain.deck, said[k + 1]);
+        let off = (printed[k + 1] - mean).abs();
+        assert!(off <= 3.0 * sd, "{}: {name} {} is no such rain: {mean} ± {sd}", rain.deck, printed[k + 1]);
     }
 }
 
@@ -256,9 +256,9 @@ fn the_drum_is_refused_as_by_lammps() {
     let Some(path) = installed("granular/in.pour.drum") else { return };
     let folder = tempfile::tempdir().unwrap();
     let done = perigrain(&["-in", path.to_str().unwrap(), "-log", "none"], folder.path());
-    let said = String::from_utf8_lossy(&done.stderr);
+    let printed = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(1));
-    assert!(said.contains("damping tsuji") && said.contains("jkr"), "{said}");
+    assert!(printed.contains("damping tsuji") && printed.contains("jkr"), "{printed}");
 }
 
 #[test]

@@ -101,7 +101,7 @@ fn what_2026_has_mended_in_plastic_bodies() {
 }
 
 #[test]
-fn tsuji_restitution_is_what_was_asked_for() {
+fn tsuji_restitution_is_the_requested_one() {
     let e = last("tsuji", "v_e", &[]);
     // Tsuji's polynomial is a fit: 0.7 comes out within half a per cent when attraction at the end of contact counts.
     assert!((e - 0.7).abs() < 0.02, "{e}");
@@ -132,7 +132,7 @@ fn a_lattice_of_micrometres_bears_small_strains() {
 }
 
 #[test]
-fn least_and_mean_of_absolute_values_are_what_they_say() {
+fn least_and_mean_of_absolute_values_match_their_names() {
     let row = |switches: &[&str]| {
         let rows = run("reduced", switches);
         ["c_least", "c_mean[1]", "c_mean[2]"].map(|c| rows[0][c])
@@ -170,7 +170,7 @@ fn grains_that_roll_cross_periodic_faces_unchanged() {
 }
 
 #[test]
-fn who_crosses_a_face_takes_its_present_speed() {
+fn a_particle_that_crosses_a_face_takes_its_present_speed() {
     // From 10, by 20 times the length of step 15, 4 exp(-20 · 0.015).
     assert!(near(last("shrinking", "v_vx", &[]), 10.0 + 80.0 * (-0.3f64).exp(), SAME));
     // LAMMPS 22Jul2025, this deck: that of step 12.

@@ -31,7 +31,7 @@ fn graded(law: &str, options: &str) -> String {
 }
 
 /// The number in the log after a word.
-fn told(text: &str, word: &str) -> f64 {
+fn logged(text: &str, word: &str) -> f64 {
     let (_, rest) = text.split_once(word).unwrap_or_else(|| panic!("no {word}\n{text}"));
     rest.split_whitespace().next().unwrap().parse().unwrap()
 }
@@ -56,7 +56,7 @@ fn even_strains_have_the_materials_energy() {
             let deck = format!("{}run 0\n{grow}run 0\nprint \"stored $(pe:%.15g) \"\n", graded(law, options));
             let (w, text) = run(&deck, false);
             let volume: f64 = w.particles.volume.iter().sum();
-            let ratio = told(&text, "\nstored ") / (0.5 * stiffness * 1e-6 * volume);
+            let ratio = logged(&text, "\nstored ") / (0.5 * stiffness * 1e-6 * volume);
             off.push(format!("{law} {options} {axes}: {ratio:.4}"));
             if (ratio - 1.0).abs() > 0.02 {
                 off.push("is too far off".into());
@@ -73,7 +73,7 @@ fn even_strains_have_the_materials_energy() {
 }
 
 #[test]
-fn the_log_tells_what_bonds_are_weighed_by() {
+fn the_log_has_the_weights_of_bonds() {
     let (w, text) = run(&format!("{}run 0\n", graded("lps", "horizon own surface tensor")), false);
     // Far from the other half spacings are the two of the lattices; three of them make families of a hundred and more.
     let spacing = &w.families.as_ref().unwrap().spacing;

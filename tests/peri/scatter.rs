@@ -102,8 +102,8 @@ fn refused(deck: &str) -> String {
 #[test]
 fn what_factors_do_not_concern_is_refused() {
     let strong = "set group all peri/strength 1.5";
-    let said = refused(&format!("compat lammps/2025\n{}run 0", block(strong)));
-    assert!(said.contains("peri/strength") && said.contains("one critical stretch"), "{said}");
+    let printed = refused(&format!("compat lammps/2025\n{}run 0", block(strong)));
+    assert!(printed.contains("peri/strength") && printed.contains("one critical stretch"), "{printed}");
     run(&format!("compat lammps\n{}run 0", block(strong)), false);
     let late = format!("{}run 0\nset group all peri/stiffness 1.5\nrun 0", block(""));
     assert!(refused(&late).contains("comes too late"));
@@ -114,8 +114,8 @@ fn what_factors_do_not_concern_is_refused() {
 }
 
 #[test]
-fn the_log_tells_how_far_factors_scatter() {
-    let (_, said) = run(&format!("{}run 0", block(UNLIKE)), false);
-    assert!(said.contains("the critical stretch of particles scatters from"), "{said}");
-    assert!(said.contains("the micro-modulus of particles scatters from"), "{said}");
+fn the_log_has_the_scatter_of_factors() {
+    let (_, printed) = run(&format!("{}run 0", block(UNLIKE)), false);
+    assert!(printed.contains("the critical stretch of particles scatters from"), "{printed}");
+    assert!(printed.contains("the micro-modulus of particles scatters from"), "{printed}");
 }

@@ -2,7 +2,7 @@
 //!
 //! | claim | test |
 //! |---|---|
-//! | `?`, `exit`, `%time LINE` work | `habits_work_or_are_told` |
+//! | `?`, `exit`, `%time LINE` work | `habits_work_or_get_a_hint` |
 //! | shell habits without meaning here get a hint what to write | the same |
 //! | Tab knows files of materials | `tab_knows_what_the_syntax_wants` |
 //! | Tab knows colours | the same |
@@ -15,7 +15,7 @@
 //! | the last table stays in sight | `a_saved_session_stands_alone_and_keeps_its_last_table_in_sight` |
 //! | `:save` writes a deck that stands alone | the same; stopped runs: `a_session_through_a_terminal` |
 //! | `:plot`, `:slice`, `:show` fit the screen | `pictures_and_curves_are_no_wider_than_the_screen` |
-//! | a second Ctrl-C is confirmed beside the live line | `interrupts::at_the_prompt_the_second_is_told_on_a_line_of_its_own` |
+//! | a second Ctrl-C is confirmed beside the live line | `interrupts::at_the_prompt_the_second_is_confirmed_on_a_line_of_its_own` |
 
 use super::{SCENE, err, lines_with, out, program, settle};
 use crate::pty::width;
@@ -72,17 +72,17 @@ fn what_the_guide_shows_works_as_typed() {
     let typed: Vec<&str> = guide.lines().filter_map(|l| l.strip_prefix("perigrain> ")).collect();
     assert!(typed.len() > 15, "{typed:?}");
     for line in typed {
-        let said = say(&mut p, line);
-        assert!(!said.contains("error"), "{line}: {said}");
+        let printed = say(&mut p, line);
+        assert!(!printed.contains("error"), "{line}: {printed}");
         if line.starts_with("run ") {
             // A short end leaves the table in sight.
-            assert!(said.contains(" steps in ") && !said.contains("Loop time"), "{said}");
+            assert!(printed.contains(" steps in ") && !printed.contains("Loop time"), "{printed}");
         }
     }
 }
 
 #[test]
-fn habits_work_or_are_told() {
+fn habits_work_or_get_a_hint() {
     let folder = tempfile::tempdir().unwrap();
     let mut p = start(folder.path());
     assert!(say(&mut p, "?").contains("at the prompt"));
@@ -175,14 +175,17 @@ fn a_session_through_a_terminal() {
     give_up(&mut p);
 
     // a mistake is shown and changes nothing
-    let said = say(&mut p, "unita si");
-    assert!(said.contains("unknown command `unita`") && said.contains("did you mean `units`?"), "{said}");
+    let printed = say(&mut p, "unita si");
+    assert!(
+        printed.contains("unknown command `unita`") && printed.contains("did you mean `units`?"),
+        "{printed}"
+    );
     for line in SCENE.lines() {
-        let said = say(&mut p, line);
-        assert!(!said.contains("error["), "{line}: {said}");
+        let printed = say(&mut p, line);
+        assert!(!printed.contains("error["), "{line}: {printed}");
     }
-    let said = say(&mut p, "set group all denstiy 1");
-    assert!(said.contains("density"), "{said}");
+    let printed = say(&mut p, "set group all denstiy 1");
+    assert!(printed.contains("density"), "{printed}");
     say(&mut p, "velocity all ramp vx 0 20 x 0 0.004 units box");
     say(&mut p, "thermo 100");
     say(&mut p, "thermo_style custom step pe ke");
@@ -197,23 +200,26 @@ fn a_session_through_a_terminal() {
     let stopped = say(&mut p, "print \"state $(step) $(x[1]:%.17g) $(ke:%.17g)\"");
     let state = lines_with(&stopped, "state ")[0].to_string();
     // the run is in the list of lines as far as it went
-    let said = say(&mut p, ":graph");
+    let printed = say(&mut p, ":graph");
     let step = state.split(' ').nth(1).unwrap();
-    let line = lines_with(&said, "").into_iter().find(|l| l.contains("run 100000000"));
-    assert!(line.is_some_and(|l| l.contains(&format!("# stopped at step {step}, after {step}"))), "{said}");
+    let line = lines_with(&printed, "").into_iter().find(|l| l.contains("run 100000000"));
+    assert!(
+        line.is_some_and(|l| l.contains(&format!("# stopped at step {step}, after {step}"))),
+        "{printed}"
+    );
 
     // undo goes back to before the run, and forwards again by another one
     say(&mut p, ":undo");
-    let said = say(&mut p, ":undo");
-    assert!(said.contains("taken back: run 100000000"), "{said}");
-    let said = say(&mut p, "print \"step $(step)\"");
-    assert!(said.lines().any(|l| l.trim() == "step 0"), "{said}");
+    let printed = say(&mut p, ":undo");
+    assert!(printed.contains("taken back: run 100000000"), "{printed}");
+    let printed = say(&mut p, "print \"step $(step)\"");
+    assert!(printed.lines().any(|l| l.trim() == "step 0"), "{printed}");
     say(&mut p, "run 50");
-    let said = say(&mut p, ":plot pe ke");
+    let printed = say(&mut p, ":plot pe ke");
     // (The terminal's bytes come one by one as characters: only ASCII can be looked for.)
-    assert!(said.lines().any(|l| l.contains(" step ")) && said.contains("ke\r\n"), "{said}");
-    let said = say(&mut p, ":slice vx z 0.002");
-    assert!(said.contains("vx at z = 0.002"), "{said}");
+    assert!(printed.lines().any(|l| l.contains(" step ")) && printed.contains("ke\r\n"), "{printed}");
+    let printed = say(&mut p, ":slice vx z 0.002");
+    assert!(printed.contains("vx at z = 0.002"), "{printed}");
 
     // a stopped run is saved as one of so many steps; the deck comes to the same numbers, which are not the
     // first run's, at whatever step the two happened to stop
@@ -221,8 +227,8 @@ fn a_session_through_a_terminal() {
     p.send_line("run 100000000").unwrap();
     p.exp_regex(" {4}300 {2}").unwrap();
     give_up(&mut p);
-    let said = say(&mut p, "print \"state $(step) $(x[1]:%.17g) $(ke:%.17g)\"");
-    let second = lines_with(&said, "state ")[0].to_string();
+    let printed = say(&mut p, "print \"state $(step) $(x[1]:%.17g) $(ke:%.17g)\"");
+    let second = lines_with(&printed, "state ")[0].to_string();
     assert_ne!(state, second);
     say(&mut p, ":save saved.in");
     p.send_control('d').unwrap();
@@ -248,9 +254,9 @@ fn pictures_and_curves_are_no_wider_than_the_screen() {
     for columns in [60, 80] {
         let mut p = begin(folder.path(), columns as u16, "repl in.scene -threads 1");
         for (line, across) in [(":plot temp", 77), (":slice x z 0.002", 56), (":show p.5.png", 80)] {
-            let said = say(&mut p, line);
-            let most = said.split("\r\n").filter(|l| !l.contains('\x1b')).map(width).max().unwrap();
-            assert!(most <= columns && most + 12 > columns.min(across), "{columns} {line} {most}: {said}");
+            let printed = say(&mut p, line);
+            let most = printed.split("\r\n").filter(|l| !l.contains('\x1b')).map(width).max().unwrap();
+            assert!(most <= columns && most + 12 > columns.min(across), "{columns} {line} {most}: {printed}");
         }
         p.send_control('d').unwrap();
         p.exp_eof().unwrap();
@@ -265,15 +271,15 @@ fn a_saved_session_stands_alone_and_keeps_its_last_table_in_sight() {
     let mut p = begin(folder.path(), 400, "repl in.first -threads 1");
     say(&mut p, "include in.more");
     // Between table and prompt there are three lines.
-    let said = say(&mut p, "run 20");
+    let printed = say(&mut p, "run 20");
     let lines: Vec<&str> =
-        said.lines().map(str::trim_end).filter(|l| !l.is_empty() && !l.contains('\x1b')).collect();
+        printed.lines().map(str::trim_end).filter(|l| !l.is_empty() && !l.contains('\x1b')).collect();
     let last =
         lines.iter().rposition(|l| l.trim_start().starts_with("20 ") && !l.contains("steps in")).unwrap();
     let rest: Vec<&str> = lines[last + 1..].iter().map(|l| l.split(' ').next().unwrap()).collect();
-    assert_eq!(rest, ["20", "results:", "faster:"], "{said}");
-    let said = say(&mut p, "print \"state $(step) $(x[7]:%.17g)\"");
-    let state = lines_with(&said, "state ")[0].to_string();
+    assert_eq!(rest, ["20", "results:", "faster:"], "{printed}");
+    let printed = say(&mut p, "print \"state $(step) $(x[7]:%.17g)\"");
+    let state = lines_with(&printed, "state ")[0].to_string();
     assert!(say(&mut p, ":save saved.in").contains("wrote saved.in"));
     p.send_line("exit").unwrap();
     p.exp_eof().unwrap();
@@ -283,6 +289,6 @@ fn a_saved_session_stands_alone_and_keeps_its_last_table_in_sight() {
     let mut command = Command::new("sh");
     command.args(["-c", "stty cols 100 && exec \"$0\" saved.in -threads 1", env!("CARGO_BIN_EXE_perigrain")]);
     settle(&mut command, folder.path());
-    let said = spawn_command(command, Some(PATIENCE)).unwrap().exp_eof().unwrap();
-    assert_eq!(lines_with(&said, "state "), [state.as_str()], "{said}");
+    let printed = spawn_command(command, Some(PATIENCE)).unwrap().exp_eof().unwrap();
+    assert_eq!(lines_with(&printed, "state "), [state.as_str()], "{printed}");
 }

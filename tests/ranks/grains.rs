@@ -1,6 +1,8 @@
 //! Grains and bonded particles shared out to ranks.
 
-use super::{LAUNCHERS, PERIGRAIN, exchanged, files, left_by, measured, perigrain, said, same, start, works};
+use super::{
+    LAUNCHERS, PERIGRAIN, exchanged, files, left_by, measured, output_of, perigrain, same, start, works,
+};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -43,7 +45,7 @@ fn left_by_bowl(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
     plate(folder.path());
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     let o = perigrain(folder.path(), &[&["-in", "in.deck", "-screen", "none"], words].concat());
-    assert!(o.status.success(), "{words:?}: {}", said(&o));
+    assert!(o.status.success(), "{words:?}: {}", output_of(&o));
     files(folder.path())
 }
 
@@ -94,8 +96,8 @@ fn quiet_steps_of_grains_gather_nothing() {
     plate(folder.path());
     fs::write(folder.path().join("in.deck"), format!("{BOWL}thermo 100\nrun 100\n")).unwrap();
     let o = perigrain(folder.path(), &["plan", "--measure", "-ranks", "3", "-threads", "1", "in.deck"]);
-    assert!(said(&o).contains("ranks: 765 grains are few for 3 ranks"), "{}", said(&o));
-    let ops = exchanged(&said(&o));
+    assert!(output_of(&o).contains("ranks: 765 grains are few for 3 ranks"), "{}", output_of(&o));
+    let ops = exchanged(&output_of(&o));
     // Places of all are known where grains come, and where lists are made anew.
     let looks = ["reneighbor", "pair gran/hooke/history", "fix rain deposit"];
     for (op, rows, gathers) in &ops {
@@ -119,7 +121,7 @@ const SHEARED: &str = "units lj\natom_style sphere\nboundary p p p\nnewton off\n
     fix all all ave/time 1 1 1 c_t c_t[1] c_d c_s c_s[4] c_k c_r c_c[1] c_g c_m[4] c_v[2] c_l[3] c_p c_p[4] file sums.txt format \" %.17g\"\n";
 
 #[test]
-fn sums_and_boxes_that_move_ask_for_no_rows_of_other_ranks() {
+fn sums_and_boxes_that_move_request_no_rows_of_other_ranks() {
     let runs = "fix shear all deform/pressure 1 xy erate 0.5 y pressure 1.0 0.01 max/rate 0.05 remap v\nrun 40\nunfix shear\n\
         fix squeeze all deform 1 x scale 0.99 xz erate 0.1 remap x\nrun 20\nwrite_restart end.restart\n\
         dump last all custom 1 d.*.txt id x y z vx omegay\ndump_modify last format float %.17g\nrun 0\n";
@@ -182,7 +184,7 @@ fn grains_have_the_same_bytes_by_real_launchers() {
         let (program, own, library) = launcher;
         let words = ["-n", "3", PERIGRAIN, "-in", "in.deck", "-screen", "none", "-threads", "1"];
         let o = start(folder.path(), program, &[own, &words].concat()).wait_with_output().unwrap();
-        assert!(o.status.success(), "{library}: {}", said(&o));
+        assert!(o.status.success(), "{library}: {}", output_of(&o));
         same(&alone, &files(folder.path()), &format!("grains by {library}"));
     }
 }
@@ -244,7 +246,7 @@ fn examples_of_grains_are_shared_out() {
         let left = |more: &[&str]| {
             let folder = tempfile::tempdir().unwrap();
             let o = perigrain(folder.path(), &[&["-in"], &words[..], &["-screen", "none"], more].concat());
-            assert!(o.status.success(), "{name}: {}", said(&o));
+            assert!(o.status.success(), "{name}: {}", output_of(&o));
             files(folder.path())
         };
         let alone = left(&["-threads", "1"]);

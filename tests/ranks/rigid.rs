@@ -1,6 +1,6 @@
 //! Rigid bodies among free grains, shared out to ranks.
 
-use super::{exchanged, files, made, perigrain, said, same};
+use super::{exchanged, files, made, output_of, perigrain, same};
 use crate::restart::scenes::SCENES;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -58,7 +58,7 @@ fn left_by_clumps(deck: &str, words: &[&str]) -> BTreeMap<String, Vec<u8>> {
     molecules(folder.path());
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     let o = perigrain(folder.path(), &[&["-in", "in.deck", "-screen", "none"], words].concat());
-    assert!(o.status.success(), "{words:?}: {}", said(&o));
+    assert!(o.status.success(), "{words:?}: {}", output_of(&o));
     files(folder.path())
 }
 
@@ -68,8 +68,8 @@ fn exchanged_by_clumps(deck: &str, ranks: &str) -> Vec<(String, String, u64)> {
     molecules(folder.path());
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     let o = perigrain(folder.path(), &["plan", "--measure", "-ranks", ranks, "-threads", "1", "in.deck"]);
-    assert!(o.status.success(), "{}", said(&o));
-    exchanged(&said(&o))
+    assert!(o.status.success(), "{}", output_of(&o));
+    exchanged(&output_of(&o))
 }
 
 fn same_on_ranks(deck: &str, what: &str, numbers: &[(&str, &str)]) {

@@ -25,12 +25,12 @@ fn forge(name: &str, forgeries: &[Forgery]) {
         change(&mut world);
         let (pair, declared) = (&saved.pair, &saved.declared);
         write(&path, &Saving { world: &world, ran: true, standing: true, pair, declared }).unwrap();
-        let said = match read(&path) {
+        let printed = match read(&path) {
             Ok(_) => panic!("{name}, forgery {k}: {section} {what} is believed"),
-            Err(said) => said.0[0].message.clone(),
+            Err(printed) => printed.0[0].message.clone(),
         };
         let expected = format!("a.restart` contradicts itself in its section `{section}`: ");
-        assert!(said.contains(&expected) && said.contains(what), "{name}, forgery {k}: {said}");
+        assert!(printed.contains(&expected) && printed.contains(what), "{name}, forgery {k}: {printed}");
     }
 }
 
@@ -214,8 +214,8 @@ fn another_style_does_not_find_what_it_remembers() {
     let path = folder.path().join("a.restart");
     run(folder.path(), &format!("{BLOCK}{BLOCK_AGAIN}run 5\nwrite_restart DIR/a.restart"), false);
     let case = Case { file: std::fs::read(&path).unwrap(), again: EPS_AGAIN.into(), list: false };
-    let said = case.read_whole(&case.file, &path).unwrap();
-    assert!(said.contains("were made under another style"), "{said}");
+    let printed = case.read_whole(&case.file, &path).unwrap();
+    assert!(printed.contains("were made under another style"), "{printed}");
 }
 
 /// Particles may have joined since the last step: forces are computed anew then, regardless of the file.
@@ -244,7 +244,7 @@ fn what_is_not_of_all_particles_does_not_stand() {
 
 /// Lists of a file are valid until they are rebuilt; an evaluation of contacts before that makes lists of its own.
 #[test]
-fn a_giant_that_stands_is_refused_by_who_first_looks_for_its_pairs() {
+fn a_giant_in_a_file_is_refused_at_the_first_search_for_its_pairs() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.restart");
     run(folder.path(), &format!("{PILE}{PILE_AGAIN}run 20\nwrite_restart DIR/a.restart"), false);
@@ -254,15 +254,15 @@ fn a_giant_that_stands_is_refused_by_who_first_looks_for_its_pairs() {
     write(&path, &Saving { world: &saved.world, ran: true, standing: true, pair, declared }).unwrap();
     let mut session = perigrain::session::Session::new(perigrain::session::Options::default()).unwrap();
     let deck = format!("read_restart {}\n{PILE_AGAIN}run 2", path.display());
-    let said = session.run_text("in", &deck).unwrap_err();
-    assert!(said.0[0].message.contains("do not go with the periodic box"), "{said}");
+    let printed = session.run_text("in", &deck).unwrap_err();
+    assert!(printed.0[0].message.contains("do not go with the periodic box"), "{printed}");
     // In the setup, not at the next list.
-    assert!(said.0[0].help.iter().any(|h| h == "in op `contact watch` at step 20"), "{said}");
+    assert!(printed.0[0].help.iter().any(|h| h == "in op `contact watch` at step 20"), "{printed}");
 }
 
 /// Regions in regions in a file use up no stack.
 #[test]
-fn regions_are_no_deeper_than_a_file_may_say() {
+fn regions_are_no_deeper_than_the_limit_for_files() {
     let mut deck = "region r0 block 0 1 0 1 0 1\n".to_string();
     (1..100).for_each(|k| deck += &format!("region r{k} union 2 r0 r{}\n", k - 1));
     let folder = tempfile::tempdir().unwrap();
@@ -270,8 +270,8 @@ fn regions_are_no_deeper_than_a_file_may_say() {
         "{deck}create_box 1 r0\nwrite_restart DIR/a\nclear\nread_restart DIR/a\nregion more union 2 r0 r99"
     );
     let mut session = perigrain::session::Session::new(perigrain::session::Options::default()).unwrap();
-    let said = session.run_text("in", &deck.replace("DIR", folder.path().to_str().unwrap())).unwrap_err();
-    assert!(said.0[0].message.contains("nested more than 100 deep"), "{said}");
+    let printed = session.run_text("in", &deck.replace("DIR", folder.path().to_str().unwrap())).unwrap_err();
+    assert!(printed.0[0].message.contains("nested more than 100 deep"), "{printed}");
 }
 
 /// So many forged files in the ordinary tests.

@@ -65,7 +65,7 @@ fn random(seed: &mut u64) -> u64 {
 }
 
 #[test]
-fn what_a_killed_run_leaves_is_whole_and_goes_on() {
+fn what_a_killed_run_leaves_is_whole_and_continues() {
     let kills: u32 = std::env::var("PERIGRAIN_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
     let whole = tempfile::tempdir().unwrap();
     let began = Instant::now();

@@ -23,10 +23,11 @@ fn run(folder: &Path, deck: &str, list: bool) -> (World, String) {
 }
 
 /// Thermo rows by step.
-pub fn rows(said: &str) -> Vec<(i64, String)> {
+pub fn rows(printed: &str) -> Vec<(i64, String)> {
     let numbers =
         |l: &&str| l.split_whitespace().count() > 1 && l.split_whitespace().all(|w| w.parse::<f64>().is_ok());
-    said.lines()
+    printed
+        .lines()
         .filter(numbers)
         .map(|l| (l.split_whitespace().next().unwrap().parse().unwrap(), l.to_string()))
         .collect()
@@ -56,8 +57,8 @@ fn a_run_cut_in_two_has_the_bits_of_one() {
         let folder = tempfile::tempdir().unwrap();
         let (half, steps) = (s.steps / 2 + 3, s.steps);
         let (make, again) = (s.make, s.again);
-        let (whole, said) = run(folder.path(), &format!("{make}{again}run {steps}"), s.list);
-        let whole_rows = rows(&said);
+        let (whole, printed) = run(folder.path(), &format!("{make}{again}run {steps}"), s.list);
+        let whole_rows = rows(&printed);
         // There is something to lose: broken bonds, or springs of contacts.
         let broken = whole.families.as_ref().is_some_and(|f| f.damaged.iter().any(|h| *h));
         let touching = whole.contacts.values().chain(whole.wall_contacts.values());
@@ -93,13 +94,13 @@ fn a_run_cut_in_two_has_the_bits_of_one() {
             (format!("{turn}.restart"), last_turn),
         ] {
             let deck = format!("read_restart DIR/{file}\n{again}run {steps} upto");
-            let (cut, said) = run(folder.path(), &deck, s.list);
+            let (cut, printed) = run(folder.path(), &deck, s.list);
             let what = format!("{}, {file}", s.name);
-            assert!(!said.contains("computed anew"), "{what}: {said}");
+            assert!(!printed.contains("computed anew"), "{what}: {printed}");
             assert!(bits(&cut) == bits(&whole), "{what}: other bits");
             assert!(memory(&cut) == memory(&whole), "{what}: bonds, contacts or fixes differ");
             let rest: Vec<_> = whole_rows.iter().filter(|(k, _)| *k > step).cloned().collect();
-            let got: Vec<_> = rows(&said).into_iter().filter(|(k, _)| *k > step).collect();
+            let got: Vec<_> = rows(&printed).into_iter().filter(|(k, _)| *k > step).collect();
             assert!(!rest.is_empty());
             assert_eq!(got, rest, "{what}");
         }
@@ -119,7 +120,7 @@ fn the_first_row_shows_what_the_last_one_showed() {
 }
 
 #[test]
-fn a_scene_from_which_all_have_gone_goes_on() {
+fn a_scene_from_which_all_have_gone_continues() {
     let folder = tempfile::tempdir().unwrap();
     let again = "pair_style gran/hooke/history 200 NULL 5 NULL 0.5 1\npair_coeff * *\nfix 1 all nve/sphere\n";
     let deck = format!(
@@ -132,7 +133,7 @@ fn a_scene_from_which_all_have_gone_goes_on() {
 }
 
 #[test]
-fn other_declarations_compute_forces_anew_and_say_so() {
+fn other_declarations_compute_forces_anew_with_a_note() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{BLOCK}{BLOCK_AGAIN}run 10\nwrite_restart DIR/a"), false);
     for (line, why) in [
@@ -143,19 +144,21 @@ fn other_declarations_compute_forces_anew_and_say_so() {
         ("unfix 1\nfix 1 all nve/noforce\n", "was not written under `fix 1 all nve/noforce`"),
         ("unfix 1\n", "was written under `fix 1 all nve`"),
     ] {
-        let (_, said) = run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{line}run 1"), false);
-        assert!(said.contains("forces are computed anew") && said.contains(why), "{line}: {said}");
+        let (_, printed) =
+            run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{line}run 1"), false);
+        assert!(printed.contains("forces are computed anew") && printed.contains(why), "{line}: {printed}");
     }
     // What does not touch forces does not count.
     let harmless =
         "group left id 1 2 3\nregion r block 0 1 0 1 0 1\ncompute e all ke\nvariable a equal ke\nthermo 1\n";
-    let (_, said) = run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{harmless}run 1"), false);
-    assert!(!said.contains("computed anew"), "{said}");
+    let (_, printed) =
+        run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{harmless}run 1"), false);
+    assert!(!printed.contains("computed anew"), "{printed}");
     // Nor does a lattice that came after the pair's lines, which are repeated behind the file that has it.
     let later = format!("{BLOCK}{BLOCK_AGAIN}lattice sc 0.002\nrun 10\nwrite_restart DIR/b");
     run(folder.path(), &later, false);
-    let (_, said) = run(folder.path(), &format!("read_restart DIR/b\n{BLOCK_AGAIN}run 1"), false);
-    assert!(!said.contains("computed anew"), "{said}");
+    let (_, printed) = run(folder.path(), &format!("read_restart DIR/b\n{BLOCK_AGAIN}run 1"), false);
+    assert!(!printed.contains("computed anew"), "{printed}");
 }
 
 #[test]
@@ -163,8 +166,8 @@ fn the_pair_style_comes_with_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, _) =
         run(folder.path(), &format!("{BLOCK}{BLOCK_AGAIN}run 10\nwrite_restart DIR/a\nrun 10"), false);
-    let (cut, said) = run(folder.path(), "read_restart DIR/a\nfix 1 all nve\nrun 10", false);
-    assert!(said.contains("restoring pair style peri/pmb"), "{said}");
+    let (cut, printed) = run(folder.path(), "read_restart DIR/a\nfix 1 all nve\nrun 10", false);
+    assert!(printed.contains("restoring pair style peri/pmb"), "{printed}");
     assert!(bits(&whole) == bits(&cut));
     // From a file to a file.
     let (twice, _) = run(
@@ -190,7 +193,7 @@ fn coefficients_that_a_fix_has_changed_come_with_the_file() {
         let whole = format!(
             "{CHAIN}{again}restart 7 DIR/mid.restart DIR/other.restart\nrun 13\nwrite_restart DIR/end"
         );
-        let (_, said) = run(folder.path(), &whole, false);
+        let (_, printed) = run(folder.path(), &whole, false);
         let (whole, more) = run(folder.path(), &format!("{CHAIN}{again}run 13\nrun 7"), false);
         let from =
             |file: &str| run(folder.path(), &format!("read_restart DIR/{file}\n{again}run 20 upto"), false);
@@ -198,12 +201,16 @@ fn coefficients_that_a_fix_has_changed_come_with_the_file() {
         assert!(bits(&end) == bits(&whole), "{words}: after the run\n{more}\n{rest}");
         let deck = format!("read_restart DIR/mid.restart\n{again}run 13 upto");
         let (_, rest) = run(folder.path(), &deck, false);
-        assert_eq!(rows(&rest).last(), rows(&said).last(), "{words}: in the middle of a run\n{said}\n{rest}");
+        assert_eq!(
+            rows(&rest).last(),
+            rows(&printed).last(),
+            "{words}: in the middle of a run\n{printed}\n{rest}"
+        );
     }
 }
 
 #[test]
-fn regions_and_materials_may_be_said_again_once() {
+fn regions_and_materials_may_be_declared_again_once() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{IMPACT}{IMPACT_AGAIN}run 0\nwrite_restart DIR/a"), false);
     let again = "region plate sphere 0 0 0 1\nmaterial glass E 7e10 nu 0.25 rho 2235\n";
@@ -214,10 +221,10 @@ fn regions_and_materials_may_be_said_again_once() {
 }
 
 #[test]
-fn state_that_nobody_claims_is_forgotten_with_a_note() {
+fn unclaimed_state_is_dropped_with_a_note() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{PILE}{PILE_AGAIN}run 10\nwrite_restart DIR/a"), false);
-    let (world, said) = run(folder.path(), "read_restart DIR/a\nfix 9 all nve/sphere\nrun 1", false);
-    assert!(said.contains("holds state of move/3, which no fix or compute has claimed"), "{said}");
+    let (world, printed) = run(folder.path(), "read_restart DIR/a\nfix 9 all nve/sphere\nrun 1", false);
+    assert!(printed.contains("holds state of move/3, which no fix or compute has claimed"), "{printed}");
     assert!(world.memo.is_empty() && world.columns.names().is_empty());
 }

@@ -23,14 +23,14 @@ fn files_that_are_no_restart_files_are_refused_at_their_name() {
     ] {
         fs::write(&path, bytes).unwrap();
         for mode in [Mode::Run, Mode::Check] {
-            let said = refused(&format!("read_restart {}", path.display()), mode);
-            assert!(said.starts_with("1:14 ") && said.contains(message), "{said}");
+            let printed = refused(&format!("read_restart {}", path.display()), mode);
+            assert!(printed.starts_with("1:14 ") && printed.contains(message), "{printed}");
         }
     }
 }
 
 #[test]
-fn a_checked_deck_goes_on_from_files_it_would_write() {
+fn a_checked_deck_continues_from_files_it_would_write() {
     let deck = "atom_style peri\nregion b block 0 2 0 2 0 2\ncreate_box 2 b\npair_style peri/pmb\n\
                 pair_coeff * * 1.6e21 3.01 0.0015 0.25\nfix 1 all nve\nset group all volume 1\nset group all density 1\n\
                 restart 10 a.*.restart\nrun 40\nwrite_restart b.restart\nclear\nread_restart b.restart\nmass 1 1.0\nclear\n\
@@ -38,11 +38,11 @@ fn a_checked_deck_goes_on_from_files_it_would_write() {
                 clear\nread_restart c.restart";
     let mut session = Session::new(Options { mode: Mode::Check, ..Options::default() }).unwrap();
     let problems = session.run_text("in.deck", deck).unwrap_err();
-    let said: Vec<&str> = problems.0.iter().map(|d| d.message.as_str()).collect();
-    assert_eq!(said.len(), 3, "{said:?}");
+    let printed: Vec<&str> = problems.0.iter().map(|d| d.message.as_str()).collect();
+    assert_eq!(printed.len(), 3, "{printed:?}");
     assert!(
-        said[0].contains("own mass")
-            && said[1].contains("from 1 to 2")
-            && said[2].contains("no restart file")
+        printed[0].contains("own mass")
+            && printed[1].contains("from 1 to 2")
+            && printed[2].contains("no restart file")
     );
 }

@@ -3,9 +3,9 @@
 use super::{numbers, run, text};
 
 /// Numbers that stand behind `name` are those wanted, to a part `tolerance` of each.
-fn close(said: &str, name: &str, wanted: &[f64], tolerance: f64) {
-    let found = numbers(said, name);
-    assert_eq!(found.len(), wanted.len(), "{name}: {found:?} for {wanted:?} in\n{said}");
+fn close(printed: &str, name: &str, wanted: &[f64], tolerance: f64) {
+    let found = numbers(printed, name);
+    assert_eq!(found.len(), wanted.len(), "{name}: {found:?} for {wanted:?} in\n{printed}");
     for (a, b) in found.iter().zip(wanted) {
         assert!((a - b).abs() <= tolerance * b.abs(), "{name}: {found:?} for {wanted:?}");
     }
@@ -15,12 +15,12 @@ fn close(said: &str, name: &str, wanted: &[f64], tolerance: f64) {
 /// pe, ke, press, Σ energies and forces of pairs, energy between the types, Σ of virials of particles.
 #[test]
 fn soft_pushes_take_points_apart() {
-    let said = text(&run("soft_push.in", &["-compat", "lammps/2025"]));
+    let printed = text(&run("soft_push.in", &["-compat", "lammps/2025"]));
     let wanted = [878.4232928, 941.5509851, 11.73595401, 878.4232928, 5173.999012, 422.9885982, -1888.102608];
     // Ten digits after 100 steps of 100 points.
-    close(&said, "RESULT", &wanted, 1e-9);
+    close(&printed, "RESULT", &wanted, 1e-9);
     // Twenty turns of a line search multiply roundings.
-    close(&said, "RELAXED", &[46.84319115], 1e-6);
+    close(&printed, "RELAXED", &[46.84319115], 1e-6);
 }
 
 /// LAMMPS 22Jul2025: pressure, fx of particle 1, energy for each rule of mixing, with weights 0.5 and 0.25 between bonded particles.
@@ -38,10 +38,10 @@ fn weights_in_part_and_rules_of_mixing_are_lammps() {
         [0.0329482805452, -6.59620037719, 12.8397808],
     ];
     for (style, line, wanted) in [("soft", "soft 1.1", soft), ("bpm/spring", "bpm/spring", springs)] {
-        let said = text(&run("soft_between_bonds.in", &["-var", "style", style, "-var", "line", line]));
+        let printed = text(&run("soft_between_bonds.in", &["-var", "style", style, "-var", "line", line]));
         for (rule, wanted) in rules.iter().zip(wanted) {
             // All twelve digits that LAMMPS prints.
-            close(&said, &format!("RESULT_{rule}"), &wanted, 1e-11);
+            close(&printed, &format!("RESULT_{rule}"), &wanted, 1e-11);
         }
     }
 }
@@ -49,23 +49,23 @@ fn weights_in_part_and_rules_of_mixing_are_lammps() {
 /// LAMMPS 22Jul2025: angles, bonds, pe and ke of a chain, angle types; angles and bonds after replicate, a molecule and a line.
 #[test]
 fn chains_keep_their_angles() {
-    let said = text(&run("chain_with_angles.in", &[]));
-    close(&said, "RESULT", &[3.0, 4.0, 1.086232601, 2.750469687, 3.0], 1e-9);
-    close(&said, "MORE", &[8.0, 10.0], 0.0);
-    close(&said, "RESTARTED", &[3.0, 4.0], 0.0);
-    close(&said, "READ", &[3.0, 4.0, 3.0], 0.0);
+    let printed = text(&run("chain_with_angles.in", &[]));
+    close(&printed, "RESULT", &[3.0, 4.0, 1.086232601, 2.750469687, 3.0], 1e-9);
+    close(&printed, "MORE", &[8.0, 10.0], 0.0);
+    close(&printed, "RESTARTED", &[3.0, 4.0], 0.0);
+    close(&printed, "READ", &[3.0, 4.0, 3.0], 0.0);
     // The file that was written names the coefficients of all three types, so that `angle_style zero` needs no further lines.
-    assert!(!said.contains("error["), "{said}");
+    assert!(!printed.contains("error["), "{printed}");
 }
 
 /// ω = t T/(2/5 m R²), m = π/6, R = 1/2, t = 1; the total before each fix changes it.
 #[test]
 fn torques_of_single_spheres_are_added_and_set() {
     let inertia = 0.4 * std::f64::consts::PI / 6.0 * 0.25;
-    let said = text(&run("torques_of_spheres.in", &[]));
-    let found = numbers(&said, "RESULT");
+    let printed = text(&run("torques_of_spheres.in", &[]));
+    let found = numbers(&printed, "RESULT");
     let wanted = [0.02 / inertia, 0.1 / inertia, 0.02 / inertia, 0.0, 0.0, 0.02, 0.1];
-    assert_eq!(found.len(), wanted.len(), "{said}");
+    assert_eq!(found.len(), wanted.len(), "{printed}");
     // A hundred additions of equal numbers.
     assert!(
         found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-13 * (1.0 + b)),
@@ -117,23 +117,23 @@ fn dipoles_turn_in_fields() {
         [0.57721101712513, 0.12634511395096, 0.38841260778982],
     ];
     for (k, (update, after)) in [("dipole", plain), ("dipole/dlm", rotations)].into_iter().enumerate() {
-        let said = text(&run("dipoles_in_a_field.in", &["-var", "u", update, "-compat", "lammps/2025"]));
+        let printed = text(&run("dipoles_in_a_field.in", &["-var", "u", update, "-compat", "lammps/2025"]));
         // All digits at first; 500 steps of rounding after that.
-        close(&said, "RESULT0", &start, 1e-13);
-        close(&said, "RESULT1", &after, 1e-9);
-        let second = numbers(&said, "RESULT2");
-        assert!(second[4..6].iter().zip(&energies[k]).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{said}");
+        close(&printed, "RESULT0", &start, 1e-13);
+        close(&printed, "RESULT1", &after, 1e-9);
+        let second = numbers(&printed, "RESULT2");
+        assert!(second[4..6].iter().zip(&energies[k]).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{printed}");
         let (then, turned, moved) =
-            (numbers(&said, "RESULT2")[0], numbers(&said, "ROTATED"), numbers(&said, "MOVED"));
-        assert!(turned == moved && turned[0] == then, "{said}");
-        close(&said, "RIGID", &rigid[k], 1e-9);
-        assert_eq!(numbers(&said, "RESTARTED")[1], 0.7);
-        assert_eq!(numbers(&said, "READ"), numbers(&said, "RESTARTED"), "{said}");
+            (numbers(&printed, "RESULT2")[0], numbers(&printed, "ROTATED"), numbers(&printed, "MOVED"));
+        assert!(turned == moved && turned[0] == then, "{printed}");
+        close(&printed, "RIGID", &rigid[k], 1e-9);
+        assert_eq!(numbers(&printed, "RESTARTED")[1], 0.7);
+        assert_eq!(numbers(&printed, "READ"), numbers(&printed, "RESTARTED"), "{printed}");
     }
     // A quarter of a turn about z, and another one in 2.5 of 10 time units.
-    let said = text(&run("dipoles_in_a_field.in", &["-var", "u", "dipole"]));
-    let before = numbers(&said, "RESULT2")[0];
-    let (turned, moved) = (numbers(&said, "ROTATED"), numbers(&said, "MOVED"));
-    assert!((turned[1] - before).abs() < 1e-12, "{said}");
-    assert!((moved[0] + turned[1]).abs() < 1e-12 && (moved[1] - turned[0]).abs() < 1e-12, "{said}");
+    let printed = text(&run("dipoles_in_a_field.in", &["-var", "u", "dipole"]));
+    let before = numbers(&printed, "RESULT2")[0];
+    let (turned, moved) = (numbers(&printed, "ROTATED"), numbers(&printed, "MOVED"));
+    assert!((turned[1] - before).abs() < 1e-12, "{printed}");
+    assert!((moved[0] + turned[1]).abs() < 1e-12 && (moved[1] - turned[0]).abs() < 1e-12, "{printed}");
 }

@@ -4,7 +4,7 @@ use super::{decks, numbers, run, text};
 use std::process::Command;
 
 /// What a deck prints behind a name; it must end well.
-fn said(deck: &str, name: &str, variables: &[(&str, &str)]) -> Vec<f64> {
+fn output_of(deck: &str, name: &str, variables: &[(&str, &str)]) -> Vec<f64> {
     said_with(deck, name, variables, &[])
 }
 
@@ -20,8 +20,9 @@ fn said_with(deck: &str, name: &str, variables: &[(&str, &str)], switches: &[&st
 
 #[test]
 fn staggered_steps_make_no_energy_by_friction() {
-    let of =
-        |scheme, m, dt| said("staggered_friction.in", "ENERGY", &[("scheme", scheme), ("m", m), ("dt", dt)]);
+    let of = |scheme, m, dt| {
+        output_of("staggered_friction.in", "ENERGY", &[("scheme", scheme), ("m", m), ("dt", dt)])
+    };
     // Plain steps: 0.98728, 0.98763, 0.98766 with 1e-4, 2e-5, 5e-6 s.
     const RIGHT: f64 = 0.98766;
     let kick = of("kick", "4", "1e-4");
@@ -35,8 +36,8 @@ fn staggered_steps_make_no_energy_by_friction() {
 
 #[test]
 fn a_block_at_rest_on_a_rough_floor_is_given_nothing_by_friction() {
-    let [friction, kinetic] = said("staggered_resting_block.in", "REST", &[])[..] else { panic!() };
-    let plain = said("staggered_resting_block.in", "REST", &[("scheme", "verlet")]);
+    let [friction, kinetic] = output_of("staggered_resting_block.in", "REST", &[])[..] else { panic!() };
+    let plain = output_of("staggered_resting_block.in", "REST", &[("scheme", "verlet")]);
     // Nothing slides: plain steps leave -4e-9 J in the channel, rounding of what the springs hold. Staggered ones left -1.7e-5 J and
     // gave a block that falls asleep a fifth more energy of motion.
     assert!(friction.abs() < 1e-7, "{friction} {plain:?}");
@@ -46,8 +47,9 @@ fn a_block_at_rest_on_a_rough_floor_is_given_nothing_by_friction() {
 #[test]
 fn staggered_beds_with_friction_press_as_plain_ones() {
     let short = ("u", "0.0005");
-    let plain = said("staggered_bed.in", "FORCE", &[short])[0];
-    let kick = said("staggered_bed.in", "FORCE", &[short, ("scheme", "kick"), ("m", "5"), ("dt", "2e-4")])[0];
+    let plain = output_of("staggered_bed.in", "FORCE", &[short])[0];
+    let kick =
+        output_of("staggered_bed.in", "FORCE", &[short, ("scheme", "kick"), ("m", "5"), ("dt", "2e-4")])[0];
     // 12.182 and 12.196 N; it was 12.475 N with velocities at the ends of steps. The whole bed: 482.98 and 483.06 N, it was 492.79 N.
     assert!((kick / plain - 1.0).abs() < 2e-3, "{kick} {plain}");
 }
@@ -71,7 +73,7 @@ fn the_ledger_of_a_pair_closes_in_second_order() {
         for what in ["pair", "wall"] {
             let residual = |dt| {
                 let variables = [("what", what), ("dt", dt), ("tan", tangential)];
-                said("ledger_mindlin_pair.in", "RESIDUAL", &variables)[0].abs()
+                output_of("ledger_mindlin_pair.in", "RESIDUAL", &variables)[0].abs()
             };
             let [coarse, middle, fine] = ["1e-5", "5e-6", "2.5e-6"].map(residual);
             // Trapezoidal sums over the forces that acted: of second order, a quarter for each half (3.7 to 4.1 measured). For pairs it
@@ -87,7 +89,7 @@ fn the_ledger_of_a_pair_closes_in_second_order() {
 
 #[test]
 fn the_ledger_of_a_heap_closes_with_the_step() {
-    let residual = |dt| said("ledger_heap.in", "RESIDUAL", &[("dt", dt)])[0].abs();
+    let residual = |dt| output_of("ledger_heap.in", "RESIDUAL", &[("dt", dt)])[0].abs();
     let [coarse, fine] = ["1e-4", "5e-5"].map(residual);
     // A share of the work of gravity: -2.3e-2 and -1.5e-2 it was; -1.15e-3 and -2.9e-4. First order requires a half.
     assert!(coarse < 2e-3 && fine < 0.5 * coarse, "{coarse} {fine}");
@@ -95,8 +97,9 @@ fn the_ledger_of_a_heap_closes_with_the_step() {
 
 #[test]
 fn sliding_impacts_end_where_what_presses_rubs() {
-    let of =
-        |name, e, limit| said("sliding_impact.in", "SLID", &[("name", name), ("e", e), ("limit", limit)]);
+    let of = |name, e, limit| {
+        output_of("sliding_impact.in", "SLID", &[("name", name), ("e", e), ("limit", limit)])
+    };
     let impacts =
         [("spin_wall", 0.4, 0.2, "0.5"), ("spin_heavy", 0.4, 0.2, "0.5"), ("oblique", 0.25, 1.0, "0.7")];
     for (name, mu, speed, e) in impacts {
@@ -152,7 +155,7 @@ fn the_step_is_judged_by_grains_that_come_later() {
 #[test]
 fn arms_of_the_older_styles_can_keep_angular_momentum() {
     for style in ["hooke", "hertz"] {
-        let of = |arms| said("gran_angular_momentum.in", "MOMENTUM", &[("sty", style), ("arms", arms)]);
+        let of = |arms| output_of("gran_angular_momentum.in", "MOMENTUM", &[("sty", style), ("arms", arms)]);
         let off = |all: &[f64]| (0..3).map(|k| (all[3 + k] - all[k]).abs()).fold(0.0, f64::max);
         // Rounding of 20,000 steps: parts of 51 to 1e-9.
         assert!(off(&of("middle")) < 1e-9 * 51.0, "{style}: {:?}", of("middle"));
@@ -163,7 +166,7 @@ fn arms_of_the_older_styles_can_keep_angular_momentum() {
 
 #[test]
 fn points_of_solids_can_take_friction_where_they_are() {
-    let of = |arms| said("hybrid_angular_momentum.in", "MOMENTUM", &[("arms", arms)]);
+    let of = |arms| output_of("hybrid_angular_momentum.in", "MOMENTUM", &[("arms", arms)]);
     let [before, after, spin] = of("point")[..] else { panic!() };
     // Rounding of 300 steps.
     assert!((after - before).abs() < 1e-12 * spin.abs().max(before.abs()), "{before} {after} {spin}");

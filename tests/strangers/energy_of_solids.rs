@@ -120,7 +120,7 @@ fn nothing_breaks_where_a_line_search_only_looks() {
 }
 
 #[test]
-fn a_soft_body_says_so() {
+fn a_soft_body_gives_a_warning() {
     // A bar of six layers: a pull gives 0.65 of E by default (measured with `minimize`), 1.02 with both corrections; the note takes
     // strain across the bar for even, which it is not.
     let soft = text(&run("soft_bar.in", &[]));

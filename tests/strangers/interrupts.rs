@@ -105,12 +105,12 @@ fn is_whole(s: &Scene) {
     let asked = s.steps / 20 * 10 + 1;
     let deck =
         format!("{make}{again}restart 1000000 DIR/cut.*.restart\nrun {}\nprint never\n", s.steps * 1000);
-    let (left, said, interrupted) = work(folder, &deck, list, Some(asked));
+    let (left, printed, interrupted) = work(folder, &deck, list, Some(asked));
     let end = left.clock.step;
-    assert!(interrupted && (asked + 1..=asked + 2).contains(&end), "{name}: ended at {end}\n{said}");
+    assert!(interrupted && (asked + 1..=asked + 2).contains(&end), "{name}: ended at {end}\n{printed}");
     assert!(
-        said.contains(&format!("Interrupted at step {end}")) && !said.contains("never"),
-        "{name}\n{said}"
+        printed.contains(&format!("Interrupted at step {end}")) && !printed.contains("never"),
+        "{name}\n{printed}"
     );
 
     work(folder, &format!("{make}{again}run {end}\nwrite_restart DIR/written\n"), list, None);
@@ -118,14 +118,14 @@ fn is_whole(s: &Scene) {
     let (cut, written) = (file(&format!("cut.{end}.restart")), file("written"));
     assert!(cut == written, "{name}: the interrupt's file is not that of write_restart");
 
-    let (whole, told, _) = work(folder, &format!("{make}{again}run {}\n", end + 20), list, None);
+    let (whole, output_of, _) = work(folder, &format!("{make}{again}run {}\n", end + 20), list, None);
     let on = format!("read_restart DIR/cut.{end}.restart\n{again}run 20\n");
-    let (gone_on, said, _) = work(folder, &on, list, None);
-    assert!(!said.contains("computed anew"), "{name}\n{said}");
+    let (gone_on, printed, _) = work(folder, &on, list, None);
+    assert!(!printed.contains("computed anew"), "{name}\n{printed}");
     assert!(bits(&gone_on) == bits(&whole), "{name}: other bits");
     assert!(memory(&gone_on) == memory(&whole), "{name}: contacts, bonds or fixes differ");
-    let later = |said: &str| rows(said).into_iter().filter(|(step, _)| *step > end).collect::<Vec<_>>();
-    assert!(!later(&told).is_empty() && later(&told) == later(&said), "{name}: other rows");
+    let later = |printed: &str| rows(printed).into_iter().filter(|(step, _)| *step > end).collect::<Vec<_>>();
+    assert!(!later(&output_of).is_empty() && later(&output_of) == later(&printed), "{name}: other rows");
 }
 
 #[test]
@@ -147,9 +147,9 @@ fn a_minimization_that_is_interrupted_leaves_the_file_of_write_restart() {
         let folder = folder.path();
         let make = format!("{FRUSTRATED}min_style {style}\n");
         let deck = format!("{make}restart 2 DIR/each.*.restart\nminimize 0 0 500 5000\n");
-        let (left, said, interrupted) = work(folder, &deck, false, Some(4));
+        let (left, printed, interrupted) = work(folder, &deck, false, Some(4));
         let end = left.clock.step;
-        assert!(interrupted && end == 5 && said.contains("Interrupted at step 5"), "{style}\n{said}");
+        assert!(interrupted && end == 5 && printed.contains("Interrupted at step 5"), "{style}\n{printed}");
         work(folder, &format!("{make}minimize 0 0 {end} 5000\nwrite_restart DIR/written\n"), false, None);
         let (cut, written) = (fs::read(folder.join("each.5.restart")), fs::read(folder.join("written")));
         assert!(
@@ -170,10 +170,10 @@ fn a_signal_between_two_runs_leaves_what_the_last_one_left() {
     let make = format!("{}{}", scenes::PILE, scenes::PILE_AGAIN);
     // The flag is set in the last step: the run is over, and no line follows.
     let deck = format!("{make}restart 1000 DIR/cut.*.restart\nrun 33\nprint never\nrun 10\n");
-    let (_, said, interrupted) = work(folder, &deck, false, Some(33));
+    let (_, printed, interrupted) = work(folder, &deck, false, Some(33));
     assert!(
-        interrupted && said.contains("Interrupted behind in.deck:") && !said.contains("\nnever"),
-        "{said}"
+        interrupted && printed.contains("Interrupted behind in.deck:") && !printed.contains("\nnever"),
+        "{printed}"
     );
     work(folder, &format!("{make}run 33\nwrite_restart DIR/written\n"), false, None);
     let file = |name: &str| fs::read(folder.join(name)).unwrap();
@@ -254,7 +254,7 @@ fn terminate(child: &Child) {
 
 #[cfg(unix)]
 #[test]
-fn partitions_end_at_whole_steps_when_the_program_around_them_is_asked_to() {
+fn partitions_end_at_whole_steps_when_their_program_is_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let deck = format!(
@@ -328,9 +328,9 @@ fn all_long_work_ends_at_a_signal() {
         let folder = tempfile::tempdir().unwrap();
         let ending = session.run_text("in.deck", &deck.replace("DIR", folder.path().to_str().unwrap()));
         let late = asks.join().unwrap().elapsed();
-        let said = screen.text();
-        assert!(ending.is_ok_and(|e| e.interrupted) && !said.contains("never"), "{name}\n{said}");
-        assert!(said.contains("Interrupted "), "{name}\n{said}");
+        let printed = screen.text();
+        assert!(ending.is_ok_and(|e| e.interrupted) && !printed.contains("never"), "{name}\n{printed}");
+        assert!(printed.contains("Interrupted "), "{name}\n{printed}");
         // Half a second between two looks, two seconds to end a long step, and a machine that is busy with other tests.
         assert!(late < Duration::from_secs(8), "{name}: {late:?}");
     }
@@ -347,11 +347,11 @@ fn a_limit_of_time_ends_lines_too() {
         let began = Instant::now();
         let output =
             program(folder.path(), deck, &["-log", "none", "-timeout", "1"]).wait_with_output().unwrap();
-        let said = text(&output);
-        assert_eq!(output.status.code(), Some(1), "{name}\n{said}");
+        let printed = text(&output);
+        assert_eq!(output.status.code(), Some(1), "{name}\n{printed}");
         assert!(
-            said.contains("PG0209") && said.contains("the limit of `-timeout` has passed"),
-            "{name}\n{said}"
+            printed.contains("PG0209") && printed.contains("the limit of `-timeout` has passed"),
+            "{name}\n{printed}"
         );
         // A second, and two more that lines are given.
         assert!(began.elapsed() > Duration::from_millis(2900), "{name}: {:?}", began.elapsed());
@@ -359,27 +359,27 @@ fn a_limit_of_time_ends_lines_too() {
 }
 
 /// The program's output for a deck under some arguments.
-fn told(deck: &str, arguments: &[&str]) -> Output {
+fn output_of(deck: &str, arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().unwrap();
     program(folder.path(), deck, &[&["-log", "none"], arguments].concat()).wait_with_output().unwrap()
 }
 
 #[test]
 fn short_steps_count_and_have_a_bound() {
-    let refused = told(&ENDLESS[4].1.replace("respa 2 1000000", "respa 3 2000 4000"), &[]);
-    let said = text(&refused);
+    let refused = output_of(&ENDLESS[4].1.replace("respa 2 1000000", "respa 3 2000 4000"), &[]);
+    let printed = text(&refused);
     assert!(
-        said.contains("8000000 of the shortest steps would fill one of the longest, 1000000 may"),
-        "{said}"
+        printed.contains("8000000 of the shortest steps would fill one of the longest, 1000000 may"),
+        "{printed}"
     );
     let deck = ENDLESS[4].1.replace("respa 2 1000000\nrun 1000", "respa 2 4\nrun 3");
-    let counted = told(&deck, &["-safe", "-limit", "steps", "11"]);
+    let counted = output_of(&deck, &["-safe", "-limit", "steps", "11"]);
     assert!(
         text(&counted).contains("3 steps of 4 short ones each after 0 would be more than the 11"),
         "{}",
         text(&counted)
     );
-    assert!(told(&deck, &["-safe", "-limit", "steps", "12"]).status.success());
+    assert!(output_of(&deck, &["-safe", "-limit", "steps", "12"]).status.success());
 }
 
 #[cfg(unix)]
@@ -391,9 +391,9 @@ fn a_file_that_outgrows_its_limit_is_an_error_of_the_run() {
     // A pile's restart file takes 30 KB and more; 16 blocks are 8 or 16 KB, by the shell.
     let line = format!("ulimit -f 16; exec {} -in in.deck -threads 1", env!("CARGO_BIN_EXE_perigrain"));
     let output = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
-    let said = text(&output);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("cannot write `r.3.restart`: File too large"), "{said}");
+    let printed = text(&output);
+    assert_eq!(output.status.code(), Some(1), "{printed}");
+    assert!(printed.contains("cannot write `r.3.restart`: File too large"), "{printed}");
     let names = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
     let names: Vec<String> = names.collect();
     assert!(names.iter().all(|n| !n.ends_with(".part") && !n.ends_with(".restart")), "{names:?}");

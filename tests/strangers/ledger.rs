@@ -3,7 +3,7 @@
 use super::{numbers, run, text};
 
 /// What a deck prints behind a name; it must end well.
-fn said(deck: &str, name: &str, variables: &[&str]) -> Vec<f64> {
+fn output_of(deck: &str, name: &str, variables: &[&str]) -> Vec<f64> {
     let variables: Vec<&str> = variables.chunks(2).flat_map(|pair| ["-var", pair[0], pair[1]]).collect();
     let output = run(deck, &variables);
     let text = text(&output);
@@ -13,7 +13,7 @@ fn said(deck: &str, name: &str, variables: &[&str]) -> Vec<f64> {
 
 #[test]
 fn a_torn_plate_has_the_same_sums_in_one_run_in_two_and_in_a_loop() {
-    let of = |cut| said("ledger_notch.in", "SUMS", &["cut", cut]);
+    let of = |cut| output_of("ledger_notch.in", "SUMS", &["cut", cut]);
     let one = of("one");
     assert!(one[2] > 5e-5, "nothing broke: {one:?}");
     assert_eq!(of("two"), one);
@@ -24,7 +24,7 @@ fn a_torn_plate_has_the_same_sums_in_one_run_in_two_and_in_a_loop() {
 
 #[test]
 fn a_heap_has_the_same_sums_in_one_run_and_in_two() {
-    let of = |first| said("ledger_heap.in", "SUMS", &["end", "0.05", "first", first]);
+    let of = |first| output_of("ledger_heap.in", "SUMS", &["end", "0.05", "first", first]);
     assert_eq!(of("217"), of("0"));
 }
 

@@ -76,8 +76,8 @@ fn processor(deck: &str, arguments: &[&str]) -> f64 {
         .unwrap();
     assert!(output.status.success(), "{}", std::fs::read_to_string(folder.path().join("said")).unwrap());
     // The second line is that of the shell's children: minutes and seconds in the program, then in the system.
-    let said = String::from_utf8(output.stdout).unwrap();
-    let time = said.lines().nth(1).unwrap().split_whitespace().next().unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let time = printed.lines().nth(1).unwrap().split_whitespace().next().unwrap();
     let (minutes, seconds) = time.trim_end_matches('s').split_once('m').unwrap();
     60.0 * minutes.parse::<f64>().unwrap() + seconds.parse::<f64>().unwrap()
 }

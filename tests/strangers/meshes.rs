@@ -9,11 +9,11 @@ const HERTZ: f64 = 518.027;
 
 fn force(file: &str, x: f64, y: f64) -> [f64; 3] {
     let place = ["-var", "px", &x.to_string(), "-var", "py", &y.to_string()].map(str::to_string);
-    let said = text(&run(
+    let printed = text(&run(
         "mesh_seam.in",
         &[&["-var", "file", file][..], &place.each_ref().map(|s| &s[..])].concat(),
     ));
-    numbers(&said, "force").try_into().unwrap()
+    numbers(&printed, "force").try_into().unwrap()
 }
 
 #[test]
@@ -33,28 +33,28 @@ fn seams_count_once() {
 
 #[test]
 fn a_ball_that_rolls_over_a_seam_keeps_its_energy() {
-    let said = text(&run("mesh_seam_rolls.in", &[]));
-    let [kept, x, up] = numbers(&said, "rolled")[..] else { panic!("{said}") };
+    let printed = text(&run("mesh_seam_rolls.in", &[]));
+    let [kept, x, up] = numbers(&printed, "rolled")[..] else { panic!("{printed}") };
     // It lost 0.12 % to a jump of 0.24 m/s and was 2 mm behind. The weight is balanced to four digits: it rises by 1e-4 m/s at most.
     assert!((kept - 1.0).abs() < 1e-7 && (x - 0.3).abs() < 1e-6 && up.abs() < 1e-3, "{kept} {x} {up}");
 }
 
 #[test]
 fn triangles_without_area_are_left_out_with_a_warning() {
-    let said = text(&run("mesh_seam.in", &["-var", "file", "flat_triangles.stl"]));
-    let fz = numbers(&said, "force")[2];
+    let printed = text(&run("mesh_seam.in", &["-var", "file", "flat_triangles.stl"]));
+    let fz = numbers(&printed, "force")[2];
     assert!((fz / HERTZ - 1.0).abs() < 1e-6, "{fz}");
     assert!(
-        said.contains("2 triangles of `flat_triangles.stl` have no area, the first is 3: left out"),
-        "{said}"
+        printed.contains("2 triangles of `flat_triangles.stl` have no area, the first is 3: left out"),
+        "{printed}"
     );
 }
 
 #[test]
 fn lines_of_comments_in_a_text_of_triangles_are_passed_over_with_a_note() {
-    let said = text(&run("mesh_seam.in", &["-var", "file", "seam_commented.stl"]));
-    assert!((numbers(&said, "force")[2] / HERTZ - 1.0).abs() < 1e-6, "{said}");
-    assert!(said.contains("`seam_commented.stl` has 2 lines that begin with `#`"), "{said}");
+    let printed = text(&run("mesh_seam.in", &["-var", "file", "seam_commented.stl"]));
+    assert!((numbers(&printed, "force")[2] / HERTZ - 1.0).abs() < 1e-6, "{printed}");
+    assert!(printed.contains("`seam_commented.stl` has 2 lines that begin with `#`"), "{printed}");
 }
 
 #[cfg(unix)]
@@ -70,8 +70,8 @@ fn a_mesh_costs_what_its_regions_cost() {
 #[test]
 fn values_kept_every_step_take_a_time_that_is_linear() {
     let of = |n: &str| processor("vector_every_step.in", &["-var", "n", n]);
-    let said = text(&run("vector_every_step.in", &["-var", "n", "500"]));
-    assert_eq!(numbers(&said, "kept"), [500.0]);
+    let printed = text(&run("vector_every_step.in", &["-var", "n", "500"]));
+    assert_eq!(numbers(&printed, "kept"), [500.0]);
     // Four times the steps took ten times as long.
     let [short, long] = ["20000", "80000"].map(of);
     assert!(long < 6.0 * short + 0.05, "{short} {long}");

@@ -424,7 +424,7 @@ fn columns_right(before: &World, now: &World) -> bool {
 }
 
 #[test]
-fn every_mover_does_to_every_field_what_the_field_says() {
+fn every_mover_follows_the_rule_of_every_field() {
     for (name, how, lines) in MOVERS {
         if lines.is_empty() || matches!(how, How::Each | How::Made | How::Copied) {
             continue;
@@ -434,8 +434,8 @@ fn every_mover_does_to_every_field_what_the_field_says() {
             sub(turned(turn_of(&before.particles, &now.particles), [1.0, 2.0, -2.0]), [1.0, 2.0, -2.0]);
         assert_eq!(length(spun) > 0.01, *how == How::Turned, "{name}: `{lines}` turns by {spun:?}");
         for (field, under) in UNDER {
-            let said = wrong(&field.to_string(), *under, &before, &now, lines);
-            assert_eq!(said, None, "{name}");
+            let printed = wrong(&field.to_string(), *under, &before, &now, lines);
+            assert_eq!(printed, None, "{name}");
         }
     }
 }
@@ -507,19 +507,19 @@ fn copies_are_held_to_places_of_their_own() {
 fn straight_groups_have_an_angular_velocity() {
     let wanted = [-0.019753086204542, 0.290123453629211, 1.00246912488051];
     for (mass, compat) in [("0.5", "none"), ("5e5", "none"), ("0.5", "lammps/2025")] {
-        let said = |what: &str| {
+        let output_of = |what: &str| {
             let how = ["-var", "what", what, "-var", "m", mass, "-compat", compat];
             // By default there is nothing to be compatible with.
             text(&run("straight_group.in", if compat == "none" { &how[..6] } else { &how }))
         };
-        let out = said("omega");
+        let out = output_of("omega");
         // Ten digits of what rounding leaves of sums of nine products.
         let fits = |(k, a): (usize, f64)| (a - wanted[k % 3]).abs() < 1e-10;
         let found = numbers(&out, "OMEGA");
         assert!(found.len() == 6 && found.into_iter().enumerate().all(fits), "{mass} {compat}: {out}");
         for (what, left) in [("zero", 1e-25), ("momentum", 1e-8)] {
             // Of 0.22 J/kg; the fix acts once the step is done (LAMMPS 2.4e-9).
-            let out = said(what);
+            let out = output_of(what);
             assert!(numbers(&out, "ENERGY")[0] < left, "{mass} {compat}: {out}");
         }
     }

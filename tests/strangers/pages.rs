@@ -20,9 +20,9 @@ fn the_deck_of_the_readme_breaks_and_draws() {
     fs::write(path("in.readme"), format!("{deck}{more}")).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
     let output = command.args(["in.readme", "-log", "none"]).current_dir(folder.path()).output().unwrap();
-    let said = text(&output);
-    assert!(output.status.success() && !said.contains("warning"), "{said}");
-    let found = super::numbers(&said, "RES");
+    let printed = text(&output);
+    assert!(output.status.success() && !printed.contains("warning"), "{printed}");
+    let found = super::numbers(&printed, "RES");
     assert!(found[0] > 0.014 && found[1] > 0.5, "{found:?}");
     assert!(fs::read(path("crack.png")).unwrap().starts_with(b"\x89PNG"));
 }

@@ -92,8 +92,8 @@ fn movies_need_no_other_program() {
     assert!(!text(&output).contains("ffmpeg"), "{}", text(&output));
     let output =
         run_in(folder.path(), "picture_of_walls.in", &["-var", "name", "film.mp4"], Some(folder.path()));
-    let said = text(&output);
-    assert!(said.contains("the movie is written as `film.apng`"), "{said}");
+    let printed = text(&output);
+    assert!(printed.contains("the movie is written as `film.apng`"), "{printed}");
     assert_eq!(frames(&folder.path().join("film.apng")), 3);
     assert!(!folder.path().join("film.mp4").exists());
 }

@@ -5,7 +5,7 @@ use super::{numbers, run, text};
 const STYLES: [&str; 4] = ["rigid", "rigid/small", "rigid/nve", "rigid/nve/small"];
 
 /// What a deck prints behind `name`, with values of its variables and further arguments.
-fn said(deck: &str, name: &str, variables: &[(&str, &str)], more: &[&str]) -> (Vec<f64>, String) {
+fn output_of(deck: &str, name: &str, variables: &[(&str, &str)], more: &[&str]) -> (Vec<f64>, String) {
     let variables = variables.iter().flat_map(|(name, value)| ["-var", *name, *value]);
     let arguments: Vec<&str> = variables.chain(more.iter().copied()).collect();
     let text = text(&run(deck, &arguments));
@@ -27,7 +27,7 @@ fn bodies_of_infile_fall_with_g_and_do_not_turn() {
         for file in ["body.inf", "off.inf"] {
             for how in ["plain", "keyword"] {
                 let deck_of = [("how", how), ("sty", style), ("inf", file)];
-                let (found, text) = said(deck, "@", &deck_of, &[]);
+                let (found, text) = output_of(deck, "@", &deck_of, &[]);
                 close(&found, &falls, 1e-14);
                 // Where LAMMPS needs words to get there, they are named.
                 assert_eq!(
@@ -36,7 +36,7 @@ fn bodies_of_infile_fall_with_g_and_do_not_turn() {
                     "{text}"
                 );
             }
-            let (found, text) = said(
+            let (found, text) = output_of(
                 deck,
                 "@",
                 &[("how", "keyword"), ("sty", style), ("inf", file)],
@@ -48,7 +48,7 @@ fn bodies_of_infile_fall_with_g_and_do_not_turn() {
         // A weight that swings, pulled at the centre: g of 0.02 a step from 0 to 2, by the trapezoidal rule.
         for how in ["ramp", "swinging"] {
             close(
-                &said(deck, "@", &[("how", how), ("sty", style), ("inf", "off.inf")], &[]).0,
+                &output_of(deck, "@", &[("how", how), ("sty", style), ("inf", "off.inf")], &[]).0,
                 &falls,
                 1e-14,
             );
@@ -99,13 +99,13 @@ fn gravity_on_particles_of_bodies_is_lammps_and_warned_about() {
     for (file, how, expected) in lammps {
         for style in ["rigid", "rigid/small"] {
             let compat = ["-compat", "lammps/2025"];
-            let (found, text) = said(deck, "@", &[("how", how), ("sty", style), ("inf", file)], &compat);
+            let (found, text) = output_of(deck, "@", &[("how", how), ("sty", style), ("inf", file)], &compat);
             close(&found, &expected, 2e-14);
             assert!(text.contains("warning[PG0117]") && text.contains("`disable`"), "{text}");
         }
     }
     // Gravity that acts twice is reported by default as well.
-    let (found, text) = said(deck, "@", &[("how", "twice"), ("inf", "off.inf")], &[]);
+    let (found, text) = output_of(deck, "@", &[("how", "twice"), ("inf", "off.inf")], &[]);
     close(&found[2..], &lammps[2].2[2..], 2e-14);
     assert!(text.contains("pulls these bodies twice"), "{text}");
     // And the ID must be that of a fix gravity.
@@ -132,7 +132,7 @@ fn templates_give_mass_centre_and_inertia() {
         for (how, steps) in [("deposit", 100.5), ("create", 101.0)] {
             for grav in ["plain", "keyword"] {
                 let variables = [("how", how), ("sty", style), ("grav", grav)];
-                let (mass, text) = said(deck, "mass", &variables, &[]);
+                let (mass, text) = output_of(deck, "mass", &variables, &[]);
                 assert_eq!(mass, [1.5]);
                 let mut moments = numbers(&text, "inertia");
                 moments.sort_by(f64::total_cmp);
@@ -193,7 +193,7 @@ fn templates_as_lammps_takes_them() {
         ),
     ];
     for (mol, grav, how, mass, inertia, x, w, fall) in cases {
-        let (found, text) = said(deck, "mass", &[("mol", mol), ("grav", grav), ("how", how)], &compat);
+        let (found, text) = output_of(deck, "mass", &[("mol", mol), ("grav", grav), ("how", how)], &compat);
         assert_eq!(found, [mass]);
         let mut moments = numbers(&text, "inertia");
         moments.sort_by(f64::total_cmp);
@@ -215,20 +215,20 @@ fn nearly_straight_bodies_stay_in_their_plane() {
         for off in ["1e-6", "1e-5", "1e-4", "1e-3"] {
             let expected = if nve { exact } else { lammps };
             // The larger `off`, the farther 2 is from the distance of the ends: by off².
-            close(&said(deck, "@", &[("sty", style), ("off", off)], &[]).0, &expected, 1e-9);
+            close(&output_of(deck, "@", &[("sty", style), ("off", off)], &[]).0, &expected, 1e-9);
         }
         // LAMMPS' steps keep to the plane in space where it is z = 0, and leave it where it leans.
         let compat = ["-compat", "lammps/2025"];
         close(
-            &said(deck, "@", &[("sty", style), ("dim", "3")], &compat).0,
+            &output_of(deck, "@", &[("sty", style), ("dim", "3")], &compat).0,
             if nve { &exact } else { &lammps },
             1e-9,
         );
-        close(&said(deck, "@", &[("sty", style), ("dim", "3")], &[]).0, &exact, 1e-9);
+        close(&output_of(deck, "@", &[("sty", style), ("dim", "3")], &[]).0, &exact, 1e-9);
         // Its plane is found from moments of 1e-7 of each other: a few roundings of 1e-16 over that.
         for off in ["1e-4", "1e-3"] {
             let leaning = [("sty", style), ("off", off)];
-            close(&said("rigid_nearly_straight_leaning.in", "@", &leaning, &[]).0, &exact, 1e-6);
+            close(&output_of("rigid_nearly_straight_leaning.in", "@", &leaning, &[]).0, &exact, 1e-6);
         }
     }
 }
@@ -238,7 +238,7 @@ fn free_bodies_keep_their_angular_momentum() {
     // Two equal moments, or three different ones. 3e4 steps: 3e-8 was missing under rigid/nve, growing with the square of the steps (6e-4 in 4e6).
     for style in STYLES {
         for third in ["0", "1"] {
-            let (found, _) = said("rigid_momentum.in", "@", &[("sty", style), ("third", third)], &[]);
+            let (found, _) = output_of("rigid_momentum.in", "@", &[("sty", style), ("third", third)], &[]);
             close(&found, &[0.0; 3], 1e-13); // roundings of sums; LAMMPS: 1e-11
         }
     }
@@ -250,7 +250,7 @@ fn the_ledger_knows_bodies() {
     // is the error of a step, which falls with its square.
     for how in ["plain", "keyword"] {
         let ledger = |dt: &str| {
-            let (found, text) = said("rigid_ledger.in", "@", &[("how", how), ("dt", dt)], &[]);
+            let (found, text) = output_of("rigid_ledger.in", "@", &[("how", how), ("dt", dt)], &[]);
             // At t = 1: M g²/2 = 0.75, by the trapezoidal rule to the last digits; the spheres have 4/3 of it.
             let fallen = numbers(&text, "fallen");
             assert!((fallen[0] - 0.75).abs() < 1e-12 && (fallen[1] - 0.75).abs() < 1e-12, "{fallen:?}");

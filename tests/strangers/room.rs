@@ -235,7 +235,7 @@ struct Ended {
 
 /// Runs the program with 4 GiB of addresses.
 fn ended(folder: &Path, deck: &str, arguments: &[&str]) -> Ended {
-    let said = fs::File::create(folder.join(format!("{deck}.said"))).unwrap();
+    let printed = fs::File::create(folder.join(format!("{deck}.said"))).unwrap();
     #[expect(clippy::zombie_processes, reason = "wait4 below waits for it")]
     let child = Command::new("sh")
         .args(["-c", "ulimit -v 4194304; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_perigrain")])
@@ -243,8 +243,8 @@ fn ended(folder: &Path, deck: &str, arguments: &[&str]) -> Ended {
         .args(arguments)
         .current_dir(folder)
         .stdin(Stdio::null())
-        .stdout(said.try_clone().unwrap())
-        .stderr(said)
+        .stdout(printed.try_clone().unwrap())
+        .stderr(printed)
         .spawn()
         .unwrap();
     let (mut status, mut usage) = (0, std::mem::MaybeUninit::<libc::rusage>::zeroed());
@@ -329,8 +329,8 @@ fn a_message_comes_once() {
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let said = super::text(&out);
-    let unknown = said.matches("fix style `nv`").count().max(said.matches("`nv`").count());
-    assert!(said.contains("this comes 500 times") && said.contains("1 error"), "{said}");
-    assert!(unknown < 5 && said.len() < 4000, "{said}");
+    let printed = super::text(&out);
+    let unknown = printed.matches("fix style `nv`").count().max(printed.matches("`nv`").count());
+    assert!(printed.contains("this comes 500 times") && printed.contains("1 error"), "{printed}");
+    assert!(unknown < 5 && printed.len() < 4000, "{printed}");
 }

@@ -4,8 +4,8 @@ use super::{numbers, run, text};
 
 /// What the deck prints behind `RESULT`, its number words only.
 fn result(deck: &str, arguments: &[&str]) -> Vec<f64> {
-    let said = text(&run(deck, arguments));
-    numbers(&said, "RESULT")
+    let printed = text(&run(deck, arguments));
+    numbers(&printed, "RESULT")
 }
 
 fn close(found: &[f64], wanted: &[f64], tolerance: f64) {
@@ -35,18 +35,18 @@ fn damping_of_cundall_brakes_a_grain_that_rises() {
 #[test]
 fn heat_of_a_contact_is_the_thirteenth_number_of_its_pair() {
     let flow = 20.0 * (0.25f64 * 0.02).sqrt() * 100.0;
-    let said = text(&run("pair_local_heat.in", &[]));
-    let found = numbers(&said, "RESULT");
+    let printed = text(&run("pair_local_heat.in", &[]));
+    let found = numbers(&printed, "RESULT");
     assert!((found[0].abs() / flow - 1.0).abs() < 1e-7 && found[0] == found[1], "{found:?} for {flow}");
 }
 
 #[test]
 fn properties_are_declared_again_behind_a_restart() {
     for (what, value) in [("mol", 3.0), ("d_foo", 3.5), ("temperature", 3.5)] {
-        let said = text(&run("property_atom_after_restart.in", &["-var", "what", what]));
-        let line = said.lines().rev().find(|l| l.starts_with("RESULT"));
+        let printed = text(&run("property_atom_after_restart.in", &["-var", "what", what]));
+        let line = printed.lines().rev().find(|l| l.starts_with("RESULT"));
         let found: Option<f64> = line.and_then(|l| l.split_whitespace().nth(2)?.parse().ok());
-        assert_eq!(found, Some(value), "{said}");
+        assert_eq!(found, Some(value), "{printed}");
     }
 }
 
@@ -54,14 +54,14 @@ fn properties_are_declared_again_behind_a_restart() {
 #[test]
 fn bonds_through_periodic_faces_join_the_nearest_copies() {
     let energy = |repeat: &str| {
-        let said = text(&run("replicate_bonds_through_faces.in", &["-var", "rep", repeat]));
-        let line = said.lines().rev().find(|l| l.starts_with("@ ")).unwrap_or_else(|| panic!("{said}"));
+        let printed = text(&run("replicate_bonds_through_faces.in", &["-var", "rep", repeat]));
+        let line = printed.lines().rev().find(|l| l.starts_with("@ ")).unwrap_or_else(|| panic!("{printed}"));
         let words: Vec<&str> = line.split_whitespace().collect();
         let behind = |name: &str| {
             let at = words.iter().position(|w| *w == name).unwrap();
             words[at + 1].parse::<f64>().unwrap()
         };
-        (behind("e/atom"), behind("longest"), said.contains("span whole repetitions"))
+        (behind("e/atom"), behind("longest"), printed.contains("span whole repetitions"))
     };
     let (alone, longest, _) = energy("1 1 1");
     let (e, l, warned) = energy("2 2 2 bond/periodic");
@@ -83,8 +83,8 @@ fn planes_of_walls_follow_variables() {
     close(&result("wall_planes_by_variables.in", &[]), &wanted, 0.02);
     // A run cut in two by a restart file has the same bits, also in the middle of a contact.
     let cut = |half: &str| {
-        let said = text(&run("wall_planes_by_variables.in", &["-var", "half", half]));
-        said.lines().rev().find(|l| l.starts_with("RESULT")).map(str::to_string)
+        let printed = text(&run("wall_planes_by_variables.in", &["-var", "half", half]));
+        printed.lines().rev().find(|l| l.starts_with("RESULT")).map(str::to_string)
     };
     assert!(cut("1000").is_some() && cut("1000") == cut("437"));
     // An elastic piston: twice its velocity, but for what a step of a fiftieth of the contact leaves.
@@ -93,10 +93,14 @@ fn planes_of_walls_follow_variables() {
 
 #[test]
 fn planes_that_pass_through_each_other_end_the_run() {
-    let said = text(&run("wall_planes_by_variables.in", &["-var", "hi", "v_floor", "-var", "lo", "v_top"]));
-    assert!(said.contains("lies not below the upper one") && said.contains("two fixes may do so"), "{said}");
-    let said = text(&run("wall_planes_by_variables.in", &["-var", "hi", "v_nothing"]));
-    assert!(said.contains("v_nothing") || said.contains("`nothing`"), "{said}");
+    let printed =
+        text(&run("wall_planes_by_variables.in", &["-var", "hi", "v_floor", "-var", "lo", "v_top"]));
+    assert!(
+        printed.contains("lies not below the upper one") && printed.contains("two fixes may do so"),
+        "{printed}"
+    );
+    let printed = text(&run("wall_planes_by_variables.in", &["-var", "hi", "v_nothing"]));
+    assert!(printed.contains("v_nothing") || printed.contains("`nothing`"), "{printed}");
 }
 
 /// Diameters 1 + id t at t = 0.1 of the grains 1 and 3, the second one is in no group; masses go with the cube, from those of 0.8.
@@ -160,8 +164,8 @@ fn flat_scenes_change_their_length_along_z() {
     close(&result("flat_deform.in", &[]), &[2.0, 36.0, 6.0, 0.0], 1e-12);
     let words = ["-var", "words", "x erate 0.1 z volume"];
     close(&result("flat_deform.in", &words), &[1.0 / 1.001, 36.036, 6.0], 1e-12);
-    let said = text(&run("flat_deform.in", &["-var", "words", "z final 0.1 0.7"]));
-    assert!(said.contains("must hold the plane z = 0"), "{said}");
+    let printed = text(&run("flat_deform.in", &["-var", "words", "z final 0.1 0.7"]));
+    assert!(printed.contains("must hold the plane z = 0"), "{printed}");
 }
 
 /// η = e √(m̄ k) of `damping mdr 1` is 0 where e is: the same bits.
@@ -169,7 +173,7 @@ fn flat_scenes_change_their_length_along_z() {
 fn plastic_grains_need_no_dashpot() {
     let none = text(&run("mdr_undamped.in", &[]));
     let mdr = text(&run("mdr_undamped.in", &["-var", "damping", "mdr 1"]));
-    let line = |said: &str| said.lines().find(|l| l.starts_with("RESULT")).map(str::to_string);
+    let line = |printed: &str| printed.lines().find(|l| l.starts_with("RESULT")).map(str::to_string);
     assert!(line(&none).is_some() && line(&none) == line(&mdr), "{none}\n{mdr}");
 }
 
@@ -215,10 +219,10 @@ fn walls_of_regions_are_lammps() {
         ),
     ];
     for (region, law, start, end) in cases {
-        let said = text(&run("wall_region.in", &["-var", "region", region, "-var", "law", law]));
+        let printed = text(&run("wall_region.in", &["-var", "region", region, "-var", "law", law]));
         // Ten digits are printed.
-        close(&numbers(&said, "START"), &start, 1e-8);
-        close(&numbers(&said, "RESULT"), &end, 1e-8);
+        close(&numbers(&printed, "START"), &start, 1e-8);
+        close(&numbers(&printed, "RESULT"), &end, 1e-8);
     }
 }
 
@@ -231,8 +235,8 @@ fn colloids_are_repelled_unless_lammps_is_wanted() {
     let (lammps, own) = (start(&["-compat", "lammps/2025"]), start(&[]));
     close(&lammps, &wanted, 1e-8);
     (2..5).for_each(|k| assert!((lammps[k] + own[k]).abs() < 1e-12, "{lammps:?} {own:?}"));
-    let said = text(&run("wall_region.in", &["-var", "law", "lj93 1e4 0.9 2.5"]));
-    assert!(said.contains("is on or beyond the surface of region `ball` in step 9"), "{said}");
+    let printed = text(&run("wall_region.in", &["-var", "law", "lj93 1e4 0.9 2.5"]));
+    assert!(printed.contains("is on or beyond the surface of region `ball` in step 9"), "{printed}");
 }
 
 /// LAMMPS 22Jul2025: energy, pressure and forces on two walls in the beginning, and places after 100 steps. The upper wall comes
@@ -273,10 +277,10 @@ fn flat_walls_are_lammps() {
         ),
     ];
     for (law, words, start, end) in cases {
-        let said = text(&run("wall_flat.in", &["-var", "law", law, "-var", "words", words]));
+        let printed = text(&run("wall_flat.in", &["-var", "law", law, "-var", "words", words]));
         // Ten digits are printed.
-        close(&numbers(&said, "START"), &start, 1e-8);
-        close(&numbers(&said, "RESULT"), &end, 1e-8);
+        close(&numbers(&printed, "START"), &start, 1e-8);
+        close(&numbers(&printed, "RESULT"), &end, 1e-8);
     }
 }
 
@@ -294,9 +298,9 @@ fn bonds_are_made_as_lammps_makes_them() {
         ),
     ];
     for (weights, words, wanted) in cases {
-        let said = text(&run("bond_create.in", &["-var", "weights", weights, "-var", "words", words]));
+        let printed = text(&run("bond_create.in", &["-var", "weights", weights, "-var", "words", words]));
         // A hundred steps of stiff bonds between particles at random places.
-        close(&[numbers(&said, "RESULT"), numbers(&said, "FIRST")].concat(), &wanted, 1e-7);
+        close(&[numbers(&printed, "RESULT"), numbers(&printed, "FIRST")].concat(), &wanted, 1e-7);
     }
 }
 
@@ -318,10 +322,10 @@ fn bonds_that_are_made_are_at_rest() {
 #[test]
 fn bonds_are_made_alike_with_threads_and_behind_a_restart() {
     let last = |more: &[&str]| {
-        let said =
+        let printed =
             text(&run("bond_create.in", &[&["-var", "words", "1 2 0.9 1 prob 0.5 85784"], more].concat()));
-        let line = said.lines().rev().find(|l| l.starts_with("RESULT")).map(str::to_string);
-        line.unwrap_or_else(|| panic!("{said}"))
+        let line = printed.lines().rev().find(|l| l.starts_with("RESULT")).map(str::to_string);
+        line.unwrap_or_else(|| panic!("{printed}"))
     };
     let one = last(&["-threads", "1"]);
     assert_eq!(one, last(&["-threads", "3"]));

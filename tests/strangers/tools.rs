@@ -5,7 +5,7 @@
 use std::process::Command;
 
 /// What the program prints for a command line, run in a folder of its own.
-fn said(arguments: &[&str]) -> String {
+fn output_of(arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
     let output = command.args(arguments).current_dir(folder.path()).output().unwrap();
@@ -16,21 +16,21 @@ fn said(arguments: &[&str]) -> String {
 /// Row 44: the how-tos are in the program.
 #[test]
 fn help_finds_how_tos() {
-    let notch = said(&["help", "notch"]);
+    let notch = output_of(&["help", "notch"]);
     assert!(
         notch.starts_with("# A crack from a notch\n") && notch.contains("How do I simulate a crack"),
         "{notch}"
     );
     assert!(notch.contains("peri_crack") && !notch.contains("](../styles/"), "{notch}");
-    let movie = said(&["help", "movie"]);
+    let movie = output_of(&["help", "movie"]);
     assert!(movie.contains("howto movie") || movie.contains("How do I make a movie"), "{movie}");
     for (word, howto) in
         [("angle of repose", "howto repose"), ("paraview", "howto results"), ("kill", "howto sweep")]
     {
-        let found = said(&["help", word]);
+        let found = output_of(&["help", word]);
         assert!(found.contains(&format!("\n  {howto} ")), "{word}: {found}");
     }
-    assert!(said(&["help"]).contains("\nhow-tos\n"));
+    assert!(output_of(&["help"]).contains("\nhow-tos\n"));
 }
 
 /// Row 43: several sizes in one packing, a number to reach, a box that leans.

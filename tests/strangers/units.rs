@@ -8,18 +8,18 @@ use std::process::Command;
 // Oracle: LAMMPS 22Jul2025 pours 305.
 #[test]
 fn a_slot_narrower_than_one_holds_what_it_holds() {
-    let said = text(&run("pour_narrow_slot.in", &[]));
-    assert_eq!(numbers(&said, "RESULT"), [305.0], "{said}");
+    let printed = text(&run("pour_narrow_slot.in", &[]));
+    assert_eq!(numbers(&printed, "RESULT"), [305.0], "{printed}");
 }
 
 // Oracle: LAMMPS 22Jul2025, to the digits printed.
 #[test]
 fn distances_of_new_particles_count_in_lattice_spacings() {
-    let said = text(&run("overlap_in_spacings.in", &[]));
-    assert_eq!(numbers(&said, "ATOMS"), [100.0], "{said}");
-    assert_eq!(numbers(&said, "FIRST"), FIRST, "{said}");
-    assert_eq!(numbers(&said, "LAST"), LAST, "{said}");
-    assert_eq!(numbers(&said, "FEW"), [20.0], "{said}");
+    let printed = text(&run("overlap_in_spacings.in", &[]));
+    assert_eq!(numbers(&printed, "ATOMS"), [100.0], "{printed}");
+    assert_eq!(numbers(&printed, "FIRST"), FIRST, "{printed}");
+    assert_eq!(numbers(&printed, "LAST"), LAST, "{printed}");
+    assert_eq!(numbers(&printed, "FEW"), [20.0], "{printed}");
 }
 
 const FIRST: [f64; 3] = [0.05214324368, 0.07149649582, 0.04160531519];
@@ -70,14 +70,17 @@ fn a_box_within_one_spacing_was_meant_otherwise() {
              create_atoms 1 box\nset group all diameter 0.001 density 2500\npair_style none\nfix n all nve/sphere\nrun 1\n"
         )
     };
-    for said in both(folder.path(), &deck("", "0.04")) {
-        assert!(said.contains("the box is 0.04 lattice spacings wide"), "{said}");
-        assert!(said.contains("did you mean `units box`?") && said.contains("in.deck:4:1"), "{said}");
-        assert_eq!(said.matches("lattice spacings wide").count(), 1, "{said}");
+    for printed in both(folder.path(), &deck("", "0.04")) {
+        assert!(printed.contains("the box is 0.04 lattice spacings wide"), "{printed}");
+        assert!(
+            printed.contains("did you mean `units box`?") && printed.contains("in.deck:4:1"),
+            "{printed}"
+        );
+        assert_eq!(printed.matches("lattice spacings wide").count(), 1, "{printed}");
     }
     for (end, edge) in [(" units box", "0.04"), (" units lattice", "0.04"), ("", "4"), ("", "1")] {
-        for said in both(folder.path(), &deck(end, edge)) {
-            assert!(!said.contains("spacings wide"), "{end} {edge}: {said}");
+        for printed in both(folder.path(), &deck(end, edge)) {
+            assert!(!printed.contains("spacings wide"), "{end} {edge}: {printed}");
         }
     }
 }
@@ -87,7 +90,7 @@ fn a_mesh_in_millimetres_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let scene = "units si\natom_style sphere\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\n";
     let wall = "fix w all wall/mesh granular hertz/material 1e7 0.5 0.3 tangential linear_nohistory 1 0.5 mesh c.stl";
-    for (edge, with, said) in [
+    for (edge, with, printed) in [
         (700.0, "", Some(("700 times as large as the box", "`scale 0.001`"))),
         (700.0, " scale 0.001", None),
         (5e-5, "", Some(("20000 times as small as the box", "`scale 1000`"))),
@@ -98,7 +101,7 @@ fn a_mesh_in_millimetres_is_named() {
         for line in [format!("region m mesh c.stl units box{with}"), format!("{wall}{with}")] {
             let region = line.starts_with("region");
             for found in both(folder.path(), &format!("{scene}{line}\n{GRAIN}run 0\n")) {
-                let Some((size, scale)) = said else {
+                let Some((size, scale)) = printed else {
                     assert!(!found.contains("as the box"), "{line}: {found}");
                     continue;
                 };
@@ -110,21 +113,21 @@ fn a_mesh_in_millimetres_is_named() {
 }
 
 #[test]
-fn a_fix_for_nobody_is_named_unless_the_group_fills() {
+fn a_fix_of_an_empty_group_is_named_unless_the_group_fills() {
     let folder = tempfile::tempdir().unwrap();
     let scene = "units si\natom_style sphere\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\n\
                  region far block 0.9 1 0.9 1 0.9 1 units box\ngroup g region far\n";
     let run = |lines: &str| both(folder.path(), &format!("{scene}{GRAIN}{lines}run 1\n"))[1].clone();
-    let said = run("fix f g setforce 0 0 0\n");
-    assert!(said.contains("there is no particle in group `g`: this fix does nothing"), "{said}");
+    let printed = run("fix f g setforce 0 0 0\n");
+    assert!(printed.contains("there is no particle in group `g`: this fix does nothing"), "{printed}");
     for lines in [
         "fix g all gravity 1 vector 0 0 -1\nfix p g pour 1 1 1 region far diam one 0.01\nfix f g setforce 0 0 0\n",
         "fix p g print 1 x screen no\n",
         "group h dynamic all region far\nfix f h setforce 0 0 0\n",
         "fix f all setforce 0 0 0\n",
     ] {
-        let said = run(lines);
-        assert!(!said.contains("no particle in group"), "{lines}{said}");
+        let printed = run(lines);
+        assert!(!printed.contains("no particle in group"), "{lines}{printed}");
     }
 }
 
@@ -139,18 +142,18 @@ fn spheres_wider_than_the_box_are_named() {
         format!("write_dump all image x.png type type {pictures}"),
         format!("dump d all image 1 x.*.png type type {pictures}\nrun 1\nrun 1"),
     ] {
-        for said in both(folder.path(), &format!("{scene}{line}\n")) {
+        for printed in both(folder.path(), &format!("{scene}{line}\n")) {
             let named = "spheres of diameter 1, as `type` draws them, are 25 times as wide as the box";
-            assert!(said.contains(named) && said.contains("write `auto`"), "{line}: {said}");
-            assert_eq!(said.matches(named).count(), 1, "{said}");
+            assert!(printed.contains(named) && printed.contains("write `auto`"), "{line}: {printed}");
+            assert_eq!(printed.matches(named).count(), 1, "{printed}");
         }
     }
     for line in [
         format!("write_dump all image x.png type auto {pictures}"),
         format!("dump d all image 1 x.*.png type type {pictures}\ndump_modify d adiam 1 0.01\nrun 1"),
     ] {
-        for said in both(folder.path(), &format!("{scene}{line}\n")) {
-            assert!(!said.contains("as wide as the box"), "{line}: {said}");
+        for printed in both(folder.path(), &format!("{scene}{line}\n")) {
+            assert!(!printed.contains("as wide as the box"), "{line}: {printed}");
         }
     }
 }
@@ -159,10 +162,10 @@ fn spheres_wider_than_the_box_are_named() {
 fn a_box_without_volume_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let deck = "units si\nlattice sc 0.001\nregion b block 0 4 0 4 0 1e-308\ncreate_box 1 b\n";
-    for said in both(folder.path(), deck) {
+    for printed in both(folder.path(), deck) {
         assert!(
-            said.contains("has no volume that can be computed with") && said.contains("in.deck:4"),
-            "{said}"
+            printed.contains("has no volume that can be computed with") && printed.contains("in.deck:4"),
+            "{printed}"
         );
     }
 }

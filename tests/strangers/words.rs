@@ -41,13 +41,13 @@ fn characters_that_look_like_others_are_read_as_these() {
         ("list.txt", "\u{feff}one\u{a0}two\n"),
     ];
     let output = work(&files, &["-in", "in.deck", "-log", "none", "-var", "word", "a\u{a0}b"]);
-    let said = text(&output);
-    assert!(output.status.success(), "{said}");
+    let printed = text(&output);
+    assert!(output.status.success(), "{printed}");
     for line in ["\nsaid a b ", "\nin quotes \u{201c}stay\u{201d}, v is -2\n", "\n2\n"] {
-        assert!(said.contains(line), "{line:?}: {said}");
+        assert!(printed.contains(line), "{line:?}: {printed}");
     }
     // One note for each text: the deck, the included file, the data file, the list, the value.
-    assert_eq!(lines(&said, "note[PG0149]"), 5, "{said}");
+    assert_eq!(lines(&printed, "note[PG0149]"), 5, "{printed}");
     for part in [
         "U+FEFF (byte order mark) is read as a blank, U+00A0 (no-break space) is read as a blank, U+2002",
         "U+201D (right double quotation mark) is read as `\"`",
@@ -57,7 +57,7 @@ fn characters_that_look_like_others_are_read_as_these() {
         "-var word: U+00A0",
         "in.deck:1:1",
     ] {
-        assert!(said.contains(part), "{part:?}: {said}");
+        assert!(printed.contains(part), "{part:?}: {printed}");
     }
 }
 
@@ -71,10 +71,10 @@ fn other_files_may_have_such_characters_too() {
                 material x file x.toml\ncreate_atoms 1 mesh s.stl units box\nprint \"$(count(all))\"\n";
     let files = [("in.deck", deck), ("two.mol", molecule), ("x.toml", material), ("s.stl", stl)];
     let output = work(&files, &["-in", "in.deck", "-log", "none"]);
-    let said = text(&output);
-    assert!(output.status.success(), "{said}");
+    let printed = text(&output);
+    assert!(output.status.success(), "{printed}");
     for file in ["`two.mol`", "`x.toml`", "`s.stl`"] {
-        assert!(said.contains(&format!("note[PG0149]: {file}, line 1: U+FEFF")), "{file}: {said}");
+        assert!(printed.contains(&format!("note[PG0149]: {file}, line 1: U+FEFF")), "{file}: {printed}");
     }
 }
 
@@ -95,10 +95,10 @@ fn text_under_headings_of_files_is_passed_over() {
         &[("in.deck", deck), ("data.x", &good), ("m.mol", molecule)],
         &["-in", "in.deck", "-log", "none"],
     );
-    let said = text(&output);
-    assert!(output.status.success() && said.contains("\n2\n"), "{said}");
-    assert_eq!(lines(&said, "note[PG0116]: the text under the heading "), 3, "{said}");
-    assert!(said.contains("data.x:14:1"), "{said}");
+    let printed = text(&output);
+    assert!(output.status.success() && printed.contains("\n2\n"), "{printed}");
+    assert_eq!(lines(&printed, "note[PG0116]: the text under the heading "), 3, "{printed}");
+    assert!(printed.contains("data.x:14:1"), "{printed}");
     let lost = files("1 1 0.1 0.1 0.1");
     let output = work(
         &[("in.deck", deck), ("data.x", &lost), ("m.mol", molecule)],
@@ -136,26 +136,27 @@ fn bonds_that_are_left_out_are_named() {
              {weights}\ncreate_bonds many all all 1 0.9 1.1\ncreate_bonds many all all 2 1.6 1.8\nprint \"bonds $(bonds)\"\n"
         )
     };
-    let said = text(&work(&[("in.deck", &deck(""))], &["-in", "in.deck", "-log", "none"]));
+    let printed = text(&work(&[("in.deck", &deck(""))], &["-in", "in.deck", "-log", "none"]));
     assert!(
-        said.contains("warning[PG0117]: 600 pairs in range were left out: they are two or three bonds apart"),
-        "{said}"
+        printed
+            .contains("warning[PG0117]: 600 pairs in range were left out: they are two or three bonds apart"),
+        "{printed}"
     );
-    assert!(said.contains("put `special_bonds lj/coul 0 1 1` before this line"), "{said}");
-    assert!(said.contains("\nbonds 600\n") && lines(&said, "warning") == 1, "{said}");
-    let said = text(&work(
+    assert!(printed.contains("put `special_bonds lj/coul 0 1 1` before this line"), "{printed}");
+    assert!(printed.contains("\nbonds 600\n") && lines(&printed, "warning") == 1, "{printed}");
+    let printed = text(&work(
         &[("in.deck", &deck("special_bonds lj/coul 0 1 1"))],
         &["-in", "in.deck", "-log", "none"],
     ));
-    assert!(said.contains("\nbonds 1200\n") && lines(&said, "warning") == 0, "{said}");
-    let said = text(&work(
+    assert!(printed.contains("\nbonds 1200\n") && lines(&printed, "warning") == 0, "{printed}");
+    let printed = text(&work(
         &[(
             "in.deck",
             &deck("group half id <= 100\nspecial_bonds lj/coul 0 1 1\nneigh_modify exclude group half half"),
         )],
         &["-in", "in.deck", "-log", "none"],
     ));
-    assert!(said.contains("excluded by `neigh_modify exclude`"), "{said}");
+    assert!(printed.contains("excluded by `neigh_modify exclude`"), "{printed}");
 }
 
 /// Row 33: a loop without an end in sight is left after a bound, with a note; one with an end is followed to it.
@@ -169,11 +170,11 @@ fn endless_loops_are_left_and_named() {
         scene.repeat(8)
     );
     let begin = std::time::Instant::now();
-    let said = check(&endless);
+    let printed = check(&endless);
     // 50,000 lines are a second or two in a test build; without the bound there were 10,000 turns of 85.
     assert!(begin.elapsed().as_secs() < 60, "{:?}", begin.elapsed());
-    assert!(said.contains("note[PG0150]: the end of this loop is not in sight after 5"), "{said}");
-    assert!(said.contains("in.deck: 1 note\n"), "{said}");
+    assert!(printed.contains("note[PG0150]: the end of this loop is not in sight after 5"), "{printed}");
+    assert!(printed.contains("in.deck: 1 note\n"), "{printed}");
     let finite = "variable i loop 3000\nlabel a\nprint \"$i\"\nnext i\njump SELF a\n";
     assert!(check(finite).ends_with("in.deck: no problems found\n"), "{}", check(finite));
 }
@@ -185,22 +186,22 @@ fn only_the_atom_style_is_refused() {
                    create_atoms 1 random 10 123 b\nset group all diameter 1.0 density 1.0\n\
                    pair_style gran/hooke/history 100 NULL 1 NULL 0.5 1\npair_coeff * *\ncompute r all erotate/sphere\n\
                    fix 1 all nve/sphere\nthermo_style custom step c_r\nrun 10\n";
-    let said = check(dipoles);
-    assert_eq!((lines(&said, "error"), lines(&said, "warning")), (1, 0), "{said}");
-    assert!(said.contains("atom_style `dipole/x`"), "{said}");
+    let printed = check(dipoles);
+    assert_eq!((lines(&printed, "error"), lines(&printed, "warning")), (1, 0), "{printed}");
+    assert!(printed.contains("atom_style `dipole/x`"), "{printed}");
     let charges = "units lj\natom_style amoeba\nregion b block 0 9 0 9 0 9\ncreate_box 1 b bond/types 1 angle/types 1\n\
                    create_atoms 1 random 10 123 b\nmass 1 1\nset group all charge 1\nbond_style harmonic\nbond_coeff 1 1 1\n\
                    angle_style harmonic\nangle_coeff 1 1 180\nkspace_style pppm 1e-4\nfix 1 all nve\nrun 10\n";
-    let said = check(charges);
-    assert_eq!((lines(&said, "error"), lines(&said, "warning")), (1, 0), "{said}");
+    let printed = check(charges);
+    assert_eq!((lines(&printed, "error"), lines(&printed, "warning")), (1, 0), "{printed}");
     assert!(
-        said.contains("LAMMPS' atom_style `amoeba` is not in perigrain")
-            && said.contains("charges and moments feel fields"),
-        "{said}"
+        printed.contains("LAMMPS' atom_style `amoeba` is not in perigrain")
+            && printed.contains("charges and moments feel fields"),
+        "{printed}"
     );
     // Other mistakes stay.
-    let said = check(&charges.replace("fix 1 all nve", "fxi 1 all nve"));
-    assert!(said.contains("unknown command `fxi`") && lines(&said, "error") == 2, "{said}");
+    let printed = check(&charges.replace("fix 1 all nve", "fxi 1 all nve"));
+    assert!(printed.contains("unknown command `fxi`") && lines(&printed, "error") == 2, "{printed}");
 }
 
 /// Row 34: words of LAMMPS that are missing here are named as such, with an alternative.
@@ -256,26 +257,26 @@ fn words_of_lammps_lead_on() {
             "write the force first: `granular hertz/material",
         ),
     ] {
-        let said = check(&format!("{SCENE}{line}\n"));
-        assert!(said.contains(message) && said.contains(help), "{line}: {said}");
-        assert_eq!(lines(&said, "error"), 1, "{line}: {said}");
+        let printed = check(&format!("{SCENE}{line}\n"));
+        assert!(printed.contains(message) && printed.contains(help), "{line}: {printed}");
+        assert_eq!(lines(&printed, "error"), 1, "{line}: {printed}");
     }
     // The accelerated forms of styles are these styles; a renamed one has both names.
     let deck = "fix 1 all nve/sphere/omp\nfix 2 all addtorque/group 0 0 0\npair_style gran/hooke/history/kk 1e4 NULL 10 NULL 0.5 1\n\
                 pair_coeff * *\nrun 0\n";
-    let said = check(&format!("{SCENE}create_atoms 1 single 1 1 1\n{deck}"));
-    assert_eq!(lines(&said, "error"), 0, "{said}");
+    let printed = check(&format!("{SCENE}create_atoms 1 single 1 1 1\n{deck}"));
+    assert_eq!(lines(&printed, "error"), 0, "{printed}");
 }
 
 /// Row 35: notes about LAMMPS' faults are true for the year that `-compat` names, and lead to the other year.
 #[test]
 fn notes_name_the_year() {
-    let said = |compat: &str| text(&run("hertz_history_wall.in", &["-compat", compat]));
+    let output_of = |compat: &str| text(&run("hertz_history_wall.in", &["-compat", compat]));
     let fault = "springs of walls with history that depend on the contact radius";
-    let old = said("lammps/2025");
+    let old = output_of("lammps/2025");
     assert!(old.contains(&format!("note[PG0301]: compat lammps/2025: {fault}")), "{old}");
     for newest in ["lammps", "lammps/2026"] {
-        let new = said(newest);
+        let new = output_of(newest);
         assert!(
             new.contains("note[PG0301]: LAMMPS 22Jul2025 has springs of walls")
                 && new.contains("lammps/2026 has not"),
@@ -330,8 +331,8 @@ fn compat_lammps_has_what_2026_has_mended() {
         ),
     ] {
         for (compat, want) in [("lammps", new), ("lammps/2025", old)] {
-            let said = text(&run(deck, &["-compat", compat]));
-            assert!(near(&numbers(&said, moment), want), "{deck} {moment} {compat}: {said}");
+            let printed = text(&run(deck, &["-compat", compat]));
+            assert!(near(&numbers(&printed, moment), want), "{deck} {moment} {compat}: {printed}");
         }
     }
 }

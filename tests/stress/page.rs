@@ -77,18 +77,18 @@ pub fn markdown(sections: &[Section], rows: &[Vec<Row>], form: Form) -> String {
             let case = s.case.iter().find(|c| c.name == r.case).unwrap();
             let (figure, measured, limit) = match &r.figure {
                 Some(f) => (f.name.as_str(), r.value.map_or("none".into(), number), bound(f)),
-                None => (REFUSED, r.said.clone(), format!("`{}`", case.says.join("`, `"))),
+                None => (REFUSED, r.printed.clone(), format!("`{}`", case.says.join("`, `"))),
             };
             let flag = if r.met { "" } else { "**not met**" };
             let _ = writeln!(text, "{} {flag} |", row(&r.case, figure, &measured, &limit));
         }
-        let mut told: Vec<String> = vec![];
+        let mut lines: Vec<String> = vec![];
         let _ = writeln!(text);
         for f in s.case.iter().flat_map(|c| s.figures(c)) {
             let line = format!("- {}, {}: {}", f.name, bound(&f), f.why);
-            if !told.contains(&line) {
+            if !lines.contains(&line) {
                 let _ = writeln!(text, "{line}");
-                told.push(line);
+                lines.push(line);
             }
         }
     }

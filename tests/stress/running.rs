@@ -22,7 +22,7 @@ pub struct Row {
     pub figure: Option<Figure>,
     pub value: Option<f64>,
     /// The output, where it matters.
-    pub said: String,
+    pub printed: String,
     pub met: bool,
 }
 
@@ -33,8 +33,8 @@ impl Row {
             (Some(f), Some(v)) => {
                 format!("{} is {v:.3e}, not between {:?} and {:?} ({})", f.name, f.least, f.most, f.why)
             }
-            (Some(f), None) => format!("no figure {}:\n{}", f.name, self.said),
-            (None, _) => format!("not as stated:\n{}", self.said),
+            (Some(f), None) => format!("no figure {}:\n{}", f.name, self.printed),
+            (None, _) => format!("not as stated:\n{}", self.printed),
         }
     }
 }
@@ -42,7 +42,7 @@ impl Row {
 /// What one run has given.
 struct Outcome {
     code: Option<i32>,
-    said: String,
+    printed: String,
     /// The written state, if there is one.
     state: String,
 }
@@ -72,9 +72,9 @@ impl Task<'_> {
             command.args(["-var", name, value]);
         }
         let output = command.output().unwrap();
-        let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        let printed = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
         let state = std::fs::read_to_string(folder.join("state.dump")).unwrap_or_default();
-        Outcome { code: output.status.code(), said, state }
+        Outcome { code: output.status.code(), printed, state }
     }
 
     /// The state that a run has written, and all output.
@@ -82,7 +82,7 @@ impl Task<'_> {
         let folder = tempfile::tempdir().unwrap();
         let more = [&[("tail", "state")], more].concat();
         let o = self.deck(folder.path(), &more, threads);
-        (o.state, o.said)
+        (o.state, o.printed)
     }
 
     /// The figures of a case, by name, and the last output.
@@ -92,7 +92,7 @@ impl Task<'_> {
             How::Run | How::Refused => {
                 let folder = tempfile::tempdir().unwrap();
                 let o = self.deck(folder.path(), &[], 1);
-                (measures(&o.said), o.code, o.said)
+                (measures(&o.printed), o.code, o.printed)
             }
             How::Order => {
                 let [a, b, c, d] = ["1", "2", "4", "8"].map(|n| self.state(&[("halve", n)], 1));
@@ -116,21 +116,21 @@ impl Task<'_> {
                 let part = |stage| self.deck(folder.path(), &[("tail", "state"), ("stage", stage)], 1);
                 let cut = ["first", "second"].map(part);
                 let same = !whole.0.is_empty() && whole.0 == cut[1].state;
-                (one("restart", f64::from(u8::from(!same))), Some(0), cut[1].said.clone())
+                (one("restart", f64::from(u8::from(!same))), Some(0), cut[1].printed.clone())
             }
         }
     }
 
     fn rows(&self) -> Vec<Row> {
-        let (found, code, said) = self.measure();
+        let (found, code, printed) = self.measure();
         let refused = self.case.how == How::Refused;
-        let silent = self.case.says.iter().find(|w| !said.contains(*w));
+        let silent = self.case.says.iter().find(|w| !printed.contains(*w));
         let ends = code == Some(i32::from(refused));
         let row = |figure: Option<Figure>, value, met| Row {
             case: self.case.name.clone(),
             figure,
             value,
-            said: said.clone(),
+            printed: printed.clone(),
             met,
         };
         let mut rows: Vec<Row> = vec![];
@@ -141,21 +141,21 @@ impl Task<'_> {
             rows.push(row(Some(f), value, within && ends && silent.is_none()));
         }
         if refused {
-            rows.push(Row { said: message(&said), ..row(None, None, ends && silent.is_none()) });
+            rows.push(Row { printed: message(&printed), ..row(None, None, ends && silent.is_none()) });
         }
         rows
     }
 }
 
 /// The first error of a log without its numbers in brackets, or all output.
-fn message(said: &str) -> String {
-    let first = said.lines().find_map(|l| Some(&l[l.find("error[")?..]));
-    first.map_or(said, |l| l.split(" (the first").next().unwrap_or(l)).to_string()
+fn message(printed: &str) -> String {
+    let first = printed.lines().find_map(|l| Some(&l[l.find("error[")?..]));
+    first.map_or(printed, |l| l.split(" (the first").next().unwrap_or(l)).to_string()
 }
 
 /// The numbers of the lines `measure NAME VALUE`.
-fn measures(said: &str) -> BTreeMap<String, f64> {
-    let words = said.lines().filter_map(|l| l.strip_prefix("measure ")?.split_once(' '));
+fn measures(printed: &str) -> BTreeMap<String, f64> {
+    let words = printed.lines().filter_map(|l| l.strip_prefix("measure ")?.split_once(' '));
     words.filter_map(|(name, value)| Some((name.to_string(), value.trim().parse().ok()?))).collect()
 }
 

@@ -109,7 +109,7 @@ fn state(s: &Session) -> (Vec<[f64; 3]>, Vec<[f64; 3]>, String) {
 
 // The box is flipped first at step 113 and again 500 steps later.
 #[test]
-fn a_shear_goes_on_from_a_restart_file_to_the_bit() {
+fn a_shear_continues_from_a_restart_file_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     for first in [60, 112, 113, 150] {
         let one = sheared(&format!("run {first}\nwrite_restart ${{dir}}/mid\nrun 60"));

@@ -351,9 +351,11 @@ mod tests {
         assert!(!passes("../out") && !passes("../new") && !passes("..") && !passes("/dev/null"));
         assert!(passes("../deck/in") && !passes("no/such"));
         // Of what is outside, nothing tells whether it is there.
-        let said = |name: &str| inside(&gate, &folder.join(name)).unwrap_err().to_string();
-        assert!(said("../out/x") == said("../out") && said("../no/such/folder") == said("../out"));
-        assert!(!said("no/such").contains("outside") && said("/no/such/folder") == said("../out"));
+        let refusal = |name: &str| inside(&gate, &folder.join(name)).unwrap_err().to_string();
+        assert!(
+            refusal("../out/x") == refusal("../out") && refusal("../no/such/folder") == refusal("../out")
+        );
+        assert!(!refusal("no/such").contains("outside") && refusal("/no/such/folder") == refusal("../out"));
         let largest = Limits { memory: 0, ..Limits::default() };
         let small = Gate { folder: gate.folder.clone(), limits: largest, written: Mutex::default() };
         assert!(inside(&small, &folder.join("in")).is_err() && inside(&small, &folder.join("new")).is_ok());

@@ -138,12 +138,12 @@ mod tests {
     #[test]
     fn one_note_names_all() {
         let at = |k| Span { start: k, end: k + 2, ..Span::default() };
-        let said = note(&[('\u{a0}', at(3)), ('\u{201c}', at(5)), ('\u{a0}', at(9))]).unwrap();
+        let noted = note(&[('\u{a0}', at(3)), ('\u{201c}', at(5)), ('\u{a0}', at(9))]).unwrap();
         assert_eq!(
-            said.message,
+            noted.message,
             "U+00A0 (no-break space, 2 times) is read as a blank, U+201C (left double quotation mark) is read as `\"`"
         );
-        assert_eq!(said.span, Some(at(3)));
+        assert_eq!(noted.span, Some(at(3)));
         assert_eq!(note(&[]), None);
     }
 }

@@ -126,9 +126,9 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_refused_and_what_does_is_not() {
-        let said = lacking(1e18, "a table").unwrap();
-        assert!(said.message.starts_with("a table would need 1.0e9 GB of memory; "), "{}", said.message);
-        assert_eq!(said.code, Code::TOO_LARGE);
+        let lack = lacking(1e18, "a table").unwrap();
+        assert!(lack.message.starts_with("a table would need 1.0e9 GB of memory; "), "{}", lack.message);
+        assert_eq!(lack.code, Code::TOO_LARGE);
         assert!(lacking(1000.0, "a row").is_none() && lacking(f64::INFINITY, "all").is_some());
         let hosts = ["a", "a", "b"].map(String::from);
         let short = |shared, own| short(4.0, &hosts, shared, own);

@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn motions_without_resistance_are_told() {
+    fn motions_without_resistance_are_reported() {
         // n nᵀ resists along n alone: of three pivots two are missing; no rotation resists.
         let n = [0.6, 0.48, 0.64];
         let m: Matrix6 = std::array::from_fn(|r| {

@@ -225,7 +225,7 @@ fn the_same_bits_for_any_number_of_threads() {
 
 /// A bond that pushes where others pull: no solution says that it has ended well.
 #[test]
-fn negative_stiffnesses_are_told() {
+fn negative_stiffnesses_are_reported() {
     let body = random(4, 2000, 0.8);
     let network = body.network(|k, l| standard(l).times(if k % 50 == 0 { -0.5 } else { 1.0 }));
     let n = network.particles;

@@ -36,9 +36,9 @@ pub fn text(own: impl FnOnce() -> Option<String>) -> Option<String> {
     if !several() {
         return own();
     }
-    let told = bytes(|| match own() {
+    let sent = bytes(|| match own() {
         None => vec![0],
         Some(text) => [&[1], text.as_bytes()].concat(),
     });
-    (told[0] == 1).then(|| String::from_utf8_lossy(&told[1..]).into_owned())
+    (sent[0] == 1).then(|| String::from_utf8_lossy(&sent[1..]).into_owned())
 }

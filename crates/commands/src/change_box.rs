@@ -316,7 +316,7 @@ mod tests {
     use super::super::testing::{more, refused, scene};
 
     #[test]
-    fn particles_move_with_the_box_when_asked() {
+    fn particles_move_with_the_box_on_request() {
         let mut w =
             scene("units si\nregion b block 0 4 0 2 0 1\ncreate_box 1 b\ncreate_atoms 1 single 1 1 0.5");
         more(&mut w, "change_box all x scale 2 y volume");

@@ -161,9 +161,9 @@ mod tests {
     #[test]
     fn box_is_lammps_box() {
         let mut w = scene("units si\nlattice sc 0.5\nboundary s p f\nregion b block 0 4 0 3 0 3 units box");
-        let said = act(&mut w, "create_box 2 b", &[]).unwrap();
+        let lines = act(&mut w, "create_box 2 b", &[]).unwrap();
         // Oracle: the same deck prints this, and shows xlo = -0.0004 and xhi = 4.0004 afterwards.
-        assert_eq!(said[0], "Created orthogonal box = (0 0 0) to (4 3 3)");
+        assert_eq!(lines[0], "Created orthogonal box = (0 0 0) to (4 3 3)");
         let domain = w.domain.as_ref().unwrap();
         assert_eq!((domain.lo, domain.hi), ([-0.0004, 0.0, 0.0], [4.0004, 3.0, 3.0]));
         assert_eq!(w.type_mass.len(), 2);

@@ -189,11 +189,12 @@ mod tests {
     use perigrain_world::World;
 
     #[test]
-    fn says_its_spacings() {
+    fn prints_its_spacings() {
         let mut w = scene("units si");
-        let said = act(&mut w, "lattice bcc 2.0 orient x 1 1 0 orient y -1 1 0 orient z 0 0 1", &[]).unwrap();
+        let lines =
+            act(&mut w, "lattice bcc 2.0 orient x 1 1 0 orient y -1 1 0 orient z 0 0 1", &[]).unwrap();
         // Oracle: the same line in LAMMPS.
-        assert_eq!(said, ["Lattice spacing in x,y,z = 2.8284271 2.8284271 2"]);
+        assert_eq!(lines, ["Lattice spacing in x,y,z = 2.8284271 2.8284271 2"]);
         assert_eq!(w.lattice.basis.len(), 2);
     }
 

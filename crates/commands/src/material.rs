@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_file_is_told_by_its_line() {
+    fn a_wrong_file_is_reported_by_its_line() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("mine.toml"), "name = 'x'\nsource = 'y'\nG_c = 3\n").unwrap();
         let mut w = si();

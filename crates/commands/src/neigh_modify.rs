@@ -216,7 +216,7 @@ mod tests {
     use super::super::testing::{refused, scene};
 
     #[test]
-    fn keeps_what_is_not_said() {
+    fn keeps_settings_that_are_not_named() {
         let w = scene(
             "region b block 0 1 0 1 0 1\ncreate_box 2 b\ngroup g type 1\nneigh_modify every 5 delay 10\nneighbor 0.2 bin\n\
              neigh_modify check no exclude type 2 1 exclude group g all",

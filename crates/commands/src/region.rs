@@ -112,13 +112,13 @@ impl CommandStyle for RegionCommand {
         let options = options(a.clone(), cx, *faces, style)?;
         let unit = scales(cx.world, options.lattice);
         let mut reader = Reader::new(a, cx, unit);
-        let mut said = vec![];
+        let mut log = vec![];
         let shape = match style.text.as_str() {
             "union" => Shape::Union(parts(reader.a, cx)?),
             "intersect" => Shape::Intersect(parts(reader.a, cx)?),
             "mesh" => {
                 let (solid, lines) = mesh::read(reader.a, cx, options.placing, unit)?;
-                said = lines;
+                log = lines;
                 Shape::Mesh(solid)
             }
             name => reader.shape(name)?,
@@ -133,7 +133,7 @@ impl CommandStyle for RegionCommand {
         let mut region = Region { outside, open, given, motion, ..Region::inside(shape) };
         region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
-            said.iter().for_each(|line| cx.print(line));
+            log.iter().for_each(|line| cx.print(line));
             cx.world.parts.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(Key::new(&name), region);
             Ok(())
@@ -304,7 +304,7 @@ mod tests {
     use perigrain_world::World;
 
     #[test]
-    fn distances_are_in_lattice_spacings_unless_said() {
+    fn distances_are_in_lattice_spacings_by_default() {
         let w = scene(
             "units si\nlattice custom 0.5 a2 0 2 0 a3 0 0 3 basis 0 0 0\nregion a sphere 1 1 1 2\n\
              region b sphere 1 1 1 2 units box\nregion c cylinder x 1 1 2 0 4",

@@ -229,9 +229,9 @@ mod tests {
         );
         assert_eq!(w.particles.image[0], [1, 0, 0]);
         more(&mut w, "set atom 2 diameter 0.3 vx 7");
-        let said = act(&mut w, "replicate 2 1 2", &[]).unwrap();
-        assert_eq!(said[0], "Replication is creating a 2x1x2 = 4 times larger system...");
-        assert_eq!(said[3], "  8 atoms");
+        let lines = act(&mut w, "replicate 2 1 2", &[]).unwrap();
+        assert_eq!(lines[0], "Replication is creating a 2x1x2 = 4 times larger system...");
+        assert_eq!(lines[3], "  8 atoms");
         let p = &w.particles;
         assert_eq!(p.tag, [1, 2, 5, 6, 3, 4, 7, 8]);
         // Unwrapped at 2.2: the copy lies at 4.2 of a box of 4.

@@ -86,9 +86,9 @@ impl CommandStyle for RunStyleCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let style = match a.choice("run style", &RUN_STYLES)? {
             "respa" => {
-                let (style, said) = respa::read(a)?;
+                let (style, lines) = respa::read(a)?;
                 return Ok(setting(move |cx| {
-                    said.iter().for_each(|line| cx.print(line));
+                    lines.iter().for_each(|line| cx.print(line));
                     put(cx.world, style.clone());
                     Ok(())
                 }));

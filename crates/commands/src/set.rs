@@ -360,9 +360,9 @@ mod tests {
     #[test]
     fn fraction_and_density_are_lammps() {
         let mut w = balls();
-        let said = act(&mut w, "set type 1 type 2 density 5", &[]).unwrap();
+        let lines = act(&mut w, "set type 1 type 2 density 5", &[]).unwrap();
         assert_eq!(
-            said,
+            lines,
             ["Setting atom values ...", "  36 settings made for type", "  36 settings made for density"]
         );
         more(&mut w, "set group all type/fraction 3 0.25 99 vx 2.5");

@@ -213,8 +213,8 @@ fn critical(w: &World) -> Vec<f64> {
 
 /// The per-particle factors set by `set … peri/strength` (0) or `peri/stiffness` (1).
 fn bond_factors(w: &World, which: usize) -> Vec<f64> {
-    let said = w.columns.get_scalar(*BOND_FACTORS[which]).unwrap_or_default();
-    let of = |i: usize| said.get(i).copied().filter(|f| *f > 0.0).unwrap_or(1.0);
+    let factors = w.columns.get_scalar(*BOND_FACTORS[which]).unwrap_or_default();
+    let of = |i: usize| factors.get(i).copied().filter(|f| *f > 0.0).unwrap_or(1.0);
     (0..w.n()).map(of).collect()
 }
 

@@ -79,7 +79,7 @@ mod tests {
     use perigrain_world::region::Shape;
 
     #[test]
-    fn who_is_inside_counts() {
+    fn particles_inside_count() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         b.world.particles.v = vec![[1.0, 2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]].into();
         let block = Shape::Block { lo: [-1.0; 3], hi: [1.5; 3] };

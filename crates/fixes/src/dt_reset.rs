@@ -237,7 +237,7 @@ mod tests {
 
     // Many random particles with steps of all sizes: a skipped particle must never be the limiting one.
     #[test]
-    fn nobody_who_decides_is_passed_over() {
+    fn no_deciding_particle_is_skipped() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 5000]);
         let mut seed = 4711u64;
         let mut number = || {

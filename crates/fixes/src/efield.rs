@@ -129,7 +129,7 @@ impl Fix for Declared {
         let [x, y, z] = &self.field;
         let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
         let field = [read(x)?, read(y)?, read(z)?];
-        let said: Option<(Reading, bool)> = match &self.energy {
+        let given: Option<(Reading, bool)> = match &self.energy {
             Energy::Given { of, potential } => {
                 Some((cx.value(of, Stage::PostForce, &When::Always)?, *potential))
             }
@@ -155,7 +155,7 @@ impl Fix for Declared {
                     let (q, x) = (w.particles.charge[i], unwrapped(w, i));
                     let force = scale(q, at(w, i));
                     *f = add(*f, force);
-                    let energy = match said {
+                    let energy = match given {
                         _ if own => -dot(force, x),
                         Some((of, potential)) => of.atom(w, i) * if potential { unit * q } else { 1.0 },
                         None => 0.0,

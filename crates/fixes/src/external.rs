@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn forces_are_asked_for_and_added_at_their_intervals() {
+    fn forces_are_requested_and_added_at_their_intervals() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
         let mut fix = b.fix(&External, "pf/callback 2 1").unwrap();
         fix.declare(&mut b.world).unwrap();
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn energies_and_virials_of_particles_stay_until_they_are_told_anew() {
+    fn energies_and_virials_of_particles_stay_until_they_are_set_anew() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
         let fix = b.fix(&External, "pf/callback 2 2").unwrap();
         fix.declare(&mut b.world).unwrap();

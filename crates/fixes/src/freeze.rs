@@ -91,9 +91,9 @@ impl Fix for Declared {
             }
             !t.unchanged
         };
-        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
+        let took = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
         let name = format!("fix {} freeze", self.id);
-        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(hold, told);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(hold, took);
         Ok(vec![op.in_every_level().boxed()])
     }
 
@@ -113,7 +113,7 @@ mod tests {
     use perigrain_world::AtomStyle;
 
     #[test]
-    fn forces_and_torques_vanish_and_their_sum_is_told() {
+    fn forces_and_torques_vanish_and_their_sum_is_published() {
         let style = AtomStyle { sphere: true, ..AtomStyle::default() };
         let mut b = Bench::new(style, &[[0.0; 3], [5.0; 3], [7.0; 3]]);
         b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0], [4.0; 3]].into();

@@ -249,7 +249,7 @@ impl Fix for Declared {
             true
         };
         // Other styles read the acceleration from the slot (`SealCx::gravities`); decks cannot see it.
-        let told = move |w: &mut World, t: &Tick, sums: BlockSums| {
+        let took = move |w: &mut World, t: &Tick, sums: BlockSums| {
             let a = steady.unwrap_or_else(|| acceleration(w));
             publish(w, slot, t, sums.sums[0], &a);
         };
@@ -261,7 +261,7 @@ impl Fix for Declared {
             Ok(())
         };
         // An idle gravity needs no rows.
-        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, told).requesting_rows();
+        let op = StepOp::new(name, Stage::PostForce, access, idle).fusing(pull, took).requesting_rows();
         Ok(vec![op.boxed()])
     }
 

@@ -179,7 +179,7 @@ mod tests {
     use perigrain_world::AtomStyle;
 
     #[test]
-    fn a_run_ends_as_told() {
+    fn a_run_ends_at_its_condition() {
         for (words, ends) in [
             ("1 v_e > 6", Halt::All),
             ("1 v_e >= 7 error continue", Halt::Run),

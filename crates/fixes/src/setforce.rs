@@ -59,7 +59,7 @@ impl Fix for Declared {
             room.act(move |s: &mut ParticleBlock<'_>| replace(s, bit, &values));
             true
         };
-        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
+        let took = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -78,7 +78,7 @@ impl Fix for Declared {
             publish_levels(w, slot, t, &before);
             Ok(())
         });
-        Ok(vec![op.fusing(hold, told).one_by_one().with_sums().in_every_level().boxed()])
+        Ok(vec![op.fusing(hold, took).one_by_one().with_sums().in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {

@@ -89,11 +89,11 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused_with_their_line() {
-        let said = |text: &str| read(text.as_bytes()).unwrap_err();
-        assert!(said("v 0 0\n").contains("line 1") && said("v 0 0 inf\n").contains("three numbers"));
-        assert!(said("v 0 0 0\nf 1 2 3\n").contains("line 2: there is no corner `2`"));
-        assert!(said("v 0 0 0\nf 1 1 -2\n").contains("`-2`") && said("f 0 0 0\n").contains("`0`"));
-        assert!(said("v 0 0 0\nf 1 1\n").contains("three corners"));
-        assert!(said("curv 0 1 2\n").contains("`curv`"));
+        let refusal = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(refusal("v 0 0\n").contains("line 1") && refusal("v 0 0 inf\n").contains("three numbers"));
+        assert!(refusal("v 0 0 0\nf 1 2 3\n").contains("line 2: there is no corner `2`"));
+        assert!(refusal("v 0 0 0\nf 1 1 -2\n").contains("`-2`") && refusal("f 0 0 0\n").contains("`0`"));
+        assert!(refusal("v 0 0 0\nf 1 1\n").contains("three corners"));
+        assert!(refusal("curv 0 1 2\n").contains("`curv`"));
     }
 }

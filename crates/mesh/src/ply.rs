@@ -291,18 +291,18 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused() {
-        let said = |text: &str| read(text.as_bytes()).unwrap_err();
-        assert!(said("ply\nformat ascii 1.0\n").contains("end_header"));
-        assert!(said("ply\nformat ascii 2.0\n").contains("line 2"));
-        assert!(said("ply\nproperty float x\n").contains("line 2"));
-        assert!(said("ply\nelement vertex 3\nproperty float x\nend_header\n").contains("format"));
+        let refusal = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(refusal("ply\nformat ascii 1.0\n").contains("end_header"));
+        assert!(refusal("ply\nformat ascii 2.0\n").contains("line 2"));
+        assert!(refusal("ply\nproperty float x\n").contains("line 2"));
+        assert!(refusal("ply\nelement vertex 3\nproperty float x\nend_header\n").contains("format"));
         let text = format!("ply\nformat ascii 1.0\n{HEAD}0 0 0 0\n1 0 0 0\n0 1 0 0\n");
-        assert!(said(&text).contains("row 1 of `face`"));
-        assert!(said(&format!("{text}3 0 1 3\n")).contains("no corner 3"));
-        assert!(said(&format!("{text}2 0 1\n")).contains("three corners"));
+        assert!(refusal(&text).contains("row 1 of `face`"));
+        assert!(refusal(&format!("{text}3 0 1 3\n")).contains("no corner 3"));
+        assert!(refusal(&format!("{text}2 0 1\n")).contains("three corners"));
         let whole = binary(true);
         assert!(read(&whole[..whole.len() - 1]).unwrap_err().contains("row 1 of `face`"));
         // A number of rows that no file has.
-        assert!(said(&text.replace("vertex 3", "vertex 99999999999")).contains("row 4"));
+        assert!(refusal(&text.replace("vertex 3", "vertex 99999999999")).contains("row 4"));
     }
 }

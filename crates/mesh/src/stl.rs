@@ -144,12 +144,12 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused_with_their_line() {
-        let said = |text: &str| read(text.as_bytes()).unwrap_err();
-        assert!(said("").contains("solid") && said("solid a\nvertex 1 2\n").contains("line 2"));
-        assert!(said("solid a\nouter loop\nvertex 1 2 3\nendloop\n").contains("line 4"));
-        assert!(said("solid a\nvertex 1 2 nan\n").contains("three numbers"));
-        assert!(said(&TEXT.replace("endsolid one\n", "")).contains("endsolid"));
-        assert!(said(&format!("{TEXT}vertex 1 2 3\n")).contains("line 10"));
+        let refusal = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(refusal("").contains("solid") && refusal("solid a\nvertex 1 2\n").contains("line 2"));
+        assert!(refusal("solid a\nouter loop\nvertex 1 2 3\nendloop\n").contains("line 4"));
+        assert!(refusal("solid a\nvertex 1 2 nan\n").contains("three numbers"));
+        assert!(refusal(&TEXT.replace("endsolid one\n", "")).contains("endsolid"));
+        assert!(refusal(&format!("{TEXT}vertex 1 2 3\n")).contains("line 10"));
         assert!(
             read(&packed()[..130]).unwrap_err().contains("announces 1 triangles in 134 bytes, and has 130")
         );

@@ -21,11 +21,11 @@ struct Piece {
 
 /// Reads a VTP file.
 pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
-    let said = |e: Diagnostics| sentence(&e, bytes);
-    let document = Document::read(bytes, "PolyData").map_err(said)?;
+    let problem = |e: Diagnostics| sentence(&e, bytes);
+    let document = Document::read(bytes, "PolyData").map_err(problem)?;
     let mut triangles = vec![];
     for piece in &document.pieces {
-        Piece::read(&document, piece).map_err(said)?.add_to(&mut triangles)?;
+        Piece::read(&document, piece).map_err(problem)?.add_to(&mut triangles)?;
     }
     Ok(triangles)
 }

@@ -178,8 +178,8 @@ impl Pair for Declared {
             return Ok(());
         }
         let names: Vec<&'static str> = self.subs.iter().map(|s| s.facts().name).collect();
-        let said = args.peek().map(|word| plain(&word.text));
-        let name = match names.iter().find(|name| said == Some(**name)) {
+        let first = args.peek().map(|word| plain(&word.text));
+        let name = match names.iter().find(|name| first == Some(**name)) {
             Some(name) => {
                 args.next();
                 *name

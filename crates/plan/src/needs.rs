@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn who_touches_what_it_states_may() {
+    fn an_op_may_touch_what_it_states() {
         acts(Needs::new().read(X).add(F), |w| w.particles.f[0][0] += w.particles.x[0][0]);
         acts(Needs::new().write(V), |w| w.particles.v[0] = w.particles.v[0].map(|v| -v));
         acts(Needs::all(), |w| w.particles.push(2, 1, [1.0; 3]));
@@ -247,19 +247,19 @@ mod tests {
     #[cfg(debug_assertions)]
     #[test]
     #[should_panic(expected = "reads v and does not state it")]
-    fn who_reads_more_is_stopped() {
+    fn an_op_that_reads_more_is_stopped() {
         acts(Needs::new().read(X).add(F), |w| w.particles.f[0] = w.particles.v[0]);
     }
 
     #[cfg(debug_assertions)]
     #[test]
     #[should_panic(expected = "writes x and does not state it")]
-    fn who_writes_what_it_said_to_read_is_stopped() {
+    fn an_op_that_writes_what_it_states_to_read_is_stopped() {
         acts(Needs::new().read(X), |w| w.particles.x[0] = [0.0; 3]);
     }
 
     #[test]
-    fn what_is_stated_and_never_used_is_told() {
+    fn what_is_stated_and_never_used_is_reported() {
         let needs = Needs::new().read(X | V).add(F);
         let stated = needs.named();
         let account = Account { stated, touched: [X | F, Fields::NONE], ..Account::default() };

@@ -98,7 +98,7 @@ impl StepPlan {
         let p = &mut self.ops[force];
         let (span, before) = (p.span(w, t), w.traffic());
         share::before(w, span, std::iter::once(p.about.needs));
-        let told = p.timed(w, t, &mut clock, |op, w| {
+        let streamed = p.timed(w, t, &mut clock, |op, w| {
             op.run_streaming(w, t, &mut |w, particles| {
                 // Reading the clock takes longer than moving a few particles.
                 match particles.len() > FEW {
@@ -116,7 +116,7 @@ impl StepPlan {
         let before = w.traffic();
         let needs = || own.which.iter().map(|&k| self.ops[k].about.needs);
         share::before(w, Span::Own, needs());
-        match told {
+        match streamed {
             true => pass.finish(w, &mut came),
             false => fuse(w, own, &mut came),
         }

@@ -129,14 +129,14 @@ impl Handle {
     /// Says energies and virials of particles, for the call that is under way.
     #[pyo3(signature = (energy, virial))]
     fn each(&self, energy: Option<&[u8]>, virial: Option<&[u8]>) -> PyResult<()> {
-        let said = each_of(energy, virial)?;
+        let given = each_of(energy, virial)?;
         let mut state = self.0.state();
         let own = &mut state.each;
-        if said.energy.is_some() {
-            own.energy = said.energy;
+        if given.energy.is_some() {
+            own.energy = given.energy;
         }
-        if said.virial.is_some() {
-            own.virial = said.virial;
+        if given.virial.is_some() {
+            own.virial = given.virial;
         }
         Ok(())
     }

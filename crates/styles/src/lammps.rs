@@ -95,9 +95,9 @@ mod tests {
     #[test]
     fn words_of_liggghts_lead_on() {
         let word = |text: &str| Word::new(text, Default::default());
-        let said = |kind, text| refusal(kind, "style", &word(text)).unwrap().0.remove(0);
-        assert_eq!(said("pair", "gran").message, "LIGGGHTS' style `gran` is not in perigrain");
-        assert!(said("fix", "mesh/surface").help[0].contains("fix wall/mesh"));
+        let refused = |kind, text| refusal(kind, "style", &word(text)).unwrap().0.remove(0);
+        assert_eq!(refused("pair", "gran").message, "LIGGGHTS' style `gran` is not in perigrain");
+        assert!(refused("fix", "mesh/surface").help[0].contains("fix wall/mesh"));
         assert!(refusal("fix", "style", &word("mesh/surfac")).is_none());
     }
 

@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn some_of_a_long_chain_tell_its_limit() {
+    fn some_of_a_long_chain_give_its_limit() {
         // Springs in a row of which those in the middle are twice as stiff as the others.
         let n = 3000;
         let stiffness = |i: usize| if (1000..2000).contains(&i) { 2.0 } else { 1.0 };

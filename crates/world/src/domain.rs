@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_wrapped_across_faces_that_do_not_repeat() {
+    fn no_particle_is_wrapped_across_fixed_faces() {
         let domain = leaning([1.0, 0.0, 0.0], [Face::Shrink, Face::Periodic, Face::Fixed]);
         let (mut x, mut image) = ([9.0, 0.5, 7.0], [0; 3]);
         domain.wrap(&mut x, &mut image);
@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flip_leaves_everybody_where_it_was() {
+    fn a_flip_leaves_all_particles_in_place() {
         let mut domain = leaning([1.6, -0.5, 1.2], [Face::Periodic; 3]);
         let flip = Flip { tilt: [1.6 - 3.0, -0.5 + 3.0 - 1.6, 1.2 - 2.0], turns: [-1, 1, -1] };
         let (mut x, mut image) = ([4.5, -0.5, 2.5], [2, -3, 5]);

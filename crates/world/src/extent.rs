@@ -89,7 +89,7 @@ mod tests {
     use crate::{Boundary, Face};
 
     #[test]
-    fn a_look_finds_corners_and_who_is_out_or_nowhere() {
+    fn one_pass_finds_corners_and_particles_outside_or_nowhere() {
         let domain = Domain::new(
             [0.0; 3],
             [10.0; 3],
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_way_of_all_counts_and_nobody_who_is_nowhere_is_overlooked() {
+    fn the_longest_way_of_all_counts_and_positions_without_a_number_are_found() {
         let held: Vec<Vec3> = (0..5000).map(|i| [f64::from(i), 1.0, -2.0]).collect();
         let mut x = held.clone();
         assert_eq!((farthest(&[], &[]), farthest(&x, &held)), (0.0, 0.0));

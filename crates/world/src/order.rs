@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn contacts_of_who_has_gone_are_forgotten() {
+    fn contacts_of_deleted_particles_are_dropped() {
         let mut w = World::default();
         (1..=3).for_each(|tag| w.particles.push(tag, 1, [f64::from(tag); 3]));
         let own = Key::new("own");
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn who_lined_up_falls_back_with_all_that_is_his() {
+    fn lined_up_particles_fall_back_with_all_their_data() {
         let mut w = World::default();
         (1..=4).for_each(|tag| w.particles.push(10 * tag, 1, [f64::from(tag); 3]));
         w.rebuild.held = w.particles.x.to_vec();

@@ -191,7 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_tells_times() {
+    fn a_log_has_times() {
         let log = "Loop time of 9 on 1 procs for 10 steps with 1000 atoms\n\
                    Loop time of 0.5 on 1 procs for 100 steps with 2000 atoms\n\n50.0% CPU use with 1 threads\n";
         let run = read(log, 7.0).unwrap();

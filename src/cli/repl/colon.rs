@@ -112,11 +112,11 @@ impl Repl {
         let folder = self.session.folder();
         let alone = Alone::new(&self.session.sources, &folder, Path::new(file));
         let (text, odd) = saving::deck(&self.lines, &self.switches, &alone);
-        let said = write(file, &text)?;
+        let written = write(file, &text)?;
         Ok(match odd {
-            0 => said,
+            0 => written,
             _ => format!(
-                "{said}{odd} line(s) were stopped by Ctrl-C and will go to their end in the deck: see its comments\n"
+                "{written}{odd} line(s) were stopped by Ctrl-C and will go to their end in the deck: see its comments\n"
             ),
         })
     }

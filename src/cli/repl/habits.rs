@@ -65,9 +65,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn habits_work_or_are_told() {
+    fn habits_work_or_get_a_hint() {
         let help = |words: &[&str]| Meant::Help(words.iter().map(|w| (*w).to_string()).collect());
-        let told = |line: &str| match meant(line) {
+        let hint = |line: &str| match meant(line) {
             Meant::Hint(text) => text,
             other => format!("{other:?}"),
         };
@@ -84,8 +84,8 @@ mod tests {
             [meant("run 10"), meant("print a?"), meant("clear")],
             [Meant::Deck, Meant::Deck, Meant::Deck]
         );
-        assert_eq!(told("!ls -l"), "write `shell ls -l`");
-        assert_eq!(told("ls -l"), "write `shell ls -l`");
-        assert!(told("plot pe").contains("`:plot pe`") && told("%magic").contains("%time LINE"));
+        assert_eq!(hint("!ls -l"), "write `shell ls -l`");
+        assert_eq!(hint("ls -l"), "write `shell ls -l`");
+        assert!(hint("plot pe").contains("`:plot pe`") && hint("%magic").contains("%time LINE"));
     }
 }

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn behind_a_whole_word_the_syntax_goes_on() {
+    fn behind_a_whole_word_the_syntax_continues() {
         assert_eq!(text("fix").as_deref(), Some(" ID group STYLE word …"));
         assert_eq!(text("fix 1 all viscous ").as_deref(), Some("gamma [scale type ratio]"));
         assert_eq!(text("fix 1 all nve"), None);

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_cut_is_said() {
+    fn what_makes_no_cut_is_refused() {
         let mut s = scene();
         assert!(slice(&["x", "z"], &mut s, Ink::None, 72).unwrap_err().contains(":slice FORMULA"));
         assert!(slice(&["x", "w", "0"], &mut s, Ink::None, 72).is_err());

@@ -69,8 +69,8 @@ impl Sheet {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&mut self, told: Subject) -> Result<()> {
-        let page = report::html(&of_run(told, self.begin.elapsed(), self.since));
+    pub fn write(&mut self, subject: Subject) -> Result<()> {
+        let page = report::html(&of_run(subject, self.begin.elapsed(), self.since));
         self.put(&page)
     }
 
@@ -101,11 +101,11 @@ pub(super) fn title(deck: &Deck) -> String {
 }
 
 /// The report about a run.
-fn of_run(told: Subject, wall: Duration, since: SystemTime) -> Report {
-    let (o, s) = (told.options, told.session);
+fn of_run(subject: Subject, wall: Duration, since: SystemTime) -> Report {
+    let (o, s) = (subject.options, subject.session);
     let name = deck::name(&o.deck);
     let mut r = Report::new(title(&o.deck));
-    r.ended = match told.outcome {
+    r.ended = match subject.outcome {
         Ok(ending) if ending.interrupted => Ended::Interrupted,
         Ok(_) => Ended::Well,
         Err(problems) => Ended::Failed(render::plain(problems, &s.sources)),
@@ -113,8 +113,8 @@ fn of_run(told: Subject, wall: Duration, since: SystemTime) -> Report {
     r.origin = format!("{}; {}", origin(&machine()), day(SystemTime::now()));
     r.figures = figures(s, wall);
     r.facts = facts(o, s);
-    r.deck = Some(Text { what: "Deck", name, text: told.text.clone() });
-    r.tables = told.log.tables(|t| t.clone());
+    r.deck = Some(Text { what: "Deck", name, text: subject.text.clone() });
+    r.tables = subject.log.tables(|t| t.clone());
     let mut names: Vec<&String> = r.tables.0.iter().flat_map(|t| &t.columns).collect();
     names.dedup();
     r.columns = names.into_iter().filter_map(|name| Some((name.clone(), s.column_is(name)?))).collect();
@@ -122,10 +122,10 @@ fn of_run(told: Subject, wall: Duration, since: SystemTime) -> Report {
     r.parts = s.spent().parts.clone();
     r.plan = s.plan.as_ref().map(|plan| explain::text(plan, true));
     r.gallery = report::gathered(s.spent().pictures.iter().map(String::as_str), since);
-    let (number, took) = (told.film.seen, told.film.took().as_secs_f64());
+    let (number, took) = (subject.film.seen, subject.film.took().as_secs_f64());
     r.facts.push(("snapshots".into(), format!("{number} in {}", span(took))));
-    let last = taken(&s.world, told.film.last());
-    r.film = told.film.finish(last);
+    let last = taken(&s.world, subject.film.last());
+    r.film = subject.film.finish(last);
     r.film.retain(|frame| !frame.is_empty());
     r
 }

@@ -114,22 +114,22 @@ fn is_dump(path: &Path) -> Result<bool> {
 fn add_log(path: &Path, r: &mut Report) -> Result<()> {
     let bytes = std::fs::read(path).map_err(|e| trouble("read the log", path, &e))?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    let told = report::log::read(&text);
-    r.tables.0.extend(told.tables.0);
-    r.messages.extend(told.messages);
-    r.ended = told.ended;
-    if !told.origin.is_empty() {
-        r.origin = told.origin;
+    let log = report::log::read(&text);
+    r.tables.0.extend(log.tables.0);
+    r.messages.extend(log.messages);
+    r.ended = log.ended;
+    if !log.origin.is_empty() {
+        r.origin = log.origin;
     }
     r.figures = vec![
-        ("particles".to_string(), grouped(told.atoms as f64)),
-        ("steps".into(), grouped(told.steps as f64)),
+        ("particles".to_string(), grouped(log.atoms as f64)),
+        ("steps".into(), grouped(log.steps as f64)),
     ];
-    if told.seconds > 0.0 {
-        r.figures.push(("time in steps".into(), span(told.seconds)));
-        r.figures.push(("steps per second".into(), grouped(told.steps as f64 / told.seconds)));
+    if log.seconds > 0.0 {
+        r.figures.push(("time in steps".into(), span(log.seconds)));
+        r.figures.push(("steps per second".into(), grouped(log.steps as f64 / log.seconds)));
     }
-    r.remarks.extend(told.remark.map(|remark| format!("{}: {remark}", path.display())));
+    r.remarks.extend(log.remark.map(|remark| format!("{}: {remark}", path.display())));
     r.deck = Some(Text { what: "Log", name: path.display().to_string(), text });
     Ok(())
 }

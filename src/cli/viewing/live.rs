@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_run_pauses_steps_goes_on_and_stops() {
+    fn a_run_pauses_steps_continues_and_stops() {
         let (live, stop) = (Live::default(), AtomicBool::new(false));
         assert!(!live.looks(&stop), "there is no reader");
         assert_eq!(live.frame(0).map(|f| f.0), None);

@@ -63,12 +63,12 @@ fn word_at(server: &mut Server, file: &Arc<File>, byte: usize) -> Option<(String
     let known = server.known(file, byte);
     let (place, page) = knowing::place(&typed[..k], &known)?;
     let declared = place.offers.iter().find_map(|offer| offer.about(typed[k]));
-    let told = declared.or_else(|| knowing::sentence_on(page.doc.text, typed[k])).filter(|_| !word.quoted);
-    let told = told.or_else(|| {
+    let text = declared.or_else(|| knowing::sentence_on(page.doc.text, typed[k])).filter(|_| !word.quoted);
+    let text = text.or_else(|| {
         let here = place.here.iter().find(|here| *here != "|")?;
         Some(format!("here stands `{here}`\n\n```perigrain\n{}\n```", page.syntax()))
     })?;
-    Some((format!("**{}**: {told}", page.title()), range))
+    Some((format!("**{}**: {text}", page.title()), range))
 }
 
 /// The lines that define a name, and the page of its style.

@@ -39,7 +39,7 @@ fn filmed(runs: &[i64], n: usize) -> Vec<i64> {
 }
 
 #[test]
-fn snapshots_are_even_and_few_however_long_it_goes_on() {
+fn snapshots_are_even_and_few_however_long_the_run_is() {
     assert_eq!(filmed(&[4], 1), [0, 1, 2, 3, 4]);
     let steps = filmed(&[600], 1);
     assert_eq!((steps.len(), steps[1], steps[60]), (61, 10, 600));

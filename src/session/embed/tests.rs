@@ -18,7 +18,7 @@ fn spheres() -> Session {
 }
 
 #[test]
-fn values_are_told_by_kind() {
+fn values_are_returned_by_kind() {
     let mut s = spheres();
     assert_eq!(s.variable("e").unwrap(), Some(VariableValue::Number(0.0)));
     assert_eq!(s.variable("a").unwrap(), Some(VariableValue::Particles(vec![0.6, 1.4])));

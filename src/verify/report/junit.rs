@@ -31,7 +31,7 @@ pub fn junit(report: &Report) -> String {
 }
 
 fn test(outcome: &Outcome, row: &Row) -> String {
-    let said = escaped(&format!(
+    let message = escaped(&format!(
         "{} instead of {}, off by {}, allowed {} ({})",
         number(row.ours),
         expected(row),
@@ -42,12 +42,12 @@ fn test(outcome: &Outcome, row: &Row) -> String {
     let inside = match (row.verdict, &row.check.known, &outcome.failure) {
         (Verdict::Passed, ..) => String::new(),
         (Verdict::Known, Some(known), _) => {
-            format!("<skipped message=\"known deviation: {said}: {}\"/>", escaped(&known.reason))
+            format!("<skipped message=\"known deviation: {message}: {}\"/>", escaped(&known.reason))
         }
         (_, _, Some(failure)) => {
             format!("<failure message=\"the deck failed\">{}</failure>", escaped(failure))
         }
-        _ => format!("<failure message=\"{said}\"/>"),
+        _ => format!("<failure message=\"{message}\"/>"),
     };
     let name = escaped(&outcome.case.name).replace('/', ".");
     let what = escaped(&what(outcome, row));

@@ -29,7 +29,7 @@ pub fn first(own: impl FnOnce() -> Result<Vec<u8>>) -> Result<Vec<u8>> {
         return own();
     }
     let mut failed = None;
-    let mut told = comm::broadcast::bytes(|| match own() {
+    let mut bytes = comm::broadcast::bytes(|| match own() {
         Ok(mut bytes) => {
             bytes.push(FINE);
             bytes
@@ -40,10 +40,10 @@ pub fn first(own: impl FnOnce() -> Result<Vec<u8>>) -> Result<Vec<u8>> {
             packed
         }
     });
-    match (failed, told.pop()) {
+    match (failed, bytes.pop()) {
         (Some(e), _) => Err(e),
-        (None, Some(FINE)) => Ok(told),
-        (None, how) => unpack(&told, how.unwrap_or(OTHER)),
+        (None, Some(FINE)) => Ok(bytes),
+        (None, how) => unpack(&bytes, how.unwrap_or(OTHER)),
     }
 }
 
@@ -60,9 +60,9 @@ fn pack(e: &Error) -> Vec<u8> {
     bytes
 }
 
-fn unpack(told: &[u8], how: u8) -> Result<Vec<u8>> {
+fn unpack(bytes: &[u8], how: u8) -> Result<Vec<u8>> {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    match (how, told) {
+    match (how, bytes) {
         (REFUSED, text_of) => refuse(text(text_of)),
         (OF_SYSTEM, [a, b, c, d]) => Err(Error::from_raw_os_error(i32::from_le_bytes([*a, *b, *c, *d]))),
         (OTHER, [text_of @ .., kind]) if usize::from(*kind) < KINDS.len() => {

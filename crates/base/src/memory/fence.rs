@@ -125,10 +125,10 @@ fn refuse(size: usize) {
     SPEAKING.set(true);
     // What goes wrong while the words are said must not leave an allocator by unwinding.
     let _ = catch_unwind(AssertUnwindSafe(|| {
-        let said = placed(message(size as f64));
+        let problem = placed(message(size as f64));
         match SPEAKER.get() {
-            Some(speaker) => speaker(said),
-            None => eprintln!("error[{}]: {}", said.code, said.message),
+            Some(speaker) => speaker(problem),
+            None => eprintln!("error[{}]: {}", problem.code, problem.message),
         }
     }));
     exit(1);
@@ -153,15 +153,15 @@ fn message(bytes: f64) -> Diagnostic {
 }
 
 /// With the line that runs.
-fn placed(mut said: Diagnostic) -> Diagnostic {
+fn placed(mut problem: Diagnostic) -> Diagnostic {
     if let Ok(text) = TEXT.try_read()
         && let Some(text) = &*text
     {
         let line = LINE.load(Ordering::Relaxed);
-        said.span = Some(Span { file: FileId::BROUGHT, start: (line >> 32) as u32, end: line as u32 });
-        said.text = Some(text.clone());
+        problem.span = Some(Span { file: FileId::BROUGHT, start: (line >> 32) as u32, end: line as u32 });
+        problem.text = Some(text.clone());
     }
-    said
+    problem
 }
 
 /// Says which text the next lines are of.

@@ -61,7 +61,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     #[test]
-    fn estimates_of_struts_that_bend_are_told() {
+    fn estimates_of_struts_that_bend_give_a_warning() {
         let of = |generator: &str, gap: &str| {
             let mut w = world_of(&format!(
                 "units si\nboundary f f f\natom_style hybrid sphere bond\nregion w block -1e-7 4e-7 -1e-7 4e-7 -1e-7 4e-7 units box\n\

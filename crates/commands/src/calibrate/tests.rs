@@ -401,7 +401,7 @@ fn what_makes_no_sense_is_refused() {
 }
 
 #[test]
-fn pieces_and_loose_particles_are_told() {
+fn pieces_and_loose_particles_are_reported() {
     let mut w = fcc();
     // Two particles torn off, bonded to each other.
     let x = w.particles.x.to_vec();

@@ -46,7 +46,7 @@ fn friction_between_nothing_and_sticking() {
 }
 
 #[test]
-fn contacts_that_bear_much_and_stick_are_told() {
+fn contacts_that_bear_much_and_stick_give_a_warning() {
     let mut w = fcc();
     w.bonds.weights.lj = [1.0; 3];
     let mut soft = Beams::standard(2);

@@ -61,10 +61,10 @@ fn attempts_are_counted_as_in_lammps() {
 #[test]
 fn single_counts_in_lattice_spacings() {
     let mut w = scene("units si\nlattice sc 0.5\nregion b block 0 4 0 4 0 4\ncreate_box 2 b");
-    let said = act(&mut w, "create_atoms 2 single 1 2 3", &[]).unwrap();
+    let printed = act(&mut w, "create_atoms 2 single 1 2 3", &[]).unwrap();
     assert_eq!(w.particles.x[0], [0.5, 1.0, 1.5]);
-    assert_eq!(said[0], "Created 1 atoms");
-    assert_eq!(said[1], "  using lattice units in orthogonal box = (0 0 0) to (2 2 2)");
+    assert_eq!(printed[0], "Created 1 atoms");
+    assert_eq!(printed[1], "  using lattice units in orthogonal box = (0 0 0) to (2 2 2)");
     more(&mut w, "create_atoms 1 single 2 2 2 units box\ncreate_atoms 1 single 2.5 2 2 units box remap yes");
     assert_eq!((w.n(), w.particles.x[1]), (2, [0.5, 0.0, 0.0]));
 }

@@ -297,7 +297,7 @@ impl Given {
     fn share(self, lattice: &Lattice, span: Span) -> Shares {
         let sum: f64 = self.each.iter().sum();
         let whole = volume(lattice) / lattice.basis.len() as f64;
-        let said = format!(
+        let line = format!(
             "  volumes from {} to {} of a cell, {} in all; {} of it from {} cells whose site has no particle",
             general(self.each.iter().copied().fold(f64::INFINITY, f64::min) / whole, 4),
             general(self.each.iter().copied().fold(0.0, f64::max) / whole, 4),
@@ -314,7 +314,7 @@ impl Given {
             let d = Diagnostic::warning(Code::SUSPICIOUS, span, text);
             d.help("the region has parts thinner than the lattice: make that finer, or shift it by `origin`")
         });
-        Shares { each: self.each, line: said, warning }
+        Shares { each: self.each, line, warning }
     }
 }
 

@@ -114,13 +114,13 @@ impl<'a> Newcomers<'a> {
         let places = format!("they reach from ({}) to ({})", text(self.seen[0]), text(self.seen[1]));
         let range = format!("the box from ({}) to ({})", text(self.domain.lo), text(self.domain.hi));
         if self.particles.is_empty() {
-            let said = format!("none of the {} {what} lies in the box: {places}, {range}", self.outside);
-            let d = Diagnostic::error(Code::BAD_VALUE, cx.span, said);
+            let text = format!("none of the {} {what} lies in the box: {places}, {range}", self.outside);
+            let d = Diagnostic::error(Code::BAD_VALUE, cx.span, text);
             return Err(d.help("`scale` and `shift` bring them there").into());
         }
-        let said =
+        let text =
             format!("{} of {} {what} lie outside of the box and are left out", self.outside, self.all());
-        cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, said).help(format!("{places}, {range}")));
+        cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text).help(format!("{places}, {range}")));
         Ok(())
     }
 

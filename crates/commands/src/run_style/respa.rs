@@ -34,7 +34,7 @@ pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
         super::refuse_many(all, span)?;
         loops.push(times);
     }
-    let mut said = Choices::default();
+    let mut choices = Choices::default();
     while let Some(word) = a.next() {
         match word.text.as_str() {
             "inner" | "middle" | "outer" => return Err(not_split(word)),
@@ -43,17 +43,17 @@ pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
                 while subs.is_empty() || a.peek().is_some_and(|w| w.text.parse::<i64>().is_ok()) {
                     subs.push(level(a, count, "the level of a sub-style")?.0);
                 }
-                said.subs = Some((subs, word.span));
+                choices.subs = Some((subs, word.span));
             }
             other => match ORDER.iter().position(|name| *name == other) {
                 Some(k) => {
-                    said.levels[k] = Some(level(a, count, &format!("the level of {other} forces"))?);
+                    choices.levels[k] = Some(level(a, count, &format!("the level of {other} forces"))?);
                 }
                 None => return Err(a.unknown(word, &KEYWORDS)),
             },
         }
     }
-    said.settle(loops)
+    choices.settle(loops)
 }
 
 /// Takes a level, from 1.
@@ -110,11 +110,11 @@ impl Choices {
                     .into());
             }
         }
-        let said = describe(&levels, subs.as_deref(), outermost);
+        let lines = describe(&levels, subs.as_deref(), outermost);
         if outermost == 0 {
-            return Ok((RunStyle::Verlet, said));
+            return Ok((RunStyle::Verlet, lines));
         }
-        Ok((RunStyle::Respa(Respa { loops, bond: levels[0], pair: levels[4], subs }), said))
+        Ok((RunStyle::Respa(Respa { loops, bond: levels[0], pair: levels[4], subs }), lines))
     }
 
     /// The word that is to blame where force `k` stands below the one before.

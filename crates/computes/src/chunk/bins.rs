@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_outside_goes_where_discard_says() {
+    fn particles_outside_go_where_discard_puts_them() {
         let a = Axis { dim: 0, origin: Origin::Lower, delta: 1.0, bound: [Some(0.0), None] };
         let l = Layers { lo: 0.0, count: 3 };
         let of = |discard| [-0.5, 0.5, 2.999, 3.0].map(|x| a.layer(&l, x, discard, false));

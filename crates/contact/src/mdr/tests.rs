@@ -96,7 +96,7 @@ fn adhesion_of_elastic_grains_is_that_of_johnson_kendall_and_roberts() {
 }
 
 #[test]
-fn force_and_energy_of_the_ellipse_are_what_the_formulas_say() {
+fn force_and_energy_of_the_ellipse_follow_the_formulas() {
     let shape = Ellipse { a: 4.0, b: 2.0 };
     for k in 1..2000 {
         let x = f64::from(k) / 2000.0;

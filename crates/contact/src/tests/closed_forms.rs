@@ -96,7 +96,7 @@ fn restitution(law: Granular, v: f64) -> f64 {
 }
 
 #[test]
-fn restitution_is_what_was_asked_for() {
+fn restitution_is_the_requested_one() {
     // physics.md 4.3: requested and actual e; LAMMPS' tsuji lacks a √2; limit_damping raises e.
     let cases = [
         (

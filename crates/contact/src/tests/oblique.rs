@@ -153,7 +153,7 @@ fn first_step(law: Granular, v: Vec3) -> Vec3 {
 }
 
 #[test]
-fn unlike_types_mix_as_the_manual_says_and_with_compat_as_lammps_does() {
+fn unlike_types_mix_as_in_the_manual_and_with_compat_as_in_lammps() {
     let a = model(material(5.0e7, 0.0, 0.3), Damping::Viscoelastic, mindlin(0.0, 4e3));
     let b = model(material(8.0e8, 0.0, 0.1), Damping::Viscoelastic, mindlin(0.0, 1e3));
     let slip = [0.0, 0.25, 0.0];

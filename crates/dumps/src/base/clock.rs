@@ -62,11 +62,11 @@ impl Clock {
 /// The time that the variable names now.
 fn later(text: &mut Text, r: &ValueRef, w: &mut World) -> Result<f64> {
     let now = w.clock.time();
-    let said = text(w)?;
-    match said.parse::<f64>() {
+    let named = text(w)?;
+    match named.parse::<f64>() {
         Ok(next) if next > now => Ok(next),
         _ => {
-            let text = format!("`{r}` names time {said} at time {now}: it must name a later one");
+            let text = format!("`{r}` names time {named} at time {now}: it must name a later one");
             let d = Diagnostic::error(Code::BAD_VALUE, r.span, text);
             Err(d.help("use a formula that leads on, as `time+0.1`, `1.5*(time+dt)` or `next(file)`").into())
         }

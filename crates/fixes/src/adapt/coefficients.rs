@@ -68,12 +68,12 @@ impl Follows {
         let value = cx.value(&self.variable, Stage::PreForce, when)?;
         let mut before = vec![];
         for of in &self.coefficients {
-            let Some(said) = cx.coefficient(of) else {
+            let Some(declared) = cx.coefficient(of) else {
                 let ((i, j), what) = (of.types, if of.bond { "bond" } else { "pair" });
                 let text = format!("{what} style {} has no coefficients for types {i} {j}", of.style);
                 return fail(Code::INCOMPLETE, self.style.span, text);
             };
-            before.push(Before::of(cx.world(), id, of, said));
+            before.push(Before::of(cx.world(), id, of, declared));
         }
         Ok(Box::new(Change {
             name: format!("fix {id} adapt"),
@@ -109,11 +109,11 @@ struct Before {
 
 impl Before {
     /// The saved value of a run that a restart file interrupted, or the current one.
-    fn of(w: &World, id: &str, of: &Coefficient, said: f64) -> Self {
+    fn of(w: &World, id: &str, of: &Coefficient, declared: f64) -> Self {
         let keys @ [key, kept] = [of.key(), of.kept_by(id)];
         match (w.memo.get(kept).map(Vec::as_slice), w.adapted(key)) {
             (Some(&[value, adapted]), _) => Before { value, adapted: adapted != 0.0, keys },
-            (_, now) => Before { value: now.unwrap_or(said), adapted: now.is_some(), keys },
+            (_, now) => Before { value: now.unwrap_or(declared), adapted: now.is_some(), keys },
         }
     }
 }

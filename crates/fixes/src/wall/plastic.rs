@@ -93,11 +93,11 @@ impl Plastic {
         let width = contacts.width;
         let before = t.setup.then(|| memory.history.clone());
         let rows = memory.history.chunks_exact_mut(WALL).zip(contacts.history.chunks_exact_mut(width));
-        for (c, (own, told)) in touching.iter().zip(rows) {
+        for (c, (own, precomputed)) in touching.iter().zip(rows) {
             let k = c.grain as usize;
             let radius = w.particles.radius[k];
-            let (depth, told) = (radius - c.near.distance, &mut told[width - PRECOMPUTED..]);
-            let deed = mdr::press(&self.material, &state, k, radius, depth, own, told, manner);
+            let (depth, precomputed) = (radius - c.near.distance, &mut precomputed[width - PRECOMPUTED..]);
+            let deed = mdr::press(&self.material, &state, k, radius, depth, own, precomputed, manner);
             let mut sum = mdr::Sum::default();
             sum.add(&deed, c.near.normal);
             sum.give(&mut state, k);

@@ -17,24 +17,27 @@ fn a_tree_of_variables_is_not_evaluated_without_end() {
         output_of(&format!("variable v0 equal 1\nvariable s0 format v0 %g\n{lines}print ${{v40}}\n"))
     };
     for last in ["v", "s"] {
-        let said = tree("equal", last);
-        assert!(said.starts_with("error[PG0203]: more than 1000000 variables would be evaluated"), "{said}");
-        assert!(said.lines().count() < 40, "{said}");
+        let printed = tree("equal", last);
+        assert!(
+            printed.starts_with("error[PG0203]: more than 1000000 variables would be evaluated"),
+            "{printed}"
+        );
+        assert!(printed.lines().count() < 40, "{printed}");
     }
 }
 
 #[test]
 fn a_circle_through_a_format_is_one() {
-    let said = output_of("variable a equal 1\nvariable b format a %g\nvariable a equal v_b\nprint ${a}\n");
-    assert!(said.contains("variable `a` depends on itself"), "{said}");
+    let printed = output_of("variable a equal 1\nvariable b format a %g\nvariable a equal v_b\nprint ${a}\n");
+    assert!(printed.contains("variable `a` depends on itself"), "{printed}");
 }
 
 #[test]
 fn a_text_that_doubles_comes_to_an_end() {
-    let said = output_of(
+    let printed = output_of(
         "variable s string x\nvariable i loop 60\nlabel a\nvariable s string ${s}${s}\nnext i\njump SELF a\nprint end\n",
     );
-    assert!(said.contains("the line would be longer than 16777216 characters"), "{}", said.len());
+    assert!(printed.contains("the line would be longer than 16777216 characters"), "{}", printed.len());
 }
 
 /// Seconds that a line of `parts` joined pieces takes, the less of two.

@@ -42,7 +42,7 @@ fn conditions_as_lammps_has_them() {
 #[test]
 fn refusals_of_lines() {
     // each deck is refused by LAMMPS too, except where perigrain does not have a style yet
-    for (deck, said) in [
+    for (deck, printed) in [
         ("print \"abc\n", "unmatched double quote"),
         ("print don't\n", "unmatched single quote"),
         ("print \"\"\"a\n", "unmatched triple quote"),
@@ -109,6 +109,6 @@ fn refusals_of_lines() {
         ("if 0 then \"print a\" else \"print b\" elif 1 \"print c\"\n", "can never be reached"),
     ] {
         let out = output_of(deck);
-        assert!(out.starts_with("error") && out.contains(said), "{deck}{out}");
+        assert!(out.starts_with("error") && out.contains(printed), "{deck}{out}");
     }
 }

@@ -101,18 +101,18 @@ fn text_polygons_and_strips_are_read() {
                 </VTKFile>";
     let [a, b, c, d] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.25]];
     assert_eq!(read(text.as_bytes()), Ok(vec![[a, b, d], [d, b, c]]));
-    let said = |from: &str, to: &str| read(text.replace(from, to).as_bytes()).unwrap_err();
-    assert!(said("PolyData'", "UnstructuredGrid'").contains("UnstructuredGrid"));
-    assert!(said("0 1 3 2", "0 1 4 2").contains("no point 4"));
-    assert!(said(">4<", ">5<").contains("end at 5"));
-    assert!(said(">4<", ">3<").contains("end before"));
-    assert!(said("0.25", "").contains("multiple of three"));
-    assert!(said("0.25", "x").contains("a number must stand here (line 1)"));
-    assert!(said("Float32", "Strange").contains("`Strange`"));
-    assert!(said("type='PolyData'", "type='PolyData' compressor='vtkLZ4DataCompressor'").contains("LZ4"));
+    let refusal = |from: &str, to: &str| read(text.replace(from, to).as_bytes()).unwrap_err();
+    assert!(refusal("PolyData'", "UnstructuredGrid'").contains("UnstructuredGrid"));
+    assert!(refusal("0 1 3 2", "0 1 4 2").contains("no point 4"));
+    assert!(refusal(">4<", ">5<").contains("end at 5"));
+    assert!(refusal(">4<", ">3<").contains("end before"));
+    assert!(refusal("0.25", "").contains("multiple of three"));
+    assert!(refusal("0.25", "x").contains("a number must stand here (line 1)"));
+    assert!(refusal("Float32", "Strange").contains("`Strange`"));
+    assert!(refusal("type='PolyData'", "type='PolyData' compressor='vtkLZ4DataCompressor'").contains("LZ4"));
     assert!(
-        said("</VTKFile>", "").contains("ends within <VTKFile>")
-            && said("</Piece>", "</Peace>").contains("closes nothing")
+        refusal("</VTKFile>", "").contains("ends within <VTKFile>")
+            && refusal("</Piece>", "</Peace>").contains("closes nothing")
     );
 }
 

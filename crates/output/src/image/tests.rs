@@ -106,7 +106,7 @@ fn walls_are_seen_through_before_and_behind_a_sphere() {
 }
 
 #[test]
-fn a_scale_bar_is_as_long_as_it_says() {
+fn a_scale_bar_has_its_stated_length() {
     let (x, r, c) = ([[0.0; 3]], [1.0], [Colour::hex(0xd0d0d0)]);
     let view = Camera::default().frame(x.iter().copied().zip(r));
     let bar = ScaleBar { units: &[] };

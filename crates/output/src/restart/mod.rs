@@ -167,7 +167,7 @@ pub fn read(path: &Path) -> Result<Saved> {
     })?;
     sound::check(&saved.world).map_err(|fault| contradiction(refuse, fault.section, &fault.what))?;
     saved.standing &= sound::stand(&saved.world);
-    if !saved.pair.iter().all(|said| said.lattice.is_sound()) {
+    if !saved.pair.iter().all(|line| line.lattice.is_sound()) {
         return Err(contradiction(refuse, "pair", "a line stands under a lattice that is none").into());
     }
     Ok(saved)

@@ -69,32 +69,32 @@ fn foreign_files_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = saved(&folder, &world(3));
     let whole = std::fs::read(&path).unwrap();
-    let said = |bytes: &[u8]| {
+    let refusal = |bytes: &[u8]| {
         std::fs::write(&path, bytes).unwrap();
         read(&path).unwrap_err().0.remove(0).message
     };
     // The first bytes of what LAMMPS 22Jul2025 writes.
-    assert!(said(b"LammpS RestartT\0\x01\0\0\0\x03\0\0\0").contains("is one of LAMMPS"));
-    assert!(said(b"ITEM: TIMESTEP\n0\n").contains("is none of perigrain"));
-    assert!(said(b"").contains("is none of perigrain"));
+    assert!(refusal(b"LammpS RestartT\0\x01\0\0\0\x03\0\0\0").contains("is one of LAMMPS"));
+    assert!(refusal(b"ITEM: TIMESTEP\n0\n").contains("is none of perigrain"));
+    assert!(refusal(b"").contains("is none of perigrain"));
     let mut newer = whole.clone();
     newer[8] = 9;
-    assert!(said(&newer).contains("is of format 9; this perigrain reads formats up to 1"));
+    assert!(refusal(&newer).contains("is of format 9; this perigrain reads formats up to 1"));
     let mut other = whole.clone();
     other[12] ^= 1;
     let end = other.len() - TAIL as usize;
     let crc = crc32fast::hash(&other[..end + 8]).to_le_bytes();
     other[end + 8..end + 12].copy_from_slice(&crc);
-    assert!(said(&other).contains("stored otherwise than by this one"));
+    assert!(refusal(&other).contains("stored otherwise than by this one"));
     for cut in [3, 9, 15, 40, whole.len() - 1] {
-        assert!(said(&whole[..cut]).contains("is cut off"), "{cut}");
+        assert!(refusal(&whole[..cut]).contains("is cut off"), "{cut}");
     }
     let mut more = whole.clone();
     more.push(0);
-    assert!(said(&more).contains("is cut off"));
+    assert!(refusal(&more).contains("is cut off"));
     let mut flipped = whole.clone();
     flipped[whole.len() / 2] ^= 0x10;
-    assert!(said(&flipped).contains("its checksum is wrong"));
+    assert!(refusal(&flipped).contains("its checksum is wrong"));
     std::fs::remove_file(&path).unwrap();
     assert!(read(&path).unwrap_err().0[0].message.contains("cannot read the restart file"));
 }

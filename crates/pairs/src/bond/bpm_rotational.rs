@@ -73,15 +73,15 @@ fn same_as_here(word: &str, args: &mut Args) -> Result<bool> {
         "damping" => ("dem", "derivative"),
         _ => return Ok(false),
     };
-    let said = args.expect(here)?;
-    if said.text == here {
+    let given = args.expect(here)?;
+    if given.text == here {
         return Ok(true);
     }
-    if said.text != elsewhere {
-        return Err(args.unknown(said, &[here]));
+    if given.text != elsewhere {
+        return Err(args.unknown(given, &[here]));
     }
     let text = format!("bond_style bpm/rotational: `{word} {elsewhere}` is not in perigrain");
-    let d = Diagnostic::error(Code::NOT_SUPPORTED, said.span, text);
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, given.span, text);
     Err(d.help(format!("`{word} {here}` is; `bond_style bpm/beam` treats both ends alike")).into())
 }
 
@@ -141,9 +141,9 @@ impl BondForce for Declared {
             ["the force frc at which it breaks", "fsc in shear", "the torque ttc of twist", "tbc of bending"];
         let strength = four(names, |what| self.options.limit(args, what))?;
         let names = ["the damping gn of stretch", "gs of shear", "gr of roll", "gt of twist"];
-        let said = four(names, |what| args.non_negative(what))?;
+        let given = four(names, |what| args.non_negative(what))?;
         // Roll comes before twist here.
-        let damping = Stiffness { twist: said.bend, bend: said.twist, ..said };
+        let damping = Stiffness { twist: given.bend, bend: given.twist, ..given };
         let coeffs = Coeffs { stiffness, strength, damping };
         self.types.extend(kinds.iter().map(|&k| (k, coeffs)));
         Ok(())

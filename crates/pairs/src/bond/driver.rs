@@ -355,9 +355,9 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
             }
         }
         let tags = &w.particles.tag;
-        let told =
+        let ends =
             |k: &usize| (ascending(self.columns.pair(*k).map(|i| tags[i])), i32::from(self.columns.kind(*k)));
-        let mut broken: Vec<([u32; 2], i32)> = over.iter().map(told).collect();
+        let mut broken: Vec<([u32; 2], i32)> = over.iter().map(ends).collect();
         broken.sort_unstable();
         if let Some(store) = self.law.store() {
             let mut places: Vec<[usize; 2]> = over.iter().map(|k| self.columns.pair(*k)).collect();

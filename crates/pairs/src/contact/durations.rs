@@ -52,8 +52,8 @@ fn smallest(
     let least = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].min(b[1])];
     let to_come = deck.to_come.iter().filter(|c| comes(c)).map(|c| [c.mass, c.radius]);
     if let (true, Some((density, diameter))) = (p.is_empty(), deck.density_and_diameter()) {
-        let said = [PI / 6.0 * density * diameter.powi(3), 0.5 * diameter];
-        return Some(to_come.fold(said, least));
+        let given = [PI / 6.0 * density * diameter.powi(3), 0.5 * diameter];
+        return Some(to_come.fold(given, least));
     }
     let own = (0..p.len()).filter(|&i| chosen(i) && p.radius.get(i).is_some_and(|r| *r > 0.0));
     let sizes = own.filter_map(|i| Some([*p.mass.get(i)?, p.radius[i]]));

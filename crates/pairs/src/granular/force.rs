@@ -117,9 +117,9 @@ impl Force {
             fast.weigh(&grains);
         }
         let heating = heat.as_mut().map(|heat| (&heat.temperature[..], &mut heat.flow[..]));
-        let told =
+        let work =
             deeds.as_mut().map(|all| [&mut all.damping[..], &mut all.across[..], &mut all.pressing[..]]);
-        let sums = Sums { force: &mut f, torque: &mut torque, heat: heating, deeds: told };
+        let sums = Sums { force: &mut f, torque: &mut torque, heat: heating, deeds: work };
         let virial = fast.run(&grains, sums, step, store, t.virial);
         let shared = fast.is_part();
         let deep = fast.deep;
@@ -243,7 +243,7 @@ impl Force {
             press.act(&grains, &plain.sweep, &mut memory, manner);
         }
         plain.sweep.act(&grains, &self.rules, &mut memory, step);
-        let told = deeds.map(|mut all| {
+        let booked = deeds.map(|mut all| {
             plain.sweep.book(&grains, &self.rules, &memory, &mut all);
             all
         });
@@ -262,7 +262,7 @@ impl Force {
             heat.give(w);
         }
         report(w, t, deep);
-        if let Some(all) = told {
+        if let Some(all) = booked {
             keep_pair_work(w, self.key, all);
         }
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
@@ -344,12 +344,12 @@ impl Op for Force {
             return self.run(w, t).map(|()| false);
         }
         let how = self.prepare(w, t)?;
-        let told = self.run_per_tile(w, t, how, ready)?;
-        if !told {
+        let streamed = self.run_per_tile(w, t, how, ready)?;
+        if !streamed {
             self.act(w, t, how)?;
         }
         self.note_work(w);
-        Ok(told)
+        Ok(streamed)
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Span {

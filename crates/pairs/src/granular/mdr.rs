@@ -45,8 +45,8 @@ impl Press {
         }
         let before = manner.setup.then(|| plastic.history.clone());
         let width = memory.width;
-        let told = (&mut memory.history[..], width);
-        self.meetings.press(&self.material, grains.radius, state, plastic, told, manner);
+        let precomputed = (&mut memory.history[..], width);
+        self.meetings.press(&self.material, grains.radius, state, plastic, precomputed, manner);
         if let Some(before) = before {
             undo(&before, &mut plastic.history, PAIR, manner.lammps);
         }

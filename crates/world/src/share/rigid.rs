@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn all_ranks_have_all_bodies_where_these_are_asked_for() {
+    fn all_ranks_have_all_bodies_on_request() {
         let seats = Local::threads(3).unwrap();
         std::thread::scope(|s| {
             for seat in seats {

@@ -11,17 +11,20 @@ fn box_of(edge: f64) -> World {
 }
 
 #[test]
-fn a_packing_is_told_of() {
+fn a_packing_is_logged() {
     let mut w = box_of(8.0);
     more(&mut w, "create_atoms 1 single 100 100 100 units box");
-    let said = act(&mut w, "create_atoms 2 pack b 0.55 4711 sizes mono 0.8 group g", &[]).unwrap();
+    let printed = act(&mut w, "create_atoms 2 pack b 0.55 4711 sizes mono 0.8 group g", &[]).unwrap();
     // 0.55 · 8³ / (π/6 · 0.8³) = 1050.4.
     assert!(
-        said[0].starts_with("Packed 1050 spheres in ")
-            && said[0].contains(": share 0.54978 of a volume of 512")
+        printed[0].starts_with("Packed 1050 spheres in ")
+            && printed[0].contains(": share 0.54978 of a volume of 512")
     );
-    assert!(said[1].starts_with("  overlap of spheres that touch 0.0"), "{}", said[1]);
-    assert_eq!(said[2..], ["Created 1050 atoms", "  using box units in orthogonal box = (0 0 0) to (8 8 8)"]);
+    assert!(printed[1].starts_with("  overlap of spheres that touch 0.0"), "{}", printed[1]);
+    assert_eq!(
+        printed[2..],
+        ["Created 1050 atoms", "  using box units in orthogonal box = (0 0 0) to (8 8 8)"]
+    );
     let p = &w.particles;
     assert!(p.radius.iter().all(|r| *r == 0.4) && p.kind.iter().all(|k| *k == 2));
     // Density 1, as for spheres that `create_atoms` makes in other ways.
@@ -32,32 +35,32 @@ fn a_packing_is_told_of() {
 }
 
 #[test]
-fn opals_and_aggregates_are_told_of() {
+fn opals_and_aggregates_are_logged() {
     let mut w = scene(
         "units si\natom_style sphere\nboundary p p f\nregion b block 0 6 0 10.392304845413264 0 10 units box",
     );
     more(&mut w, "create_box 1 b");
-    let said = act(&mut w, "create_atoms 1 opal b 6 1 0.4 11 sizes mono 0.5", &[]).unwrap();
-    assert!(said[0].starts_with("Packed ") && said[0].contains("share 0.39996"), "{said:?}");
+    let printed = act(&mut w, "create_atoms 1 opal b 6 1 0.4 11 sizes mono 0.5", &[]).unwrap();
+    assert!(printed[0].starts_with("Packed ") && printed[0].contains("share 0.39996"), "{printed:?}");
     let mut w = box_of(9.0);
-    let said = act(&mut w, "create_atoms 1 aggregate b 0.6 11 0.7 4 sizes mono 0.7", &[]).unwrap();
+    let printed = act(&mut w, "create_atoms 1 aggregate b 0.6 11 0.7 4 sizes mono 0.7", &[]).unwrap();
     assert!(
-        said[2].starts_with(&format!("  left an aggregate of {} spheres, porosity 0.", w.n())),
-        "{said:?}"
+        printed[2].starts_with(&format!("  left an aggregate of {} spheres, porosity 0.", w.n())),
+        "{printed:?}"
     );
-    assert_eq!(said[3], "  one part from end to end along z, over gaps of up to 0.1 diameters");
-    assert_eq!(said[4], format!("Created {} atoms", w.n()));
+    assert_eq!(printed[3], "  one part from end to end along z, over gaps of up to 0.1 diameters");
+    assert_eq!(printed[4], format!("Created {} atoms", w.n()));
 }
 
 #[test]
 fn mixtures_and_numbers_come_out() {
     let mut w = box_of(8.0);
     let line = "create_atoms 1 pack b number 600 4711 sizes mix number 0.6 2 0.9 1 types 2 1 overlap 0";
-    let said = act(&mut w, line, &[]).unwrap();
-    assert!(said[0].starts_with("Packed 600 spheres in "), "{said:?}");
+    let printed = act(&mut w, line, &[]).unwrap();
+    assert!(printed[0].starts_with("Packed 600 spheres in "), "{printed:?}");
     // Of diameters 0.6 and 0.9 two to one: 0.432 of 1.161 parts of the volume.
     assert_eq!(
-        said[1..3],
+        printed[1..3],
         ["  400 of diameter 0.6, 37.2 % of the mass", "  200 of diameter 0.9, 62.8 % of the mass"]
     );
     let of = |kind: u16| w.particles.kind.iter().filter(|k| **k == kind).count();
@@ -65,11 +68,12 @@ fn mixtures_and_numbers_come_out() {
     let small = w.particles.radius.iter().zip(&w.particles.kind).all(|(r, k)| (*r < 0.31) == (*k == 2));
     assert!(small, "a type each");
     let mut w = box_of(8.0);
-    let said = act(&mut w, "create_atoms 1 pack b 0.5 3 sizes mix mass 0.6 1 0.9 1 1.2 2", &[]).unwrap();
+    let printed = act(&mut w, "create_atoms 1 pack b 0.5 3 sizes mix mass 0.6 1 0.9 1 1.2 2", &[]).unwrap();
     // 64, 64 and 128 units of volume in whole spheres.
-    for (line, part) in said[1..4].iter().zip([25.0, 25.0, 50.0]) {
-        let told: f64 = line.split(", ").nth(1).and_then(|s| s.split(' ').next()).unwrap().parse().unwrap();
-        assert!((told - part).abs() < 0.2, "{said:?}");
+    for (line, part) in printed[1..4].iter().zip([25.0, 25.0, 50.0]) {
+        let reported: f64 =
+            line.split(", ").nth(1).and_then(|s| s.split(' ').next()).unwrap().parse().unwrap();
+        assert!((reported - part).abs() < 0.2, "{printed:?}");
     }
     let w = box_of(8.0);
     let (word, text) = refused(&w, "create_atoms 1 pack b number 2000 1 sizes mono 1");
@@ -90,10 +94,10 @@ fn mixtures_and_numbers_come_out() {
 fn leaning_boxes_are_packed() {
     let mut w =
         scene("units si\natom_style sphere\nregion b prism 0 8 0 8 0 8 2 1 -1 units box\ncreate_box 1 b");
-    let said = act(&mut w, "create_atoms 1 pack b 0.55 4711 sizes mono 0.8", &[]).unwrap();
+    let printed = act(&mut w, "create_atoms 1 pack b 0.55 4711 sizes mono 0.8", &[]).unwrap();
     assert!(
-        said[0].starts_with("Packed 1050 spheres in ") && said[0].contains("a volume of 512"),
-        "{said:?}"
+        printed[0].starts_with("Packed 1050 spheres in ") && printed[0].contains("a volume of 512"),
+        "{printed:?}"
     );
     let domain = w.domain().unwrap();
     assert!(
@@ -109,9 +113,9 @@ fn leaning_boxes_are_packed() {
 #[test]
 fn zero_overlap_shrinks_diameters() {
     let mut w = box_of(6.0);
-    let said = act(&mut w, "create_atoms 1 pack b 0.6 5 overlap 0 sizes uniform 0.7 1.1", &[]).unwrap();
-    assert_eq!(said[1], "  overlap of spheres that touch 0 % on average, 0 % at most");
-    assert!(said[2].contains("smaller than asked for"), "{said:?}");
+    let printed = act(&mut w, "create_atoms 1 pack b 0.6 5 overlap 0 sizes uniform 0.7 1.1", &[]).unwrap();
+    assert_eq!(printed[1], "  overlap of spheres that touch 0 % on average, 0 % at most");
+    assert!(printed[2].contains("smaller than asked for"), "{printed:?}");
     let r: f64 = w.particles.radius.iter().copied().fold(0.0, f64::max);
     assert!(r < 0.55 && r > 0.52);
 }
@@ -190,7 +194,7 @@ fn regions_that_will_not_do() {
     assert!(d.1.contains("not even one"), "{}", d.1);
     // Larger than the box: the part inside counts.
     more(&mut w, "region large block -5 50 -5 50 -5 4 units box");
-    let said = act(&mut w, "create_atoms 1 pack large 0.5 1 sizes mono 0.7", &[]).unwrap();
-    assert!(said[0].contains("of a volume of 256"), "{said:?}");
+    let printed = act(&mut w, "create_atoms 1 pack large 0.5 1 sizes mono 0.7", &[]).unwrap();
+    assert!(printed[0].contains("of a volume of 256"), "{printed:?}");
     assert!(w.particles.x.iter().all(|x| x[2] < 4.0 - 0.34));
 }

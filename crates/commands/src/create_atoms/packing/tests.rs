@@ -161,7 +161,7 @@ fn no_overlap_where_none_is_allowed() {
 }
 
 #[test]
-fn the_largest_overlap_can_be_asked_for() {
+fn the_largest_overlap_can_be_requested() {
     let room = cube(8.0, Face::Periodic);
     let p = packed(&room, 0.55, Sizes::Mono(1.0), 8, &Goal { overlap: Some(1e-3), rounds: 1000 });
     assert!(p.came.reached && p.came.largest <= 1e-3 && p.came.largest > 0.0);

@@ -32,7 +32,7 @@ fn counted(w: &World, groups: [&str; 2], range: [f64; 2]) -> usize {
 }
 
 #[test]
-fn as_many_as_by_asking_each_pair() {
+fn as_many_as_by_testing_each_pair() {
     for boundary in ["p p p", "f f p", "f f f"] {
         for (groups, range) in
             [(["all", "all"], [-0.1, 0.2]), (["low", "all"], [-0.01, 0.0]), (["low", "low"], [0.05, 0.5])]
@@ -40,8 +40,8 @@ fn as_many_as_by_asking_each_pair() {
             let mut w = packing(boundary);
             let wanted = counted(&w, groups, range);
             let line = format!("create_bonds gap {} {} 2 {} {}", groups[0], groups[1], range[0], range[1]);
-            let said = act(&mut w, &line, &[]).unwrap();
-            assert_eq!(said, [format!("Added {wanted} bonds, new total = {wanted}")], "{boundary} {line}");
+            let printed = act(&mut w, &line, &[]).unwrap();
+            assert_eq!(printed, [format!("Added {wanted} bonds, new total = {wanted}")], "{boundary} {line}");
             assert!(wanted > 50 && w.bonds.list.iter().all(|b| b.kind == 2));
             // Bonded pairs are out of the lists.
             assert_eq!(act(&mut w, &line, &[]).unwrap(), [format!("Added 0 bonds, new total = {wanted}")]);

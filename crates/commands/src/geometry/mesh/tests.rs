@@ -97,10 +97,10 @@ fn mistakes_are_shown_where_they_are() {
         ("a.vtk", VTK, "CELLS 3 12", "CELLS 3 13", "CELL_TYPES", "a number of CELLS"),
         ("a.vtk", VTK, "POINTS 5", "POINTS 5000000", "5000000", "too short"),
     ];
-    for (name, text, from, to, word, said) in cases {
+    for (name, text, from, to, word, printed) in cases {
         assert!(text.contains(from), "{from}");
         let (blamed, message) = refused(name, &text.replacen(from, to, 1));
-        assert!(message.contains(said), "{from} -> {to}: {message}");
+        assert!(message.contains(printed), "{from} -> {to}: {message}");
         assert!(word.is_empty() || blamed == *word, "{from} -> {to}: {blamed:?} {message}");
     }
     assert!(refused("a.obj", "").1.contains("its name must end in"));

@@ -262,14 +262,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_tell_size_place_and_kind() {
+    fn headers_have_size_place_and_kind() {
         let text = "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 4 5 6\nendian: big\nencoding: gzip\n\
                     space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (1,1,1)\nkey:=a: b\n";
         let h = read(text).unwrap();
         assert_eq!((h.info.size, h.info.spacing), ([4, 5, 6], Some([2.0, 3.0, 4.0])));
         assert_eq!(h.info.corner([2.0, 3.0, 4.0]), [0.0, -0.5, -1.0]);
         assert!(h.packed && h.big_endian && h.kind == Kind::U16);
-        for (from, to, said) in [
+        for (from, to, part) in [
             ("uint16", "block", "type `block`"),
             ("gzip", "bzip2", "encoding `bzip2`"),
             ("endian: big\n", "", "no `endian`"),
@@ -279,7 +279,7 @@ mod tests {
             ("NRRD", "nrrd", "no NRRD file"),
         ] {
             let e = read(&text.replacen(from, to, 1)).unwrap_err();
-            assert!(e.to_string().contains(said), "{e}");
+            assert!(e.to_string().contains(part), "{e}");
         }
     }
 }

@@ -123,7 +123,7 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
 }
 
 #[test]
-fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
+fn a_motion_by_no_number_is_infinitely_fast_whatever_follows() {
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1, oriented: false };
     for i in 0..N {
         let (mut x, mut v, mut f) = (some(1), some(2), some(4));
@@ -136,7 +136,7 @@ fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
 }
 
 #[test]
-fn who_does_not_turn_keeps_the_orientation_bit_by_bit() {
+fn particles_that_do_not_turn_keep_the_orientation_bit_by_bit() {
     let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1, oriented: true };
     let (mut x, mut v, mut f, mut omega) = (some(1), some(2), some(4), some(5));
     // One of the first four rotates, all of the next four, none of the rest.
