@@ -313,7 +313,7 @@ fn blocks_fit_the_page() {
 fn pages_state_the_question_they_answer() {
     for (page, text) in pages_in("howto").into_iter().chain(pages_in("theory")) {
         let first = text.lines().nth(2).unwrap();
-        let asks = first.starts_with('*') && first.ends_with("?*");
-        assert!(text.starts_with("# ") && asks, "{}: *A question?* belongs below its title", page.display());
+        let question = first.starts_with('*') && first.ends_with("?*");
+        assert!(text.starts_with("# ") && question, "{}: *A question?* belongs below its title", page.display());
     }
 }

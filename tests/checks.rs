@@ -117,7 +117,7 @@ fn decks_that_are_right_give_no_messages() {
 }
 
 /// Warnings that need a reason in a small deck that is good: most others are what the deck is about.
-const TELLING: [Code; 3] = [Code::UNREACHABLE, Code::UNSTABLE, Code::HORIZON];
+const NEEDS_REASON: [Code; 3] = [Code::UNREACHABLE, Code::UNSTABLE, Code::HORIZON];
 
 #[test]
 fn small_good_decks_are_good_for_check_too() {
@@ -133,7 +133,7 @@ fn small_good_decks_are_good_for_check_too() {
                 let expected = ["# warning", "# check warning"]
                     .iter()
                     .any(|w| deck.contains(&format!("{w}: {}", d.message)));
-                if !expected && (d.severity == Severity::Error || TELLING.contains(&d.code)) {
+                if !expected && (d.severity == Severity::Error || NEEDS_REASON.contains(&d.code)) {
                     let _ = writeln!(
                         wrong,
                         "{} {name}: {}",

@@ -109,7 +109,8 @@ const BOOK: [&str; 2] = [
      - [Decisions: adding laws](decisions/adding-laws.md)\n\
      - [Decisions: dependencies](decisions/dependencies.md)\n\
      - [Decisions: what strangers hit](decisions/strangers.md)\n\
-     - [Decisions: what moves particles as a whole](decisions/movers.md)\n",
+     - [Decisions: what moves particles as a whole](decisions/movers.md)\n\
+     - [Decisions: names](decisions/names.md)\n",
 ];
 
 /// The book's table of contents: every page once.

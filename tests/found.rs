@@ -45,7 +45,7 @@ fn help_goes_by_topics_through_a_pager() {
     let folder = tempfile::tempdir().unwrap();
     let text = output_of(folder.path(), "help");
     let heads: Vec<&str> = text.lines().filter(|l| !l.is_empty() && !l.starts_with(' ')).collect();
-    for head in ["subcommands:", "topics", "commands", "pair_style", "fix", "compute", "dump"] {
+    for head in ["subcommands:", "topics", "commands", "pair_style", "fix", "compute", "dump", "how-tos"] {
         assert!(heads.contains(&head), "{head}: {heads:?}");
     }
     assert_eq!(too_wide(&text, 80), None);
@@ -80,6 +80,9 @@ fn help_searches_names_and_texts() {
         ("help wall", "# Pages named so: `wall`\n\n  fix wall/gran "),
         ("help wall", "# Pages that contain it: `wall`\n\n"),
         ("help hertz/material", "\n  pair_style granular "),
+        ("help", "\n  notch "),
+        ("help notch", "# A crack from a notch\n"),
+        ("help howto", "\n  howto notch "),
         // Words that no page has beside each other.
         ("help crack speed", "\n  compute crack "),
     ] {

@@ -24,8 +24,8 @@ pub fn list() -> String {
     text
 }
 
-/// The page of a name, as `fix nve`, `nve` or `run`; after that of a command that takes styles, the list of them. For a word that
-/// has no page, the pages that contain it.
+/// The page of a name, as `fix nve`, `nve` or `run`; after that of a command that takes styles, the list of them. `howto` lists the
+/// how-tos. For a word that has no page, the pages that contain it.
 ///
 /// # Errors
 /// No page has the name or contains it; the nearest is offered.
@@ -39,6 +39,9 @@ pub fn page(name: &str) -> Result<String, Usage> {
         // A how-to of the same name answers more than the page.
         let named: Vec<&HowTo> = HOWTOS.iter().filter(|h| h.name == name).collect();
         return Ok(if named.is_empty() { text } else { text + "\n## How-tos\n\n" + &questions(&named) });
+    }
+    if ["howto", "howtos", "how-tos"].contains(&name) {
+        return Ok(format!("# How-tos\n\n{}", questions(&HOWTOS.iter().collect::<Vec<_>>())));
     }
     if let Some(howto) = HOWTOS.iter().find(|h| h.name == name || h.title() == name) {
         return Ok(howto.text());
@@ -122,6 +125,10 @@ mod tests {
         }
         assert!(page("movie").unwrap().contains("movie of a"));
         assert!(page("lattice spacing").unwrap().contains("\n  howto "));
-        assert!(list().contains("\n  notch "));
+        let all = page("howto").unwrap();
+        for howto in HOWTOS {
+            assert!(list().contains(&format!("\n  {} ", howto.name)), "{}", howto.name);
+            assert!(all.contains(&format!("\n  {} ", howto.title())), "{all}");
+        }
     }
 }

@@ -367,9 +367,9 @@ mod tests {
             line(20, Some(variable("shown")), "variable shown", &[variable("first"), variable("shown")]),
             1,
         );
-        let mut asks = line(30, None, "if", &[variable("shown")]);
-        asks.role = Role::Act;
-        r.add(asks, 1);
+        let mut reader = line(30, None, "if", &[variable("shown")]);
+        reader.role = Role::Act;
+        r.add(reader, 1);
         r.add(line(35, None, "thermo_style", &[variable("shown")]), 1);
         assert!(["force", "share", "part", "shown", "first"].iter().all(|v| !r.forces_use_variable(v)));
         r.add(line(40, Some(name(UseKind::Fix, "f")), "fix f", &[variable("force")]), 1);

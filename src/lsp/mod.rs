@@ -156,7 +156,7 @@ impl Talk {
             }
             ("initialize", true, _) => return Err(Refusal(INVALID_REQUEST, "initialized already".into())),
             (_, false, _) => return Err(Refusal(NOT_INITIALIZED, "`initialize` comes first".into())),
-            (_, _, true) => return Err(Refusal(INVALID_REQUEST, "`shutdown` was said".into())),
+            (_, _, true) => return Err(Refusal(INVALID_REQUEST, "`shutdown` was received".into())),
             ("shutdown", ..) => {
                 self.over = true;
                 return Ok(Value::Null);

@@ -27,7 +27,7 @@ const CHARTS: &str = "<div class=\"bar\"><label>over <select id=\"axis\"></selec
 const POLICY: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
                     style-src 'unsafe-inline'; img-src data: blob:";
 /// The page of a present run connects to the program that it comes from.
-const ASKS: &str = "; connect-src 'self'";
+const CONNECTS_TO_PROGRAM: &str = "; connect-src 'self'";
 
 /// So many messages a page shows.
 const WARNINGS: usize = 200;
@@ -77,7 +77,7 @@ pub fn html(report: &Report) -> String {
     for script in [UPLOT, CURVES, VIEW].into_iter().chain(report.live.then_some(LIVE[1])) {
         let _ = writeln!(body, "<script>{script}</script>");
     }
-    let head = format!("{POLICY}{}\">\n", if report.live { ASKS } else { "" });
+    let head = format!("{POLICY}{}\">\n", if report.live { CONNECTS_TO_PROGRAM } else { "" });
     page(&report.title, STYLE, &head, &body)
 }
 

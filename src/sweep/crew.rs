@@ -166,7 +166,7 @@ impl Crew {
 
     fn silent(&self, ranks: &Ranks, rank: usize, sweep: &Sweep) -> Diagnostic {
         let (seconds, making) = (SILENCE.as_secs(), self.making(rank, sweep));
-        let text = format!("{} has said nothing for {seconds} s; it is making {making}", ranks.name(rank));
+        let text = format!("{} has not reported for {seconds} s; it is making {making}", ranks.name(rank));
         let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
         d.help(
             "where its machine is gone, end the sweep and run the same command again: it makes what is left",

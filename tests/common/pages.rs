@@ -196,8 +196,8 @@ fn small(line: &str) -> String {
         Some(&"write_dump") => words.get(2),
         _ => None,
     };
-    let asks = words.contains(&"size") || words.last() == Some(&"&");
-    if style == Some(&"image") && !asks { format!("{line} size 320 240\n") } else { format!("{line}\n") }
+    let sized = words.contains(&"size") || words.last() == Some(&"&");
+    if style == Some(&"image") && !sized { format!("{line} size 320 240\n") } else { format!("{line}\n") }
 }
 
 /// The scene with an example in it.

@@ -5,11 +5,11 @@ use std::process::Command;
 
 /// What a deck prints behind a name; it must end well.
 fn output_of(deck: &str, name: &str, variables: &[(&str, &str)]) -> Vec<f64> {
-    said_with(deck, name, variables, &[])
+    output_with(deck, name, variables, &[])
 }
 
 /// The same with more switches.
-fn said_with(deck: &str, name: &str, variables: &[(&str, &str)], switches: &[&str]) -> Vec<f64> {
+fn output_with(deck: &str, name: &str, variables: &[(&str, &str)], switches: &[&str]) -> Vec<f64> {
     let mut arguments = switches.to_vec();
     variables.iter().for_each(|(name, value)| arguments.extend(["-var", name, value]));
     let output = run(deck, &arguments);
@@ -56,7 +56,7 @@ fn staggered_beds_with_friction_press_as_plain_ones() {
 
 #[test]
 fn respa_friction_is_right_and_lammps_has_its_own() {
-    let of = |scheme, switches| said_with("respa_friction.in", "BOUNCE", &[("scheme", scheme)], switches)[0];
+    let of = |scheme, switches| output_with("respa_friction.in", "BOUNCE", &[("scheme", scheme)], switches)[0];
     // LAMMPS 22Jul2025 prints -0.18750 for plain steps.
     let plain = of("verlet", &[]);
     assert!((plain + 0.18750).abs() < 1e-4, "{plain}");

@@ -320,14 +320,14 @@ fn all_long_work_ends_at_a_signal() {
         let log = Log::new(Some(Box::new(screen.clone())));
         let mut session = Session::new(Options { log, ..Options::default() }).unwrap();
         let stop = session.stop_flag();
-        let asks = std::thread::spawn(move || {
+        let waiter = std::thread::spawn(move || {
             std::thread::sleep(Duration::from_millis(150));
             stop.store(true, Ordering::Relaxed);
             Instant::now()
         });
         let folder = tempfile::tempdir().unwrap();
         let ending = session.run_text("in.deck", &deck.replace("DIR", folder.path().to_str().unwrap()));
-        let late = asks.join().unwrap().elapsed();
+        let late = waiter.join().unwrap().elapsed();
         let printed = screen.text();
         assert!(ending.is_ok_and(|e| e.interrupted) && !printed.contains("never"), "{name}\n{printed}");
         assert!(printed.contains("Interrupted "), "{name}\n{printed}");

@@ -102,17 +102,17 @@ timestep 1e-3
 
 #[test]
 fn ends_of_bonds_that_bend_need_an_integrator_that_turns_them() {
-    let says = |out: &str| out.contains("does not turn") && out.contains("nve/bpm/sphere");
+    let warns = |out: &str| out.contains("does not turn") && out.contains("nve/bpm/sphere");
     for style in ["nve", "nve/sphere", "nve/limit 0.1", "move linear 0 NULL 0"] {
         let fixes = format!("fix 1 all {style}");
         for check in [false, true] {
             let out = warned(&fixes, check);
-            assert!(says(&out), "{style} {check}: {out}");
+            assert!(warns(&out), "{style} {check}: {out}");
         }
     }
     // Part of the row is enough, and the sphere that has no bond may fly as it likes; what is held on a path of its own keeps its orientation.
     let out = warned("fix 1 left nve/sphere\nfix 2 right nve/bpm/sphere", false);
-    assert!(says(&out) && out.contains("particle 1,"), "{out}");
+    assert!(warns(&out) && out.contains("particle 1,"), "{out}");
     for fixes in [
         "fix 1 row nve/bpm/sphere\nfix 2 apart nve/sphere",
         "fix 1 left move linear 0.1 0 0\nfix 2 right nve/bpm/sphere",

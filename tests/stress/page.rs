@@ -46,7 +46,7 @@ pub fn keys(sections: &[Section]) -> Vec<String> {
         for case in &s.case {
             all.extend(s.figures(case).iter().map(|f| key(&row(&case.name, &f.name, "", &bound(f)))));
             if case.how == How::Refused {
-                let words = format!("`{}`", case.says.join("`, `"));
+                let words = format!("`{}`", case.prints.join("`, `"));
                 all.push(key(&row(&case.name, REFUSED, "", &words)));
             }
         }
@@ -77,7 +77,7 @@ pub fn markdown(sections: &[Section], rows: &[Vec<Row>], form: Form) -> String {
             let case = s.case.iter().find(|c| c.name == r.case).unwrap();
             let (figure, measured, limit) = match &r.figure {
                 Some(f) => (f.name.as_str(), r.value.map_or("none".into(), number), bound(f)),
-                None => (REFUSED, r.printed.clone(), format!("`{}`", case.says.join("`, `"))),
+                None => (REFUSED, r.printed.clone(), format!("`{}`", case.prints.join("`, `"))),
             };
             let flag = if r.met { "" } else { "**not met**" };
             let _ = writeln!(text, "{} {flag} |", row(&r.case, figure, &measured, &limit));

@@ -124,7 +124,7 @@ impl Task<'_> {
     fn rows(&self) -> Vec<Row> {
         let (found, code, printed) = self.measure();
         let refused = self.case.how == How::Refused;
-        let silent = self.case.says.iter().find(|w| !printed.contains(*w));
+        let silent = self.case.prints.iter().find(|w| !printed.contains(*w));
         let ends = code == Some(i32::from(refused));
         let row = |figure: Option<Figure>, value, met| Row {
             case: self.case.name.clone(),

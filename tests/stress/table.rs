@@ -73,7 +73,7 @@ pub struct Case {
     pub how: How,
     /// Words of the log or the message.
     #[serde(default)]
-    pub says: Vec<String>,
+    pub prints: Vec<String>,
     /// Figures of the section that mean nothing here, or have bounds of their own below.
     #[serde(default)]
     pub without: Vec<String>,

@@ -187,26 +187,26 @@ mod tests {
     #[test]
     fn states_as_lammps_prints_them() {
         let (k, x, at_rest) = (coeffs(), [1.0, 0.0, 0.0], [UNTURNED; 2]);
-        let tell = |b: Ends<f64>| act(LAW, &k, &b, None);
-        near(tell(ends(x, [0.01, 0.0, 0.0], at_rest)), [[0.01, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        let resultant = |b: Ends<f64>| act(LAW, &k, &b, None);
+        near(resultant(ends(x, [0.01, 0.0, 0.0], at_rest)), [[0.01, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
         let t = [0.0, 0.0, 2.00013333066379e-3];
         near(
-            tell(ends(x, [0.0, 0.01, 0.0], at_rest)),
+            resultant(ends(x, [0.0, 0.01, 0.0], at_rest)),
             [[9.9975835657721e-6, 4.00036663716323e-3, 0.0], t, t],
         );
         let twisted = [UNTURNED, turn([1.0, 0.0, 0.0], 0.1)];
-        near(tell(ends(x, [0.0; 3], twisted)), [[0.0; 3], [0.003, 0.0, 0.0], [-0.003, 0.0, 0.0]]);
+        near(resultant(ends(x, [0.0; 3], twisted)), [[0.0; 3], [0.003, 0.0, 0.0], [-0.003, 0.0, 0.0]]);
         let bent = [turn([0.0, 0.0, 1.0], -0.05), turn([0.0, 0.0, 1.0], 0.05)];
-        near(tell(ends(x, [0.0; 3], bent)), [[0.0; 3], [0.0, 0.0, 0.004], [0.0, 0.0, -0.004]]);
+        near(resultant(ends(x, [0.0; 3], bent)), [[0.0; 3], [0.0, 0.0, 0.004], [0.0, 0.0, -0.004]]);
         let one = [UNTURNED, turn([0.0, 0.0, 1.0], 0.1)];
-        near(tell(ends(x, [0.0; 3], one)), [[0.0, -0.02, 0.0], [0.0, 0.0, -0.006], [0.0, 0.0, -0.014]]);
+        near(resultant(ends(x, [0.0; 3], one)), [[0.0, -0.02, 0.0], [0.0, 0.0, -0.006], [0.0, 0.0, -0.014]]);
         let third = 1.0 / 3.0;
         let mixed = [
             turn([third, 2.0 * third, 2.0 * third], 7f64.to_radians()),
             turn([2.0 * third, -third, 2.0 * third], -11f64.to_radians()),
         ];
         near(
-            tell(ends([0.6, 0.48, 0.64], [0.02, -0.03, 0.01], mixed)),
+            resultant(ends([0.6, 0.48, 0.64], [0.02, -0.03, 0.01], mixed)),
             [
                 [-0.0175660884121439, -0.00933536312176919, 0.0304659717104813],
                 [0.00398792484777191, -0.0148212347301654, -0.00509519644298989],

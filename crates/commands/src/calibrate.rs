@@ -73,7 +73,7 @@ const DOC: &str = "\
     **dsm**, the direct stiffness method: both ends of the body along the axis are held and come closer by S times their distance (S below 0 \
     presses). An end is made of all particles whose surface is within T (by default the mean radius) of the outermost one. `grip` (the default) holds its \
     particles wholly, `plate` along the axis only; `wall` is a rigid plane at the outermost surface that pushes what touches it, by Hertz' law with \
-    the pair style's coefficients and twice the stiffness of two such particles. Particles turn unless `rotations no` is said, which makes \
+    the pair style's coefficients and twice the stiffness of two such particles. Particles turn unless `rotations no` is given, which makes \
     a body some percent too stiff. The field begins with the affine one and is improved by conjugate gradients until three times \
     what the last five steps have taken from the energy is below the part P of it (default 0.01): K approaches from above. That is an estimate and no bound: K of four random \
     packings was 2 to 5 times nearer than P, of inverse opals 6 to 13 times. \
@@ -81,7 +81,7 @@ const DOC: &str = "\
     one of 2·10⁶ bonds around pores takes 66 steps to 1e-5 in place of 449. ν is of the field and converges as the root of that. \
     `bound yes` continues until a lower bound proves it, for two `grip` ends and bonds alone. `method paper` begins from zero and stops at a residual |r| \
     below FL (linear, 1e-6) and FN (with contacts, 1e-3) in force units. Pieces that nothing holds are left out and counted.\n\n\
-    Contacts between particles count where the pair style has Hertz contacts (`hertz/material … tangential mindlin NULL …`) unless `contacts no` is said: pairs \
+    Contacts between particles count where the pair style has Hertz contacts (`hertz/material … tangential mindlin NULL …`) unless `contacts no` is given: pairs \
     whose bonds do not bar them (`special_bonds`), found once, closed and opened by Newton's method, without slip. The force that overlaps have before the load is \
     taken away, `prestress keep` leaves it. K is F/Δ then.\n\n\
     `large yes` lets displacements and turns be of any size: bonds are those of `bpm/beam` with the given stiffnesses (springs where these resist stretch alone), contacts push along the line of centres as it \

@@ -29,12 +29,12 @@ impl Style for ChangeBox {
             summary: "Changes size, shape and faces of the box.",
             text: "What is asked happens in order. `scale` and `volume` change an edge about its middle; `volume` keeps the \
                    volume that the box had before the edge named just before it changed (two `volume` in a row share it). \
-                   Particles stay where they are unless `remap` is said: then those of the group move with the box, from \
+                   Particles stay where they are unless `remap` is given: then those of the group move with the box, from \
                    where it was at the start of the line, or at the last `set` or `remap`, to where it is now. `boundary` changes \
                    what the faces do; image counts along a dimension that is no longer periodic become 0. At the end \
                    shrink-wrapped faces follow the particles and periodic ones wrap them. `triclinic` \
                    makes the box one that may lean, `ortho` one that may not, for which its tilts must be 0; `xy`, `xz` and `yz` \
-                   set its tilts or change them. Distances are in lattice spacings unless `units box` is said, \
+                   set its tilts or change them. Distances are in lattice spacings unless `units box` is given, \
                    `xy` and `xz` in those along x, `yz` in those along y. Where peridynamic bonds cross a periodic face, its edge may \
                    change with `remap` alone: the body is strained evenly with the box, from the state at the first run.",
             example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",

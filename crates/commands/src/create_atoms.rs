@@ -50,9 +50,9 @@ impl Style for CreateAtoms {
             text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in \
                    lo ≤ x < hi of the box; along periodic dimensions both faces move down by about 1e-6 of the edge \
                    length, so that exactly one of two equivalent sites is taken. `region` also tests the region. `single` \
-                   takes lattice spacings unless `units box` is said; `remap yes` wraps its place into a periodic box. \
+                   takes lattice spacings unless `units box` is given; `remap yes` wraps its place into a periodic box. \
                    `random` draws from LAMMPS' Park–Miller stream; `overlap D` keeps new particles D away from all \
-                   others, in lattice spacings (along x) unless `units box` is said, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
+                   others, in lattice spacings (along x) unless `units box` is given, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
                    cell another type. `ratio` and `subset` take a random part of the sites, exact in number, the sites \
                    that LAMMPS takes.\n\n\
                    `var` names an equal-style variable that decides about each place of `box`, `region` and `random`: no \

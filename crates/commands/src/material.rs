@@ -148,7 +148,7 @@ fn from_file(name: &Word, cx: &BuildCx) -> Result<Material> {
 
 /// Problems of a material file as problems of the word that named it: place and line go into the text.
 fn retell(problems: Diagnostics, file: &potentials::Found, word: Span) -> Diagnostics {
-    let tell = |mut d: Diagnostic| {
+    let located = |mut d: Diagnostic| {
         if let Some(s) = d.span {
             let before = file.text.get(..s.start as usize).unwrap_or("");
             let line = before.matches('\n').count();
@@ -159,7 +159,7 @@ fn retell(problems: Diagnostics, file: &potentials::Found, word: Span) -> Diagno
         d.span = Some(word);
         d
     };
-    Diagnostics(problems.0.into_iter().map(tell).collect())
+    Diagnostics(problems.0.into_iter().map(located).collect())
 }
 
 /// A material about to enter the world.

@@ -48,7 +48,7 @@ impl Style for RegionCommand {
                      [move v_X|NULL v_Y|NULL v_Z|NULL] [rotate v_THETA PX PY PZ RX RY RZ]",
             summary: "Names a volume of space.",
             text: "Surfaces belong to the inside. `INF` is far away, `EDGE` the face of the box as it is now. Distances are \
-                   in lattice spacings unless `units box` is said; a radius takes the spacing of x (of y for a cylinder or \
+                   in lattice spacings unless `units box` is given; a radius takes the spacing of x (of y for a cylinder or \
                    cone along x). `side out` is everything else; the inside of a plane is the side of its normal. A prism \
                    has the edges (XHI−XLO, 0, 0), (XY, YHI−YLO, 0) and (XZ, YZ, ZHI−ZLO).\n\n\
                    Every number of a shape but the ends of a cylinder may be an equal-style variable `v_name`. `move` \

@@ -29,7 +29,7 @@ impl Style for RunStyleCommand {
             text: "`respa` is the multi-level scheme of Tuckerman, Berne & Martyna (1992) with N levels, numbered from the shortest \
                 steps. n1 steps of level 1 make one of level 2, n2 of those one of level 3 …; `timestep`, and whatever counts \
                 steps, means the outermost. The forces of a level kick by half of its step at both of its ends, and particles \
-                move in level 1. `bond` (1 unless said) and `pair` (N unless said) choose the level of a style's forces, `hybrid` \
+                move in level 1. `bond` (default 1) and `pair` (default N) choose the level of a style's forces, `hybrid` \
                 that of each sub-style of pair_style hybrid, in its order. `angle`, `dihedral`, `improper` and `kspace` are \
                 read, held to LAMMPS' order bond ≤ angle ≤ dihedral ≤ improper ≤ pair ≤ kspace, and name forces that no particle \
                 here has. `inner`, `middle` and `outer` are refused: no pair style here is cut up by distance.\n\n\

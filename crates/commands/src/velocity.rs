@@ -34,7 +34,7 @@ impl Style for Velocity {
                    the rest is made or scaled. `zero … rigid FIX` stops each body of a fix rigid by itself, its particles following. `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
                    stream for each place. `set` takes numbers, `NULL` or variables. `ramp` is linear between two \
                    coordinates and constant beyond. `sum yes` adds to the present velocities. Velocities and coordinates \
-                   of `set` and `ramp` are in lattice spacings (per time) unless `units box` is said: in SI decks with a \
+                   of `set` and `ramp` are in lattice spacings (per time) unless `units box` is given: in SI decks with a \
                    fine lattice `units box` is nearly always meant; values of variables are not scaled.",
             example: "velocity bullet set 0.0 0.0 -35.0 units box",
         }

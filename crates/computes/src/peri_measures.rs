@@ -40,7 +40,7 @@ impl Style for DefgradAtom {
                    its stress may be hundreds of times what a bond ever bears. All columns are NaN, or 0 with `torn zero`, \
                    where more than `damage PHI` of the family's volume is broken (default 0.7), or where the least eigenvalue of K \
                    is below 0.05 of that of the whole family. `compute reduce` with min and max passes over NaN; means and sums of \
-                   a body with torn families are NaN unless `torn zero` is said, and then count those as 0.",
+                   a body with torn families are NaN unless `torn zero` is given, and then count those as 0.",
             example: "compute F all peri/defgrad/atom",
         }
     }

@@ -59,7 +59,7 @@ impl Style for TempRamp {
             summary: "Temperature of the group without a shear flow.",
             text: "As `compute temp`, of velocities from which a linear profile is taken away: one component is VLO at the coordinate CLO \
                    and VHI at CHI, constant beyond, as `velocity … ramp` makes it. Velocities and coordinates are in lattice \
-                   spacings (per time) unless `units box` is said.",
+                   spacings (per time) unless `units box` is given.",
             example: "compute t all temp/ramp vx 0.0 8.0 y 0.0 0.01 units box",
         }
     }

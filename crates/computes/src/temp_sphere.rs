@@ -26,7 +26,7 @@ impl Style for TempSphere {
             summary: "Temperature of the group's translation and rotation, or of rotation alone.",
             text: "Scalar (intensive): T = Σ (m v² + I ω²)/(dof k_B) with I = 2/5 m R². Each sphere has 6 degrees of \
                    freedom (in two dimensions 3), of rotation alone 3 (1); a particle without a radius only those of its \
-                   translation. `extra/dof` of compute_modify is taken off, with `dof all` 3 (2) unless it is said, with \
+                   translation. `extra/dof` of compute_modify is taken off, with `dof all` 3 (2) unless it is given, with \
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
                    each use (see `compute temp`).\n\n\

@@ -22,7 +22,7 @@ impl Style for DtCritical {
             syntax: "fix ID all dt/critical N safety [pd cfl|silling|exact] [bonds local|exact|none] [max T]",
             summary: "Sets the time step to a part of what peridynamic solids, contacts and bonds stand.",
             text: "In the setup of a run and every N steps the step becomes `safety` times the shortest of the limits of \
-                   compute dt/critical (`pd exact` and `bonds local` unless said otherwise), at most T. As bonds break and contacts come and go \
+                   compute dt/critical (`pd exact` and `bonds local` unless set otherwise), at most T. As bonds break and contacts come and go \
                    the limits change, and the step follows. Under `run_style staggered` bonded particles count as grains: the long step becomes the grains' \
                    limit, shortened to what `m N` short steps of the solids fill; with `faster grains` the step becomes the \
                    grains', shortened to the N-th part of the solids'. Where no limit is known, as for grains that do not \

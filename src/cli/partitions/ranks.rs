@@ -106,7 +106,7 @@ pub fn serve(ranks: &Ranks) -> u8 {
                     }
                 }
                 Some(("turn", number, turn)) => {
-                    if let Some(at) = desks.iter().position(|(asks, _)| *asks == number) {
+                    if let Some(at) = desks.iter().position(|(waiting, _)| *waiting == number) {
                         answer(desks.remove(at).1, turn);
                     }
                 }

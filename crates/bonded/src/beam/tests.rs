@@ -47,21 +47,21 @@ fn mixed() -> Ends<f64> {
 /// Computed independently, with 13 digits; they are the tolerance.
 #[test]
 fn states_and_their_energies() {
-    let tell = |b: &Ends<f64>| {
+    let resultant = |b: &Ends<f64>| {
         let e = elastic(&SECTION, b);
         ([e.force, e.torque[0], e.torque[1]], e.energy)
     };
-    let (acts, _) = tell(&ends(X, [0.01, 0.0, 0.0], [UNTURNED; 2]));
+    let (acts, _) = resultant(&ends(X, [0.01, 0.0, 0.0], [UNTURNED; 2]));
     near(acts, [[0.01, 0.0, 0.0], [0.0; 3], [0.0; 3]], 1e-12);
-    let (acts, _) = tell(&ends(X, [0.0, 0.01, 0.0], [UNTURNED; 2]));
+    let (acts, _) = resultant(&ends(X, [0.0, 0.01, 0.0], [UNTURNED; 2]));
     let t = [0.0, 0.0, 1.999900007499e-3];
     near(acts, [[1.000224956246e-5, 3.999900037494e-3, 0.0], t, t], 1e-12);
-    let (acts, _) = tell(&ends(X, [0.0; 3], [UNTURNED, turn(X, 0.1)]));
+    let (acts, _) = resultant(&ends(X, [0.0; 3], [UNTURNED, turn(X, 0.1)]));
     near(acts, [[0.0; 3], [2.995002499405e-3, 0.0, 0.0], [-2.995002499405e-3, 0.0, 0.0]], 1e-12);
-    let (acts, energy) = tell(&ends(X, [0.0; 3], [turn(Z, -0.05), turn(Z, 0.05)]));
+    let (acts, energy) = resultant(&ends(X, [0.0; 3], [turn(Z, -0.05), turn(Z, 0.05)]));
     near(acts, [[0.0; 3], [0.0, 0.0, 4.005828855326e-3], [0.0, 0.0, -4.005828855326e-3]], 1e-12);
     assert!((energy - 2.00145758695e-4).abs() < 1e-15);
-    let (acts, energy) = tell(&ends(X, [0.0; 3], [UNTURNED, turn(Z, 0.1)]));
+    let (acts, energy) = resultant(&ends(X, [0.0; 3], [UNTURNED, turn(Z, 0.1)]));
     near(
         acts,
         [[0.0, -1.9966683329366e-2, 0.0], [0.0, 0.0, -5.990004999e-3], [0.0, 0.0, -1.3976678330556e-2]],
@@ -69,7 +69,7 @@ fn states_and_their_energies() {
     );
     assert!((energy - 6.99416861076e-4).abs() < 1e-15);
     for b in [mixed(), swapped(&mixed())] {
-        let (acts, energy) = tell(&b);
+        let (acts, energy) = resultant(&b);
         let f = [-0.013613645370263, -0.014939276349926, 0.030575581351565];
         let t = [
             [0.006856059647546, -0.013141142509223, -0.007739636277175],

@@ -361,8 +361,8 @@ fn what_makes_no_sense_is_refused() {
         ),
         ("calibrate fit a all vary bond 1 nu target K 1e3", "the targets K 1000 are not reached"),
     ] {
-        let said = refused(&w, line, Beams::standard(2));
-        assert!(said.contains(wanted), "{line}: {said}");
+        let refusal = refused(&w, line, Beams::standard(2));
+        assert!(refusal.contains(wanted), "{line}: {refusal}");
     }
     let mut none = Beams::standard(2);
     none.0.clear();

@@ -30,7 +30,7 @@ impl Style for TempChunk {
                    values a global array (intensive), a row per chunk: `temp`, its temperature, of N `adof` + `cdof` degrees of freedom; `kecom`, ½ M v² \
                    of its centre of mass; `internal`, Σ ½ m v² of what is left without the motion of its centre. Chunks without particles have zeros.\n\n\
                    `com yes` takes the motion of each chunk's centre away before temperatures are taken; `bias ID` the flow that compute \
-                   temp/com, temp/partial, temp/ramp … ID takes away, from all values. Not both. `adof` is 3 (in two dimensions 2) unless it is said, \
+                   temp/com, temp/partial, temp/ramp … ID takes away, from all values. Not both. `adof` is 3 (in two dimensions 2) unless it is given, \
                    `cdof` 0; nothing is taken off for the bias, and `compute_modify` has no effect. Under `-compat lammps` `ke` of thermo output and pressures ignore the \
                    motion if this is their temperature, as in LAMMPS. chunkID names a `compute \
                    chunk/atom`. With `com yes` it cannot be the bias of other commands, unlike in LAMMPS.",

@@ -218,7 +218,7 @@ fn functions_of_vectors_and_names() {
 
 #[test]
 fn refusals_underline_the_word() {
-    for (text, said, underlined) in [
+    for (text, part, underlined) in [
         ("1+", "a number, a name or (", "+"),
         ("*2", "a number, a name or (", "*"),
         ("1 2", "an operator or the end", "2"),
@@ -267,7 +267,7 @@ fn refusals_underline_the_word() {
         ("1+é", "a number, a name or (", "é"),
     ] {
         let (message, word) = refusal(text);
-        assert!(message.contains(said), "{text}: {message}");
+        assert!(message.contains(part), "{text}: {message}");
         assert_eq!(word, underlined, "{text}: {message}");
     }
 }

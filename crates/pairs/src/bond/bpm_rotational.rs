@@ -36,7 +36,7 @@ impl Style for BpmRotational {
                    angle θ: kr (r − r0) along the bond, ks r γ across it, the torques kt ψ and kb θ. With `normalize yes` kr and ks are divided by r0. \
                    B = F/frc + |Fs|/fsc + |Tt|/ttc + |Tb|/tbc counts how near a bond is to its end (pressure counts as negative, B not below 0): at \
                    B ≥ 1 it exerts no force any more and is gone, and pair forces act between its ends from the next step on. So it is too in the \
-                   setup of a run, where LAMMPS (and `compat lammps`) lets nothing break: bonds beyond their limit there pull with 1 − B⁴ below zero. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is said; `break no` needs that, and frc … tbc are any numbers then. Dashpots gn along \
+                   setup of a run, where LAMMPS (and `compat lammps`) lets nothing break: bonds beyond their limit there pull with 1 − B⁴ below zero. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is given; `break no` needs that, and frc … tbc are any numbers then. Dashpots gn along \
                    the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
                    `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
                    has none. Forces come from no energy, so that without \

@@ -29,7 +29,7 @@ impl Style for BpmSpring {
             summary: "Damped springs that break at a strain.",
             text: with_store!(
                 "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
-                   unless `smooth no` is said. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
+                   unless `smooth no` is given. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
                    from the next step on, and pair forces act between its ends then; also in the setup of a run, where LAMMPS (and `compat lammps`) lets it push its ends \
                    apart with w below zero. `break no` lets no bond break and needs `smooth no`. \
                    The energy is k (r − r0)²/2, with `normalize yes` k (r − r0)²/(2 r0). Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \

@@ -32,7 +32,7 @@ impl Style for BpmSpringPlastic {
             text: with_store!(
                 "F = w (k (r − req) + γ r̂·v) as `bond_style bpm/spring` has it, with a length at rest req that begins as the distance r0 at which a run first \
                    met the bond, and follows where |r − req| would exceed ep r0: a bond that is pulled on and on grows with a constant force. It breaks at a strain \
-                   (r − r0)/r0 beyond ±ec, and w = 1 − ((r − r0)/(r0 ec))⁸ unless `smooth no` is said. `normalize yes` divides k by r0. The energy is counted as 0. \
+                   (r − r0)/r0 beyond ±ec, and w = 1 − ((r − r0)/(r0 ec))⁸ unless `smooth no` is given. `normalize yes` divides k by r0. The energy is counted as 0. \
                    `b1 b2` of compute bond/local are r0 and req; restart files hold both. All else as for bpm/spring. \
                    (LAMMPS' page says ep req; its program does what is said here.) Clemmer and Lechman, Powder Technology (2025)."
             ),
