@@ -17,7 +17,8 @@ pub fn encode(bytes: &[u8]) -> String {
     out
 }
 
-/// The bytes that a text says, up to the first byte that belongs to none; padding within ends a group, and the next one follows.
+/// Decodes a text up to the first byte outside the alphabet; padding inside the text ends a group, and the
+/// next one follows.
 pub fn decode(text: &[u8]) -> Vec<u8> {
     let value = |b: u8| match b {
         b'A'..=b'Z' => Some(b - b'A'),
@@ -53,7 +54,7 @@ pub fn decode(text: &[u8]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    // The vectors of RFC 4648, section 10.
+    // The test vectors of RFC 4648, section 10.
     #[test]
     fn bytes_of_any_number_become_text() {
         for (bytes, text) in [
@@ -74,7 +75,7 @@ mod tests {
 
     #[test]
     fn groups_may_be_padded_within() {
-        // RFC 4648, section 10, and two of them behind each other.
+        // RFC 4648, section 10, and two of them concatenated.
         assert_eq!(decode(b"Zm9vYmFy"), b"foobar");
         assert_eq!(decode(b" Zm9v\nYg==Zm8="), b"foobfo");
         assert_eq!(decode(b"Zm9v</Data"), b"foo");

@@ -1,7 +1,8 @@
-//! What a deck that nobody trusts may touch (`-safe`): the files of one folder, and so much of everything.
+//! Access limits for untrusted decks (`-safe`): the files of one folder, and bounded resources.
 //!
-//! Every file that a deck names is opened here. Without `-safe` the gate is open and nothing is looked at. Where several ranks run one
-//! deck the first one opens files, and all have what it has: see [`first`] and [`written`].
+//! Every file named in a deck is opened here. Without `-safe` the gate is open and nothing is checked. When
+//! several ranks run one deck, the first one opens the files, and all get its data: see [`first`] and
+//! [`written`].
 
 mod ranks;
 
@@ -17,18 +18,18 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
-/// How much a deck may use.
+/// Resource limits of a deck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Memory of the program [MB].
     pub memory: u64,
-    /// Steps of all runs, iterations of minimizations among them.
+    /// Steps of all runs, including iterations of minimizations.
     pub steps: u64,
-    /// Lines worked off, each turn of a loop counted.
+    /// Lines executed, counting every iteration of a loop.
     pub lines: u64,
     /// Files written.
     pub files: u64,
-    /// Pixels of a picture.
+    /// Pixels per picture.
     pub pixels: u64,
 }
 
@@ -63,10 +64,10 @@ fn closed() -> Option<Arc<Gate>> {
     GATE.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Closes the gate around the folder of the next deck; it is never opened again.
+/// Closes the gate around the folder of the next deck; it cannot be opened again.
 ///
 /// # Errors
-/// No such folder.
+/// The folder does not exist.
 pub fn close(folder: &Path, limits: Limits) -> Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let gate = Gate { folder: folder.canonicalize()?, limits, written: Mutex::default() };
@@ -80,7 +81,7 @@ pub fn limits() -> Option<Limits> {
     closed().map(|gate| gate.limits)
 }
 
-/// Why a file may not be touched.
+/// Reason for refusing access to a file.
 #[derive(Debug)]
 struct Refusal(String);
 
@@ -96,7 +97,7 @@ fn refuse<T>(why: String) -> Result<T> {
     Err(Error::new(ErrorKind::PermissionDenied, Refusal(why)))
 }
 
-/// The code for an error with a file: refused here, larger than the memory, or one of the system's.
+/// The code of a file error: refused here, out of memory, or a system error.
 pub fn code(error: &Error) -> Code {
     match error.get_ref().is_some_and(|e| e.is::<Refusal>()) {
         true => Code::NOT_ALLOWED,
@@ -105,12 +106,12 @@ pub fn code(error: &Error) -> Code {
     }
 }
 
-/// Whether a file is there and may not be taken in: that it is elsewhere as well is no way around it.
+/// Whether a file exists but must not be read: a copy in another place must not be used instead.
 pub fn final_word(error: &Error) -> bool {
     code(error) != Code::NO_FILE
 }
 
-/// The error of what decks may not do at all, if the gate is closed.
+/// The error for actions that decks may not perform at all, if the gate is closed.
 pub fn forbids(what: &str) -> Option<Diagnostic> {
     let gate = closed()?;
     let text = format!("-safe: {what}");
@@ -119,7 +120,7 @@ pub fn forbids(what: &str) -> Option<Diagnostic> {
     Some(Diagnostic::error(Code::NOT_ALLOWED, None, text).help(help))
 }
 
-/// The error of what is more than a limit allows.
+/// The error for exceeding a limit.
 pub fn beyond(wanted: f64, limit: impl Fn(&Limits) -> u64, name: &str, what: &str) -> Option<Diagnostic> {
     let most = limit(&limits()?);
     if wanted <= most as f64 {
@@ -129,7 +130,7 @@ pub fn beyond(wanted: f64, limit: impl Fn(&Limits) -> u64, name: &str, what: &st
     Some(Diagnostic::error(Code::NOT_ALLOWED, None, text).help(format!("`-limit {name} N` allows more")))
 }
 
-/// The error of a program that has more memory than it may.
+/// The error for a program that uses more memory than allowed.
 pub fn too_much_memory() -> Option<Diagnostic> {
     let most = limits()?.memory;
     let used = memory::resident()? / 1e6;
@@ -140,18 +141,19 @@ pub fn too_much_memory() -> Option<Diagnostic> {
     Some(Diagnostic::error(Code::NOT_ALLOWED, None, text).help("`-limit memory MB` allows more"))
 }
 
-/// Bytes that may still be used; nothing where the gate is open.
+/// Bytes that may still be used; `None` if the gate is open.
 pub(crate) fn memory_left() -> Option<f64> {
     let left = memory_of_limit()?;
     Some(memory::limited().map_or(left, |counted| counted.min(left)))
 }
 
-/// What the limit leaves by what the system says of the program, which lags behind what was asked for.
+/// Bytes left by the limit according to the system, which lags behind allocations.
 pub(crate) fn memory_of_limit() -> Option<f64> {
     Some((1e6 * limits()?.memory as f64 - memory::resident().unwrap_or(0.0)).max(0.0))
 }
 
-/// Whether a path leads to a plain file or folder inside, or would do so once it is made; links are followed.
+/// Whether a path leads to a regular file or folder inside the gate, or would after creation; links are
+/// followed.
 fn inside(gate: &Gate, path: &Path) -> Result<PathBuf> {
     let outside = || refuse(format!("-safe: it is outside of the deck's folder `{}`", gate.folder.display()));
     let there = fs::symlink_metadata(path).is_ok();
@@ -161,9 +163,9 @@ fn inside(gate: &Gate, path: &Path) -> Result<PathBuf> {
     };
     let whole = match found {
         Ok(whole) => whole,
-        // What is outside is not looked into: whether a folder there exists makes no difference to the words.
+        // Nothing outside is inspected: the message does not reveal whether a folder exists there.
         Err(_) if !way_in(gate, path) => return outside(),
-        // Writing there would make the file that the link names.
+        // Writing there would create the file that the link names.
         Err(_) if there => return refuse("-safe: it is a link that leads nowhere".into()),
         Err(e) => return Err(e),
     };
@@ -180,12 +182,12 @@ fn inside(gate: &Gate, path: &Path) -> Result<PathBuf> {
     }
 }
 
-/// The folder that a path names something in.
+/// The parent folder of a path.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Whether the part of a path that is there leads inside; the rest of it is not there.
+/// Whether the existing part of a path leads inside.
 fn way_in(gate: &Gate, path: &Path) -> bool {
     let mut part = folder_of(path);
     loop {
@@ -202,26 +204,26 @@ fn way_in(gate: &Gate, path: &Path) -> bool {
 /// Refuses a path that leads outside.
 ///
 /// # Errors
-/// It does, or to something that is no plain file; a folder on the way that is not there.
+/// A path to the outside or to something other than a regular file; a missing folder on the way.
 pub fn pass(path: &Path) -> Result<()> {
     let Some(gate) = closed() else { return Ok(()) };
     once(|| inside(&gate, path).map(drop))
 }
 
-/// As [`pass`], of this process alone.
+/// [`pass`] for this process alone.
 fn passes(path: &Path) -> Result<()> {
     closed().map_or(Ok(()), |gate| inside(&gate, path).map(drop))
 }
 
-/// Whether [`pass`] refuses a path; one that is not there is another matter.
+/// Whether [`pass`] refuses a path for another reason than that it does not exist.
 pub fn refuses(path: &Path) -> bool {
     pass(path).is_err_and(|e| code(&e) == Code::NOT_ALLOWED)
 }
 
-/// As [`pass`], for a file that will be written: there may be so many.
+/// Like [`pass`], for a file to be written, whose number is limited.
 ///
 /// # Errors
-/// As `pass`, and one file too many.
+/// As for `pass`, and too many files.
 pub fn pass_written(path: &Path) -> Result<()> {
     let Some(gate) = closed() else { return Ok(()) };
     let whole = inside(&gate, path)?;
@@ -237,38 +239,38 @@ pub fn pass_written(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Opens a file to read it.
+/// Opens a file for reading.
 ///
 /// # Errors
-/// As [`pass`], and the system's.
+/// As for [`pass`], and system errors.
 pub fn open(path: impl AsRef<Path>) -> Result<File> {
     let path = path.as_ref();
     let own = || passes(path).and_then(|()| File::open(path));
     if comm::several() { ranks::opened(own) } else { own() }
 }
 
-/// Opens a file to write it, at its end or from scratch.
+/// Opens a file for writing, appending or truncating.
 ///
 /// # Errors
-/// As [`pass_written`], and the system's.
+/// As for [`pass_written`], and system errors.
 pub fn create(path: impl AsRef<Path>, append: bool) -> Result<File> {
     let path = path.as_ref();
     written(|| create_here(path, append))
 }
 
-/// As [`create`], at this rank whatever others do.
+/// Like [`create`], on this rank only.
 ///
 /// # Errors
-/// As there.
+/// As for [`create`].
 pub fn create_here(path: &Path, append: bool) -> Result<File> {
     pass_written(path)?;
     File::options().create(true).write(true).append(append).truncate(!append).open(path)
 }
 
-/// All bytes of a file.
+/// Reads a file.
 ///
 /// # Errors
-/// As [`open`].
+/// As for [`open`].
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let path = path.as_ref();
     first(|| {
@@ -279,24 +281,24 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     })
 }
 
-/// All text of a file.
+/// Reads a text file.
 ///
 /// # Errors
-/// As [`open`], and bytes that are no text.
+/// As for [`open`], and bytes that are not UTF-8.
 pub fn read_to_string(path: impl AsRef<Path>) -> Result<String> {
     let odd = |_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8");
     String::from_utf8(read(path)?).map_err(odd)
 }
 
-/// Whether there is such a file or folder.
+/// Whether the file or folder exists.
 pub fn exists(path: &Path) -> bool {
     comm::broadcast::truth(|| path.exists())
 }
 
-/// The paths of what a folder holds, in order.
+/// The paths of a folder's entries, sorted.
 ///
 /// # Errors
-/// As [`open`].
+/// As for [`open`].
 pub fn names(folder: &Path) -> Result<Vec<PathBuf>> {
     let bytes = first(|| {
         passes(folder)?;
@@ -310,10 +312,10 @@ pub fn names(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// What a folder holds, for one process.
+/// The entries of a folder, for one process.
 ///
 /// # Errors
-/// As [`open`].
+/// As for [`open`].
 pub fn list(folder: &Path) -> Result<ReadDir> {
     pass(folder)?;
     fs::read_dir(folder)
@@ -322,7 +324,7 @@ pub fn list(folder: &Path) -> Result<ReadDir> {
 /// Deletes a file.
 ///
 /// # Errors
-/// As [`open`].
+/// As for [`open`].
 pub fn remove(path: &Path) -> Result<()> {
     once(|| {
         passes(path)?;

@@ -1,12 +1,13 @@
-//! Characters that look like a blank, a quote or a sign and are another one: what web pages and word processors put into texts.
+//! Characters that look like a blank, a quote or a sign but are different ones, as in texts from web pages
+//! and word processors.
 
 use crate::diag::{Code, Diagnostic, Span};
 use std::fmt::Write;
 
-/// A character, its name, and what it is read as.
+/// A character, its name, and its replacement.
 type Letter = (char, &'static str, &'static str);
 
-/// All that are not read as themselves. LAMMPS replaces most of them in decks, and so in data files.
+/// All characters that are replaced. LAMMPS replaces most of them in decks, and therefore in data files.
 const LETTERS: &[Letter] = &[
     ('\u{a0}', "no-break space", " "),
     ('\u{ad}', "soft hyphen", " "),
@@ -58,7 +59,7 @@ const LETTERS: &[Letter] = &[
     ('\u{201d}', "right double quotation mark", "\""),
 ];
 
-/// What a character is read as: a blank, a sign or a quote; `None` where it is itself.
+/// The replacement of a character: a blank, a sign or a quote; `None` for all others.
 pub fn plain(c: char) -> Option<&'static str> {
     if c.is_ascii() {
         return None;
@@ -66,8 +67,8 @@ pub fn plain(c: char) -> Option<&'static str> {
     LETTERS.iter().find(|l| l.0 == c).map(|l| l.2)
 }
 
-/// A text of data with blanks and signs in the place of what looks like them, and those that were replaced with their first bytes.
-/// Every byte keeps its place. Comments, which begin with `#`, stay as they are, and so do quotes.
+/// A data text with look-alike blanks and signs replaced, and the replaced characters with their first bytes.
+/// Every other byte keeps its position. Comments, which begin with `#`, and quotes are unchanged.
 pub fn plain_data(text: String) -> (String, Vec<(char, usize)>) {
     if text.is_ascii() {
         return (text, vec![]);
@@ -86,13 +87,13 @@ pub fn plain_data(text: String) -> (String, Vec<(char, usize)>) {
     (out, found)
 }
 
-/// One note about all characters of a text that are read as others: where the first one stands, and how often each comes.
+/// One note about all replaced characters of a text: the position of the first one, and the count of each.
 pub fn note(found: &[(char, Span)]) -> Option<Diagnostic> {
     let first = found.first()?.1;
     Some(Diagnostic::note(Code::LETTERS, first, named(found.iter().map(|f| f.0))))
 }
 
-/// The same about a file of data, by the first bytes of the characters.
+/// The same for a data file, by the first bytes of the characters.
 pub fn note_of_file(name: &str, text: &str, found: &[(char, usize)]) -> Option<Diagnostic> {
     let before = text.as_bytes().get(..found.first()?.1)?;
     let line = 1 + before.iter().filter(|b| **b == b'\n').count();
@@ -100,7 +101,7 @@ pub fn note_of_file(name: &str, text: &str, found: &[(char, usize)]) -> Option<D
     Some(Diagnostic::note(Code::LETTERS, None, text))
 }
 
-/// The same about a value that is given outside of a deck.
+/// The same for a value given outside of a deck.
 pub fn note_of_value(what: &str, found: &[char]) -> Option<Diagnostic> {
     found.first()?;
     Some(Diagnostic::note(Code::LETTERS, None, format!("{what}: {}", named(found.iter().copied()))))

@@ -1,9 +1,10 @@
-//! What every other crate stands on: messages with places, numbers, unit systems, threads with the same bits for any number of them.
+//! The foundation of all other crates: messages with spans, numbers, unit systems, and deterministic threads.
 //!
-//! The three types that matter most: [`diag::Diagnostic`], a message with its place in a deck and what to write instead;
-//! [`math::vec3::Vec3`]; [`par::Shared`], a column that parts of a loop write side by side. It knows no deck, no particles and no step.
+//! Main types: [`diag::Diagnostic`], a message with its place in a deck and a remedy; [`math::vec3::Vec3`];
+//! [`par::Shared`], a column that parts of a loop write concurrently. The crate depends on no deck, particles
+//! or steps.
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod base64;

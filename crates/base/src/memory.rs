@@ -1,7 +1,8 @@
-//! The one door for memory that input can ask for: it is forecast, compared with what is free, and refused by name.
+//! Memory requests that depend on input: they are forecast, compared with free memory, and refused by name.
 //!
-//! A count that a deck, a file or a command line says passes [`lacking`] (or `Args::count`, which calls it) before anything of its size
-//! is made. Behind the door stands the [`Fence`], the program's allocator: what no forecast has seen ends there, with the line of the deck.
+//! A count given by a deck, a file or a command line passes [`lacking`] (or `Args::count`, which calls it)
+//! before anything of its size is allocated. Behind this check, the program's allocator, [`Fence`], handles
+//! requests that no forecast covered: it ends the program with the line of the deck.
 
 mod fence;
 mod free;
@@ -15,10 +16,10 @@ pub(crate) use fence::{limit, limited};
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};
 
-/// Less than this is never asked about [byte].
+/// Smaller requests are not checked [byte].
 const SMALL: f64 = 1e6;
 
-/// The error of what takes more bytes than are free now.
+/// The error for a request of more bytes than are free.
 pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
     if bytes <= SMALL {
         return None;
@@ -29,7 +30,8 @@ pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
     Some(if gate::limits().is_some() { error.help("`-limit memory MB` allows more") } else { error })
 }
 
-/// As [`lacking`], for what each of several ranks is going to have: those of one machine share what is free there. All ranks ask together and have
+/// Like [`lacking`], for a request by each of several ranks: ranks on one machine share its free memory. All
+/// ranks call it together and get the same answer.
 /// the same answer.
 pub fn lacking_on_ranks(bytes: f64, what: &str) -> Option<Diagnostic> {
     if !comm::several() || bytes <= SMALL {
@@ -55,8 +57,8 @@ pub fn lacking_on_ranks(bytes: f64, what: &str) -> Option<Diagnostic> {
     )
 }
 
-/// A machine whose ranks, each with so many bytes, do not fit into what is free there for all or for each, how many they are, and how much
-/// that is.
+/// A machine whose ranks do not fit into its free memory, together or each, with their number and the free
+/// memory.
 fn short<'a>(bytes: f64, hosts: &'a [String], shared: &[f64], own: &[f64]) -> Option<(&'a str, usize, f64)> {
     if let Some(rank) = own.iter().position(|room| bytes > *room) {
         return Some((&hosts[rank], 1, own[rank]));
@@ -71,20 +73,21 @@ fn short<'a>(bytes: f64, hosts: &'a [String], shared: &[f64], own: &[f64]) -> Op
     })
 }
 
-/// Bytes that may still be asked for, where the system tells: what the machine, the process' own limits and `-limit memory` leave.
+/// Bytes that may still be allocated, if the system reports them: the minimum over the machine, the process
+/// limits and `-limit memory`.
 pub fn room() -> Option<f64> {
     free::bytes().into_iter().chain(gate::memory_left()).reduce(f64::min)
 }
 
-/// Bytes of memory that the program has, where the system tells.
+/// Bytes of memory used by the program, if the system reports them.
 pub fn resident() -> Option<f64> {
     free::resident()
 }
 
-/// All that a file has, appended to `bytes`.
+/// Appends the contents of a file to `bytes`.
 ///
 /// # Errors
-/// The system's, and more than there is room for.
+/// System errors, and too little memory.
 pub fn read_file(file: File, bytes: &mut Vec<u8>) -> Result<()> {
     let length = file.metadata().map_or(0, |m| m.len());
     if let Some(d) = lacking(length as f64, "what is in it") {
@@ -94,13 +97,13 @@ pub fn read_file(file: File, bytes: &mut Vec<u8>) -> Result<()> {
     read_all(file, bytes)
 }
 
-/// All that a reader has, appended to `bytes`: of packed files nothing tells before how much that is.
+/// Appends everything a reader returns to `bytes`: the size of compressed files is not known in advance.
 ///
 /// # Errors
-/// The reader's, and more than there is room for.
+/// Errors of the reader, and too little memory.
 pub fn read_all(reader: impl Read, bytes: &mut Vec<u8>) -> Result<()> {
     let ready = bytes.capacity() - bytes.len();
-    // Half of the room: a piece that grows may lie beside the one that it has grown from.
+    // Half of the free memory: a growing vector may need its old and new buffer at the same time.
     let most = (room().map_or(f64::INFINITY, |room| room / 2.0) + ready as f64).min(u64::MAX as f64) as u64;
     let read = Heeding(reader).take(most).read_to_end(bytes)? as u64;
     if read == most {
@@ -111,7 +114,7 @@ pub fn read_all(reader: impl Read, bytes: &mut Vec<u8>) -> Result<()> {
     Ok(())
 }
 
-/// Bytes for people.
+/// A number of bytes for messages.
 fn size(bytes: f64) -> String {
     match bytes {
         b if b < 1e8 => format!("{:.1} MB", b / 1e6),

@@ -1,9 +1,9 @@
-//! Whether the present work has to end before it is done: one flag and one limit of time, which all long loops look at.
+//! Cancellation: one flag and one deadline, checked by all long loops.
 //!
-//! A session heeds a [`Stop`] while it executes a line. A loop that may last longer than half a second asks [`cuts`] in every turn
-//! (of quick turns in every [`MANY`]th, by [`cuts_at`]), gives up where that is so, and need not say so: the line then counts as not
-//! done, whatever came of it. Where a loop can return an error, [`check`] is one. Threads that a command starts take
-//! [`present`] along.
+//! A session runs each line under a [`Stop`]. A loop that may take longer than half a second calls [`cuts`]
+//! in every iteration (fast loops in every [`MANY`]th, by [`cuts_at`]) and breaks off if it returns true,
+//! without further notice: the line then counts as not executed, whatever it computed. Where a loop can
+//! return an error, [`check`] is one. Threads started by a command must run under [`present`] as well.
 
 use crate::diag::{Code, Diagnostic, Result};
 use std::cell::RefCell;
@@ -12,17 +12,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Quick turns of a loop between two looks.
+/// Iterations of a fast loop between two checks.
 pub const MANY: usize = 1024;
 
-/// What ends work from outside.
+/// External cancellation of work.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
-    /// A signal, or a program around this one.
+    /// Set by a signal, or by a host program.
     flag: Arc<AtomicBool>,
-    /// A limit of time.
+    /// Deadline.
     deadline: Option<Instant>,
-    /// Some work was given up.
+    /// Set when some work has been broken off.
     cut: Arc<AtomicBool>,
 }
 
@@ -31,7 +31,7 @@ thread_local! {
 }
 
 impl Stop {
-    /// Work ends where this flag is set, or at this time.
+    /// Cancels work when this flag is set, or at this time.
     pub fn new(flag: Arc<AtomicBool>, deadline: Option<Instant>) -> Self {
         Self { flag, deadline, cut: Arc::default() }
     }
@@ -41,7 +41,7 @@ impl Stop {
         self.flag.load(Ordering::Relaxed) || self.deadline.is_some_and(|end| Instant::now() >= end)
     }
 
-    /// Whether the limit of time alone is why.
+    /// Whether only the deadline has passed.
     pub fn is_late(&self) -> bool {
         !self.flag.load(Ordering::Relaxed) && self.must_end()
     }
@@ -55,14 +55,14 @@ impl Stop {
         ends
     }
 
-    /// Whether some work was given up.
+    /// Whether some work has been broken off.
     pub fn has_cut(&self) -> bool {
         self.cut.load(Ordering::Relaxed)
     }
 
-    /// Does work on this thread that ends where this says so.
+    /// Runs work on this thread that ends when this `Stop` is set.
     pub fn heed<T>(&self, work: impl FnOnce() -> T) -> T {
-        /// Puts back what was heeded before, also where the work panics.
+        /// Restores the previous `Stop`, even if the work panics.
         struct Before(Stop);
         impl Drop for Before {
             fn drop(&mut self) {
@@ -74,22 +74,22 @@ impl Stop {
     }
 }
 
-/// What the present work heeds.
+/// The `Stop` of the current thread.
 pub fn present() -> Stop {
     PRESENT.with_borrow(Clone::clone)
 }
 
-/// Whether the present work has to be given up; see [`Stop::cuts`].
+/// Whether the current work must be broken off; see [`Stop::cuts`].
 pub fn cuts() -> bool {
     PRESENT.with_borrow(Stop::cuts)
 }
 
-/// As [`cuts`], looked at in every [`MANY`]th turn.
+/// Like [`cuts`], checked in every [`MANY`]th iteration.
 pub fn cuts_at(turn: usize) -> bool {
     turn.is_multiple_of(MANY) && cuts()
 }
 
-/// An error where the present work has to be given up.
+/// An error if the current work must be broken off.
 ///
 /// # Errors
 /// [`Code::INTERRUPTED`].
@@ -100,13 +100,13 @@ pub fn check() -> Result<()> {
     Err(Diagnostic::error(Code::INTERRUPTED, None, "interrupted before it was done").into())
 }
 
-/// A reader that fails where the present work has to be given up.
+/// A reader that fails if the current work must be broken off.
 pub struct Heeding<R>(pub R);
 
 impl<R: Read> Read for Heeding<R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         if cuts() {
-            // Not of the kind that readers try again by themselves.
+            // Not of a kind that readers retry by themselves.
             return Err(std::io::Error::other("interrupted before it was read"));
         }
         self.0.read(buffer)

@@ -1,12 +1,14 @@
 //! bpm/beam: a bond whose forces and torques derive from an energy.
 //!
-//! A cylinder of K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 1–4, as a potential: with a and b the bond's axis as either end
-//! carries it, n its direction, l its length and p = (p₀, p⃗) the turn of the first end against the second,
+//! A cylinder of K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 1–4, as a potential. With a and b
+//! the bond's axis carried by either end, n its direction, l its length and p = (p₀, p⃗) the rotation of the
+//! first end relative to the second,
 //!
 //! U = ½ k_n (l − L)² + ¼ S (|a − n|² + |b − n|²) + ½ B |a − b|² + 2 k_t |p⃗|²,   S = k_s L²,   B = k_b − k_t − S/4,
 //!
-//! which is stretch, shear, bending and twist: ½ k_s L² |n − ½(a + b)|² + ½ (k_b − ½ k_t) |a − b|² and what is left of k_t. Momentum and
-//! angular momentum are kept to rounding, and a body that stands as it was made has exactly no force. No angle is taken of anything.
+//! which is stretch, shear, bending and twist: ½ k_s L² |n − ½(a + b)|² + ½ (k_b − ½ k_t) |a − b|² and the
+//! remainder of k_t. Momentum and angular momentum are conserved to rounding, and a body in its initial state
+//! has exactly zero force. No angles are computed.
 
 use crate::law::{Acts, BondLaw, Ends, Motion};
 use crate::network::Modes;
@@ -17,13 +19,13 @@ use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 use std::f64::consts::PI;
 
-/// When a beam breaks. D. Potyondy, P. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004).
+/// Breaking criterion. D. Potyondy, P. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Criterion {
-    /// Tension and bending together reach the one strength, shear and twist the other.
+    /// Tension and bending together reach one strength, shear and twist the other.
     #[default]
     Sum,
-    /// Each of the four alone, tension and bending only in beams that are pulled.
+    /// Each of the four alone; tension and bending count only in beams under tension.
     Separate,
 }
 
@@ -32,15 +34,16 @@ pub enum Criterion {
 pub struct Coeffs {
     /// Young's modulus [pressure] and Poisson's ratio.
     pub elastic: [f64; 2],
-    /// Strength in tension and shear [pressure]; infinite where it does not break.
+    /// Strength in tension and shear [pressure]; infinite for unbreakable bonds.
     pub strength: [f64; 2],
-    /// How much bending and twist count for breaking, 0 to 1.
+    /// Weight of bending and twist in the breaking criterion, 0 to 1.
     pub moment: f64,
-    /// Damping as a share of the critical one, of stretch, shear, twist and bending.
+    /// Damping ratios (fractions of critical damping) of stretch, shear, twist and bending.
     pub damping: [f64; 4],
 }
 
-/// What belongs to a single bond: its radius [length], a factor on both strengths, and the reduced mass and moment of inertia of its ends.
+/// Index of a single bond's radius [length]; followed by a factor on both strengths, and the reduced mass and
+/// moment of inertia of its ends.
 pub const RADIUS: usize = 0;
 /// See [`RADIUS`].
 pub const FACTOR: usize = 1;
@@ -52,11 +55,11 @@ pub const INERTIA: usize = 3;
 /// The law with the options of its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Potential {
-    /// Where the shear stiffness comes from.
+    /// Model of the shear stiffness.
     pub shear: Shear,
-    /// When it breaks.
+    /// Breaking criterion.
     pub criterion: Criterion,
-    /// Forces fade towards breaking by 1 − B⁴; then energy is not kept.
+    /// Whether forces fade towards breaking by 1 − B⁴; energy is then not conserved.
     pub smooth: bool,
 }
 
@@ -76,15 +79,16 @@ impl Potential {
         Beam { young: k.elastic[0], poisson: k.elastic[1], radius, length }.stiffness(self.shear)
     }
 
-    /// What a bond bears: tension, shear force [force], moments of bending and twist [force length], and how much of its strength that is.
+    /// Loads of a bond: tension, shear force [force], bending and twisting moments [force length], and the
+    /// fraction of its strength used.
     pub fn bears(&self, k: &Coeffs, own: &[f64; 4], b: &Ends<f64>) -> [f64; 5] {
         let c = self.section(k, own[RADIUS], b.length);
         let borne = elastic(&c, b).borne();
         [borne.tension, borne.shear, borne.bend, borne.twist, load(self, k, own, c.area, &borne)]
     }
 
-    /// How much of its strength a bond of this radius and factor uses up that bears a tension, a shear force, moments of bending and
-    /// twist.
+    /// The fraction of its strength that a bond of this radius and factor uses under a tension, a shear
+    /// force, and bending and twisting moments.
     pub fn share(
         &self,
         k: &Coeffs,
@@ -122,7 +126,7 @@ impl Potential {
     }
 }
 
-/// What the energy of a bond gives.
+/// Results of the energy of a bond.
 struct Elastic<R> {
     n: Vec3<R>,
     force: Vec3<R>,
@@ -147,7 +151,7 @@ impl<R: Real> Elastic<R> {
     }
 }
 
-/// Forces and torques, the exact derivatives of the energy.
+/// Forces and torques: the exact derivatives of the energy.
 #[inline(always)]
 fn elastic<R: Real>(c: &Section<R>, b: &Ends<R>) -> Elastic<R> {
     let l = length(b.r);
@@ -167,7 +171,7 @@ fn elastic<R: Real>(c: &Section<R>, b: &Ends<R>) -> Elastic<R> {
     let t = add(off, other);
     let t = sub(t, scale(dot(n, t), n));
     let per_length = s * 0.5 * per;
-    // a × n and a × b are exactly zero where both are the same.
+    // a × n and a × b are exactly zero for equal vectors.
     let (half, ab) = (s * 0.5, cross(a, e));
     let second = add(add(scale(half, cross(a, n)), scale(mixed, ab)), twist);
     let first = sub(sub(scale(half, cross(e, n)), scale(mixed, ab)), twist);
@@ -187,7 +191,7 @@ fn elastic<R: Real>(c: &Section<R>, b: &Ends<R>) -> Elastic<R> {
     }
 }
 
-/// What a bond of given stiffnesses does.
+/// Forces of a bond of given stiffnesses.
 pub struct Pulled {
     /// Force on the first end [force].
     pub force: Vec3,
@@ -197,7 +201,7 @@ pub struct Pulled {
     pub energy: Modes,
 }
 
-/// By the same potential: ½ k_n (l − L)², ½ k_s L² |n − ½(a + b)|², ½ k_b |a − b|² and the rest, which is of twist.
+/// From the same potential: ½ k_n (l − L)², ½ k_s L² |n − ½(a + b)|², ½ k_b |a − b|²; the remainder is twist.
 #[inline(always)]
 pub fn pulled(k: &Stiffness, b: &Ends<f64>) -> Pulled {
     let Stiffness { normal, shear, twist, bend } = *k;
@@ -210,7 +214,7 @@ pub fn pulled(k: &Stiffness, b: &Ends<f64>) -> Pulled {
     Pulled { force: e.force, torque: e.torque, energy }
 }
 
-/// What a bond bears [force], [force length].
+/// Loads of a bond [force], [force length].
 struct Borne<R> {
     tension: R,
     shear: R,
@@ -218,7 +222,7 @@ struct Borne<R> {
     twist: R,
 }
 
-/// How much of what it bears: by N/A + β M_b r/I and Q/A + β M_t r/J, J = 2 I.
+/// The fraction of its strength used: N/A + β M_b r/I and Q/A + β M_t r/J, J = 2 I.
 #[inline(always)]
 fn load<R: Real>(law: &Potential, k: &Coeffs, own: &[R; 4], area: R, b: &Borne<R>) -> R {
     let none = area.like(0.0);
@@ -272,7 +276,8 @@ impl BondLaw<4> for Potential {
     }
 }
 
-/// Dashpots c = 2 ζ √(k m) in all four modes, at the middle of the bond: what they take from the first end, torques on both, and power.
+/// Dashpots c = 2 ζ √(k m) in all four modes, at the middle of the bond: the force they subtract from that on
+/// the first end, torques on both, and dissipated power.
 #[inline(always)]
 fn damped<R: Real>(
     k: &Coeffs,

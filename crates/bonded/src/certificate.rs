@@ -1,19 +1,19 @@
-//! A bound of the energy from below, for any field.
+//! A lower bound of the energy, for any field.
 //!
-//! Prager and Synge: if bond forces τ balance the residual of a field at all free particles, its energy exceeds the least one by at
-//! most ½ τᵀ C τ, C the bonds' compliances. Beams carry all six components, so that such forces can be led to the held particles
-//! from bond to bond.
+//! Prager and Synge: if bond forces τ balance the residual of a field at all free particles, its energy
+//! exceeds the minimum by at most ½ τᵀ C τ, with the bonds' compliances C. Beams transmit all six components,
+//! so that such forces can be led from bond to bond to the held particles.
 
 use super::network::Network;
 use super::six::Six;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 
-/// The paths along which a residual is led to what is held.
+/// Paths along which a residual is led to the held particles.
 #[derive(Clone, Debug)]
 pub struct Certificate {
-    /// Particles with their bonds towards the held ones, farthest first.
+    /// Particles with paths to the held ones, farthest first.
     order: Vec<u32>,
-    /// Where the bonds of each begin in `towards`, in the order above.
+    /// Index in `towards` of each particle's first bond, in the same order.
     first: Vec<u32>,
     /// Bonds to particles one step nearer.
     towards: Vec<u32>,
@@ -21,8 +21,8 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// For particles of which those in `base` are held wholly, and those `out` are nobody's business. Without `rotations` particles
-    /// take up every torque.
+    /// For fully held particles in `base` and ignored particles `out`. Without `rotations`, particles support
+    /// any torque.
     pub fn new(network: &Network, base: impl Fn(usize) -> bool, out: &[bool], rotations: bool) -> Self {
         let n = network.particles;
         let (starts, partners) = partners(network);
@@ -51,8 +51,8 @@ impl Certificate {
         Self { order, first, towards, rotations }
     }
 
-    /// By how much at most the energy of a field is above the least one, from its residual [energy]; infinite where a bond would
-    /// have to carry what it cannot.
+    /// Upper bound of the energy of a field above the minimum, from its residual [energy]; infinite if a bond
+    /// would need a component that it cannot transmit.
     pub fn gap(&self, network: &Network, r: &[Six]) -> f64 {
         let mut wrench = r.to_vec();
         let mut gap = 0.0;

@@ -1,12 +1,14 @@
-//! Coarse levels for conjugate gradients: clusters of particles move as rigid bodies, and clusters of clusters.
+//! Coarse levels for conjugate gradients: clusters of particles that move as rigid bodies, and clusters of
+//! clusters.
 //!
-//! Block Jacobi alone lets what is long-ranged creep from neighbour to neighbour: struts that bend, walls between pores, pieces that
-//! hang by little take hundreds of steps. Here z = M⁻¹ r + P B Pᵀ r, where P has the rigid motions of clusters as columns and B is one
-//! cycle over the matrix PᵀK P, made in the same way once more until a few dozen clusters are left. Nothing but bonds is asked for:
-//! where particles are within a cluster follows from them, so that a box may repeat.
+//! With block Jacobi alone, long-range deformation spreads from neighbour to neighbour: bending struts, walls
+//! between pores and weakly connected pieces take hundreds of steps. Here z = M⁻¹ r + P B Pᵀ r, where the
+//! columns of P are the rigid motions of clusters, and B is one cycle with the matrix PᵀK P, built
+//! recursively in the same way until a few dozen clusters are left. Only bonds are needed: positions of
+//! particles within a cluster follow from them, so that the box may be periodic.
 //!
-//! V. E. Bulgakov, G. Kuhn, Int. J. Numer. Meth. Eng. 38, 3529 (1995), rigid motions of aggregates; D. Braess, Computing 55, 379
-//! (1995), corrections taken larger than they come out.
+//! V. E. Bulgakov, G. Kuhn, Int. J. Numer. Meth. Eng. 38, 3529 (1995): rigid motions of aggregates; D.
+//! Braess, Computing 55, 379 (1995): scaled-up corrections.
 
 mod bottom;
 mod clusters;
@@ -22,23 +24,23 @@ use matrix::Matrix;
 use perigrain_base::math::vec3::length;
 use perigrain_base::par;
 
-/// All that makes up a stiffness matrix.
+/// The parts of a stiffness matrix.
 pub struct Parts<'a> {
-    /// What ties particles together.
+    /// Connections between particles.
     pub ties: &'a [&'a dyn Ties],
-    /// What ties particles to what stands still, by their components: particle, component, stiffness.
+    /// Springs to the ground, by component: particle, component, stiffness.
     pub grounds: &'a [(u32, usize, f64)],
 }
 
 impl Parts<'_> {
-    /// How long a tie is, the first of all [length].
+    /// The length of a connection, the first of all [length].
     fn arm(&self) -> f64 {
         let first = self.ties.iter().find(|ties| !ties.ends().is_empty());
         first.map_or(1.0, |ties| length(ties.vector(0)))
     }
 }
 
-/// A level: who forms which cluster, and the matrix of their rigid motions.
+/// A level: its clusters, and the matrix of their rigid motions.
 struct Level {
     clusters: Clusters,
     matrix: Matrix,
@@ -50,23 +52,24 @@ pub struct Coarse {
     bottom: Option<Bottom>,
 }
 
-/// So many clusters are few enough for a matrix without zeros: 384 unknowns, a thousandth of a second.
+/// Number of clusters from which on a dense matrix is used: 384 unknowns, a millisecond.
 const FEW: usize = 64;
-/// A level that has more than this part of the clusters of the last one is none.
+/// A level with more than this fraction of the previous level's clusters is not used.
 const GAIN: f64 = 0.8;
-/// A step of block Jacobi goes this far. A matrix of springs between pairs is at most twice its blocks, so that 1 − 0.8 λ is between −0.6
-/// and 1.
+/// Damping of block Jacobi. The matrix of pairwise springs is at most twice its diagonal blocks, so that 1 −
+/// 0.8 λ is between −0.6 and 1.
 const DAMPED: f64 = 0.8;
-/// Steps before a level is left downwards and as many after.
+/// Smoothing steps before and after each coarser level.
 const STEPS: usize = 2;
-/// Rigid clusters are too stiff for what bends smoothly, at worst by the number of particles across: what comes out is taken larger.
-/// Between levels no more than this, since what a cluster does represent is then overshot: two cycles take 1 − (1 − 1.5)² = 0.75 of it.
+/// Rigid clusters are too stiff for smooth bending, at worst by the number of particles across, so
+/// corrections are scaled up. Between levels by no more than this, because motions that clusters do represent
+/// are then overshot: two cycles correct 1 − (1 − 1.5)² = 0.75 of them.
 const LARGER: f64 = 1.5;
-/// From the first level to the particles nothing can be overshot.
+/// Between the first level and the particles, overshooting is harmless.
 const LARGER_AT_LAST: f64 = 2.0;
 
 impl Coarse {
-    /// Of a matrix, whose `blocks` tell what is held.
+    /// For a matrix; `blocks` define the held components.
     pub fn new(parts: &Parts, blocks: &Blocks) -> Self {
         let (clusters, matrix) = matrix::of_particles(parts, blocks);
         let mut particles = clusters.sums(|_| 1.0);
@@ -89,12 +92,13 @@ impl Coarse {
         Self { levels, bottom }
     }
 
-    /// Of the bonds of a network alone.
+    /// For the bonds of a network alone.
     pub fn of_network(network: &Network, blocks: &Blocks) -> Self {
         Self::new(&Parts { ties: &[network], grounds: &[] }, blocks)
     }
 
-    /// z += P B Pᵀ r: of forces [force] and torques [force length] displacements [length] and rotations [rad].
+    /// z += P B Pᵀ r: displacements [length] and rotations [rad] from forces [force] and torques [force
+    /// length].
     pub fn add_to(&self, z: &mut [Six], r: &[Six], blocks: &Blocks) {
         let clusters = &self.levels[0].clusters;
         let pushed = clusters.gather(|k| blocks.free(k, &r[k]));
@@ -110,8 +114,8 @@ impl Coarse {
         });
     }
 
-    /// B r at a level: steps of block Jacobi, what the next level does to the rest, and the same steps once more. Symmetric and
-    /// positive, as [`DAMPED`] and [`LARGER`] make it.
+    /// B r at a level: block Jacobi steps, the correction by the next level, and the same steps again.
+    /// Symmetric and positive, by the choice of [`DAMPED`] and [`LARGER`].
     fn cycle(&self, level: usize, r: &[Six]) -> Vec<Six> {
         let a = &self.levels[level].matrix;
         let Some(next) = self.levels.get(level + 1) else {
@@ -121,7 +125,7 @@ impl Coarse {
         let clusters = &next.clusters;
         let rest = clusters.gather(|k| minus(&r[k], &a.times(k, &x)));
         let mut moved = self.cycle(level + 1, &rest);
-        // Where the next level is not solved but has a cycle itself, once more.
+        // If the next level is not the last one, it is cycled twice.
         if level + 2 < self.levels.len() {
             let rest: Vec<Six> = rows(rest.len(), |k| minus(&rest[k], &next.matrix.times(k, &moved)));
             let more = self.cycle(level + 1, &rest);
@@ -135,7 +139,7 @@ impl Coarse {
     }
 }
 
-/// Steps of block Jacobi from nothing.
+/// Block Jacobi steps from zero.
 fn smoothed(a: &Matrix, r: &[Six]) -> Vec<Six> {
     let first = rows(r.len(), |k| a.over(k, &r[k]).map(|z| DAMPED * z));
     (1..STEPS).fold(first, |x, _| step(a, r, &x))

@@ -1,4 +1,4 @@
-//! Bonds as columns, in the order of space, and who they belong to.
+//! Bonds as columns in spatial order, and the bonds of each particle.
 
 mod follow;
 
@@ -6,38 +6,38 @@ use perigrain_base::math::body::{Quat, UNTURNED};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 
-/// Bonds of a type stand in groups of this many, so that whatever works on several at a time has one type.
+/// Bonds of one type are stored in groups of this size, so that vectorized code handles a single type.
 pub const GROUP: usize = 8;
 
-/// A bond whose ends have been found in storage.
+/// A bond with the storage indices of its ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Member<const C: usize> {
     /// Type.
     pub kind: u16,
-    /// Places of the ends; the first is that with the lower ID.
+    /// Indices of the ends; the first is the end with the lower ID.
     pub ends: [u32; 2],
-    /// Length at rest [length].
+    /// Rest length [length].
     pub length: f64,
-    /// Unit vector from the second end to the first at rest, as the second end carries it.
+    /// Unit vector from the second end to the first at rest, in the frame of the second end.
     pub axis: Vec3,
-    /// The turn from the first end's orientation at birth to the second's.
+    /// The rotation from the first end's orientation to the second's when the bond was made.
     pub turned: Quat,
-    /// What belongs to this bond alone.
+    /// Values of this bond.
     pub own: [f64; C],
 }
 
-/// What decides where a bond stands.
+/// Determines the position of a bond in the columns.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Type.
     pub kind: u16,
-    /// Places of the ends.
+    /// Indices of the ends.
     pub ends: [u32; 2],
 }
 
-/// Bonds by type, place of the lower end and place of the upper one; alike ones as they were.
+/// Bonds sorted by type, lower index and upper index; equal ones in the given order.
 fn in_order(keys: &[Key], particles: usize) -> Vec<u32> {
-    // Ends stand near each other and have few bonds each: counting is faster than comparing.
+    // Ends are close in memory and have few bonds each: a counting sort is faster than comparisons.
     let lower = |k: usize| keys[k].ends[0].min(keys[k].ends[1]) as usize;
     let upper = |k: usize| u64::from(keys[k].ends[0].max(keys[k].ends[1]));
     let (starts, mut order) = counted(particles, keys.len(), lower, |k| upper(k) << 32 | k as u64);
@@ -52,7 +52,7 @@ fn in_order(keys: &[Key], particles: usize) -> Vec<u32> {
     counted(kinds, keys.len(), |k| usize::from(keys[by_place[k] as usize].kind), |k| by_place[k]).1
 }
 
-/// Things in the order of a small number of each, those alike as they come: where each number begins, and `what` stands there.
+/// Stable counting sort by a small number: the start of each number's range, and the sorted items.
 fn counted<T: Copy + Default>(
     numbers: usize,
     things: usize,
@@ -73,41 +73,41 @@ fn counted<T: Copy + Default>(
     (starts, out)
 }
 
-/// Bonds by type and place, padded to whole groups with dead ones.
+/// Bonds by type and position, padded to whole groups with dead bonds.
 #[derive(Clone, Debug)]
 pub struct Columns<const C: usize> {
-    /// Places of the ends.
+    /// Indices of the ends.
     pub ends: [Vec<u32>; 2],
     /// The type of each group.
     pub kinds: Vec<u16>,
-    /// 1, or 0 for what is broken or fills up a group.
+    /// 1 for intact bonds, 0 for broken ones and padding.
     alive: Vec<f64>,
-    /// Which groups have all their bonds still.
+    /// Whether all bonds of a group are intact.
     whole: Vec<bool>,
-    /// Lengths at rest [length].
+    /// Rest lengths [length].
     pub length: Vec<f64>,
-    /// Components of the axes; empty where no bond has one.
+    /// Components of the axes; empty if no bond has one.
     pub axis: [Vec<f64>; 3],
-    /// The turns at birth; empty where all ends were alike.
+    /// Initial rotations; empty if all are the identity.
     pub turned: Vec<Quat>,
-    /// What belongs to single bonds.
+    /// Values of single bonds.
     pub own: [Vec<f64>; C],
-    /// One more than the highest place of an end.
+    /// One more than the largest index of an end.
     pub reach: usize,
     holders: Holders,
-    /// Whether the order of space is that of where particles stand.
+    /// Whether the spatial order matches the current order of particles.
     in_order: bool,
-    /// Whether some have broken since they were put in order.
+    /// Whether bonds have broken since they were sorted.
     fewer: bool,
 }
 
-/// Who has which bonds.
+/// The bonds of each particle.
 #[derive(Clone, Debug)]
 struct Holders {
-    /// For each particle, where its entries begin; one more.
+    /// Start of each particle's entries, and the end of the last.
     starts: Vec<u32>,
-    /// Twice the place of a bond, and one more at its second end; by type and place of the partner, which is ascending where bonds stand
-    /// in order.
+    /// Twice the row of a bond, plus one at its second end; sorted by type and index of the partner, which is
+    /// ascending if bonds are in order.
     entries: Vec<u32>,
 }
 
@@ -117,7 +117,7 @@ impl Holders {
         &self.entries[self.starts[particle] as usize..self.starts[particle + 1] as usize]
     }
 
-    /// Enters the bonds that are alive.
+    /// Inserts the intact bonds.
     fn enter(&mut self, ends: &[Vec<u32>; 2], alive: &[f64], particles: usize) {
         let Self { starts, entries } = self;
         starts.clear();
@@ -134,7 +134,7 @@ impl Holders {
         entries.resize(starts[particles] as usize, 0);
         for k in living() {
             for (end, places) in ends.iter().enumerate() {
-                // A particle's beginning goes to its end, which is the beginning of the next.
+                // Advances each particle's start to its end, which is the start of the next.
                 let at = &mut starts[places[k] as usize];
                 entries[*at as usize] = (2 * k + end) as u32;
                 *at += 1;
@@ -165,7 +165,7 @@ impl<const C: usize> Default for Columns<C> {
 }
 
 impl<const C: usize> Columns<C> {
-    /// Columns of bonds, of `particles` particles in storage.
+    /// Columns of bonds between `particles` particles.
     pub fn new(bonds: &[Member<C>], particles: usize) -> Self {
         let keys: Vec<Key> = bonds.iter().map(|b| Key { kind: b.kind, ends: b.ends }).collect();
         let mut columns = Self::default();
@@ -173,7 +173,7 @@ impl<const C: usize> Columns<C> {
         columns
     }
 
-    /// Puts other bonds into the columns: as many as there are keys, of `particles` particles in storage.
+    /// Replaces the bonds: one per key, between `particles` particles.
     pub fn fill(&mut self, keys: &[Key], particles: usize, bond: impl Fn(usize) -> Member<C>) {
         let rows = self.arrange(keys);
         self.holders.enter(&self.ends, &self.alive, particles);
@@ -186,7 +186,7 @@ impl<const C: usize> Columns<C> {
         }
     }
 
-    /// Makes rows for these bonds: which of them stands in each. Who has which bonds is another matter.
+    /// Creates rows for these bonds; returns the bond of each row. Does not update the bonds of particles.
     fn arrange(&mut self, keys: &[Key]) -> Vec<u32> {
         (self.in_order, self.fewer) = (true, false);
         let reach = keys.iter().map(|key| key.ends[0].max(key.ends[1])).max();
@@ -203,14 +203,14 @@ impl<const C: usize> Columns<C> {
             self.alive.resize(rows.len(), 1.0);
             rows.resize(rows.len().next_multiple_of(GROUP), alike[alike.len() - 1]);
             self.kinds.resize(rows.len() / GROUP, kind);
-            // What fills up is dead.
+            // Padding is dead.
             self.whole.resize(self.alive.len() / GROUP, true);
             self.whole.resize(rows.len() / GROUP, false);
             self.alive.resize(rows.len(), 0.0);
             rest = others;
         }
         for (end, places) in self.ends.iter_mut().enumerate() {
-            // All of them are written.
+            // Every element is written.
             places.resize(rows.len(), 0);
             par::each((&mut places[..], &rows[..]), |_, (places, rows)| {
                 places.iter_mut().zip(rows).for_each(|(place, k)| *place = keys[*k as usize].ends[end]);
@@ -219,26 +219,26 @@ impl<const C: usize> Columns<C> {
         rows
     }
 
-    /// What holds: 1, or 0 for what is broken or fills up a group.
+    /// 1 for intact bonds, 0 for broken ones and padding.
     pub fn alive(&self) -> &[f64] {
         &self.alive
     }
 
-    /// Which groups have all their bonds still.
+    /// Whether all bonds of a group are intact.
     pub fn whole(&self) -> &[bool] {
         &self.whole
     }
 
-    /// A bond has broken.
+    /// Marks a bond as broken.
     pub fn lose(&mut self, bond: usize) {
         (self.alive[bond], self.whole[bond / GROUP], self.fewer) = (0.0, false, true);
     }
 
-    /// What the next row tells of its bond.
+    /// Fills the next row with a bond.
     fn push(&mut self, bond: &Member<C>) {
         let rows = self.length.len();
         self.length.push(bond.length);
-        // Until the first one that has an axis, or is turned, there is none.
+        // The columns of axes and rotations are created with the first bond that has one.
         for k in 0..3 {
             if bond.axis != [0.0; 3] || !self.axis[k].is_empty() {
                 self.axis[k].resize(rows, 0.0);
@@ -254,12 +254,12 @@ impl<const C: usize> Columns<C> {
         }
     }
 
-    /// Places, with what fills up.
+    /// The number of rows, including padding.
     pub fn rows(&self) -> usize {
         self.alive.len()
     }
 
-    /// The bonds of a particle: twice their place, and one more at the second end.
+    /// The bonds of a particle: twice the row, plus one at the second end.
     #[inline]
     pub fn of(&self, particle: usize) -> &[u32] {
         self.holders.of(particle)
@@ -270,7 +270,7 @@ impl<const C: usize> Columns<C> {
         [self.ends[0][bond] as usize, self.ends[1][bond] as usize]
     }
 
-    /// How many particles know their bonds.
+    /// The number of particles.
     pub fn particles(&self) -> usize {
         self.holders.starts.len() - 1
     }
@@ -280,12 +280,12 @@ impl<const C: usize> Columns<C> {
         self.kinds[bond / GROUP]
     }
 
-    /// The bonds that hold, in order.
+    /// The intact bonds, in order.
     pub fn living(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.rows()).filter(|&k| self.alive[k] > 0.0)
     }
 
-    /// Bytes held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         let axis = if self.axis[0].is_empty() { 0 } else { 24 };
         let turned = if self.turned.is_empty() { 0 } else { 32 };
@@ -353,7 +353,8 @@ mod tests {
         let keys: Vec<Key> = bonds.iter().map(|b| Key { kind: b.kind, ends: b.ends }).collect();
         again.fill(&keys, 40, |k| bonds[k]);
         assert_eq!(format!("{again:?}"), format!("{new:?}"));
-        // Particles that change places take their bonds along: who has which, in which order, is as in new columns.
+        // Reordered particles keep their bonds: the bonds of each particle, and their order, are as in new
+        // columns.
         let moved: Vec<u32> = (0..40).map(|k| (17 * k + 5) % 40).collect();
         let gone = again.pair(7).map(|e| e as u32);
         let mut whole = sorted.clone();
@@ -368,7 +369,7 @@ mod tests {
         assert!((0..40).all(|place| held(&followed, place) == held(&fresh, place)));
         followed.put_in_order();
         assert_eq!(format!("{followed:?}"), format!("{fresh:?}"));
-        // But for those that have broken.
+        // Except for broken bonds.
         again.lose(7);
         again.follow(&moved);
         let mut left = sorted.clone();

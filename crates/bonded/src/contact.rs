@@ -1,7 +1,7 @@
-//! One contact of two spheres: Hertz' force, Mindlin's stiffness across it, and slip.
+//! One contact of two spheres: Hertz' force, Mindlin's tangential stiffness, and slip.
 //!
-//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2, has small displacements, fixed directions and no slip; what a contact is
-//! like `after` a past follows the directions and slips.
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2, assumes small displacements, fixed
+//! directions and no slip; a contact `after` a past follows the directions and slips.
 
 use super::network::halves;
 use super::six::Six;
@@ -12,50 +12,50 @@ use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 pub struct Contact {
     /// Unit vector from the lower end to the upper one.
     pub n: Vec3,
-    /// R_i + R_j − l before anything moves, negative for a gap [length].
+    /// R_i + R_j − l in the initial state, negative for a gap [length].
     pub overlap: f64,
     /// F/δ^3/2 = 4/3 E* √R* [force/length^3/2].
     pub normal: f64,
     /// k_t/√δ = 8 G* √R* [force/length^3/2].
     pub tangential: f64,
-    /// Radii of the lower end and of the upper one [length].
+    /// Radii of the lower and the upper end [length].
     pub arms: [f64; 2],
-    /// Whether the force it has before anything moves is taken away.
+    /// Whether its initial force is subtracted.
     pub relaxed: bool,
 }
 
-/// What a contact is like at some field.
+/// State of a contact in a field.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct State {
     /// Unit vector from the lower end to the upper one.
     pub(crate) n: Vec3,
     /// R_i + R_j − l [length].
     pub(crate) overlap: f64,
-    /// Force along the normal, positive apart [force].
+    /// Normal force, positive for repulsion [force].
     pub(crate) push: f64,
     /// dF/dδ and k_t [force/length].
     pub(crate) k: [f64; 2],
-    /// How far the surfaces are sheared, of the upper end against the lower one [length].
+    /// Tangential displacement of the surfaces, of the upper end relative to the lower one [length].
     pub(crate) sheared: Vec3,
-    /// How much of the shear is left by slip, 1 where they stick.
+    /// Fraction of the displacement that remains after slip, 1 for sticking.
     pub(crate) stuck: f64,
 }
 
-/// How a contact resists small motions from some field on.
+/// Resistance of a contact to small motions from a given field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spring {
     /// Unit vector from the lower end to the upper one.
     pub(crate) n: Vec3,
-    /// Along the normal and across it [force/length].
+    /// Normal and tangential stiffness [force/length].
     pub k: [f64; 2],
-    /// The direction in which surfaces slip, which resists nothing; zero where they stick.
+    /// Slip direction, which has no resistance; zero for sticking.
     pub(crate) slips: Vec3,
-    /// How far inside of the surfaces they meet, so that a body that turns as a whole shears none [length].
+    /// Distance of the contact point below the surfaces, such that a rigid rotation causes no shear [length].
     pub(crate) less: f64,
 }
 
 impl Contact {
-    /// The same with its ends exchanged.
+    /// The same with exchanged ends.
     pub(crate) fn turned(self) -> Self {
         Self { n: self.n.map(|a| -a), arms: [self.arms[1], self.arms[0]], ..self }
     }
@@ -66,7 +66,7 @@ impl Contact {
         self.normal * overlap * overlap.sqrt()
     }
 
-    /// What a contact has at δ: F_n without that at δ₀, k_n = 3/2 κ √δ, k_t = κ_t √δ.
+    /// State at δ: F_n minus its value at δ₀, k_n = 3/2 κ √δ, k_t = κ_t √δ.
     #[inline(always)]
     pub(crate) fn pressed(&self, n: Vec3, overlap: f64) -> State {
         let held = overlap.max(0.0);
@@ -82,7 +82,7 @@ impl Contact {
         }
     }
 
-    /// At δ = δ₀ − n·(u_j − u_i), with all that the surfaces have moved.
+    /// At δ = δ₀ − n·(u_j − u_i), with the full displacement of the surfaces.
     #[inline(always)]
     pub(crate) fn near(&self, [a, b]: [&Six; 2]) -> State {
         let along = dot(self.n, sub(halves(b).0, halves(a).0));
@@ -90,8 +90,8 @@ impl Contact {
         State { sheared: self.slid(self.n, a, b, 0.0), ..state }
     }
 
-    /// k_n and k_t once the ends are apart by so much more; with friction what has been borne on the whole way over that way: along n
-    /// what was borne before counts as well, across it no more than μ F_n.
+    /// k_n and k_t after a further separation of the ends; with friction, secant stiffnesses over the whole
+    /// path: along n the previous force counts as well, across it at most μ F_n.
     pub(crate) fn strained(&self, apart: Vec3, friction: Option<f64>) -> [f64; 2] {
         let along = dot(self.n, apart);
         let State { k, overlap, .. } = self.pressed(self.n, self.overlap - along);
@@ -102,8 +102,8 @@ impl Contact {
         [if along == 0.0 { k[0] } else { chord }, k[1].min(mu * bears / slid)]
     }
 
-    /// At the distance the ends have now: what they were sheared, laid into the plane they touch in, and by how much they have slid
-    /// since then while they touched, taken back to μ F_n by slip.
+    /// At the current distance of the ends: the previous displacement, rotated into the contact plane, plus
+    /// the sliding since then while they touched, reduced to μ F_n by slip.
     #[inline(always)]
     pub(crate) fn after(&self, now: [&Six; 2], then: [&Six; 2], sheared: Vec3, friction: f64) -> State {
         let between = |at: [&Six; 2]| {
@@ -120,7 +120,7 @@ impl Contact {
         }
         let by: [Six; 2] = [0, 1].map(|e| std::array::from_fn(|c| now[e][c] - then[e][c]));
         let slid = self.slid(state.n, &by[0], &by[1], 0.0);
-        // Who came to touch on the way has been sheared by what was left of it.
+        // If contact began on the way, only the remaining part of the path counts.
         let part = if overlap_before > 0.0 { 1.0 } else { overlap / (overlap - overlap_before) };
         let laid = sub(sheared, scale(dot(state.n, sheared), state.n));
         let short = length(laid);
@@ -132,7 +132,7 @@ impl Contact {
         State { sheared: scale(stuck, sheared), stuck, ..state }
     }
 
-    /// ξ = P (u_j − u_i) + n × (R_i θ_i + R_j θ_j), for radii that are `less`.
+    /// ξ = P (u_j − u_i) + n × (R_i θ_i + R_j θ_j), with radii reduced by `less`.
     #[inline(always)]
     pub(crate) fn slid(&self, n: Vec3, a: &Six, b: &Six, less: f64) -> Vec3 {
         let ((ua, ta), (ub, tb)) = (halves(a), halves(b));
@@ -141,8 +141,8 @@ impl Contact {
         add(across, cross(n, add(scale(self.arms[0] - less, ta), scale(self.arms[1] - less, tb))))
     }
 
-    /// Resisting forces and torques of both ends for a force along n and one across it on the upper end, which act `less` inside of the
-    /// surfaces.
+    /// Resisting forces and torques of both ends, for a normal and a tangential force on the upper end that
+    /// act `less` below the surfaces.
     #[inline(always)]
     pub(crate) fn rows(&self, n: Vec3, along: f64, across: Vec3, less: f64) -> [Six; 2] {
         let f = add(scale(along, n), across);

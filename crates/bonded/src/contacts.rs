@@ -1,7 +1,9 @@
-//! Hertz contacts between spheres, and with planes at the ends of a sample. Whether two touch is asked anew for every field. Displacements
-//! are small, directions stay and nothing slips; or, where contacts have a [`Past`], directions follow the field and surfaces slip.
+//! Hertz contacts between spheres, and with planes at the ends of a sample. Contacts are detected for every
+//! field. Without a [`Past`], displacements are small, directions are fixed and nothing slips; with it,
+//! directions follow the field and surfaces slip.
 //!
-//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2; forces of Hertz, tangential stiffness of Mindlin.
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2; normal forces of Hertz, tangential
+//! stiffness of Mindlin.
 
 use super::contact::{Contact, Spring, State};
 use super::network::halves;
@@ -10,28 +12,28 @@ use super::six::{Packed, Six, at, unit};
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
 
-/// Contacts, touching or not yet.
+/// Contacts and possible contacts.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
-    /// Who may touch whom.
+    /// The pairs of particles.
     pub pairs: Pairs,
-    /// As columns, in the order of the pairs.
+    /// The contacts, in the order of the pairs.
     list: Vec<Contact>,
 }
 
-/// What contacts have gone through when a load is put on in parts.
+/// History of contacts for a load applied in parts.
 #[derive(Clone, Debug)]
 pub struct Past {
-    /// Friction: no contact bears more than this part of its normal force across it; infinite where nothing slips.
+    /// Friction coefficient: the limit of tangential over normal force; infinite if nothing slips.
     pub friction: f64,
-    /// The field at the end of the last part.
+    /// Field at the end of the last part.
     pub field: Vec<Six>,
-    /// How far the surfaces of each contact were sheared then [length].
+    /// Tangential displacement of each contact at that time [length].
     pub sheared: Vec<Vec3>,
 }
 
 impl Contacts {
-    /// Between these ends, the first and the second as `contact(k)` sees them.
+    /// For these pairs, with the order of ends of `contact(k)`.
     pub fn new(particles: usize, ends: &[[u32; 2]], contact: impl Fn(usize) -> Contact) -> Self {
         let pairs = Pairs::new(particles, ends);
         let list = pairs.origin.iter().map(|k| *k as usize).map(|k| {
@@ -46,23 +48,23 @@ impl Contacts {
         self.list.is_empty()
     }
 
-    /// Whether some bear forces across.
+    /// Whether some transmit tangential forces.
     pub fn rough(&self) -> bool {
         self.list.iter().any(|c| c.tangential > 0.0)
     }
 
-    /// A past of which nothing has happened yet.
+    /// A history without displacement.
     pub fn unsheared(&self, friction: f64, field: Vec<Six>) -> Past {
         Past { friction, field, sheared: vec![[0.0; 3]; self.list.len()] }
     }
 
-    /// The past at the end of a part of the load.
+    /// Updates the history at the end of a part of the load.
     pub fn pass(&self, u: &[Six], past: &mut Past) {
         let sheared = self.each(u, Some(past), |s| if s.overlap > 0.0 { s.sheared } else { [0.0; 3] });
         *past = Past { friction: past.friction, field: u.to_vec(), sheared };
     }
 
-    /// A contact in a field, after a past.
+    /// The state of a contact in a field, given a history.
     #[inline(always)]
     fn state(&self, k: usize, ends: [usize; 2], u: &[Six], past: Option<&Past>) -> State {
         let (c, now) = (&self.list[k], ends.map(|i| &u[i]));
@@ -72,7 +74,7 @@ impl Contacts {
         )
     }
 
-    /// Something of the state of each contact.
+    /// A function of the state of each contact.
     fn each<T: Copy + Default + Send + Sync>(
         &self,
         u: &[Six],
@@ -89,7 +91,7 @@ impl Contacts {
         out
     }
 
-    /// Who touch in a field.
+    /// Pairs in contact for a field.
     pub fn touching_pairs(&self, u: &[Six]) -> impl Iterator<Item = [u32; 2]> {
         self.touch(u, None)
     }
@@ -99,15 +101,15 @@ impl Contacts {
         self.pairs.ends.iter().zip(touch).filter(|(_, touch)| *touch).map(|(ends, _)| *ends)
     }
 
-    /// How many touch in a field, and how many of these slip.
+    /// The number of contacts for a field, and how many of them slip.
     pub fn touching(&self, u: &[Six], past: Option<&Past>) -> [usize; 2] {
         let of =
             self.each(u, past, |s| [usize::from(s.k[0] > 0.0), usize::from(s.k[0] > 0.0 && s.stuck < 1.0)]);
         of.iter().fold([0; 2], |sum, a| [sum[0] + a[0], sum[1] + a[1]])
     }
 
-    /// Those that touch under a strain that all follow, as springs: ends, vectors from the first to the second, stiffnesses along and
-    /// across, of small motions from there on; with friction those of the whole way.
+    /// Contacts under a uniform strain, as springs: ends, vectors from the first to the second, normal and
+    /// tangential stiffness for small motions from there; with friction, the secant over the whole path.
     pub fn springs(&self, strain: &[Vec3; 3], friction: Option<f64>) -> Vec<([u32; 2], Vec3, [f64; 2])> {
         let spring = |(ends, c): (&[u32; 2], &Contact)| {
             let d = scale(c.arms[0] + c.arms[1] - c.overlap, c.n);
@@ -127,8 +129,8 @@ impl Contacts {
         });
     }
 
-    /// How all contacts resist from a field on. What would make that unsymmetric is left out: how the force across a contact changes with
-    /// its overlap.
+    /// The tangent of all contacts at a field. The unsymmetric part is omitted: the change of a tangential
+    /// force with the overlap.
     pub fn tangent(&self, u: &[Six], past: Option<&Past>) -> Vec<Spring> {
         self.each(u, past, |s| {
             let slips = s.stuck < 1.0;
@@ -153,7 +155,7 @@ impl Contacts {
         c.rows(s.n, s.k[0] * apart, scale(s.k[1], slid), s.less)
     }
 
-    /// Adds their parts of the blocks on the diagonal.
+    /// Adds their parts of the diagonal blocks.
     pub fn add_blocks(&self, springs: &[Spring], out: &mut [Packed]) {
         self.pairs.gather(out, |bond, _| {
             let mut blocks = [[0.0; 21]; 2];
@@ -182,16 +184,16 @@ impl Contacts {
     }
 }
 
-/// How far inside of their surfaces two meet: half way into the overlap, which is nothing where displacements are small.
+/// Depth of the contact point below the surfaces: half the overlap; 0 for small displacements.
 fn inside(s: &State, past: Option<&Past>) -> f64 {
     if past.is_some() { 0.5 * s.overlap.max(0.0) } else { 0.0 }
 }
 
-/// Contacts by how they resist from some field on.
+/// Contacts with their resistance at a given field.
 pub struct Touching<'a> {
     /// All of them.
     pub contacts: &'a Contacts,
-    /// What [`Contacts::tangent`] says.
+    /// Their springs from [`Contacts::tangent`].
     pub springs: &'a [Spring],
 }
 

@@ -1,6 +1,7 @@
-//! The direct stiffness method: a bonded body between two held ends, by one linear system.
+//! The direct stiffness method: a bonded body between two held ends, as one linear system.
 //!
-//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2, with rotations; begun from the affine field and stopped by the energy.
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2, with rotations; starts from the affine
+//! field and stops by the energy.
 
 use super::certificate::Certificate;
 use super::coarse::Coarse;
@@ -10,16 +11,16 @@ use super::pcg::{MARGIN, Preconditioner, Solved, solve};
 use super::precond::Blocks;
 use super::six::Six;
 
-/// When a solution is good enough.
+/// Termination criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// The energy, and with it the stiffness, is known to this part of it by how fast it falls.
+    /// Estimated relative error of the energy, and so of the stiffness, by its decrease.
     Estimate(f64),
-    /// It is known to this part of it for certain.
+    /// Guaranteed relative error of the energy.
     Certified(f64),
-    /// The forces that are left, |r|₂, are below this [force].
+    /// Residual force |r|₂ [force].
     Residual(f64),
-    /// So many steps are done: the stiffness is a bound from above.
+    /// Number of steps: the stiffness is an upper bound.
     Steps(usize),
 }
 
@@ -30,9 +31,9 @@ pub struct Answer {
     pub field: Vec<Six>,
     /// Energies of stretch, shear, bend and twist.
     pub modes: Modes,
-    /// How it went.
+    /// Statistics of the solver.
     pub solved: Solved,
-    /// By how much at most the energy is above the least one, if that was asked for [energy].
+    /// Upper bound of the energy above the minimum, if requested [energy].
     pub gap: Option<f64>,
 }
 
@@ -43,13 +44,13 @@ impl Answer {
     }
 }
 
-/// More steps than this mean that something is wrong with the stiffnesses.
+/// A larger number of steps means that the stiffnesses are invalid.
 pub const MOST: usize = 200_000;
 
-/// How many steps pass between two looks at the certificate, which takes as long as one.
+/// Steps between two evaluations of the certificate, each of which costs as much as a step.
 const BETWEEN: usize = 5;
 
-/// Moves and turns what is not held until the energy is least.
+/// Minimizes the energy over all free displacements and rotations.
 pub fn relax(
     network: &Network,
     blocks: &Blocks,
@@ -69,7 +70,7 @@ pub fn relax(
     let mut gap = None;
     let make = || Coarse::of_network(network, blocks);
     let mut by = match stop {
-        // What the paper does, and what is over before coarse levels pay.
+        // As in the paper, and for runs that end before coarse levels pay off.
         Stop::Residual(_) | Stop::Steps(_) => Preconditioner::plain(blocks),
         _ => Preconditioner::deep(blocks, &make),
     };

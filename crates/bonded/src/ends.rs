@@ -1,4 +1,4 @@
-//! The ends of a sample that is pressed or pulled along an axis: who is there, and what of it is held.
+//! The ends of a sample that is loaded along an axis: their particles, and the components held.
 
 use super::network::Network;
 use super::six::Six;
@@ -17,7 +17,7 @@ pub struct Sample<'a> {
 }
 
 impl Sample<'_> {
-    /// From where to where the spheres reach in a direction [length].
+    /// Range of the spheres in a direction [length].
     pub fn extent(&self, d: usize) -> [f64; 2] {
         let mut out = [f64::INFINITY, f64::NEG_INFINITY];
         for (x, r) in self.x.iter().zip(self.radius) {
@@ -26,7 +26,7 @@ impl Sample<'_> {
         out
     }
 
-    /// The two directions across the load.
+    /// The two directions perpendicular to the load.
     pub fn across(&self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
@@ -37,23 +37,23 @@ impl Sample<'_> {
     }
 }
 
-/// Who is at the low and at the high end, and where these are.
+/// Particles at the low and the high end, and the positions of these ends.
 #[derive(Clone, Debug, Default)]
 pub struct Ends {
-    /// Places of the particles.
+    /// Particle indices.
     pub members: [Vec<u32>; 2],
     /// Mean coordinates of their centres [length].
     pub planes: [f64; 2],
 }
 
 impl Ends {
-    /// All particles whose surface is within `thick` of the sample's end.
+    /// All particles with a surface within `thick` of the sample's end.
     pub fn new(sample: &Sample, thick: f64) -> Self {
         let [lo, hi] = sample.extent(sample.axis);
         let mut out = Self::default();
         for (k, (x, r)) in sample.x.iter().zip(sample.radius).enumerate() {
             let x = x[sample.axis];
-            // What touches the border in one point is within, whatever rounding says.
+            // A particle that touches the border at one point is included, despite rounding.
             for (end, away) in [(x - r) - lo, hi - (x + r)].into_iter().enumerate() {
                 if away <= thick * (1.0 - 1e-9) {
                     out.members[end].push(k as u32);
@@ -67,12 +67,12 @@ impl Ends {
         out
     }
 
-    /// The distance of the two ends [length].
+    /// The distance between the ends [length].
     pub fn free_length(&self) -> f64 {
         self.planes[1] - self.planes[0]
     }
 
-    /// Whether a particle belongs to both.
+    /// Whether a particle belongs to both ends.
     pub fn overlap(&self) -> bool {
         self.members[0].iter().any(|k| self.members[1].binary_search(k).is_ok())
     }
@@ -81,11 +81,11 @@ impl Ends {
 /// How an end is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hold {
-    /// All particles wholly.
+    /// All components of all particles.
     Grip,
     /// Displacements along the axis.
     Plate,
-    /// By a plane that pushes what touches it.
+    /// By a plane that pushes particles in contact.
     Wall,
 }
 
@@ -94,30 +94,31 @@ pub const WHOLE: u8 = 0b111111;
 /// The three rotations.
 pub const ROTATIONS: u8 = 0b111000;
 
-/// What is held of every particle, and who is left out.
+/// Held components of every particle, and excluded particles.
 #[derive(Clone, Debug, Default)]
 pub struct Held {
-    /// Components that keep their value, a bit each.
+    /// Held components, one bit each.
     pub mask: Vec<u8>,
-    /// Particles of pieces that nothing holds: they do not move.
+    /// Particles of pieces that are not held: they do not move.
     pub out: Vec<bool>,
-    /// How many particles that are, and in how many pieces.
+    /// The number of these particles and of their pieces.
     pub left_out: [usize; 2],
-    /// Whether a piece reaches from end to end.
+    /// Whether a piece connects the ends.
     pub through: bool,
 }
 
 impl Held {
-    /// By the ends of a sample whose particles hang together as `pieces` says (the smallest place in the piece of each).
+    /// For the ends of a sample with these connected `pieces` (the smallest index in the piece of each
+    /// particle).
     ///
-    /// Pieces that plates alone hold can still move across the axis and turn about it. Nothing pushes them to, and conjugate
-    /// gradients leave such motions as they are; to hold single particles against them would double the number of steps. Only
-    /// without `rotations`, where bonds resist a turn of the whole as well, one is held across the axis, and another one
-    /// against turning.
+    /// Pieces held by plates alone can still move perpendicularly to the axis and rotate about it. No load
+    /// excites these motions, and conjugate gradients leave them unchanged; holding single particles against
+    /// them would double the number of steps. Only without `rotations`, where bonds also resist a rotation of
+    /// the whole, one particle is held perpendicularly to the axis, and another one against rotation.
     pub fn new(sample: &Sample, ends: &Ends, holds: [Hold; 2], rotations: bool, pieces: &[u32]) -> Self {
         let n = sample.x.len();
         let mut out = Self { mask: vec![0; n], out: vec![false; n], ..Self::default() };
-        // By piece: at which ends it is.
+        // Per piece, the ends it reaches.
         let mut at_ends = vec![0u8; n];
         let mut gripped = vec![false; n];
         for (end, members) in ends.members.iter().enumerate().filter(|(end, _)| holds[*end] != Hold::Wall) {
@@ -147,8 +148,9 @@ impl Held {
         out
     }
 
-    /// Holds the first member of each piece across the axis, and against turning about it the member of the same piece that is
-    /// farthest along the one direction across the axis and least along the other.
+    /// Holds the first member of each piece perpendicularly to the axis, and against rotation about it the
+    /// member of the same piece that is farthest along one perpendicular direction and nearest along the
+    /// other.
     fn anchor(
         &mut self,
         sample: &Sample,
@@ -158,7 +160,7 @@ impl Held {
     ) {
         let [a, b] = sample.across();
         let (a, b) = (a.min(b), a.max(b));
-        // By piece: its first member, and how far the best other one is.
+        // Per piece: its first member, and the best other member with its score.
         let mut best: BTreeMap<u32, (u32, Option<(f64, u32)>)> = BTreeMap::new();
         for &k in members.iter().filter(|k| !gripped(piece(**k))) {
             let (first, far) = best.entry(piece(k)).or_insert((k, None));
@@ -178,8 +180,8 @@ impl Held {
     }
 }
 
-/// The field of a body that follows its ends evenly: along the axis from 0 at the low plane to `delta` at the high one, across it
-/// narrower by `nu` times the strain in each direction; ends as they are held.
+/// The affine field between the ends: along the axis from 0 at the low plane to `delta` at the high one, with
+/// lateral contraction by `nu` times the strain; ends as they are held.
 pub fn affine(sample: &Sample, ends: &Ends, holds: [Hold; 2], held: &Held, delta: f64, nu: Vec3) -> Vec<Six> {
     let strain = delta / ends.free_length();
     let centre: Vec3 = std::array::from_fn(|d| {
@@ -211,8 +213,8 @@ pub fn affine(sample: &Sample, ends: &Ends, holds: [Hold; 2], held: &Held, delta
     u
 }
 
-/// By how much the sample becomes thinner across the axis per strain along it: the slope of lateral displacement over lateral
-/// position in its middle half, least squares, negative, over the strain; for each of the directions of [`Sample::across`].
+/// Poisson's ratio of the sample: the slope of lateral displacement over lateral position in its middle half,
+/// by least squares, negated and divided by the strain; for both directions of [`Sample::across`].
 pub fn poisson(sample: &Sample, u: &[Six], out: &[bool], strain: f64) -> [f64; 2] {
     let weights = slope(sample, out);
     [0, 1].map(|k| {
@@ -221,7 +223,7 @@ pub fn poisson(sample: &Sample, u: &[Six], out: &[bool], strain: f64) -> [f64; 2
     })
 }
 
-/// By which factors the lateral displacements of particles make up the two slopes of [`poisson`].
+/// The weights of the particles' lateral displacements in the two slopes of [`poisson`].
 pub fn slope(sample: &Sample, out: &[bool]) -> Vec<[f64; 2]> {
     let [lo, hi] = sample.extent(sample.axis);
     let quarter = 0.25 * (hi - lo);
@@ -234,7 +236,7 @@ pub fn slope(sample: &Sample, out: &[bool]) -> Vec<[f64; 2]> {
     for (side, d) in sample.across().into_iter().enumerate() {
         let mean = members.iter().map(|k| sample.x[*k][d]).sum::<f64>() / members.len().max(1) as f64;
         let spread: f64 = members.iter().map(|k| (sample.x[*k][d] - mean).powi(2)).sum();
-        // No width, no slope.
+        // Without width there is no slope.
         if spread > 1e-12 * sample.mean_radius().powi(2) {
             members.iter().for_each(|k| weights[*k][side] = (sample.x[*k][d] - mean) / spread);
         }

@@ -12,13 +12,14 @@ pub struct Body {
     pub bonds: Vec<([u32; 2], Vec3)>,
 }
 
-/// The beam of the page: E = 1 GPa, ν = 0.2, r = 0.4 mm.
+/// The beam of the documentation: E = 1 GPa, ν = 0.2, r = 0.4 mm.
 pub fn standard(length: f64) -> Stiffness {
     Beam { young: 1e9, poisson: 0.2, radius: 0.4e-3, length }.stiffness(Shear::Paper)
 }
 
 impl Body {
-    /// Sites with bonds between all pairs closer than `reach`, across the faces of a periodic box where its length is not 0.
+    /// Sites with bonds between all pairs closer than `reach`, across periodic faces where the box length is
+    /// not 0.
     pub fn new(x: Vec<Vec3>, reach: f64, period: Vec3) -> Self {
         let mut bonds = vec![];
         for i in 0..x.len() {
@@ -41,14 +42,14 @@ impl Body {
         Network::new(self.x.len(), &ends, |k| (self.bonds[k].1, beam(k, length(self.bonds[k].1))))
     }
 
-    /// All spheres of this radius.
+    /// The radii of all spheres, this one.
     pub fn radii(&self, radius: f64) -> Vec<f64> {
         vec![radius; self.x.len()]
     }
 }
 
-/// `cells` cells of a lattice of nearest distance 1 mm with these sites in its cubic cell of edge `a`; in a periodic box or, with both
-/// outermost planes, standing free.
+/// `cells` cells of a lattice with nearest distance 1 mm and these sites in its cubic cell of edge `a`; in a
+/// periodic box, or free with both outermost planes.
 pub fn lattice(sites: &[[f64; 3]], a: f64, cells: usize, periodic: bool) -> Body {
     let mut x = vec![];
     for c in 0..cells.pow(3) {
@@ -58,16 +59,16 @@ pub fn lattice(sites: &[[f64; 3]], a: f64, cells: usize, periodic: bool) -> Body
     Body::new(x, 1.05e-3, if periodic { [a * cells as f64; 3] } else { [0.0; 3] })
 }
 
-/// The sites of a face-centred cell of nearest distance 1 mm and its edge.
+/// The sites of a face-centred cell with nearest distance 1 mm, and its edge.
 pub const FCC: ([[f64; 3]; 4], f64) =
     ([[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]], 1e-3 * std::f64::consts::SQRT_2);
-/// Those of a body-centred one.
+/// Body-centred cubic.
 pub const BCC: ([[f64; 3]; 2], f64) = ([[0.0, 0.0, 0.0], [0.5, 0.5, 0.5]], 1e-3 * 1.154_700_538_379_251_5);
-/// That of a simple cubic one.
+/// Simple cubic.
 pub const SC: ([[f64; 3]; 1], f64) = ([[0.0, 0.0, 0.0]], 1e-3);
 
-/// The 256 particles of 4 × 4 × 4 cells fcc, without the sites with (7p + 11q + 13r) mod 9 = 4 where `holes`, but with all of both planes
-/// across z.
+/// The 256 particles of 4 × 4 × 4 fcc cells; with `holes`, without the sites with (7p + 11q + 13r) mod 9 = 4,
+/// except in both planes normal to z.
 pub fn block(holes: bool) -> Body {
     let whole = lattice(&FCC.0, FCC.1, 4, false);
     let twice = |a: f64| (2.0 * a / FCC.1).round() as usize;
@@ -78,7 +79,8 @@ pub fn block(holes: bool) -> Body {
     Body::new(whole.x.iter().filter(stays).copied().collect(), 1.05e-3, [0.0; 3])
 }
 
-/// Points at random in a box, bonded up to a distance that gives each a dozen partners, and dangling where chance has it.
+/// Random points in a box, bonded up to a distance that gives each about a dozen partners; some dangle by
+/// chance.
 pub fn random(seed: u32, n: usize, keep: f64) -> Body {
     let mut rng = ParkMiller::new(seed);
     let edge = 1e-3 * (n as f64 / 1.5).cbrt();

@@ -1,7 +1,7 @@
-//! Bonded particles: spheres joined by massless beams. What one bond does, and the stiffness of a body of them. Pure functions over
-//! numbers and columns; knows neither the world nor decks nor styles.
+//! Bonded particles: spheres joined by massless beams. Forces of one bond, and the stiffness of bonded
+//! bodies. Pure functions over numbers and columns, independent of the world, decks and styles.
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod beam;

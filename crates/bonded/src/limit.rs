@@ -1,7 +1,8 @@
-//! How long a step bonded particles stand under velocity Verlet: a bound by each particle's own bonds, and the limit itself.
+//! The largest stable step of bonded particles under velocity Verlet: a bound from each particle's own bonds,
+//! and the limit itself.
 //!
-//! Forces are taken at x and at the velocities half a step before, so that a motion of frequency ω with dashpots c on masses m is stable
-//! while dt² ω² + 2 dt c/m < 4; for a body, while dt² K + 2 dt C < 4 M.
+//! Forces are evaluated at x and at the velocities of half a step before, so that a motion of frequency ω
+//! with dashpots c on masses m is stable while dt² ω² + 2 dt c/m < 4; for a body, while dt² K + 2 dt C < 4 M.
 
 use super::network::{Network, halves, row};
 use super::six::{Matrix6, Six, full, largest};
@@ -9,24 +10,26 @@ use perigrain_base::math::lanczos::largest_eigenvalue;
 use perigrain_base::math::vec3::scale;
 use perigrain_base::par;
 
-/// A body that swings.
+/// A body that vibrates.
 pub struct Swinging {
     /// Its bonds.
     pub network: Network,
-    /// The same bonds with what their dashpots do in the place of stiffnesses; `None` where there are none.
+    /// The same bonds with dashpot coefficients as stiffnesses; `None` without dashpots.
     pub dashpots: Option<Network>,
-    /// Mass [force time²/length] and moment of inertia [force length time²] of each particle; infinite where it does not move or turn.
+    /// Mass [force time²/length] and moment of inertia [force length time²] of each particle; infinite for
+    /// components that are fixed.
     pub inertia: Vec<[f64; 2]>,
 }
 
-/// How often the limit with dashpots is made better; each time at least halves what is missing.
+/// Iterations for the limit with dashpots; each at least halves the error.
 const ROUNDS: usize = 6;
-/// Up to this part it is.
+/// Relative accuracy of these iterations.
 const NEAR: f64 = 1e-4;
 
 impl Swinging {
-    /// A step that is certain to be stable, 70 to 100 % of the limit: a bond's energy is a square of the sum of what its two ends do, so
-    /// that K ≤ 2 diag(K_ii), and the 6 × 6 blocks bound it [time]. `None` where nothing swings.
+    /// A step that is certain to be stable, 70 to 100 % of the limit: a bond's energy is the square of a sum
+    /// over its two ends, so that K ≤ 2 diag(K_ii), and the 6 × 6 blocks bound it [time]. `None` if nothing
+    /// vibrates.
     pub fn bound(&self) -> Option<f64> {
         let stiff = self.network.blocks();
         let damp = self.dashpots.as_ref().map(Network::blocks);
@@ -36,7 +39,7 @@ impl Swinging {
                 let roots = self.roots(k);
                 let scaled = |block: &[f64; 21]| scaled(&full(block), &roots);
                 let (a, b) = (scaled(&stiff[k]), damp.as_ref().map(|d| scaled(&d[k])));
-                // Sums of rows are cheap, and most particles are not the worst.
+                // Row sums are cheap, and rule out most particles.
                 if limit(2.0 * rows(&a), 2.0 * b.as_ref().map_or(0.0, rows)) >= least {
                     continue;
                 }
@@ -47,13 +50,13 @@ impl Swinging {
         par::reduce(self.inertia.len(), step, f64::min).filter(|dt| dt.is_finite())
     }
 
-    /// The limit, right to some 3e-4 of it [time]. `None` where nothing swings.
+    /// The limit, with a relative accuracy of about 3e-4 [time]. `None` if nothing vibrates.
     pub fn limit(&self) -> Option<f64> {
         let stiff = self.largest(&self.network).unwrap_or(0.0);
         let Some(dashpots) = &self.dashpots else {
             return Some(limit(stiff, 0.0)).filter(|dt| dt.is_finite());
         };
-        // Both at once where the fastest motion is also the one that is damped most, below the limit otherwise.
+        // Exact if the fastest motion is also the most damped one, below the limit otherwise.
         let mut dt = limit(stiff, self.largest(dashpots).unwrap_or(0.0));
         let mut both = self.network.clone();
         for _ in 0..ROUNDS {
@@ -95,7 +98,7 @@ impl Swinging {
     }
 }
 
-/// The step that fulfils dt² a + 2 dt b = 4: 2/√a without dashpots; infinite where nothing acts.
+/// The step that satisfies dt² a + 2 dt b = 4: 2/√a without dashpots; infinite if both are zero.
 fn limit(a: f64, b: f64) -> f64 {
     let (a, b) = (a.max(0.0), b.max(0.0));
     4.0 / (b + (b * b + 4.0 * a).sqrt())
@@ -106,7 +109,7 @@ fn scaled(m: &Matrix6, roots: &[f64; 2]) -> Matrix6 {
     std::array::from_fn(|r| std::array::from_fn(|c| m[r][c] * roots[r / 3] * roots[c / 3]))
 }
 
-/// The largest sum of a row's magnitudes: no eigenvalue is larger.
+/// The largest sum of magnitudes of a row, an upper bound of the eigenvalues.
 fn rows(m: &Matrix6) -> f64 {
     m.iter().map(|row| row.iter().map(|a| a.abs()).sum()).fold(0.0, f64::max)
 }
@@ -116,7 +119,7 @@ mod tests {
     use super::*;
     use crate::stiffness::Stiffness;
 
-    /// The standard bond of the page on bonded particles, along x, between spheres of 1 mm.
+    /// The standard bond of the documentation of bonded particles, along x, between spheres of 1 mm.
     fn pair(k: Stiffness, damping: Option<Stiffness>) -> Swinging {
         let network = |k| Network::new(2, &[[0, 1]], |_| ([1e-3, 0.0, 0.0], k));
         let inertia = vec![[1.0471975512e-6, 1.0471975512e-13]; 2];
@@ -136,7 +139,8 @@ mod tests {
 
     #[test]
     fn the_frequencies_of_a_free_pair() {
-        // Printed there with nine digits; two particles' space is used up by twelve vectors, so Lanczos' method is exact.
+        // Printed there with nine digits; twelve vectors span the space of two particles, so Lanczos' method
+        // is exact.
         near(pair(STANDARD, None).limit(), 2.0 / 1183215.957, 1e-9);
         let only = |k: Stiffness, omega: f64| near(pair(k, None).limit(), 2.0 / omega, 1e-9);
         only(Stiffness { normal: STANDARD.normal, ..Stiffness::default() }, 979795.897);
@@ -148,7 +152,7 @@ mod tests {
 
     #[test]
     fn the_bound_is_below_the_limit() {
-        // A crooked body with bonds of three kinds.
+        // An irregular body with three kinds of bonds.
         let places: Vec<[f64; 3]> = (0..40)
             .map(|k| {
                 let (a, b, c) = (k % 4, k / 4 % 4, k / 16);
@@ -189,7 +193,8 @@ mod tests {
         let omega = (2.0 * k.normal / 1.0471975512e-6f64).sqrt();
         let xi = 0.1 / (1.0471975512e-6 * omega);
         near(pair(k, Some(c)).limit(), 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi), 1e-9);
-        // Of two that are apart the one of stretch is faster, the other damped more: the sum of both would be too short.
+        // Of two separate motions the stretch is faster, the other damped more: the sum of both would be too
+        // short.
         let c = Stiffness { twist: 1e-8, ..Stiffness::default() };
         let both = Stiffness { twist: STANDARD.twist, ..k };
         let turning = (2.0 * STANDARD.twist / 1.0471975512e-13f64).sqrt();

@@ -1,6 +1,7 @@
-//! A body of bonded particles as columns, and what it does when its particles move and turn a little.
+//! A body of bonded particles as columns, and its response to small motions of its particles.
 //!
-//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent at rest of beams between spheres.
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent of beams between
+//! spheres at rest.
 
 use super::beam::{Pulled, pulled};
 use super::law::Ends;
@@ -12,21 +13,22 @@ use perigrain_base::math::forest;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 use perigrain_base::par;
 
-/// Bonds between particles, which are places from 0.
+/// Bonds between particles, which are indices from 0.
 #[derive(Clone, Debug, Default)]
 pub struct Network {
     /// Number of particles.
     pub particles: usize,
-    /// The partners of each particle in bonds.
+    /// The bonded pairs.
     pub pairs: Pairs,
-    /// Vectors from the lower end to the upper one [length]. Directions and lengths are reckoned from them: there are millions of bonds,
-    /// and what is read costs more than what is reckoned.
+    /// Vectors from the lower end to the upper one [length]. Directions and lengths are computed from them:
+    /// there are millions of bonds, and memory access costs more than arithmetic.
     d: Vec<Vec3>,
     /// Stiffnesses.
     pub k: Vec<Stiffness>,
 }
 
-/// What a bond does to its ends: −F and −M − C on the first, F and M − C on the second are the resisting forces and torques.
+/// Resistance of a bond: −F and −M − C on the first end, F and M − C on the second are the resisting forces
+/// and torques.
 #[derive(Clone, Copy, Debug)]
 pub struct Resisting {
     /// F = K_t g [force].
@@ -49,7 +51,7 @@ impl Resisting {
     }
 }
 
-/// How the ends of a bond have moved.
+/// Relative motions of a bond's ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Moved {
     /// Δu = u_j − u_i [length].
@@ -61,7 +63,7 @@ pub struct Moved {
 }
 
 impl Moved {
-    /// Of the ends of a bond.
+    /// From the motions of the ends.
     #[inline(always)]
     pub fn new(a: &Six, b: &Six) -> Self {
         let (ua, ta) = halves(a);
@@ -86,7 +88,8 @@ pub fn row(u: Vec3, theta: Vec3) -> Six {
 pub type Modes = [f64; 4];
 
 impl Network {
-    /// Of bonds between these ends; `bond(k)` tells the vector from the first end to the second and the stiffnesses of the k-th.
+    /// For bonds between these ends; `bond(k)` returns the vector from the first end to the second and the
+    /// stiffnesses of the k-th.
     pub fn new(particles: usize, ends: &[[u32; 2]], bond: impl Fn(usize) -> (Vec3, Stiffness)) -> Self {
         let pairs = Pairs::new(particles, ends);
         let (d, k) = (Vec::with_capacity(ends.len()), Vec::with_capacity(ends.len()));
@@ -100,7 +103,7 @@ impl Network {
         out
     }
 
-    /// The same bonds with other stiffnesses, one for each.
+    /// The same bonds with other stiffnesses, one per bond.
     pub fn with(&self, k: Vec<Stiffness>) -> Self {
         Self { k, ..self.clone() }
     }
@@ -134,7 +137,7 @@ impl Network {
         let (d, k) = (self.d[bond], &self.k[bond]);
         let arm = scale(0.5, d);
         let g = add(moved.apart, cross(arm, moved.together));
-        // n nᵀ is d dᵀ/d². The part of g from rotations is across n.
+        // n nᵀ is d dᵀ/d². The part of g from rotations is perpendicular to n.
         let over = 1.0 / dot(d, d);
         let along = over * (k.normal - k.shear) * dot(d, moved.apart);
         let twisted = over * (k.twist - k.bend) * dot(d, moved.turned);
@@ -148,12 +151,12 @@ impl Network {
     /// out = K u.
     ///
     /// # Panics
-    /// If `out` has no row for each particle.
+    /// If `out` does not have a row per particle.
     pub fn product(&self, u: &[Six], out: &mut [Six]) {
         self.gather(out, |_, [i, j]| Moved::new(&u[i], &u[j]));
     }
 
-    /// The same bonds with the vectors that they have in a field.
+    /// The same bonds with the vectors they have in a field.
     pub fn moved_by(&self, u: &[Six]) -> Self {
         let d = |k: usize| {
             let [i, j] = self.pairs.ends[k].map(|i| halves(&u[i as usize]).0);
@@ -162,7 +165,8 @@ impl Network {
         Self { d: (0..self.bonds()).map(d).collect(), ..self.clone() }
     }
 
-    /// out = the resisting forces and torques in a field of any size, whose rotations are vectors; by the potential of [`crate::beam`].
+    /// out = the resisting forces and torques in a field of any size, with rotations as vectors; from the
+    /// potential of [`crate::beam`].
     pub fn forces(&self, u: &[Six], out: &mut [Six]) {
         let turns = turns(u);
         par::each(&mut *out, |_, rows: &mut [Six]| rows.fill([0.0; 6]));
@@ -174,7 +178,7 @@ impl Network {
         });
     }
 
-    /// Energies of all bonds in a field of any size, `times(bond, mode)` each.
+    /// Energies of all bonds in a field of any size, each multiplied by `times(bond, mode)`.
     pub fn energy_of_large(&self, u: &[Six], times: impl Fn(usize, usize) -> f64 + Sync) -> Modes {
         let turns = turns(u);
         self.sum(|k| {
@@ -184,7 +188,7 @@ impl Network {
         })
     }
 
-    /// What a bond does to its ends, the upper one first.
+    /// Forces of a bond on its ends, the upper one first.
     #[inline(always)]
     fn pulled(&self, bond: usize, [a, b]: [&Six; 2], [low, high]: [Quat; 2]) -> Pulled {
         let d = self.d[bond];
@@ -194,7 +198,8 @@ impl Network {
         pulled(&self.k[bond], &ends)
     }
 
-    /// What a strain of the whole does that nobody follows: the resisting forces where all bonds are changed by ε d.
+    /// The effect of a uniform strain without any displacement: the resisting forces if all bonds change by ε
+    /// d.
     pub fn product_of_strain(&self, strain: &[Vec3; 3], out: &mut [Six]) {
         self.gather(out, |k, _| {
             let d = self.d(k);
@@ -208,13 +213,13 @@ impl Network {
         self.pairs.gather(out, |k, ends| self.resist(k, &moved(k, ends)).rows());
     }
 
-    /// What the resistance to one motion of a bond's ends does in another one, twice the energies where both are the same:
-    /// k_n (n·g)(n·g'), k_s g·g' across n, k_b φ·φ' across n, k_t (n·φ)(n·φ').
+    /// The work of the resistance to one motion of a bond's ends on another motion; for equal motions, twice
+    /// the energies: k_n (n·g)(n·g'), k_s g·g' across n, k_b φ·φ' across n, k_t (n·φ)(n·φ').
     #[inline(always)]
     pub fn work(&self, bond: usize, a: &Moved, b: &Moved) -> Modes {
         let (d, k) = (self.d[bond], &self.k[bond]);
         let (arm, over) = (scale(0.5, d), 1.0 / dot(d, d));
-        // What is along n, times the length of the bond, and what is across.
+        // The component along n times the length of the bond, and the perpendicular part.
         let split = |m: &Moved| {
             let g = add(m.apart, cross(arm, m.together));
             let (along, twist) = (dot(d, g), dot(d, m.turned));
@@ -229,7 +234,7 @@ impl Network {
         ]
     }
 
-    /// How the ends of a bond have moved in a field, and besides as a strain of the whole says.
+    /// Relative motions of the ends of a bond in a field, with an optional uniform strain.
     pub fn moved(&self, bond: usize, u: &[Six], strain: Option<&[Vec3; 3]>) -> Moved {
         let [i, j] = self.pairs.ends[bond];
         let mut moved = Moved::new(&u[i as usize], &u[j as usize]);
@@ -240,7 +245,7 @@ impl Network {
         moved
     }
 
-    /// Energies of all bonds at a field.
+    /// Energies of all bonds in a field.
     pub fn energy(&self, u: &[Six]) -> Modes {
         self.sum(|k| {
             let moved = self.moved(k, u, None);
@@ -248,14 +253,14 @@ impl Network {
         })
     }
 
-    /// The sum of something over bonds.
+    /// A sum over bonds.
     pub fn sum(&self, of: impl Fn(usize) -> Modes + Sync) -> Modes {
         let chunk = |range: std::ops::Range<usize>| range.fold([0.0; 4], |sum, k| plus(sum, of(k)));
         par::reduce(self.bonds(), chunk, plus).unwrap_or_default()
     }
 
-    /// What a bond bears in a field: tension (below 0 where it is pressed) and shear force [force], moments of bending and of twist at its
-    /// middle [force length], these three without a sign.
+    /// Loads of a bond in a field: tension (negative for compression) and shear force [force], bending and
+    /// twisting moments at its middle [force length]; all but the first unsigned.
     #[inline(always)]
     pub fn borne(&self, bond: usize, u: &[Six]) -> Modes {
         let n = self.n(bond);
@@ -265,20 +270,20 @@ impl Network {
         [tension, across(r.force, tension), across(r.moment, twist), twist.abs()]
     }
 
-    /// The 6 × 6 blocks of K on its diagonal: [[K_t, −K_t X], [−Xᵀ K_t, Xᵀ K_t X + K_r]] at the lower end of a bond with X = ½ [d]×, the
-    /// other sign beside the diagonal at the upper one.
+    /// The 6 × 6 diagonal blocks of K: [[K_t, −K_t X], [−Xᵀ K_t, Xᵀ K_t X + K_r]] at the lower end of a bond
+    /// with X = ½ [d]×, with the opposite sign of the off-diagonal parts at the upper one.
     pub fn blocks(&self) -> Vec<Packed> {
         let mut out = vec![[0.0; 21]; self.particles];
         self.blocks_into(&mut out, |_, block, row| *row = *block);
         out
     }
 
-    /// Hands the block of each particle over, with its row of `out`: nobody keeps all of them.
+    /// Passes the block of each particle to `take` with its row of `out`, so that the blocks are not stored.
     pub fn blocks_into<T: Send>(&self, out: &mut [T], take: impl Fn(usize, &Packed, &mut T) + Sync) {
         self.pairs.gather_into(out, |k, _| [self.end(k, true), self.end(k, false)], take);
     }
 
-    /// That of one particle, whose bonds these are.
+    /// The block of one particle, given its bonds.
     pub fn block(&self, place: u32, bonds: &[u32]) -> Packed {
         bonds.iter().map(|k| *k as usize).fold([0.0; 21], |sum, k| {
             let more = self.end(k, self.pairs.ends[k][0] == place);
@@ -286,7 +291,7 @@ impl Network {
         })
     }
 
-    /// What the lower end of a bond, or the upper one, adds to the block of its particle.
+    /// The contribution of a bond's lower or upper end to the block of its particle.
     fn end(&self, bond: usize, lower: bool) -> Packed {
         let columns: Matrix6 = std::array::from_fn(|c| {
             let (moves, still) = (unit(c), [0.0; 6]);
@@ -298,12 +303,12 @@ impl Network {
         packed(&columns)
     }
 
-    /// For each particle the smallest place in the piece that bonds tie it to.
+    /// For each particle the smallest index in its connected piece.
     pub fn pieces(&self) -> Vec<u32> {
         self.pieces_with([])
     }
 
-    /// The same where some more pairs hang together.
+    /// The same with additional connected pairs.
     pub fn pieces_with(&self, more: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
         let mut root: Vec<u32> = (0..self.particles as u32).collect();
         self.pairs.ends.iter().copied().chain(more).for_each(|[a, b]| forest::join(&mut root, a, b));
@@ -329,7 +334,7 @@ impl Ties for Network {
     }
 }
 
-/// How all particles are turned in a field.
+/// The rotations of all particles in a field.
 fn turns(u: &[Six]) -> Vec<Quat> {
     let mut out = vec![[0.0; 4]; u.len()];
     par::each((&mut out[..], u), |_, (out, u)| {

@@ -1,8 +1,9 @@
 //! Bonds, contacts and walls together: Newton's method with conjugate gradients inside.
 //!
-//! K u + h(u) = 0 on what is free. The tangent is exact but for what couples the force across a contact to its overlap; where contacts have
-//! a past, that of forces already borne is left out as well. (With all of it, which is not symmetric, and generalised minimal residuals in
-//! the place of conjugate gradients, a slipping agglomerate took as many steps and more time.)
+//! K u + h(u) = 0 for the free components. The tangent is exact except for the coupling of tangential contact
+//! forces to the overlap; with a history, the change of existing forces is omitted as well. (With the full
+//! tangent, which is not symmetric, and GMRES instead of conjugate gradients, a slipping agglomerate took as
+//! many steps and more time.)
 
 use super::coarse::{Coarse, Parts};
 use super::contacts::{Contacts, Past, Touching};
@@ -14,7 +15,7 @@ use super::six::Six;
 use super::walls::Walls;
 use perigrain_base::par;
 
-/// A body with what touches it.
+/// A body with its contacts.
 #[derive(Clone, Copy)]
 pub struct Body<'a> {
     /// Its bonds.
@@ -23,20 +24,20 @@ pub struct Body<'a> {
     pub contacts: &'a Contacts,
     /// Contacts with planes at its ends.
     pub walls: &'a Walls,
-    /// What contacts have gone through: directions follow the field, and surfaces slip. `None`: displacements are small.
+    /// Contact history: directions follow the field, and surfaces slip. `None`: displacements are small.
     pub past: Option<&'a Past>,
-    /// What is held, a bit for each component.
+    /// Held components, one bit each.
     pub held: &'a [u8],
-    /// By what torques are divided where they are compared with forces [length].
+    /// Length by which torques are divided when they are compared with forces [length].
     pub arm: f64,
 }
 
-/// When the method ends.
+/// Termination criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// The force between the ends is known to this part of it.
+    /// Relative accuracy of the force between the ends.
     Part(f64),
-    /// |r|₂ of a linear system and of the nonlinear one are below these [force].
+    /// |r|₂ of the linear system and of the nonlinear one [force].
     Residuals([f64; 2]),
 }
 
@@ -45,23 +46,23 @@ pub enum End {
 pub struct Found {
     /// Displacements and rotations.
     pub field: Vec<Six>,
-    /// K u + h(u): what holds the held components.
+    /// K u + h(u): the reactions at the held components.
     pub forces: Vec<Six>,
-    /// |r|₂ of what is free, before the first step and after each [force].
+    /// |r|₂ of the free components, before the first step and after each [force].
     pub residuals: Vec<f64>,
     /// Steps of conjugate gradients.
     pub iterations: usize,
-    /// Components that nothing resists, at the last field.
+    /// Number of components without resistance, at the last field.
     pub loose: usize,
-    /// Whether it ended well.
+    /// Whether it has converged.
     pub done: bool,
 }
 
-/// More steps than this are none of Newton's method.
+/// Largest number of Newton steps.
 const STEPS: usize = 100;
-/// How much of the residual a linear solution may leave, at most.
+/// Largest fraction of the residual that a linear solution may leave.
 const FORCING: f64 = 0.1;
-/// How often a step is halved.
+/// Largest number of halvings of a step.
 const HALVES: usize = 30;
 
 impl Body<'_> {
@@ -74,7 +75,7 @@ impl Body<'_> {
         self.walls.add_forces(u, out);
     }
 
-    /// |r|₂ over what is free.
+    /// |r|₂ of the free components.
     fn norm(&self, r: &[Six]) -> f64 {
         let square = |k: usize| {
             let free = |c: usize| if self.held[k] >> c & 1 == 0 { r[k][c] } else { 0.0 };
@@ -83,7 +84,7 @@ impl Body<'_> {
         par::sum(r.len(), square).sqrt()
     }
 
-    /// The forces of a field that keep `delta` between the ends do this much work on it: what a residual is compared with.
+    /// Work of the forces that keep `delta` between the ends: the scale of the residual.
     fn work(&self, u: &[Six]) -> f64 {
         let bonds = match self.past {
             None => self.network.energy(u),
@@ -94,7 +95,7 @@ impl Body<'_> {
             + self.walls.energy(u).abs())
     }
 
-    /// The body as it stands, in balance.
+    /// The body in its initial state, in equilibrium.
     pub fn still(&self) -> Found {
         Found { done: true, ..self.begin(vec![[0.0; 6]; self.network.particles]) }
     }
@@ -112,7 +113,7 @@ impl Body<'_> {
         }
     }
 
-    /// Balances what is free, from a field.
+    /// Balances the free components, starting from a field.
     pub fn relax(&self, start: Vec<Six>, end: End) -> Found {
         let mut out = self.begin(start);
         let (mut forcing, mut coarse) = (FORCING, None);
@@ -131,16 +132,17 @@ impl Body<'_> {
             );
             let work = self.work(&out.field);
             if !self.search(&mut out, &step, before) {
-                // Rounding: no step makes it less.
+                // Rounding level: no step reduces it.
                 out.done = decrement <= 1e-18 * work;
                 break;
             }
             let now = out.residuals.last().copied().unwrap_or(0.0);
-            // Without all of the tangent a step leaves a twentieth and more of the residual, however well its system is solved.
+            // With an approximate tangent a step leaves at least a twentieth of the residual, however
+            // accurate its solution.
             if self.past.is_none() {
                 forcing = FORCING.min((now / before).powi(2)).max(1e-12);
             }
-            // What a step takes away squares with the error of the field, and so does what is left after it.
+            // The decrement is quadratic in the error of the field, and so is the error after the step.
             if let End::Part(tol) = end
                 && decrement <= (0.1 * tol * tol).max(1e-24) * work
             {
@@ -151,7 +153,8 @@ impl Body<'_> {
         out
     }
 
-    /// The step of a linear system, and −r·step; `coarse` are levels made at an earlier field, and are left for the next one.
+    /// The step of a linear system, and −r·step; `coarse` holds levels made at an earlier field, and is kept
+    /// for the next one.
     fn step(&self, out: &mut Found, coarse: &mut Option<Coarse>, limit: Result<f64, f64>) -> (Vec<Six>, f64) {
         let springs = self.contacts.tangent(&out.field, self.past);
         let walls = self.walls.tangent(&out.field);
@@ -177,7 +180,7 @@ impl Body<'_> {
         let touching = Touching { contacts: self.contacts, springs: &springs };
         let make = || Coarse::new(&Parts { ties: &[network, &touching], grounds: &grounds }, &blocks);
         let mut by = match limit {
-            // What the paper does.
+            // As in the paper.
             Err(_) => Preconditioner::plain(&blocks),
             Ok(_) => Preconditioner::again(&blocks, &make, coarse.take()),
         };
@@ -193,7 +196,7 @@ impl Body<'_> {
         (step, decrement)
     }
 
-    /// Takes the step, halved until the residual falls; whether it did.
+    /// Takes the step, halved until the residual decreases; returns whether it did.
     fn search(&self, out: &mut Found, step: &[Six], before: f64) -> bool {
         let mut part = 1.0;
         for _ in 0..HALVES {

@@ -1,26 +1,28 @@
-//! Pairs of particles in an order in which what they do can be added up by particle, with the same bits for any number of threads.
+//! Pairs of particles in an order that allows summation by particle with the same bits for any number of
+//! threads.
 
 use super::six::Six;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 
-/// Pairs by the place of their lower end, cut where particles are cut into chunks of [`par::CHUNK`].
+/// Pairs sorted by the index of their lower end, divided where particles are divided into chunks of
+/// [`par::CHUNK`].
 #[derive(Clone, Debug, Default)]
 pub struct Pairs {
-    /// Places of both ends, the lower one first; ascending.
+    /// Indices of both ends, the lower one first; ascending.
     pub ends: Vec<[u32; 2]>,
-    /// Where each was in the list that this was made from.
+    /// Index of each pair in the list this was made from.
     pub origin: Vec<u32>,
     /// The first pair of each chunk of particles, and the number of pairs.
     first: Vec<u32>,
     /// Pairs whose lower end is in an earlier chunk, by the chunk of their upper end.
     late: Vec<u32>,
-    /// Where those of each chunk begin.
+    /// Start of each chunk's range in `late`.
     first_late: Vec<u32>,
 }
 
 impl Pairs {
-    /// Puts pairs of places below `particles` in order.
+    /// Sorts pairs of indices below `particles`.
     pub fn new(particles: usize, ends: &[[u32; 2]]) -> Self {
         let sorted = |k: u32| {
             let [a, b] = ends[k as usize];
@@ -51,8 +53,8 @@ impl Pairs {
         self.ends.is_empty()
     }
 
-    /// What pairs give to each particle, `pull(pair, places)` to the lower end and to the upper one, added up and handed to
-    /// `take(particle, sum, row)` with the row of the particle in `out`.
+    /// Sums the contributions of pairs, `pull(pair, places)` to the lower and the upper end, by particle, and
+    /// passes them to `take(particle, sum, row)` with the row of the particle in `out`.
     pub fn gather_into<const N: usize, T: Send>(
         &self,
         out: &mut [T],
@@ -68,9 +70,9 @@ impl Pairs {
         });
     }
 
-    /// Adds what each pair gives to its lower end and to its upper one, `pull(pair, places)`, to the rows of `out`: one for each
-    /// particle. What crosses a border of chunks is reckoned on both sides; each row is added to in the order of the pairs
-    /// within its chunk, then of those from before.
+    /// Adds the contribution of each pair to its lower and its upper end, `pull(pair, places)`, to the rows
+    /// of `out`, one per particle. Pairs across a chunk boundary are evaluated on both sides; each row is
+    /// summed over the pairs within its chunk in order, then over those from earlier chunks.
     pub fn gather<const N: usize>(
         &self,
         out: &mut [[f64; N]],
@@ -79,7 +81,7 @@ impl Pairs {
         par::each(out, |start, rows: &mut [[f64; N]]| self.gather_chunk(start, rows, &pull));
     }
 
-    /// That of the chunk of particles that begins with `start`.
+    /// The same for the chunk of particles that begins at `start`.
     #[inline(always)]
     pub fn gather_chunk<const N: usize>(
         &self,
@@ -93,11 +95,11 @@ impl Pairs {
         let chunk = start / par::CHUNK;
         let own = self.first[chunk]..self.first[chunk + 1];
         let late = &self.late[self.first_late[chunk] as usize..self.first_late[chunk + 1] as usize];
-        // One loop, so that there is one place into which `pull` is compiled.
+        // A single loop, so that `pull` is inlined in one place only.
         for k in own.chain(late.iter().copied()).map(|k| k as usize) {
             let [i, j] = self.ends[k].map(|place| place as usize);
             let [low, high] = pull(k, [i, j]);
-            // An end outside of the chunk is below its first row or beyond its last.
+            // An end outside the chunk is before its first row or after its last.
             for (place, more) in [(i, low), (j, high)] {
                 if let Some(row) = rows.get_mut(place.wrapping_sub(start)) {
                     row.iter_mut().zip(more).for_each(|(sum, a)| *sum += a);
@@ -107,19 +109,19 @@ impl Pairs {
     }
 }
 
-/// Something that ties particles together pair by pair and resists their motion as springs do.
+/// Connections between particles that resist motion like springs.
 pub trait Ties: Sync {
-    /// Both ends of each, the lower one first; ascending, as [`Pairs`] have them.
+    /// Both ends of each, the lower one first; ascending, as in [`Pairs`].
     fn ends(&self) -> &[[u32; 2]];
-    /// From the lower end of one to its upper one [length].
+    /// Vector from the lower end to the upper one [length].
     fn vector(&self, k: usize) -> Vec3;
-    /// Whether it resists anything.
+    /// Whether it has any resistance.
     fn bears(&self, k: usize) -> bool;
-    /// The resisting forces and torques of both ends where these are moved.
+    /// The resisting forces and torques of both ends for these motions.
     fn resist(&self, k: usize, ends: [&Six; 2]) -> [Six; 2];
 }
 
-/// Lists of numbers, one for each place.
+/// Lists of numbers, one per index.
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
     first: Vec<u32>,
@@ -127,7 +129,7 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// Of pairs of a place below `places` and a number, which stay in their order.
+    /// From pairs of an index below `places` and a number; the order is kept.
     pub fn new(places: usize, items: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let mut first = vec![0; places + 1];
         items.clone().for_each(|(place, _)| first[place as usize + 1] += 1);
@@ -141,17 +143,17 @@ impl Lists {
         Self { first, items: list }
     }
 
-    /// How many places.
+    /// The number of indices.
     pub fn len(&self) -> usize {
         self.first.len().saturating_sub(1)
     }
 
-    /// Whether there are none.
+    /// Whether there are no indices.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// That of a place.
+    /// The list of an index.
     pub fn of(&self, place: usize) -> &[u32] {
         &self.items[self.first[place] as usize..self.first[place + 1] as usize]
     }
@@ -164,7 +166,7 @@ mod tests {
     #[test]
     fn every_end_gets_its_part_once() {
         let n = 3 * par::CHUNK + 5;
-        // Some pairs within chunks, some across, in both orders of ends.
+        // Some pairs within chunks, some across, with both orders of ends.
         let ends: Vec<[u32; 2]> = (0..9 * n)
             .map(|k| [(k * 7919) % n, (k * 104_729 + 1) % n].map(|i| i as u32))
             .filter(|[a, b]| a != b)
@@ -184,7 +186,7 @@ mod tests {
                 wanted[*place as usize][1] += sign * id;
             }
         }
-        // Whole numbers below 2^53: sums are exact in any order.
+        // Integers below 2^53: sums are exact in any order.
         assert_eq!(out, wanted);
         assert!(!pairs.is_empty() && pairs.len() == ends.len());
     }

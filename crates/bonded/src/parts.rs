@@ -1,42 +1,43 @@
-//! A load put on in parts, for displacements of any size and surfaces that slip: what a contact bears across depends on its way.
+//! A load applied in parts, for displacements of any size and slipping surfaces: tangential contact forces
+//! depend on the path.
 //!
-//! Each part is balanced by Newton's method from where the last one leads.
+//! Each part is balanced by Newton's method, starting from an extrapolation of the last one.
 
 use super::contacts::Past;
 use super::newton::{Body, End, Found};
 use super::six::Six;
 use super::walls::Walls;
 
-/// A load and how it is put on.
+/// A load and the number of its parts.
 pub struct Load<'a> {
-    /// The body, with walls where they stand in the end, and without a past.
+    /// The body without a history, with walls in their final position.
     pub body: Body<'a>,
-    /// A field under the whole load: what is held ends there, the rest begins along it.
+    /// A field under the whole load: held components end there, free ones start along it.
     pub whole: &'a [Six],
-    /// How many parts.
+    /// Number of parts.
     pub parts: usize,
-    /// Friction between particles, infinite where nothing slips.
+    /// Friction coefficient between particles, infinite if nothing slips.
     pub friction: f64,
-    /// Whether forces act already before the load, so that they are balanced first.
+    /// Whether forces act before the load, so that they are balanced first.
     pub pressed: bool,
-    /// When a part is balanced.
+    /// Termination criterion of a part.
     pub end: End,
 }
 
 /// A body under the whole load.
 pub struct Carried {
-    /// The balance of the last part; its steps of conjugate gradients are those of all parts.
+    /// The equilibrium of the last part; its steps of conjugate gradients are summed over all parts.
     pub found: Found,
-    /// What contacts had gone through before the last part.
+    /// Contact history before the last part.
     pub past: Past,
-    /// The walls as they stand.
+    /// The walls in their current position.
     pub walls: Walls,
     /// Steps of Newton's method.
     pub steps: usize,
 }
 
 impl Load<'_> {
-    /// Puts the load on.
+    /// Applies the load.
     pub fn carry(&self) -> Carried {
         let still = vec![[0.0; 6]; self.whole.len()];
         let past = self.body.contacts.unsheared(self.friction, still.clone());
@@ -56,17 +57,17 @@ impl Load<'_> {
         out
     }
 
-    /// Balances a part of the load from a field.
+    /// Balances a part of the load, starting from a field.
     fn part(&self, start: &[Six], on: f64, past: Past) -> Carried {
         let walls = Walls { delta: on * self.body.walls.delta, ..self.body.walls.clone() };
         let body = Body { walls: &walls, past: Some(&past), ..self.body };
-        // Before any load nothing has a force, unless contacts are pressed.
+        // Without load there are no forces, unless contacts are under pressure.
         let found =
             if on == 0.0 && !self.pressed { body.still() } else { body.relax(start.to_vec(), self.end) };
         Carried { steps: found.residuals.len() - 1, found, walls, past }
     }
 
-    /// Where a field leads that has become of the one before; the first part goes along the whole load's.
+    /// Extrapolates from the previous fields; the first part follows the field of the whole load.
     fn towards(&self, part: usize, field: &[Six], before: &[Six]) -> Vec<Six> {
         let one = 1.0 / self.parts as f64;
         let rows = field.iter().zip(before).zip(self.whole).zip(self.body.held);

@@ -1,76 +1,77 @@
-//! Preconditioned conjugate gradients, which know by how much each step lowers the energy.
+//! Preconditioned conjugate gradients that monitor the decrease of the energy.
 
 use super::coarse::Coarse;
 use super::precond::Blocks;
 use super::six::Six;
 use perigrain_base::par;
 
-/// How a solution stands.
+/// State of a solution.
 pub struct Progress<'a> {
     /// Steps done.
     pub iterations: usize,
-    /// Energy at the present field: what was given less what the steps have taken [energy].
+    /// Energy of the current field: the initial energy minus the decrease by the steps [energy].
     pub energy: f64,
-    /// What the last [`WINDOW`] steps have taken, if there were as many [energy].
+    /// Decrease by the last [`WINDOW`] steps, if there were as many [energy].
     pub fallen: Option<f64>,
     /// |r|₂ over forces alone [force].
     pub residual: f64,
-    /// The present field.
+    /// The current field.
     pub field: &'a [Six],
-    /// The residual, zero where the field is held.
+    /// The residual, zero for held components.
     pub r: &'a [Six],
 }
 
-/// Over how many steps the fall of the energy is watched.
+/// Number of steps over which the decrease of the energy is observed.
 pub const WINDOW: usize = 5;
 
-/// What of the energy is left to take once the steps have taken `fallen`, as far as the tail of a solution tells: an estimate and no
-/// bound. On random packings about twice `fallen` was left; on bodies with slow modes (inverse opals) up to six times.
+/// Factor from the recent decrease to the energy still to be gained, as far as the tail of a solution shows
+/// it: an estimate, not a bound. On random packings about twice the recent decrease remained; on bodies with
+/// slow modes (inverse opals) up to six times.
 pub const MARGIN: f64 = 3.0;
 
-/// How a solution ended.
+/// Result of a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved {
     /// Steps done.
     pub iterations: usize,
-    /// Energy at the field by what the steps have taken [energy].
+    /// Energy of the field, by the decrease of the steps [energy].
     pub energy: f64,
-    /// What may be left of the energy to take, three times the fall of the last steps [energy].
+    /// Estimate of the remaining decrease, three times that of the last steps [energy].
     pub open: f64,
-    /// Whether it ended because `stop` said so or nothing was left to do.
+    /// Whether it ended by `stop`, or because it was exact.
     pub done: bool,
 }
 
-/// What steps are preconditioned by ([`solve`]): blocks, and coarse levels where steps turn out to be many.
+/// Preconditioner of [`solve`]: blocks, and coarse levels if there are many steps.
 pub struct Preconditioner<'a> {
     blocks: &'a Blocks,
     make: Option<&'a dyn Fn() -> Coarse>,
-    /// Coarse levels, once they are made; those of another matrix that is much the same do as well.
+    /// Coarse levels, once they are made; those of a similar matrix work as well.
     coarse: Option<Coarse>,
 }
 
 impl<'a> Preconditioner<'a> {
-    /// Blocks alone.
+    /// Blocks only.
     pub fn plain(blocks: &'a Blocks) -> Self {
         Self { blocks, make: None, coarse: None }
     }
 
-    /// Blocks, and after [`PATIENCE`] steps what `make` makes.
+    /// Blocks, and after [`PATIENCE`] steps the levels from `make`.
     pub fn deep(blocks: &'a Blocks, make: &'a dyn Fn() -> Coarse) -> Self {
         Self::again(blocks, make, None)
     }
 
-    /// Blocks, and coarse levels that were made for a matrix before this one, if they were.
+    /// Blocks, and coarse levels made for an earlier matrix, if any.
     pub fn again(blocks: &'a Blocks, make: &'a dyn Fn() -> Coarse, coarse: Option<Coarse>) -> Self {
         Self { blocks, make: Some(make), coarse }
     }
 
-    /// Coarse levels for the next matrix, unless a solution by them shows that they are too old.
+    /// Coarse levels for the next matrix, unless this solution shows that they are outdated.
     pub fn kept(self, solved: &Solved) -> Option<Coarse> {
         self.coarse.filter(|_| solved.iterations <= OLD)
     }
 
-    /// Adds what coarse levels do, if there are some, to z = M⁻¹ r, where r·z is `rz`; r·z of what comes out.
+    /// Adds the correction of the coarse levels, if any, to z = M⁻¹ r, with r·z = `rz`; returns the new r·z.
     fn deepen(&self, rz: f64, r: &[Six], z: &mut [Six]) -> f64 {
         let Some(coarse) = &self.coarse else { return rz };
         coarse.add_to(z, r, self.blocks);
@@ -78,21 +79,22 @@ impl<'a> Preconditioner<'a> {
     }
 }
 
-/// After so many steps coarse levels are made, which takes as long as some ten steps. Packings that follow the load evenly are solved to
-/// 1 % before or soon after; in others what the first thirty steps say of the error is wrong (30 % for 9 % in an inverse opal).
+/// Number of steps after which coarse levels are made, which costs about ten steps. Packings with nearly
+/// affine deformation are solved to 1 % before or soon after; in others the error estimate of the first
+/// thirty steps is wrong (30 % instead of 9 % in an inverse opal).
 pub const PATIENCE: usize = 15;
 
-/// Coarse levels with which a solution takes more steps are made anew for the next one.
+/// Coarse levels are remade for the next solution if one takes more steps than this.
 const OLD: usize = 4 * PATIENCE;
 
-/// Below this part of the energy the next step would change nothing of it.
+/// Relative decrease below which a step no longer changes the energy.
 const NOTHING: f64 = 1e-26;
 
-/// Lowers ½ uᵀK u − fᵀu over the components of `field` that are not held, from the field as it is, until `stop` says so, the energy
-/// cannot change any more, or `most` steps are done.
+/// Minimizes ½ uᵀK u − fᵀu over the free components of `field`, starting from its values, until `stop`
+/// returns true, the energy cannot change any more, or `most` steps are done.
 ///
-/// `product(u, out)` gives out = K u for a positive semidefinite K; `energy` is what is counted from, at the field as it is. The
-/// load `f` balances, as that of a strained body does, or K is definite over what is free.
+/// `product(u, out)` gives out = K u for a positive semidefinite K; `energy` is the energy of the initial
+/// field. The load `f` is in equilibrium, as for a strained body, or K is definite on the free components.
 pub fn solve(
     product: impl Fn(&[Six], &mut [Six]),
     by: &mut Preconditioner,
@@ -107,7 +109,7 @@ pub fn solve(
     let mut p = vec![[0.0; 6]; n];
     let mut q = vec![[0.0; 6]; n];
     product(field, &mut q);
-    // r = f − K u, z = M⁻¹ r in the place of q, p = z.
+    // r = f − K u, z = M⁻¹ r stored in q, p = z.
     let first = par::reduce_each(
         (&mut r[..], &mut q[..]),
         |start, (r, q)| {
@@ -133,7 +135,7 @@ pub fn solve(
         out.open = fallen.map_or(f64::NAN, |fallen| MARGIN * fallen);
         most_energy = most_energy.max(out.energy.abs());
         if rz < 0.0 {
-            // No preconditioner of springs: some stiffness is negative.
+            // Not a preconditioner of springs: some stiffness is negative.
             out.done = false;
             return out;
         }
@@ -157,7 +159,8 @@ pub fn solve(
             return out;
         }
         if let (PATIENCE, None, Some(make)) = (out.iterations, &by.coarse, by.make) {
-            // z of the last step still stands in q. Directions begin anew, and so does what they tell of the energy.
+            // z of the last step is still in q. Search directions restart, and so does the observation of the
+            // energy.
             by.coarse = Some(make());
             rz = by.deepen(rz, &r, &mut q);
             p.copy_from_slice(&q);
@@ -166,7 +169,7 @@ pub fn solve(
         product(&p, &mut q);
         let pq = par::sum(n, |k| inner(&p[k], &blocks.free(k, &q[k])));
         if pq.is_nan() || pq <= 0.0 {
-            // Rounding has eaten the direction, or the stiffnesses are not those of springs.
+            // Rounding has destroyed the direction, or the stiffnesses are invalid.
             out.done = pq == 0.0;
             return out;
         }
@@ -207,7 +210,7 @@ fn inner(a: &Six, b: &Six) -> f64 {
     (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
-/// r·z, and r·r over forces.
+/// r·z, and r·r over force components.
 fn tally(sums: &mut [f64; 2], r: &Six, z: &Six) {
     sums[0] += inner(r, z);
     sums[1] += r[0] * r[0] + r[1] * r[1] + r[2] * r[2];

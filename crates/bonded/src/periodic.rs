@@ -1,4 +1,4 @@
-//! The stiffness of a body without ends: six strains of a periodic cell, each with the fluctuation that makes its energy least.
+//! The stiffness of a periodic body: six strains of the cell, each with the fluctuation of minimal energy.
 
 use super::coarse::Coarse;
 use super::dsm::MOST;
@@ -13,18 +13,18 @@ use perigrain_base::par;
 /// The solutions of the six load cases.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// Fluctuations, on top of the strain.
+    /// Fluctuations, in addition to the strain.
     pub fields: Vec<Vec<Six>>,
-    /// Steps that each took.
+    /// Number of steps of each.
     pub iterations: [usize; 6],
-    /// By which part of the energy each may be too stiff, by how fast it fell.
+    /// Estimated relative excess of the energies, from their decrease.
     pub open: f64,
-    /// Whether all of them ended well.
+    /// Whether all of them have converged.
     pub done: bool,
 }
 
 impl Cell {
-    /// Solves them to a part `tol` of their energy, from the fluctuations `from` if there are some.
+    /// Solves them to a relative energy tolerance `tol`, starting from the fluctuations `from`, if given.
     pub fn new(network: &Network, blocks: &Blocks, tol: f64, from: Option<Self>) -> Self {
         let mut out = Self { fields: vec![], iterations: [0; 6], open: 0.0, done: true };
         let mut before = from.map_or(vec![], |cell| cell.fields);
@@ -59,13 +59,13 @@ impl Cell {
         out
     }
 
-    /// How the ends of a bond move in two load cases.
+    /// Relative motions of the ends of a bond in two load cases.
     pub fn moved(&self, network: &Network, bond: usize, [a, b]: [usize; 2]) -> [Moved; 2] {
         [a, b].map(|case| network.moved(bond, &self.fields[case], Some(&strain(case))))
     }
 
-    /// C_ab: the work of the stresses of one case on the strain of another, per volume. Its error is of second order in those of the
-    /// fields.
+    /// C_ab: the work of the stresses of one case on the strain of another, per volume. Its error is second
+    /// order in that of the fields.
     pub fn tensor(&self, network: &Network, volume: f64) -> Matrix6 {
         let mut c = [[0.0; 6]; 6];
         for (a, b) in (0..6).flat_map(|a| (a..6).map(move |b| (a, b))) {
@@ -80,7 +80,7 @@ impl Cell {
     }
 }
 
-/// The tensor if all particles followed the strain: an upper bound, and an estimate of order 0.
+/// The tensor for affine motion of all particles: an upper bound, and an estimate of order 0.
 pub fn mean_field(network: &Network, volume: f64) -> Matrix6 {
     Estimate::new(network, 0).whole(volume)
 }

@@ -1,4 +1,4 @@
-//! The block Jacobi preconditioner: the 6 × 6 blocks on the diagonal of a stiffness matrix, by their factors.
+//! Block Jacobi preconditioner: factorized 6 × 6 diagonal blocks of a stiffness matrix.
 
 use super::network::Network;
 use super::six::{Factors, Packed, Six, factor, full};
@@ -6,21 +6,22 @@ use perigrain_base::par;
 
 /// L D Lᵀ of a block.
 ///
-/// L is kept in single precision, which is half the memory: its rounding makes it the preconditioner of a neighbour of the block,
-/// symmetric and definite as well. That costs no accuracy of what is solved, and steps only where a block is as lopsided as 10⁷.
+/// L is stored in single precision, which halves the memory: rounding makes it the preconditioner of a
+/// slightly different block, which is also symmetric and definite. The solution stays exact, and more steps
+/// are needed only if the scales of a block differ by 10⁷.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Factor {
-    /// 1/D, zero for what does not move.
+    /// 1/D, zero for components that do not move.
     over: Six,
     /// L below its diagonal, row by row.
     below: [f32; 15],
-    /// Components that keep the value they have, a bit each: those held, and those that nothing resists.
+    /// Components that keep their value, one bit each: held ones, and those without resistance.
     held: u8,
 }
 
 impl Factor {
-    /// Of a block without the components `held`. A component of which nothing is left once those before it are eliminated would make
-    /// the matrix singular and changes no energy: it is held as well.
+    /// For a block without the components `held`. A component that vanishes once the earlier ones are
+    /// eliminated would make the matrix singular and does not change the energy: it is held as well.
     pub(crate) fn new(block: &Packed, held: u8) -> Self {
         let Factors { l, d, without, .. } = factor(&full(block), held);
         let over = d.map(|d| if d == 0.0 { 0.0 } else { 1.0 / d });
@@ -51,16 +52,17 @@ impl Factor {
     }
 }
 
-/// The blocks of all particles, and what does not move.
+/// The blocks of all particles, and their held components.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks {
     factors: Vec<Factor>,
-    /// How many particles can move in some direction without resistance. (Springs never resist turning: that is no news.)
+    /// Number of particles that can move in some direction without resistance. (Springs never resist
+    /// rotation, which is expected.)
     pub loose: usize,
 }
 
 impl Blocks {
-    /// Of the blocks of a matrix, without the components `held`, a bit each.
+    /// For the blocks of a matrix, without the components `held`, one bit each.
     pub fn new(blocks: &[Packed], held: &[u8]) -> Self {
         let mut factors = vec![Factor::default(); blocks.len()];
         par::each((&mut factors[..], blocks, held), |_, (factors, blocks, held)| {
@@ -71,7 +73,7 @@ impl Blocks {
         Self::of(factors, held)
     }
 
-    /// Of the matrix of a network, whose blocks nobody keeps.
+    /// For the matrix of a network, without storing its blocks.
     pub fn of_network(network: &Network, held: &[u8]) -> Self {
         let mut factors = vec![Factor::default(); network.particles];
         network.blocks_into(&mut factors, |k, block, row| *row = Factor::new(block, held[k]));
@@ -84,7 +86,7 @@ impl Blocks {
         Self { factors, loose }
     }
 
-    /// Takes another block for a particle of which the mask holds these components.
+    /// Replaces the block of a particle with these held components.
     pub fn renew(&mut self, particle: usize, block: &Packed, mask: u8) {
         self.factors[particle] = Factor::new(block, mask);
     }
@@ -99,19 +101,19 @@ impl Blocks {
         self.factors.is_empty()
     }
 
-    /// What of a particle does not move, a bit for each component.
+    /// The held components of a particle, one bit each.
     #[inline(always)]
     pub fn held(&self, particle: usize) -> u8 {
         self.factors[particle].held
     }
 
-    /// M⁻¹ r of a particle.
+    /// M⁻¹ r for a particle.
     #[inline(always)]
     pub fn apply(&self, particle: usize, r: &Six) -> Six {
         self.factors[particle].solve(r)
     }
 
-    /// A row without what is held.
+    /// A row without the held components.
     #[inline(always)]
     pub fn free(&self, particle: usize, row: &Six) -> Six {
         let held = self.factors[particle].held;
@@ -124,7 +126,8 @@ mod tests {
     use super::*;
     use crate::six::{Matrix6, packed};
 
-    /// A block between a translation and a rotation as bonds of 10 nm have it, forces in N and torques in N m.
+    /// A block with the units of bonds of 10 nm, forces in N and torques in N m: translations and rotations
+    /// differ in scale.
     #[test]
     fn factors_undo_a_block() {
         let (k, arm) = (8.0, 5e-9);
@@ -146,7 +149,7 @@ mod tests {
                 }
                 let back: f64 = (0..6).map(|c| m[row][c] * v[c]).sum();
                 let unit = if row < 3 { 1.0 } else { 1e-8 };
-                // Single precision, 6e-8, a few times.
+                // A few times the precision of 6e-8.
                 assert!((back - r[row]).abs() < 1e-6 * unit, "{back} {}", r[row]);
             }
         }

@@ -1,8 +1,9 @@
-//! bpm/rotational: a bond that stretches, shears, twists and bends, all angles as the second end sees them.
+//! bpm/rotational: a bond with stretch, shear, twist and bending, all angles in the frame of the second end.
 //!
-//! X. Wang and others, Acta Geotech. 4, 117 (2009), in the form of LAMMPS' `bond_style bpm/rotational` (`frame particle`, `damping
-//! dem`). Written without the frame whose z-axis is the bond: with n along the bond and p = (p₀, p⃗) the turn of the first end
-//! against the second, twist is p⃗·n and bending what of p⃗ stands across n.
+//! X. Wang and others, Acta Geotech. 4, 117 (2009), in the form of LAMMPS' `bond_style bpm/rotational`
+//! (`frame particle`, `damping dem`). Written without the frame whose z axis is the bond: with n along the
+//! bond and p = (p₀, p⃗) the rotation of the first end relative to the second, twist is p⃗·n and bending the
+//! part of p⃗ perpendicular to n.
 
 use crate::law::{Acts, BondLaw, Ends, Motion};
 use crate::stiffness::Stiffness;
@@ -17,24 +18,25 @@ use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 pub struct Coeffs {
     /// Stiffnesses.
     pub stiffness: Stiffness,
-    /// What it bears in stretch and shear [force], twist and bending [force length].
+    /// Strength in stretch and shear [force], twist and bending [force length].
     pub strength: Stiffness,
-    /// Damping of stretch and shear [force/velocity], roll (with the length at present) and twist [force length time].
+    /// Damping of stretch and shear [force/velocity], roll (with the current length) and twist [force length
+    /// time].
     pub damping: Stiffness,
 }
 
 /// The law with the options of its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotational {
-    /// Forces fade towards breaking by 1 − B⁴.
+    /// Whether forces fade towards breaking by 1 − B⁴.
     pub smooth: bool,
-    /// Stiffnesses of stretch and shear are divided by the length at rest.
+    /// Whether stiffnesses of stretch and shear are divided by the rest length.
     pub normalize: bool,
-    /// As LAMMPS: a bond exactly along −z of its second end neither bends nor twists.
+    /// As in LAMMPS, a bond exactly along −z of its second end neither bends nor twists.
     pub compat_lammps: bool,
 }
 
-/// A unit vector or none: a / |a|, zero where |a| is.
+/// Normalizes a vector: a / |a|, zero for zero.
 #[inline(always)]
 fn over<R: Real>(a: R, length: R) -> R {
     let none = a.like(0.0);
@@ -56,7 +58,7 @@ impl BondLaw<0> for Rotational {
         // Stretch.
         let pull = (r - b.length) * k.stiffness.normal * per_length;
 
-        // Shear: the angle γ between the axis as carried and as it is.
+        // Shear: the angle γ between the carried and the current axis.
         let axis = turned(b.quat[1], b.axis);
         let s = cross(axis, n);
         let sine = length(s);
@@ -100,7 +102,7 @@ impl BondLaw<0> for Rotational {
             + twist.abs() / k.strength.twist;
         let load = load.most(none);
 
-        // On the second end; the first gets the opposite.
+        // On the second end; the opposite acts on the first.
         let mut on_second = add(scale(pull, n), shear);
         let mut torque = [sub(lever, turning), add(lever, turning)];
         if let Some(motion) = motion {
@@ -123,13 +125,13 @@ impl BondLaw<0> for Rotational {
     }
 }
 
-/// a / b; −1 … where the ends stand half a turn apart (b = 0) and a direction has to be chosen, 1.
+/// a / b; 1 if the ends differ by half a turn (b = 0) and a direction must be chosen.
 #[inline(always)]
 fn cosine<R: Real>(a: R, b: R) -> R {
     R::choose(b.above(b.like(0.0)), over(a, b), b.like(1.0))
 }
 
-/// Force on the second end and torques on both of the dashpots.
+/// Dashpots: force on the second end and torques on both.
 #[inline(always)]
 fn damped<R: Real>(
     k: &Coeffs,
@@ -165,7 +167,7 @@ mod tests {
         Coeffs { stiffness, strength: one, damping: Stiffness::default() }
     }
 
-    /// The first particle at the origin, the second at `a`, then moved by `u`; both turned.
+    /// The first particle at the origin, the second at `a`, then displaced by `u`; both rotated.
     fn ends(a: Vec3, u: Vec3, quat: [Quat; 2]) -> Ends<f64> {
         let l = length(a);
         Ends { r: scale(-1.0, add(a, u)), length: l, axis: scale(-1.0 / l, a), quat }
@@ -173,7 +175,7 @@ mod tests {
 
     fn near(ours: [Vec3; 3], wanted: [Vec3; 3]) {
         for (a, b) in ours.iter().flatten().zip(wanted.iter().flatten()) {
-            // LAMMPS takes angles by arc cosines: of γ = 0.01 that leaves ε/γ² = 2e-12.
+            // LAMMPS computes angles by arc cosines: for γ = 0.01 the relative error is ε/γ² = 2e-12.
             assert!((a - b).abs() <= 2e-15 + 2e-12 * b.abs(), "{ours:?}\n{wanted:?}");
         }
     }
@@ -183,7 +185,7 @@ mod tests {
         [acts.force, acts.torque[0], acts.torque[1]]
     }
 
-    /// Printed by LAMMPS 22Jul2025 after `run 0`, `displace_atoms`, `set … quat`, `run 0`.
+    /// From LAMMPS 22Jul2025 after `run 0`, `displace_atoms`, `set … quat`, `run 0`.
     #[test]
     fn states_as_lammps_prints_them() {
         let (k, x, at_rest) = (coeffs(), [1.0, 0.0, 0.0], [UNTURNED; 2]);
@@ -215,8 +217,8 @@ mod tests {
         );
     }
 
-    /// A bond along the z-axis, its first end turned by 6° about x: LAMMPS' numbers with the first end above; below it has
-    /// all zero, where ours are the mirror image.
+    /// A bond along the z axis, its first end rotated by 6° about x: LAMMPS' numbers with the first end
+    /// above; with the first end below LAMMPS gives zeros, and ours are the mirror image.
     #[test]
     fn bonds_along_z() {
         let (k, quat) = (coeffs(), [turn([1.0, 0.0, 0.0], 6f64.to_radians()), UNTURNED]);
@@ -248,7 +250,7 @@ mod tests {
         assert!((pulled(0.01) - 0.009375).abs() < 1e-15 && (pulled(-0.01) + 0.01).abs() < 1e-15);
     }
 
-    /// Momentum and angular momentum of the pair: T₁ + T₂ + r × F₁ = 0 without and with damping and fading.
+    /// Conservation for a pair: T₁ + T₂ + r × F₁ = 0 with and without damping and fading.
     #[test]
     fn angular_momentum_is_kept() {
         let mut k = coeffs();

@@ -1,5 +1,5 @@
-//! Who stores the energy of a strained body, and what follows from it: K = 2U/Δ² and U is stationary in the field, so that
-//! ∂ln K/∂ln p = Σ_bonds Σ_modes U ∂ln k/∂ln p / U.
+//! Distribution of the energy of a strained body over bonds and modes, and sensitivities: K = 2U/Δ² and U is
+//! stationary in the field, so that ∂ln K/∂ln p = Σ_bonds Σ_modes U ∂ln k/∂ln p / U.
 
 use super::network::{Modes, Moved, Network, plus};
 use super::six::Six;
@@ -25,8 +25,8 @@ pub fn by_kind(
     par::reduce(network.bonds(), chunk, join).unwrap_or_else(|| vec![[0.0; 4]; kinds])
 }
 
-/// Σ_bonds Σ_modes a K b ∂ln k/∂ln p for two fields (with strains of the whole), where `change(bond)` tells ∂ln k/∂ln p of stretch, shear,
-/// bend and twist.
+/// Σ_bonds Σ_modes a K b ∂ln k/∂ln p for two fields (with uniform strains), where `change(bond)` returns ∂ln
+/// k/∂ln p of stretch, shear, bend and twist.
 pub fn change(
     network: &Network,
     moved: impl Fn(usize) -> [Moved; 2] + Sync,

@@ -1,6 +1,7 @@
-//! Symmetric 6 × 6 matrices: packed by rows of the lower triangle, inverted.
+//! Symmetric 6 × 6 matrices: packed as rows of the lower triangle, factorized and inverted.
 
-/// Three displacements [length] and three rotations [rad], or three forces and three torques: a row for each particle.
+/// Three displacements [length] and three rotations [rad], or three forces and three torques: one row per
+/// particle.
 pub type Six = [f64; 6];
 
 /// A symmetric 6 × 6 matrix: 00, 10 11, 20 21 22 …
@@ -9,17 +10,17 @@ pub type Packed = [f64; 21];
 /// A full 6 × 6 matrix.
 pub type Matrix6 = [[f64; 6]; 6];
 
-/// Below this part of the largest one of its kind a pivot is none: the block lets a motion pass without resistance.
+/// A pivot below this fraction of the largest one of its kind counts as zero: some motion has no resistance.
 pub const PIVOT: f64 = 1e-12;
 
-/// Where an element of a packed matrix stands.
+/// Index of an element in a packed matrix.
 #[inline(always)]
 pub fn at(row: usize, column: usize) -> usize {
     let (row, column) = if row < column { (column, row) } else { (row, column) };
     row * (row + 1) / 2 + column
 }
 
-/// One in one component, nothing in the others.
+/// The unit vector of a component.
 #[inline(always)]
 pub fn unit(component: usize) -> Six {
     std::array::from_fn(|c| f64::from(u8::from(c == component)))
@@ -36,35 +37,36 @@ pub fn packed(m: &Matrix6) -> Packed {
     out
 }
 
-/// The whole of a packed matrix.
+/// The full matrix of a packed one.
 pub fn full(m: &Packed) -> Matrix6 {
     std::array::from_fn(|row| std::array::from_fn(|column| m[at(row, column)]))
 }
 
-/// An inverse, with what it leaves out.
+/// An inverse, with the rows it omits.
 pub struct Inverse {
-    /// Of the matrix without the rows and columns left out, in which it is zero.
+    /// Inverse of the matrix without the omitted rows and columns, in which it is zero.
     pub inverse: Packed,
-    /// Rows without a pivot, a bit each.
+    /// Rows without a pivot, one bit each.
     pub without: u8,
-    /// Some pivot was negative: the matrix is no stiffness.
+    /// Whether some pivot was negative: the matrix is not a stiffness.
     pub negative: bool,
 }
 
 /// Cholesky's decomposition in the form L D Lᵀ.
 pub struct Factors {
-    /// L, below its diagonal of ones.
+    /// L, below its unit diagonal.
     pub l: Matrix6,
-    /// D, zero in rows that are left out.
+    /// D, zero for omitted rows.
     pub d: Six,
-    /// Rows without a pivot, a bit each.
+    /// Rows without a pivot, one bit each.
     pub without: u8,
-    /// Some pivot was negative: the matrix is no stiffness.
+    /// Whether some pivot was negative: the matrix is not a stiffness.
     pub negative: bool,
 }
 
-/// Decomposes a positive semidefinite matrix without the rows `held` (a bit each), and without those of which nothing is left once
-/// the rows before are eliminated. Rows below and from 3 on are of different units and compared among themselves.
+/// Factorizes a positive semidefinite matrix without the rows `held` (one bit each), and without rows that
+/// vanish once the earlier ones are eliminated. Rows 0 to 2 and 3 to 5 have different units and are compared
+/// among themselves.
 pub fn factor(m: &Matrix6, held: u8) -> Factors {
     let largest = |rows: std::ops::Range<usize>| rows.fold(0.0, |most: f64, r| most.max(m[r][r].abs()));
     let least = [PIVOT * largest(0..3), PIVOT * largest(3..6)];
@@ -89,7 +91,7 @@ pub fn factor(m: &Matrix6, held: u8) -> Factors {
                 l[r][c] -= factor * l[c][k];
             }
         }
-        // Only now: the loop above needs the column as it was.
+        // Only now: the loop above needs the old values of the column.
         for r in k + 1..6 {
             l[r][k] /= d[k];
         }
@@ -97,7 +99,7 @@ pub fn factor(m: &Matrix6, held: u8) -> Factors {
     Factors { l, d, without, negative }
 }
 
-/// The inverse of a positive semidefinite matrix without what [`factor`] leaves out, column by column.
+/// The inverse of a positive semidefinite matrix without the rows that [`factor`] omits, column by column.
 pub fn invert(m: &Matrix6, held: u8) -> Inverse {
     let Factors { l, d, without, negative } = factor(m, held);
     let mut out = Inverse { inverse: [0.0; 21], without, negative };
@@ -143,7 +145,7 @@ pub fn largest(m: &Matrix6) -> f64 {
     (0..6).fold(f64::NEG_INFINITY, |most, k| most.max(a[k][k]))
 }
 
-/// Turns rows and columns p and q so that their common element vanishes.
+/// Rotates rows and columns p and q so that their common element vanishes.
 fn rotate(a: &mut Matrix6, p: usize, q: usize) {
     if a[p][q] == 0.0 {
         return;
@@ -164,7 +166,7 @@ fn rotate(a: &mut Matrix6, p: usize, q: usize) {
 mod tests {
     use super::*;
 
-    /// A Aᵀ + 1 for a matrix of small whole numbers: positive definite, of condition about 100.
+    /// A Aᵀ + 1 for a matrix of small integers: positive definite, with condition number about 100.
     fn positive() -> Matrix6 {
         let a: Matrix6 =
             std::array::from_fn(|r| std::array::from_fn(|c| ((3 * r + 5 * c * c) % 7) as f64 - 3.0));
@@ -188,7 +190,7 @@ mod tests {
         for c in 0..6 {
             let column = times(&found.inverse, &std::array::from_fn(|r| m[r][c]));
             for r in 0..6 {
-                // Rounding times condition.
+                // Rounding times condition number.
                 assert!((column[r] - f64::from(u8::from(r == c))).abs() < 1e-12, "{column:?}");
             }
         }
@@ -236,7 +238,7 @@ mod tests {
         });
         assert!((largest(&m) - 6.0).abs() < 1e-13);
         assert_eq!(largest(&[[0.0; 6]; 6]), 0.0);
-        // One block of a bond: s, and s h² + k coupled by s h.
+        // One block of a bond: s, and s h² + k, coupled by s h.
         let mut m = [[0.0; 6]; 6];
         (m[1][1], m[5][5], m[1][5], m[5][1]) = (2.0, 3.0, 1.0, 1.0);
         assert!((largest(&m) - (2.5 + 1.25f64.sqrt())).abs() < 1e-14);

@@ -7,14 +7,14 @@ use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
 
-/// What acts along r alone: a force over length, positive where it pushes the ends apart.
+/// Result of a force along r: force over length, positive for repulsion.
 #[inline(always)]
 fn central<R: Real>(r: Vec3<R>, force_per_length: R, energy: R, load: R, power: R) -> Acts<R> {
     let none = [energy.like(0.0); 3];
     Acts { force: scale(force_per_length, r), torque: [none; 2], energy, load, power }
 }
 
-/// Stiffness and length at rest: E = K (r − r0)².
+/// Stiffness and rest length: E = K (r − r0)².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic;
 
@@ -28,7 +28,7 @@ impl BondLaw<0> for Harmonic {
         let (none, one) = (r.like(0.0), r.like(1.0));
         let longer = r - k[1];
         let there = r.above(none);
-        // Ends at one place have no direction.
+        // Coincident ends have no direction.
         let force = longer * (-2.0 * k[0]) / R::choose(there, r, one);
         central(b.r, R::choose(there, force, none), longer * longer * k[0], none, none)
     }
@@ -41,13 +41,14 @@ impl BondLaw<0> for Harmonic {
 /// Damped springs that break at a strain. J. Clemmer, M. Robbins, Phys. Rev. Lett. 129, 078002 (2022).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breaking {
-    /// Forces fade towards breaking by 1 − (strain/limit)⁸.
+    /// Whether forces fade towards breaking by 1 − (strain/limit)⁸.
     pub smooth: bool,
-    /// The stiffness is divided by the length at rest.
+    /// Whether the stiffness is divided by the rest length.
     pub normalize: bool,
 }
 
-/// A spring that is longer by `longer` than at rest and pushes its ends apart by `more` besides, damped, fading, with its load.
+/// A spring that is `longer` than its rest length, with a further repulsion `more`, damped and fading, with
+/// its load.
 #[inline(always)]
 fn damped_and_fading<R: Real>(
     law: &Breaking,
@@ -75,14 +76,14 @@ fn damped_and_fading<R: Real>(
         force = force * fade;
         power = power * fade;
     }
-    // A bond at its limit still holds.
+    // A bond exactly at its limit does not break.
     let over = strain.abs().above(r.like(limit));
     let load = R::choose(over, share.abs().most(r.like(1.0)), share.abs().least(r.like(BELOW_ONE)));
     central(b.r, force, spring * longer * -0.5, load, power)
 }
 
 impl BondLaw<1> for Breaking {
-    /// Stiffness, breaking strain, damping; a bond's own number is 1 over its length at rest.
+    /// Stiffness, breaking strain, damping; the bond's own value is the inverse of its rest length.
     type Coeffs = [f64; 3];
     const TURNS: bool = false;
 
@@ -97,13 +98,13 @@ impl BondLaw<1> for Breaking {
     }
 }
 
-/// Such springs that feel the volume about their ends. J. Clemmer, J. Monti, J. Lechman, Soft Matter 20, 1702 (2024).
+/// Breaking springs with a volumetric term. J. Clemmer, J. Monti, J. Lechman, Soft Matter 20, 1702 (2024).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voluminous(pub Breaking);
 
 impl BondLaw<2> for Voluminous {
-    /// As of [`Breaking`], and how hard the volume is [force]; a bond's own numbers are 1 over its length at rest and the length to
-    /// which the volumes about its ends have grown, as a share of that at rest: see [`swell`].
+    /// As for [`Breaking`], and the volumetric stiffness [force]; the bond's own values are the inverse of
+    /// its rest length, and the relative length for the current volumes of its ends: see [`swell`].
     type Coeffs = ([f64; 3], f64);
     const TURNS: bool = false;
 
@@ -120,14 +121,14 @@ impl BondLaw<2> for Voluminous {
     }
 }
 
-/// Such springs that yield: their length at rest follows when they are longer or shorter than a part of it allows. J. Clemmer,
-/// J. Lechman, Powder Technol. (2025).
+/// Breaking springs that yield: the rest length follows when the elongation exceeds a fraction of it. J.
+/// Clemmer, J. Lechman, Powder Technol. (2025).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yielding(pub Breaking);
 
 impl BondLaw<2> for Yielding {
-    /// As of [`Breaking`], and the strain at which it yields; a bond's own numbers are 1 over its length at rest and the length to
-    /// which that has grown: see [`give_way`].
+    /// As for [`Breaking`], and the yield strain; the bond's own values are the inverse of its rest length,
+    /// and the rest length after yielding: see [`give_way`].
     type Coeffs = ([f64; 3], f64);
     const TURNS: bool = false;
 
@@ -143,14 +144,14 @@ impl BondLaw<2> for Yielding {
     }
 }
 
-/// The distance of the ends of a bond [length].
+/// The distance between the ends of a bond [length].
 fn distance<const C: usize>(columns: &Columns<C>, body: &Body, bond: usize) -> f64 {
     let [a, b] = columns.pair(bond);
     length(nearest(sub(body.x[a], body.x[b]), &body.periods))
 }
 
-/// The second own number of each bond: (ΣV/ΣV₀)^(1/d) with the volumes about both its ends, V = Σ r^d over the bonds of a particle that
-/// hold, V₀ = Σ L^d, d the number of dimensions.
+/// The second value of each bond: (ΣV/ΣV₀)^(1/d) with the volumes of both its ends, V = Σ r^d over the intact
+/// bonds of a particle, V₀ = Σ L^d, in d dimensions.
 pub fn swell(columns: &mut Columns<2>, body: &Body, dimension: i32) {
     let mut powers = vec![[0.0; 2]; columns.rows()];
     let known = &*columns;
@@ -181,8 +182,8 @@ pub fn swell(columns: &mut Columns<2>, body: &Body, dimension: i32) {
     columns.own[1] = grown;
 }
 
-/// The second own number of each bond: its length at rest r_eq follows so that |r − r_eq| ≤ ε L, with ε of its type and the length L
-/// at rest before it yielded. Those that have, with what they are at rest now.
+/// The second value of each bond: its rest length r_eq follows so that |r − r_eq| ≤ ε L, with ε of its type
+/// and the initial rest length L. Returns the bonds that yielded, with their new rest lengths.
 pub fn give_way(columns: &mut Columns<2>, body: &Body, limit: impl Fn(u16) -> f64) -> Vec<(usize, f64)> {
     let mut yielded = vec![];
     for bond in 0..columns.rows() {
@@ -212,7 +213,7 @@ mod tests {
         let (r, h) = (1.5, 1e-6);
         let check = |energy: &dyn Fn(f64) -> f64, force: f64| {
             let slope = (energy(r + h) - energy(r - h)) / (2.0 * h);
-            // Central differences of a parabola are exact but for rounding, about 1e-16/1e-6.
+            // Central differences of a parabola are exact up to rounding, about 1e-16/1e-6.
             assert!((force + slope).abs() < 1e-8, "{force} {slope}");
         };
         let k = [7.0, 1.2];
@@ -226,7 +227,8 @@ mod tests {
         }
     }
 
-    /// LAMMPS 22Jul2025 of a bond of 1.25 that yields at 0.1: pulled to 1.45 it is 1.325 long at rest, pushed to 0.95 1.075.
+    /// LAMMPS 22Jul2025 for a bond of 1.25 that yields at 0.1: stretched to 1.45 its rest length is 1.325,
+    /// compressed to 0.95 it is 1.075.
     #[test]
     fn springs_give_way() {
         let member = Member {
@@ -249,7 +251,7 @@ mod tests {
         }
     }
 
-    /// A chain of three: V of its middle is 1.5³ + 1, of the ends 1.5³ and 1.
+    /// A chain of three: V of the middle is 1.5³ + 1, of the ends 1.5³ and 1.
     #[test]
     fn volumes_swell() {
         let member = |ends| Member {

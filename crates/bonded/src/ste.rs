@@ -1,7 +1,8 @@
 //! Stiffness tensor estimation: a closed formula per particle, without boundary conditions.
 //!
-//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 12–35, with K in Eq. 15 and one index for each sum. φ of a particle is its
-//! fluctuation, S its Σ K; order k takes k sweeps φ ← S⁻¹ Σ K (ε d + φ of the partner).
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 12–35, with K in Eq. 15 and a single index for
+//! each sum. φ of a particle is its fluctuation, S its Σ K; order k applies k sweeps φ ← S⁻¹ Σ K (ε d + φ of
+//! the partner).
 
 use super::network::Network;
 use super::six::{Matrix6, PIVOT, Packed, at, full};
@@ -10,27 +11,28 @@ use perigrain_base::math::vec3::{Vec3, add, dot, scale, sub};
 use perigrain_base::par;
 use perigrain_base::stop;
 
-/// A vector for each of the six load cases, fluctuations φ or forces: all x, all y, all z.
+/// A vector for each of the six load cases (fluctuations φ or forces): all x, all y, all z.
 type Six3 = [f64; 18];
 
-/// What came of all particles.
+/// Results for all particles.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// Σ V C of all particles [energy].
+    /// Σ V C over all particles [energy].
     sum: Packed,
-    /// Fluctuations as a particle sees its own and those of its partners.
+    /// Fluctuations that a particle uses for itself, and for its partners.
     own: Vec<Six3>,
     other: Vec<Six3>,
-    /// Who is left out for want of three independent partners.
+    /// Particles excluded because they lack three independent partners.
     out: Vec<bool>,
 }
 
 impl Estimate {
-    /// Of order 0: all follow the strain; 1, 2: as Jarolin and Dosta take them, one's own fluctuation a sweep ahead of the partners';
-    /// from 3 on the same for both. Bonds are springs along and across their direction: rotations are left out.
+    /// Order 0: affine motion; 1 and 2: as in Jarolin and Dosta, with a particle's own fluctuation one sweep
+    /// ahead of the partners'; from 3 on the same for both. Bonds are springs with normal and tangential
+    /// stiffness: rotations are ignored.
     ///
-    /// K is symmetric, and with T = Σ K ε d of a particle Σ V C = Σ_bonds (ε d) K (ε d) − ½ Σ_particles T (φ own + φ other): one
-    /// pass over bonds besides the sweeps.
+    /// K is symmetric, and with T = Σ K ε d of a particle Σ V C = Σ_bonds (ε d) K (ε d) − ½ Σ_particles T (φ
+    /// own + φ other): one pass over bonds in addition to the sweeps.
     pub fn new(network: &Network, order: usize) -> Self {
         let mut out =
             Self { sum: affine(network), own: vec![], other: vec![], out: vec![false; network.particles] };
@@ -39,7 +41,7 @@ impl Estimate {
         }
         let (inverse, without) = inverses(network);
         out.out = without;
-        // The first sweep begins with what follows the strain.
+        // The first sweep starts from affine motion.
         (out.own, out.other) = (vec![[0.0; 18]; network.particles], vec![[0.0; 18]; network.particles]);
         for _ in 0..order {
             if stop::cuts() {
@@ -58,17 +60,17 @@ impl Estimate {
         out
     }
 
-    /// How many particles are left out.
+    /// The number of excluded particles.
     pub fn without(&self) -> usize {
         self.out.iter().filter(|out| **out).count()
     }
 
-    /// C of all.
+    /// C of the whole body.
     pub fn whole(&self, volume: f64) -> Matrix6 {
         full(&self.sum.map(|a| a / volume))
     }
 
-    /// V C of each particle, symmetric in all ways [energy].
+    /// V C of each particle, fully symmetric [energy].
     pub fn local(&self, network: &Network) -> Vec<Packed> {
         let still = [0.0; 18];
         let at = |field: &[Six3], k: usize| field.get(k).copied().unwrap_or(still);
@@ -119,7 +121,7 @@ fn affine(network: &Network) -> Packed {
     let sum = par::reduce(network.bonds(), chunk, |a, b| std::array::from_fn(|k| a[k] + b[k]));
     let sum: [f64; 27] = sum.unwrap_or([0.0; 27]);
     let [xx, yy, zz, yz, xz, xy] = [sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]];
-    // (ε_a d)·(ε_b d), a shear being ½ in either place.
+    // (ε_a d)·(ε_b d), with shears of ½ in both places.
     let dots = [
         xx,
         0.0,
@@ -146,7 +148,7 @@ fn affine(network: &Network) -> Packed {
     std::array::from_fn(|k| dots[k] + sum[6 + k])
 }
 
-/// −½ Σ_particles T_a·(φ own + φ other)_b, symmetric; T = Σ K ε d is reckoned chunk by chunk, so that nobody keeps it.
+/// −½ Σ_particles T_a·(φ own + φ other)_b, symmetric; T = Σ K ε d is computed chunk by chunk and not stored.
 fn relaxation(network: &Network, own: &[Six3], other: &[Six3]) -> Packed {
     let chunk = |range: std::ops::Range<usize>| {
         let mut sum = [[0.0; 6]; 6];
@@ -174,7 +176,8 @@ fn relaxation(network: &Network, own: &[Six3], other: &[Six3]) -> Packed {
     par::reduce(own.len(), chunk, |a, b| add_packed(&a, &b)).unwrap_or([0.0; 21])
 }
 
-/// S⁻¹ of every particle, S = Σ K, six numbers; zero for those of which some displacement meets no resistance, and who they are.
+/// S⁻¹ of every particle, S = Σ K, six numbers; zero for particles with a displacement without resistance,
+/// and a flag for these.
 fn inverses(network: &Network) -> (Vec<[f64; 6]>, Vec<bool>) {
     let mut s = vec![[0.0; 6]; network.particles];
     network.pairs.gather(&mut s, |bond, _| {
@@ -193,13 +196,13 @@ fn inverses(network: &Network) -> (Vec<[f64; 6]>, Vec<bool>) {
     (s, out)
 }
 
-/// The inverse of a symmetric matrix 00, 10 11, 20 21 22; `None` where a pivot is missing.
+/// The inverse of a symmetric matrix 00, 10 11, 20 21 22; `None` if a pivot is missing.
 fn inverse([xx, yx, yy, zx, zy, zz]: &[f64; 6]) -> Option<[f64; 6]> {
     let least = PIVOT * xx.max(*yy).max(*zz);
     let second = yy - yx * yx / xx;
     let across = zy - zx * yx / xx;
     let third = zz - zx * zx / xx - across * across / second;
-    // Not a number where an earlier one is missing.
+    // NaN if an earlier pivot is missing.
     if !(*xx > least && second > least && third > least) {
         return None;
     }
@@ -250,7 +253,7 @@ fn vector(phi: &Six3, case: usize) -> Vec3 {
     [phi[case], phi[6 + case], phi[12 + case]]
 }
 
-/// A bond as a spring along and across its direction.
+/// A bond as a spring with normal and tangential stiffness.
 struct Pull {
     d: Vec3,
     n: Vec3,
@@ -271,7 +274,7 @@ impl Pull {
         add(scale(self.across, u), scale(self.along * dot(self.n, u), self.n))
     }
 
-    /// K of all six.
+    /// K of all six cases.
     #[inline(always)]
     fn times_all(&self, u: &Six3) -> Six3 {
         let [x, y, z] = self.n;
@@ -293,14 +296,14 @@ impl Pull {
         [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z], [0.0, c, b], [c, 0.0, a], [b, a, 0.0]]
     }
 
-    /// The same, all x, all y, all z.
+    /// The same, ordered all x, all y, all z.
     #[inline(always)]
     fn stretches_by_axis(&self) -> Six3 {
         let stretches = self.stretches();
         std::array::from_fn(|k| stretches[k % 6][k / 6])
     }
 
-    /// ½ d ⊗ K (ε d − φ_low + φ_high) for all six strains, symmetric in all ways: a particle's half of the bond.
+    /// ½ d ⊗ K (ε d − φ_low + φ_high) for all six strains, fully symmetric: a particle's half of the bond.
     fn stiffness(&self, low: &Six3, high: &Six3) -> Packed {
         let (mut c, stretches) = ([[0.0; 6]; 6], self.stretches());
         for case in 0..6 {
@@ -317,18 +320,18 @@ impl Pull {
     }
 }
 
-/// Slabs across an axis, each of its own tensor, one behind the other.
+/// Slabs normal to an axis, each with its own tensor, in series.
 #[derive(Clone, Debug)]
 pub struct Layers {
-    /// K of the whole [force/length].
+    /// Stiffness of the whole [force/length].
     pub stiffness: f64,
-    /// E A of each slab: its Young's modulus along the axis times ΣV over its height [force].
+    /// E A of each slab: its Young's modulus along the axis times ΣV divided by its height [force].
     pub slabs: Vec<f64>,
 }
 
 impl Layers {
-    /// `count` slabs of equal height between `lo` and `hi` along the axis of particles at `x` with these shares of the volume and these
-    /// V C ([`Estimate::local`]).
+    /// `count` slabs of equal height between `lo` and `hi` along the axis, for particles at `x` with these
+    /// volume fractions and these V C ([`Estimate::local`]).
     pub fn new(
         local: &[Packed],
         x: &[f64],

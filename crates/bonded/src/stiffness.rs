@@ -4,16 +4,16 @@
 
 use std::f64::consts::PI;
 
-/// How hard a bond is to stretch, shear, twist and bend.
+/// Stiffnesses of a bond for stretch, shear, twist and bending.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiffness {
-    /// Against stretch [force/length].
+    /// Stretch [force/length].
     pub normal: f64,
-    /// Against shear [force/length].
+    /// Shear [force/length].
     pub shear: f64,
-    /// Against twist [force length/rad].
+    /// Twist [force length/rad].
     pub twist: f64,
-    /// Against bending [force length/rad].
+    /// Bending [force length/rad].
     pub bend: f64,
 }
 
@@ -23,7 +23,7 @@ impl Stiffness {
         Self { normal: a * self.normal, shear: a * self.shear, twist: a * self.twist, bend: a * self.bend }
     }
 
-    /// The sum of two that act beside each other.
+    /// The sum of two in parallel.
     pub fn plus(&self, other: &Self) -> Self {
         Self {
             normal: self.normal + other.normal,
@@ -34,13 +34,14 @@ impl Stiffness {
     }
 }
 
-/// Where the shear stiffness of a beam comes from.
+/// Model of a beam's shear stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Shear {
-    /// G A/L, as Jarolin and Dosta have it: a chain of bonds converges to a beam.
+    /// G A/L, as in Jarolin and Dosta: a chain of bonds converges to a beam.
     #[default]
     Paper,
-    /// That of a Timoshenko beam with this factor κ: 1/k = L/(κ G A) + L³/(12 E I). Chains are exact at their nodes.
+    /// That of a Timoshenko beam with shear factor κ: 1/k = L/(κ G A) + L³/(12 E I). Chains are exact at
+    /// their nodes.
     Timoshenko(f64),
     /// None.
     None,
@@ -55,7 +56,7 @@ pub struct Beam {
     pub poisson: f64,
     /// Radius [length].
     pub radius: f64,
-    /// Length at rest [length].
+    /// Rest length [length].
     pub length: f64,
 }
 
@@ -91,7 +92,8 @@ impl Beam {
 mod tests {
     use super::*;
 
-    /// The standard bond of the page on bonded particles: E = 1 GPa, ν = 0.2, r = 0.4 mm, L = 1 mm. Printed with 12 digits: 5e-12 is their
+    /// The standard bond of the documentation of bonded particles: E = 1 GPa, ν = 0.2, r = 0.4 mm, L = 1 mm.
+    /// Printed with 12 digits: the tolerance of 5e-12 is their rounding.
     /// rounding.
     #[test]
     fn the_standard_bond() {
@@ -102,7 +104,8 @@ mod tests {
         near(k.shear, 209439.510239);
         near(k.twist, 0.0167551608191);
         near(k.bend, 0.020106192983);
-        // A clamped beam of ten times the length: 3 E I/L³ and κ G A/L in series, against w of one element with both ends' turns.
+        // A clamped beam of ten times the length: 3 E I/L³ and κ G A/L in series, compared with w of one
+        // element with rotations of both ends.
         let long = Beam { length: 1e-2, ..beam };
         let k = long.stiffness(Shear::Timoshenko(0.9));
         let w = 1e-3 / k.shear + 1e-3 * long.length.powi(2) / (4.0 * k.bend);

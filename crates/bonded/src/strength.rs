@@ -1,7 +1,8 @@
-//! How a body breaks under a load that grows, without a run: bond after bond, each time at rest.
+//! Fracture of a body under increasing load, without a run: bond after bond, each time in equilibrium.
 //!
-//! E. Schlangen, J. G. M. van Mier, Cem. Concr. Compos. 14, 105 (1992): under small displacements all that bonds bear is proportional to the
-//! load, so that the one which comes nearest to its strength tells the load at which it breaks; without it the body is solved anew.
+//! E. Schlangen, J. G. M. van Mier, Cem. Concr. Compos. 14, 105 (1992): for small displacements the loads of
+//! all bonds are proportional to the applied load, so that the bond closest to its strength determines the
+//! load at which it breaks; the body is then solved again without it.
 
 use super::coarse::Coarse;
 use super::dsm::MOST;
@@ -13,68 +14,69 @@ use super::precond::Blocks;
 use super::six::Six;
 use perigrain_base::par;
 
-/// Bonds nearer than this to the one that breaks break with it: they are the same but for rounding.
+/// Relative distance within which bonds break together: equal up to rounding.
 const TOGETHER: f64 = 1e-9;
-/// Of the energy of the whole body, less than this is nothing: it hangs together no more.
+/// Fraction of the body's energy below which it counts as separated.
 const TORN: f64 = 1e-9;
-/// What a solution may be wrong by beside what a break has changed, as a part of the energy: rounding.
+/// Error of a solution apart from the change by a break, relative to the energy: rounding.
 const ROUNDING: f64 = 1e-13;
 
 /// Bonds that break at one load.
 #[derive(Clone, Debug)]
 pub struct Break {
-    /// Which, by their places in the network.
+    /// Their indices in the network.
     pub bonds: Vec<u32>,
-    /// The load, in parts of the displacement that was given.
+    /// The load, as a fraction of the given displacement.
     pub load: f64,
-    /// Energies of the body at the displacement given, before and after [energy].
+    /// Energies of the body at the given displacement, before and after [energy].
     pub energy: [f64; 2],
 }
 
 impl Break {
-    /// The force of the ends when it happens, where the displacement given is `delta` [force].
+    /// The force between the ends at the break, for the given displacement `delta` [force].
     pub fn force(&self, delta: f64) -> f64 {
         2.0 * self.energy[0] * self.load / delta
     }
 
-    /// The energy that is set free while the ends stand still [energy].
+    /// The energy released at fixed ends [energy].
     pub fn released(&self) -> f64 {
         (self.energy[0] - self.energy[1]) * self.load.powi(2)
     }
 }
 
-/// What breaks where more than one bond is beyond its strength once another one has gone.
+/// Treatment of several bonds beyond their strength after a break.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Avalanche {
-    /// One at a time: the ends go back until only the one nearest to its strength breaks. The most that the body could bear.
+    /// One at a time: the load is reduced until only the bond nearest to its strength breaks. The upper bound
+    /// of the body's strength.
     One,
-    /// All of them, while the ends stand still, as in a test.
+    /// All of them at fixed ends, as in a displacement-controlled test.
     #[default]
     All,
 }
 
-/// When to stop, and how well to solve.
+/// Termination and accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// What breaks together.
     pub avalanche: Avalanche,
-    /// Once the force is below this part of the largest one.
+    /// Ends when the force is below this fraction of the largest one.
     pub until: f64,
-    /// After so many breaks.
+    /// Ends after this number of breaks.
     pub most: usize,
-    /// The part of what a break changes in the energy to which it is found.
+    /// Accuracy of the energy, relative to its change by a break.
     pub tol: f64,
-    /// Bonds that lack less than this part of the load break with the one that breaks: the path is that of a body of which some
-    /// strengths are up to this part smaller.
+    /// Bonds within this fraction of the breaking load break together: the path is that of a body with some
+    /// strengths reduced by up to this fraction.
     pub together: f64,
 }
 
-/// What happened.
+/// The path of fracture.
 #[derive(Clone, Debug)]
 pub struct Path {
-    /// One after another.
+    /// The breaks in order.
     pub breaks: Vec<Break>,
-    /// Which of them happened under the largest force; 0 where there are none.
+    /// Index of the break with the largest force; 0 if there are none.
     pub peak: usize,
     /// Displacements and rotations at that load, before the break.
     pub field: Vec<Six>,
@@ -82,12 +84,13 @@ pub struct Path {
     pub iterations: usize,
     /// Whether all solutions have converged.
     pub done: bool,
-    /// Whether the ends hang together still.
+    /// Whether the ends are still connected.
     pub whole: bool,
 }
 
-/// Breaks a body between held ends, from the `field` that solves it. `share(bond, bears)` tells how much of its strength a bond
-/// has used up that bears a tension, a shear force, moments of bending and twist; it must be proportional to these.
+/// Breaks a body between held ends, starting from the `field` that solves it. `share(bond, bears)` returns
+/// the fraction of a bond's strength used by a tension, a shear force, bending and twisting moments; it must
+/// be proportional to these.
 pub fn crumble(
     mut network: Network,
     held: &Held,
@@ -112,7 +115,7 @@ pub fn crumble(
             }
         });
         let most = par::max(network.bonds(), |k| shares[k]);
-        // Nothing bears anything that breaks it.
+        // No bond has a load that could break it.
         if most.is_nan() || most <= 0.0 {
             break;
         }

@@ -1,5 +1,5 @@
-//! The loop over bonds: what each does, side by side in lanes and threads, then what each particle gets of its bonds. Sums run in
-//! the order of the columns: the same bits for any number of threads and any form of lanes.
+//! The loop over bonds: forces of all bonds, in lanes and threads, then sums by particle. Sums run in the
+//! order of the columns: the same bits for any number of threads and any form of lanes.
 
 use crate::columns::{Columns, GROUP};
 use crate::law::{Acts, BondLaw, Ends, Motion};
@@ -14,18 +14,18 @@ use perigrain_base::par;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is known of the particles. Shapes: one row per particle.
+/// Particle data: one row per particle in each column.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
     /// Positions [length].
     pub x: &'a [Vec3],
     /// Velocities [velocity].
     pub v: &'a [Vec3],
-    /// Spins [1/time]; may be empty where no law turns.
+    /// Spins [1/time]; may be empty for laws without torques.
     pub omega: &'a [Vec3],
-    /// Orientations; may be empty where no law turns.
+    /// Orientations; may be empty for laws without torques.
     pub quat: &'a [Quat],
-    /// Edge lengths of the box, 0 where it does not repeat [length].
+    /// Edge lengths of the box, 0 along directions that are not periodic [length].
     pub periods: Periods,
 }
 
@@ -42,48 +42,49 @@ pub struct Sweep<'a, const C: usize, K> {
     pub damped: bool,
     /// Whether bonds break.
     pub breaks: bool,
-    /// Whether somebody asks what dashpots take up.
+    /// Whether dissipated power is recorded.
     pub counts: bool,
     /// Which groups of bonds are evaluated, if not all.
     pub groups: Option<&'a [bool]>,
 }
 
-/// Four numbers that lie within a line of a cache: rows across two of them are read at half the pace.
+/// Four numbers within one cache line: rows across two lines are read at half the speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub struct Row(pub [f64; 4]);
 
-/// What bonds do: a row per bond.
+/// Results per bond, one row each.
 #[derive(Clone, Debug, Default)]
 pub struct Out {
-    /// Force on the first end, and the energy, which a bond that breaks has had.
+    /// Force on the first end, and the energy; for a bond that breaks, the energy it had.
     pub force: Vec<Row>,
-    /// Torques on both ends; empty for laws without.
+    /// Torques on both ends; empty for laws without torques.
     pub torque: Vec<[Row; 2]>,
-    /// How much of what it can bear each bond of a group bears in which one breaks; what others hold means nothing, and is below 1.
+    /// Fraction of its strength used by each bond of a group in which one breaks; other values are
+    /// meaningless, and below 1.
     pub load: Vec<f64>,
-    /// What dashpots turn into heat; empty where nobody asks.
+    /// Dissipated power; empty if not recorded.
     pub power: Vec<f64>,
-    /// Some bond bears more than it can: its force is zero.
+    /// Whether some bond exceeds its strength: its force is zero.
     pub broken: bool,
 }
 
-/// The largest number below 1: what is above it is 1 or more.
+/// The largest number below 1: any larger number is at least 1.
 pub const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
 /// All bonds under a law.
 ///
 /// # Panics
-/// If columns refer to particles that are not there, or to types without coefficients.
+/// If columns refer to missing particles, or to types without coefficients.
 pub fn all<const C: usize, L: BondLaw<C>>(law: &L, pass: &Sweep<'_, C, L::Coeffs>, out: &mut Out) {
-    // SAFETY: a form of this processor.
+    // SAFETY: the processor supports this form.
     unsafe { all_in(Form::here(), law, pass, out) };
 }
 
 /// The same in a form.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 pub(crate) unsafe fn all_in<const C: usize, L: BondLaw<C>>(
     form: Form,
     law: &L,
@@ -106,7 +107,7 @@ pub(crate) unsafe fn all_in<const C: usize, L: BondLaw<C>>(
     let columns = (&mut out.force[..], &mut out.load[..], torque, power);
     par::each(columns, |first, (force, load, torque, power)| {
         let chunk = Chunk { law, pass, first, force, load, torque, power };
-        // SAFETY: the form is one of this processor (the caller), and the lists are as long as the assertions above say.
+        // SAFETY: the processor supports the form (caller), and the lists have the lengths asserted above.
         if unsafe { form.run(chunk) } {
             broken.store(true, Ordering::Relaxed);
         }
@@ -114,7 +115,7 @@ pub(crate) unsafe fn all_in<const C: usize, L: BondLaw<C>>(
     out.broken = broken.into_inner();
 }
 
-/// Part of a pass: whole groups from `first` on.
+/// A part of a pass: whole groups from `first` on.
 struct Chunk<'a, 'b, const C: usize, L: BondLaw<C>> {
     law: &'a L,
     pass: &'a Sweep<'b, C, L::Coeffs>,
@@ -137,7 +138,7 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
         let (kinds, evaluated) = (&self.pass.columns.kinds, self.pass.groups);
         let is_evaluated = |group: usize| evaluated.is_none_or(|groups| groups[group]);
         let mut group = groups.start;
-        // SAFETY: passed on; all rows are of this chunk.
+        // SAFETY: the caller's guarantee; all rows are of this chunk.
         unsafe {
             while group < groups.end {
                 let (kind, acts) = (kinds[group], is_evaluated(group));
@@ -159,7 +160,7 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
 }
 
 impl<const C: usize, L: BondLaw<C>> Chunk<'_, '_, C, L> {
-    /// Rows of this chunk whose bonds are of one type. Whether some bond broke.
+    /// Rows of this chunk with bonds of one type. Returns whether some bond broke.
     ///
     /// # Safety
     /// As of [`InLanes::run`].
@@ -169,7 +170,8 @@ impl<const C: usize, L: BondLaw<C>> Chunk<'_, '_, C, L> {
         rows: Range<usize>,
         k: L::Coeffs,
     ) -> bool {
-        // What is looked up here is not looked up for each group: stores of forces could change it, for all the compiler knows.
+        // Hoisted out of the loop: the compiler must assume that the stores of forces could change these
+        // values.
         let (columns, Body { x, v, omega, quat, periods }) = (self.pass.columns, self.pass.body);
         let (x, v, omega) = (x.as_ptr(), v.as_ptr(), omega.as_ptr());
         let [firsts, seconds] = [0, 1].map(|end: usize| columns.ends[end].as_ptr());
@@ -178,8 +180,8 @@ impl<const C: usize, L: BondLaw<C>> Chunk<'_, '_, C, L> {
         let (repeats, breaks) = (periods.length != [0.0; 3], self.pass.breaks);
         let force = self.force.as_mut_ptr();
         let mut broken = false;
-        // SAFETY: the processor has what the lanes need (the caller); all columns have as many rows as forces, in whole groups,
-        // and all places are particles (checked in `all`).
+        // SAFETY: the processor supports the lanes (caller); all columns have as many rows as forces, in
+        // whole groups, and all indices are particles (checked in `all`).
         unsafe {
             let (none, one) = (V::all(0.0), V::all(1.0));
             for at in rows.step_by(N) {
@@ -219,7 +221,7 @@ impl<const C: usize, L: BondLaw<C>> Chunk<'_, '_, C, L> {
                     own[c] = column(owns[c].add(row));
                 }
                 let mut acts = self.law.act(&k, &own, &ends, motion.as_ref());
-                // Few groups have lost a bond: nothing is read for the others.
+                // Few groups have lost a bond: the others skip this read.
                 if !*whole.add(row / GROUP) {
                     let holds = column::<N, V>(columns.alive().as_ptr().add(row)).above(none);
                     acts = Acts::choose(holds, acts, Acts::none(none));
@@ -259,20 +261,20 @@ impl<const C: usize, L: BondLaw<C>> Chunk<'_, '_, C, L> {
 /// Numbers of a column.
 ///
 /// # Safety
-/// The processor must have what the lanes need; there must be as many numbers as lanes.
+/// The processor must support the lanes; there must be one number per lane.
 #[inline(always)]
 unsafe fn column<const N: usize, V: Lanes<N>>(from: *const f64) -> V {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's guarantee.
     unsafe { V::of(from.cast::<[f64; N]>().read()) }
 }
 
 /// Rows of four numbers as lanes.
 ///
 /// # Safety
-/// The processor must have what the lanes need; there must be as many rows as lanes.
+/// The processor must support the lanes; there must be one row per lane.
 #[inline(always)]
 unsafe fn rows_of<const N: usize, V: Lanes<N>>(list: &[[f64; 4]]) -> [V; 4] {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's guarantee.
     unsafe {
         let mut rows = [V::Row::splat(0.0); N];
         for lane in 0..N {
@@ -282,13 +284,13 @@ unsafe fn rows_of<const N: usize, V: Lanes<N>>(list: &[[f64; 4]]) -> [V; 4] {
     }
 }
 
-/// The orientations at some places.
+/// The orientations at these indices.
 ///
 /// # Safety
-/// The processor must have what the lanes need; there must be as many places as lanes, all of the list.
+/// The processor must support the lanes; there must be one index per lane, all within the list.
 #[inline(always)]
 unsafe fn quats<const N: usize, V: Lanes<N>>(list: &[Quat], at: *const u32) -> Quat<V> {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's guarantee.
     unsafe {
         let mut rows = [V::Row::splat(0.0); N];
         for lane in 0..N {
@@ -298,7 +300,7 @@ unsafe fn quats<const N: usize, V: Lanes<N>>(list: &[Quat], at: *const u32) -> Q
     }
 }
 
-/// Across the nearest periodic faces, of two points in the box or hardly outside.
+/// The minimum-image vector of two points in the box or slightly outside.
 #[inline(always)]
 pub fn nearest<R: Real>(d: Vec3<R>, periods: &Periods) -> Vec3<R> {
     if periods.tilted() {
@@ -308,7 +310,7 @@ pub fn nearest<R: Real>(d: Vec3<R>, periods: &Periods) -> Vec3<R> {
     [across(d[0], length[0]), across(d[1], length[1]), across(d[2], length[2])]
 }
 
-/// The same where edges lean: along z, then y, then x.
+/// The same for a tilted box: along z, then y, then x.
 #[inline(always)]
 fn nearest_tilted<R: Real>(mut d: Vec3<R>, periods: &Periods) -> Vec3<R> {
     for k in [2, 1, 0] {
@@ -335,10 +337,10 @@ fn across<R: Real>(d: R, period: f64) -> R {
     R::choose((-d).above(half), d + period, d)
 }
 
-/// Adds to each particle of these rows what its bonds do to it; torques where there are some.
+/// Adds the forces, and torques if there are any, of all bonds to the particles of these rows.
 ///
 /// # Panics
-/// If there are fewer particles than the columns know, or no row for each bond.
+/// If there are fewer particles than the columns refer to, or no row for some bond.
 pub fn add_up<const C: usize>(
     columns: &Columns<C>,
     out: &Out,
@@ -348,15 +350,15 @@ pub fn add_up<const C: usize>(
 ) {
     for rows in rows {
         let torque = torque.as_mut().map(|torque| &mut torque[rows.clone()]);
-        // SAFETY: a form of this processor.
+        // SAFETY: the processor supports this form.
         unsafe { add_up_in(Form::here(), columns, out, rows.start, &mut f[rows.clone()], torque) };
     }
 }
 
-/// The same in a form, to the particles from the one at `from` on.
+/// The same in a form, for the particles from `from` on.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 pub(crate) unsafe fn add_up_in<const C: usize>(
     form: Form,
     columns: &Columns<C>,
@@ -368,12 +370,13 @@ pub(crate) unsafe fn add_up_in<const C: usize>(
     assert!(from + f.len() <= columns.particles() && out.force.len() == columns.rows());
     assert!(torque.is_none() || out.torque.len() == columns.rows());
     par::each((f, torque), |first, (f, torque)| {
-        // SAFETY: a form of this processor (the caller); entries are bonds, and each has a row (asserted above).
+        // SAFETY: the processor supports this form (caller); entries are bonds, and each has a row (asserted
+        // above).
         unsafe { form.run(AddUp { columns, out, first: from + first, f, torque }) };
     });
 }
 
-/// What a bond's force counts as at its ends. Not an array of the loop, which each turn would write anew.
+/// Sign of a bond's force at its ends. A static, because a local array would be written in every iteration.
 static SIGNS: [f64; 2] = [1.0, -1.0];
 
 struct AddUp<'a, const C: usize> {
@@ -389,7 +392,7 @@ impl<const C: usize> InLanes for AddUp<'_, C> {
 
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(mut self) {
-        // SAFETY: the processor has what the lanes need; entries are bonds, and each has a row (the caller).
+        // SAFETY: the processor supports the lanes; entries are bonds, and each has a row (caller).
         unsafe {
             for k in 0..self.f.len() {
                 let entries = self.columns.of(self.first + k);

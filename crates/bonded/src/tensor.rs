@@ -1,12 +1,12 @@
-//! Stiffness tensors as 6 × 6 matrices (xx yy zz yz xz xy, engineering shears), and the moduli in them.
+//! Stiffness tensors as 6 × 6 matrices (xx yy zz yz xz xy, engineering shears), and their moduli.
 
 use super::six::{Matrix6, full, invert};
 use perigrain_base::math::vec3::Vec3;
 
-/// The rows and columns of a strain that each of the six numbers belongs to.
+/// Row and column of the strain for each of the six components.
 pub const VOIGT: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
 
-/// The strain of one load case: 1 along an axis, or a shear of which both halves make 1.
+/// The strain of one load case: 1 along an axis, or a shear with halves that add up to 1.
 pub fn strain(case: usize) -> [Vec3; 3] {
     let (i, j) = VOIGT[case];
     let mut out = [[0.0; 3]; 3];
@@ -20,18 +20,18 @@ pub fn strain(case: usize) -> [Vec3; 3] {
 pub struct Moduli {
     /// Young's modulus along x, y, z [pressure].
     pub young: Vec3,
-    /// Poisson's ratio: thinning along the second axis by a load along the first.
+    /// Poisson's ratio: contraction along the second axis for a load along the first.
     pub poisson: [Vec3; 3],
-    /// Bulk modulus, the mean of what equal strains and what equal stresses give [pressure].
+    /// Bulk modulus, the mean of the values for uniform strain and uniform stress [pressure].
     pub bulk: f64,
     /// Shear modulus, likewise [pressure].
     pub shear: f64,
 }
 
 impl Moduli {
-    /// Of a tensor; `None` where some load meets no resistance of its own sign: no stiffness of a body.
+    /// The moduli of a tensor; `None` if some resistance is negative, so that it is not a stiffness.
     ///
-    /// Where a shear or a pull meets no resistance at all the modulus is zero.
+    /// For a shear or tension without resistance the modulus is zero.
     pub fn new(c: &Matrix6) -> Option<Self> {
         let found = invert(c, 0);
         if found.negative || c.iter().flatten().any(|a| !a.is_finite()) {
@@ -39,7 +39,7 @@ impl Moduli {
         }
         let d = full(&found.inverse);
         let gone = |a: usize| found.without >> a & 1 == 1;
-        // What has no pivot yields without end.
+        // Without a pivot the compliance is infinite.
         let over = |a: f64, without: bool| if without || a <= 0.0 { 0.0 } else { 1.0 / a };
         let young = [0, 1, 2].map(|a| over(d[a][a], gone(a)));
         let poisson = [0, 1, 2].map(|a| {

@@ -1,4 +1,4 @@
-//! Coarse levels: what they promise of any body, and that they shorten the way.
+//! Coarse levels: their guarantees for any body, and the reduction of steps.
 
 use super::coarse::{Coarse, Parts};
 use super::contact::Contact;
@@ -30,15 +30,15 @@ fn applied(coarse: &Coarse, blocks: &Blocks, r: &[Six]) -> Vec<Six> {
     z
 }
 
-/// A body, what is held of it, and springs to the ground.
+/// A body, its held components, and springs to the ground.
 struct Case {
     network: Network,
     held: Vec<u8>,
     grounds: Vec<(u32, usize, f64)>,
 }
 
-/// Random bodies with dangling ends, held here and there, with and without rotations, with springs to the ground, and cells so small
-/// that clusters meet their own images.
+/// Random bodies with dangling ends, held at some places, with and without rotations, with springs to the
+/// ground, and cells small enough for clusters to meet their own images.
 fn bodies() -> Vec<Case> {
     let mut out = vec![];
     for (seed, n, keep) in [(1, 60, 0.9), (2, 700, 0.5), (3, 4000, 0.7)] {
@@ -69,12 +69,13 @@ fn symmetric_and_positive() {
         let (one, other) = (dot(&a, &y), dot(&b, &x));
         let [aa, bb] = [dot(&a, &x), dot(&b, &y)];
         assert!(aa > 0.0 && bb > 0.0, "{which}");
-        // Rounding, times what single precision in the factors of blocks leaves.
+        // Rounding, times the error of single precision in the factors of blocks.
         assert!((one - other).abs() < 1e-8 * (aa * bb).sqrt(), "{which} {one} {other}");
     }
 }
 
-/// A body that has only one level is solved by it among rigid motions of its clusters: what is left does no work on any of them.
+/// For a body with a single level, the solution is exact among rigid motions of its clusters: the residual
+/// does no work on any of them.
 #[test]
 fn one_level_is_galerkins() {
     let network = random(5, 300, 0.8).network(|_, l| standard(l));
@@ -86,7 +87,7 @@ fn one_level_is_galerkins() {
     let free = |rows: Vec<Six>| rows.iter().enumerate().map(|(k, r)| blocks.free(k, r)).collect::<Vec<_>>();
     let r = free(noise(n, 3));
     let half = |z: Vec<Six>| z.iter().map(|z| z.map(|a| 0.5 * a)).collect::<Vec<Six>>();
-    // What comes out is taken twice.
+    // The correction is scaled by two.
     let z = half(applied(&coarse, &blocks, &r));
     let mut kz = vec![[0.0; 6]; n];
     network.product(&z, &mut kz);
@@ -103,7 +104,7 @@ fn one_level_is_galerkins() {
     assert!((dot(&z, &kz) - energy).abs() < 1e-9 * energy);
 }
 
-/// A comb of slender beams, four particles thick, which bend: the longest way for neighbours' whispers.
+/// A comb of slender bending beams, four particles thick: the slowest case for block Jacobi.
 fn slender() -> Body {
     let mut x: Vec<Vec3> = vec![];
     for k in 0..2 * 2 * 150 {
@@ -137,12 +138,13 @@ fn what_bends_is_found_in_few_steps() {
     });
     let [(tip, plain), (deep_tip, deep)] = solved;
     println!("{plain} steps by blocks, {deep} with coarse levels");
-    // The condition of a beam so slender, 10⁹ and more, stands between residual and tip.
+    // The condition number of such a slender beam, 10⁹ or more, is between residual and tip displacement.
     assert!((tip - deep_tip).abs() < 1e-5 * tip.abs(), "{tip} {deep_tip}");
     assert!(deep < plain / 4, "{plain} {deep}");
 }
 
-/// Two rods side by side that touch, of which one is held: contacts tie clusters as bonds do, and open ones do not.
+/// Two rods in contact side by side, one of them held: contacts connect clusters like bonds, open ones do
+/// not.
 #[test]
 fn contacts_tie_clusters() {
     let rod = |x: f64| (0..60).map(move |k| [x, 0.0, 1e-3 * f64::from(k)]);
@@ -170,7 +172,7 @@ fn contacts_tie_clusters() {
         let mut load = vec![[0.0; 6]; n];
         load[n - 1][1] = 1e-3;
         let moved = length(applied(&coarse, &blocks, &load)[n - 1][..3].try_into().unwrap());
-        // Nothing holds the second rod where it does not touch the first: motions that nothing resists are left alone.
+        // The second rod is free where it does not touch the first: motions without resistance are unchanged.
         assert!(moved.is_finite() && moved > 0.0 && moved < 1.0, "{touches} {moved}");
         let mut all = vec![[0.0; 6]; n];
         (60..n).for_each(|k| all[k][1] = 1e-3);
@@ -180,7 +182,7 @@ fn contacts_tie_clusters() {
     }
 }
 
-/// A cell without ends: no whole motion comes with what is found.
+/// A periodic cell: the result contains no rigid motion.
 #[test]
 fn whole_motions_are_left_alone() {
     let network = lattice(&FCC.0, FCC.1, 6, true).network(|k, l| standard(l).times([1.0, 5.0][k % 3 / 2]));
@@ -193,7 +195,7 @@ fn whole_motions_are_left_alone() {
     let most = z.iter().flat_map(|z| &z[..3]).fold(0.0, |most: f64, a| most.max(a.abs()));
     for c in 0..3 {
         let mean = z.iter().map(|z| z[c]).sum::<f64>() / n as f64;
-        // Steps of block Jacobi may bring a little of it back.
+        // Block Jacobi steps may bring back a little of it.
         assert!(mean.abs() < 0.1 * most, "{mean} {most}");
     }
 }
@@ -223,7 +225,7 @@ fn the_same_bits_for_any_number_of_threads() {
     assert!(solved[0] == solved[1] && solved[0] == solved[2]);
 }
 
-/// A bond that pushes where others pull: no solution says that it has ended well.
+/// A bond with negative stiffness: no solution reports convergence.
 #[test]
 fn negative_stiffnesses_are_reported() {
     let body = random(4, 2000, 0.8);

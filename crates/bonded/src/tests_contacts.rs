@@ -1,4 +1,4 @@
-//! Contacts and walls: numbers of section 10.5 of the page on bonded particles.
+//! Contacts and walls: numbers of section 10.5 of the documentation of bonded particles.
 
 use super::contact::Contact;
 use super::contacts::Contacts;
@@ -13,7 +13,7 @@ fn near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");
 }
 
-/// 4/3 E*, 8 G* of E = 1 GPa, ν = 0.2 against itself.
+/// 4/3 E*, 8 G* for E = 1 GPa, ν = 0.2 against itself.
 const PAIR: [f64; 2] = [4.0 / 3.0 * 5.208333333333333e8, 8.0 * 1.1574074074074074e8];
 const RADIUS: f64 = 0.5e-3;
 
@@ -32,13 +32,13 @@ fn two_spheres_touch() {
     let mut f = vec![[0.0; 6]; 2];
     let still = vec![[0.0; 6]; 2];
     contacts.add_forces(&still, None, &mut f);
-    // They push apart: what resists a motion of the second along x is negative.
+    // They repel: the force that resists a motion of the second along x is negative.
     near(f[0][0], 0.01098013076, 5e-10);
     near(f[1][0], -0.01098013076, 5e-10);
     let [k] = contacts.tangent(&still, None)[..] else { panic!() };
     near(k.k[0], 16470.19615, 5e-10);
     near(k.k[1], 14640.17435, 5e-10);
-    // What was there before is taken away.
+    // The initial force is subtracted.
     let relaxed = Contacts::new(2, &[[0, 1]], |_| Contact { relaxed: true, ..c });
     let mut f = vec![[0.0; 6]; 2];
     relaxed.add_forces(&still, None, &mut f);
@@ -49,7 +49,7 @@ fn two_spheres_touch() {
 #[test]
 fn forces_are_slopes_of_the_energy_where_overlaps_stay() {
     let contacts = Contacts::new(2, &[[0, 1]], |_| contact([0.6, 0.0, 0.8], 2e-6));
-    // Across the normal and turned: the overlap stays, and with it k_t.
+    // Displaced tangentially and rotated: the overlap stays, and with it k_t.
     let at = |s: f64| -> Vec<Six> {
         vec![[0.0, 1e-7, 0.0, 0.0, 1e-4, 2e-5], [0.8 * s, 3e-8, -0.6 * s, 1e-4, -2e-5 + s, 0.0]]
     };
@@ -57,9 +57,9 @@ fn forces_are_slopes_of_the_energy_where_overlaps_stay() {
     contacts.add_forces(&at(2e-8), None, &mut f);
     let h = 1e-9;
     let slope = (contacts.energy(&at(2e-8 + h), None) - contacts.energy(&at(2e-8 - h), None)) / (2.0 * h);
-    // Central differences of a parabola: rounding over the step.
+    // Central differences of a parabola: rounding divided by the step.
     near(f[1][0] * 0.8 - f[1][2] * 0.6 + f[1][4], slope, 1e-5);
-    // The tangent where nothing has slipped yet is all of the slope of the forces.
+    // Without previous slip the tangent is the full derivative of the forces.
     let still = vec![[0.0; 6]; 2];
     let k = contacts.tangent(&still, None);
     let p: Vec<Six> = vec![[1.0, -2.0, 0.5, 300.0, 100.0, -70.0], [0.2, 1.0, -1.5, -20.0, 400.0, 10.0]];
@@ -90,7 +90,7 @@ fn a_pair_between_planes() {
         (2e-5, 0.858953424153, 42947.67121),
         (4e-5, 2.31258968887, 57814.74222),
     ] {
-        // Rigid planes: twice the modulus, the whole radius.
+        // Rigid planes: twice the modulus, the full radius.
         let normal = 2.0 * PAIR[0] * RADIUS.sqrt();
         near(normal, 31056499.69, 5e-10);
         let walls = Walls { axis: 2, delta: -delta, near: [vec![(0, 0.0, normal)], vec![(1, 0.0, normal)]] };
@@ -111,14 +111,14 @@ fn a_pair_between_planes() {
             near(push / delta, k, 1e-10);
         }
         assert_eq!(walls.touching(&found.field), [1, 1]);
-        // All of the work is in the bond and the planes.
+        // All energy is in the bond and the planes.
         let bond: f64 = network.energy(&found.field).iter().sum();
         near(bond, 0.5 * force * force / 502654.824574, 1e-10);
         near(walls.energy(&found.field), 2.0 * 0.4 * force * (force / normal).powf(2.0 / 3.0), 1e-10);
     }
 }
 
-/// 5 × 5 × 8 spheres, 15 % of the bonds missing, contacts of all neighbours besides.
+/// 5 × 5 × 8 spheres, 15 % of the bonds missing, and contacts of all neighbours.
 #[test]
 fn newton_converges_with_the_square() {
     let whole = lattice(&SC.0, SC.1, 8, false);
@@ -141,12 +141,12 @@ fn newton_converges_with_the_square() {
     let found = solved.relax(start.clone(), End::Part(1e-10));
     println!("{:?}", found.residuals);
     assert!(found.done && found.residuals.len() <= 9);
-    // The held ends balance each other.
+    // The forces of the held ends balance.
     let force = |top: bool| -> f64 {
         (0..200).filter(|k| held[*k] == 63 && (body.x[*k][2] > 1e-3) == top).map(|k| found.forces[k][2]).sum()
     };
     near(force(true), -force(false), 1e-9);
-    // Stiffer than bonds alone, and the same from elsewhere.
+    // Stiffer than bonds alone, and the same from another start.
     let bare = Contacts::default();
     let alone = Body { contacts: &bare, ..solved }.relax(start.clone(), End::Part(1e-10));
     let other: f64 =

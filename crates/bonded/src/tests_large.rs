@@ -1,4 +1,4 @@
-//! Displacements of any size and surfaces that slip, against closed forms.
+//! Displacements of any size and slipping surfaces, compared with closed forms.
 
 use super::contact::Contact;
 use super::contacts::Contacts;
@@ -21,7 +21,7 @@ fn standard(d: Vec3) -> (Vec3, Stiffness) {
     (d, super::lattices::standard(length(d)))
 }
 
-/// Places moved rigidly: turned by a vector and shifted.
+/// Points in rigid motion: rotated by a vector and shifted.
 fn rigid(places: &[Vec3], by: Vec3, shift: Vec3) -> Vec<Six> {
     let q = turn_by(by);
     let row = |x: &Vec3| {
@@ -40,10 +40,10 @@ fn a_rigid_motion_costs_nothing() {
     let u = rigid(&places, [0.9, -1.3, 0.4], [5e-3, -2e-3, 0.0]);
     let mut f = vec![[0.0; 6]; 3];
     network.forces(&u, &mut f);
-    // Springs of 1e5 N/m over 1e-3 m: rounding of 1e2 N, and of 1e-1 N m.
+    // Springs of 1e5 N/m over 1e-3 m: rounding of 1e2 N and 1e-1 N m.
     assert!(f.iter().flatten().all(|f| f.abs() < 1e-12), "{f:?}");
     assert!(network.energy_of_large(&u, |_, _| 1.0).iter().all(|e| e.abs() < 1e-15));
-    // Small displacements know no such turn.
+    // The small-displacement model does not allow such a rotation.
     network.product(&u, &mut f);
     assert!(f.iter().flatten().any(|f| f.abs() > 1.0));
 }
@@ -62,7 +62,7 @@ fn forces_are_slopes_of_the_energy() {
             if c % 6 < 3 {
                 row[c % 6] += 1e-3 * h;
             } else {
-                // A turn in space after those before: its vector by the quaternion.
+                // A rotation after the earlier ones: its vector by the quaternion.
                 let mut by = [0.0; 3];
                 by[c % 6 - 3] = h;
                 let q = after(turn_by(by), turn_by([row[3], row[4], row[5]]));
@@ -74,18 +74,18 @@ fn forces_are_slopes_of_the_energy() {
         };
         let h = 1e-5;
         let slope = (moved(h) - moved(-h)) / (2.0 * h) / if c % 6 < 3 { 1e-3 } else { 1.0 };
-        // Central differences: h² of the third derivative, and rounding over h.
+        // Central differences: h² times the third derivative, and rounding over h.
         near(f[c / 6][c % 6], slope, 1e-7);
     }
-    // Modes are parts of the whole.
+    // Modes add up to the whole.
     let u = vec![[0.0; 6], [0.06e-3, 0.0, 0.08e-3, 0.0, 0.0, 0.0]];
     let [stretch, shear, bend, twist] = network.energy_of_large(&u, |_, _| 1.0);
     near(stretch, 0.5 * network.k[0].normal * 1e-8, 1e-12);
     assert!([shear, bend, twist].iter().all(|e| e.abs() < 1e-12 * stretch));
 }
 
-/// Four bars as a rhombus and a spring across it, pressed along its height by a tenth: bars turn, and the height of the load falls behind that
-/// of small displacements.
+/// Four bars as a rhombus with a spring across it, compressed along its height by a tenth: bars rotate, and
+/// the load falls below that for small displacements.
 #[test]
 fn a_rhombus_of_bars() {
     let (bar, across) = (1e5, 3e4);
@@ -107,7 +107,7 @@ fn a_rhombus_of_bars() {
         held: &[63, 0, 0, 63],
         arm: 0.5,
     };
-    // Half the width b at half the height h: bars push it out with what the spring holds it by.
+    // Half width b at half height h: the outward force of the bars balances the spring.
     let h = 0.3 + 0.5 * delta;
     let force = |b: f64| {
         let l = b.hypot(h);
@@ -130,7 +130,7 @@ fn a_rhombus_of_bars() {
         };
         let found = load.carry().found;
         assert!(found.done);
-        // The energy is known to 1e-18 or to rounding; forces are its slopes.
+        // The energy is accurate to 1e-18 or to rounding; forces are its derivatives.
         near(found.forces[0][2], force(low).1, 1e-8);
         near(found.forces[3][2], -force(low).1, 1e-8);
         near(found.field[1][0], low - 0.4, 1e-8);
@@ -144,7 +144,7 @@ fn a_rhombus_of_bars() {
     );
 }
 
-/// A sphere pushed down between two others, none of which turns.
+/// A sphere pushed down between two others; none of them rotates.
 #[test]
 fn surfaces_slip() {
     let radius = 0.5e-3;
@@ -173,7 +173,7 @@ fn surfaces_slip() {
             held: &held,
             arm: radius,
         };
-        // The distance of the centres and the direction from the lower one.
+        // Distance of the centres, and direction from the lower one.
         let at = |z: f64| {
             let d = [half, 0.0, height + z];
             (length(d), scale(1.0 / length(d), d))
@@ -184,8 +184,8 @@ fn surfaces_slip() {
         for friction in [0.0, 0.05, f64::INFINITY] {
             let load = Load { body, whole: &whole, parts, friction, pressed: false, end: End::Part(1e-6) };
             let carried = load.carry();
-            // Surfaces have moved along each other by this, in the plane of the last contact; in parts by the sum of what each plane saw, and only
-            // while they touched.
+            // Displacement along each other, in the plane of the last contact; in parts, the sum over the
+            // contact planes, and only while they touched.
             let mut slid = 0.0;
             for part in 1..=parts {
                 let [to, from] = [part, part - 1].map(|p| down * p as f64 / parts as f64);
@@ -198,7 +198,7 @@ fn surfaces_slip() {
             }
             let across =
                 (tangential * overlap.sqrt() * slid).min(if friction > 0.0 { friction * push } else { 0.0 });
-            // Friction holds the sphere back: up, in the plane.
+            // Friction holds the sphere back: upwards, in the plane.
             let up = 2.0 * (push * n[2] + across * (1.0 - n[2] * n[2]).sqrt());
             near(-carried.found.forces[2][2], up, 1e-9);
             let slips = if friction < 1.0 { 2 } else { 0 };
@@ -266,7 +266,7 @@ fn contacts_as_springs_of_the_whole_way() {
     let [along, across] = c.strained(apart, Some(0.1));
     near(along, (hertz(4e-6) - hertz(1e-6)) / 3e-6, 1e-12);
     near(across, 0.1 * hertz(4e-6) / 4e-6, 1e-12);
-    // What sticks has Mindlin's stiffness, and without friction all is of small motions.
+    // Sticking contacts have Mindlin's stiffness, and without friction only small motions count.
     near(c.strained(apart, Some(10.0))[1], 2e7 * 4e-6f64.sqrt(), 1e-12);
     near(c.strained(apart, None)[0], 1.5e7 * 4e-6f64.sqrt(), 1e-12);
     assert_eq!(c.strained([0.0, 0.0, 2e-6], Some(0.1)), [0.0; 2]);

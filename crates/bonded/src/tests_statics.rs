@@ -1,4 +1,4 @@
-//! Bodies between ends: numbers of the page on bonded particles, bounds, shares of the energy.
+//! Bodies between ends: numbers of the documentation of bonded particles, bounds, energy fractions.
 
 use super::dsm::{Answer, Stop, relax};
 use super::ends::{Ends, Held, Hold, Sample, affine, poisson, reaction};
@@ -10,7 +10,7 @@ use super::shares;
 use super::stiffness::{Beam, Shear, Stiffness};
 use perigrain_base::par;
 
-/// What a test of a body along z gave.
+/// Results of a test of a body along z.
 struct Tested {
     k: f64,
     by_force: [f64; 2],
@@ -44,7 +44,7 @@ fn near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");
 }
 
-/// Section 10.4 of the page, printed with 12 digits.
+/// Section 10.4 of the documentation, printed with 12 digits.
 #[test]
 fn blocks_of_a_lattice() {
     for (holes, rotations, hold, k) in [
@@ -62,7 +62,7 @@ fn blocks_of_a_lattice() {
         let sizes = [(256, 1176), (238, 1006)][usize::from(holes)];
         assert_eq!((body.x.len(), network.bonds()), sizes);
         let t = test(&body, network, hold, rotations, Stop::Residual(1e-9), true);
-        // Twelve digits are printed; reactions are as exact as the residual, 1e-9 N of 400 N.
+        // Twelve digits are printed; reactions are as accurate as the residual, 1e-9 N of 400 N.
         near(t.k, k, 3e-12);
         near(t.by_force[0], k, 1e-10);
         near(t.by_force[1], k, 1e-10);
@@ -71,7 +71,8 @@ fn blocks_of_a_lattice() {
             t.answer.solved.iterations
         );
         assert!(t.answer.solved.done && t.held.left_out == [0, 0]);
-        // From the affine field, stopped by how fast the energy falls: within the tolerance asked for, from above.
+        // From the affine field, stopped by the decrease of the energy: within the requested tolerance, from
+        // above.
         for tol in [0.05, 0.01, 1e-3, 1e-6] {
             let t =
                 test(&body, body.network(|_, l| standard(l)), hold, rotations, Stop::Estimate(tol), false);
@@ -80,7 +81,7 @@ fn blocks_of_a_lattice() {
     }
 }
 
-/// n² k_n/(n_z − 1), whatever the ends and the shear.
+/// n² k_n/(n_z − 1), for any ends and shear model.
 #[test]
 fn simple_cubic_blocks() {
     for shear in [Shear::Paper, Shear::None] {
@@ -96,7 +97,7 @@ fn simple_cubic_blocks() {
     }
 }
 
-/// Bars of bonds in a row: section 10.2.
+/// Bonds in a row: section 10.2.
 fn chain(n: usize, length: f64, beam: impl Fn(f64) -> Stiffness) -> Network {
     let ends: Vec<[u32; 2]> = (0..n as u32).map(|k| [k, k + 1]).collect();
     let step = length / n as f64;
@@ -121,7 +122,7 @@ fn cantilevers_are_beams() {
             let mut mask = vec![0u8; n + 1];
             mask[0] = 0b111111;
             let mut tip = vec![[0.0; 6]; n + 1];
-            // Across and along the bar, and a twist.
+            // Perpendicular to the bar, along it, and a twist.
             (tip[n][1], tip[n][0], tip[n][3]) = (load, 2.0 * load, 1e-6);
             let mut u = vec![[0.0; 6]; n + 1];
             let blocks = Blocks::of_network(&network, &mask);
@@ -134,13 +135,14 @@ fn cantilevers_are_beams() {
                 10_000,
                 |_| false,
             );
-            // Printed with 12 digits; conjugate gradients on a chain of 40 bends leave 1e-9 of it.
+            // Printed with 12 digits; conjugate gradients on a chain of 40 bending bonds leave a relative
+            // error of 1e-9.
             near(u[n][1], w, 1e-9);
             near(u[n][5], 2.48679598581e-3, 1e-9);
             let k = beam(length / n as f64);
             near(u[n][0], 2.0 * load * n as f64 / k.normal, 1e-9);
             near(u[n][3], 1e-6 * n as f64 / k.twist, 1e-9);
-            // Half of what the load has done.
+            // Half of the work of the load.
             near(-2.0 * out.energy, load * w + 2.0 * load * u[n][0] + 1e-6 * u[n][3], 1e-9);
         }
     }
@@ -160,7 +162,7 @@ fn rigid_motions_cost_nothing() {
     let mut f = vec![[0.0; 6]; u.len()];
     network.product(&u, &mut f);
     let stiffest = network.k.iter().map(|k| k.normal).fold(0.0, f64::max);
-    // Rounding of displacements of 1e-3 length units, and what a dozen bonds add up.
+    // Rounding of displacements of 1e-3 length units, summed over a dozen bonds.
     assert!(f.iter().all(|f| f[..3].iter().all(|a| a.abs() < 1e-15 * stiffest * 1e-2)));
     assert!(network.energy(&u).iter().all(|e| *e < 1e-12));
 }
@@ -168,7 +170,7 @@ fn rigid_motions_cost_nothing() {
 #[test]
 fn bounds_hold_and_fall() {
     for seed in 1..12 {
-        // Few bonds leave chains dangling and pieces apart.
+        // With few bonds there are dangling chains and separate pieces.
         let body = random(seed, 150, if seed % 2 == 0 { 0.45 } else { 0.9 });
         let beam = |k: usize, length: f64| {
             let young = if k.is_multiple_of(3) { 4e9 } else { 1e9 };
@@ -199,7 +201,7 @@ fn bounds_hold_and_fall() {
                 assert!(now.energy <= last);
                 last = now.energy;
                 upper = network.energy(now.field).iter().sum();
-                // What the steps have taken, and what is left, to rounding.
+                // The decrease by the steps plus the rest, to rounding.
                 near(now.energy, upper, 1e-9);
                 gap = certificate.gap(&network, now.r);
                 assert!(upper >= least * (1.0 - 1e-10) && upper - gap <= least * (1.0 + 1e-10), "{seed}");
@@ -207,7 +209,7 @@ fn bounds_hold_and_fall() {
             },
         );
         assert!(gap < 1e-3 * upper, "seed {seed}");
-        // What the command does with it.
+        // As the command uses it.
         let t = test(&body, body.network(beam), Hold::Grip, true, Stop::Certified(1e-3), false);
         assert!(t.answer.gap.is_some_and(|gap| gap <= 1e-3 * t.answer.energy()));
     }
@@ -238,7 +240,7 @@ fn shares_of_the_energy_are_logarithmic_derivatives() {
         shares::change(&t.network, moved, d) / (2.0 * total)
     };
     near(of([1.0; 4]), kinds[1].iter().sum::<f64>() / total, 1e-13);
-    // E; r: 2 of stretch and shear, 4 of bend and twist; ν: G ~ 1/(1 + ν).
+    // E; r: 2 from stretch and shear, 4 from bend and twist; ν: G ~ 1/(1 + ν).
     let nu = -base[2] / (1.0 + base[2]);
     for (p, d) in [(0, [1.0; 4]), (1, [2.0, 2.0, 4.0, 4.0]), (2, [0.0, nu, 0.0, nu])] {
         let at = |factor: f64| {
@@ -289,7 +291,7 @@ fn poisson_of_a_body_that_is_stretched_evenly() {
 fn pieces_that_nothing_holds_are_left_out() {
     let mut body = block(false);
     let n = body.x.len() as u32;
-    // Two bonded particles in the middle of nowhere beside the block, and a lone one.
+    // Two bonded particles apart from the block, and a single one.
     body.x.extend([[9e-3, 9e-3, 2e-3], [9e-3, 9e-3, 3e-3], [20e-3, 0.0, 2e-3]]);
     body.bonds.push(([n, n + 1], [0.0, 0.0, 1e-3]));
     for hold in [Hold::Grip, Hold::Plate] {

@@ -1,4 +1,4 @@
-//! Bodies that break bond by bond: bundles and chains in closed form, and what the energy must add up to.
+//! Bodies that break bond by bond: bundles and chains in closed form, and the balance of energy.
 
 use super::ends::{Ends, Held, Hold, Sample, affine};
 use super::lattices::{Body, block, standard};
@@ -9,7 +9,7 @@ use super::strength::{Avalanche, Limits, Path, crumble};
 use super::weibull;
 use perigrain_base::par;
 
-/// A body pulled along z by its grips, with strengths in tension alone; `delta` and what happened.
+/// A body pulled along z by its grips, with strengths in tension alone; returns `delta` and the path.
 fn pull(
     body: &Body,
     network: Network,
@@ -39,18 +39,19 @@ fn pull(
 
 const LAST: Limits = Limits { avalanche: Avalanche::One, until: 0.0, most: 10_000, tol: 1e-8, together: 0.0 };
 
-/// `n` chains of `links` bonds side by side, none touching another one.
+/// `n` separate chains of `links` bonds side by side.
 fn bundle(n: usize, links: usize) -> Body {
     let x = |k: usize| [5e-3 * (k / (links + 1)) as f64, 0.0, 1e-3 * (k % (links + 1)) as f64];
     Body::new((0..n * (links + 1)).map(x).collect(), 1.05e-3, [0.0; 3])
 }
 
-/// H. E. Daniels, Proc. R. Soc. A 183, 405 (1945): of a bundle of n fibres with strengths f₁ < f₂ < … the k-th breaks under (n − k + 1) f_k.
+/// H. E. Daniels, Proc. R. Soc. A 183, 405 (1945): in a bundle of n fibres with strengths f₁ < f₂ < … the
+/// k-th breaks under (n − k + 1) f_k.
 #[test]
 fn bundles_of_chains() {
     for links in [2, 3] {
         let body = bundle(40, links);
-        // The first link of each chain is the weak one.
+        // The first link of each chain is the weakest.
         let strength = |k: usize| {
             let [a, b] = body.bonds[k].0;
             let of_chain = weibull::strength(3.0, 5, [a / (links as u32 + 1), 1000]);
@@ -62,7 +63,7 @@ fn bundles_of_chains() {
         assert!(path.done && !path.whole && path.breaks.len() == 40);
         let wanted: Vec<f64> = sorted.iter().enumerate().map(|(k, f)| (40 - k) as f64 * f).collect();
         for (it, wanted) in path.breaks.iter().zip(&wanted) {
-            // Chains are solved until rounding is left.
+            // Chains are solved to rounding.
             assert!((it.force(delta) - wanted).abs() < 1e-9 * wanted, "{} {wanted}", it.force(delta));
         }
         let most = wanted.iter().fold(0.0f64, |a, b| a.max(*b));
@@ -70,7 +71,8 @@ fn bundles_of_chains() {
     }
 }
 
-/// Of a bundle whose strengths lie within 10 % the half that is nearest goes at once: as with the smallest of them for all.
+/// In a bundle with strengths within 10 %, the nearest half breaks at once, as if all had the smallest
+/// strength.
 #[test]
 fn what_breaks_together() {
     let body = bundle(4, 2);
@@ -78,7 +80,7 @@ fn what_breaks_together() {
     let run =
         |together: f64| pull(&body, body.network(|_, l| standard(l)), strength, &Limits { together, ..LAST });
     let (delta, path) = run(0.05);
-    // Both links of a chain bear the same; 1.04 lacks 4 % of the load of the first, 1.06 more.
+    // Both links of a chain have the same load; 1.04 lacks 4 % of the load of the first, 1.06 more.
     let broken: Vec<usize> = path.breaks.iter().map(|b| b.bonds.len()).collect();
     assert_eq!(broken, [4, 2, 2]);
     for (it, wanted) in path.breaks.iter().zip([4.0, 2.12, 1.2]) {
@@ -86,8 +88,8 @@ fn what_breaks_together() {
     }
 }
 
-/// A block of a lattice with scattered strengths: what is set free and what is left is the work of the ends, and the tolerance
-/// is one of the peak.
+/// A lattice block with scattered strengths: released plus remaining energy equals the work of the ends; the
+/// tolerance is relative to the peak.
 #[test]
 fn energies_add_up() {
     let body = block(true);
@@ -102,7 +104,7 @@ fn energies_add_up() {
         last = [before[0], 2.0 * it.energy[1] * it.load / delta];
     }
     let left = 0.5 * last[0] * last[1];
-    // Solutions are known to 1e-8 of what a break changes.
+    // Solutions are accurate to 1e-8 of the change by a break.
     assert!((work - released - left).abs() < 1e-7 * work, "{work} {released} {left}");
     assert!(
         exact.breaks.len() > 20 && exact.peak > 5 && exact.whole,
@@ -115,17 +117,19 @@ fn energies_add_up() {
     assert!((peak(&path) / peak(&exact) - 1.0).abs() < 1e-3, "{} {}", peak(&path), peak(&exact));
     let same = path.breaks.iter().zip(&exact.breaks).take_while(|(a, b)| a.bonds == b.bonds).count();
     assert!(same > exact.peak, "{same} of {}", exact.peak);
-    // Ends that stand still while all that is beyond its strength breaks: never more, and never at a smaller load than before.
+    // Fixed ends while every bond beyond its strength breaks: never a higher force, and never at a smaller
+    // load than before.
     let (_, all) = run(&Limits { avalanche: Avalanche::All, until: 0.3, tol: 1e-4, ..LAST });
     assert!(peak(&all) <= peak(&path) * 1.0001 && all.breaks.len() < path.breaks.len());
     assert!(all.breaks.windows(2).all(|two| two[1].load >= two[0].load));
-    // Bonds that lack 3 % of the load go with those that break: never more than before, and at most these 3 % less, in fewer solutions.
+    // Bonds within 3 % of the breaking load break together: never a higher force, at most 3 % lower, with
+    // fewer solutions.
     let (_, rough) =
         run(&Limits { avalanche: Avalanche::All, until: 0.3, tol: 1e-4, together: 0.03, ..LAST });
     let kept = peak(&rough) / peak(&all);
     assert!((0.97..1.0001).contains(&kept), "{kept}");
     assert!(rough.breaks.len() < all.breaks.len() && rough.iterations < all.iterations);
-    // The field left behind is that of the peak.
+    // The field returned is that of the peak.
     let network = body.network(|_, l| standard(l));
     let first = network.energy(&path.field).iter().sum::<f64>();
     assert!(first > path.breaks[path.peak].energy[0] * path.breaks[path.peak].load.powi(2));

@@ -1,4 +1,5 @@
-//! The loop over bonds in all forms of this processor, beside the law for one bond after the other.
+//! The loop over bonds in all forms that this processor supports, compared with single evaluations of the
+//! law.
 
 use super::columns::{Columns, Member};
 use super::law::{BondLaw, Ends, Motion};
@@ -15,7 +16,7 @@ fn bits<const N: usize>(a: [f64; N]) -> [u64; N] {
     a.map(f64::to_bits)
 }
 
-/// Bonds of two types, of which some are lost and some break, in a box that repeats along x.
+/// Bonds of two types, some of them missing and some breaking, in a box that is periodic along x.
 fn same_as_one_by_one<const C: usize, L: BondLaw<C>>(
     law: &L,
     coeffs: [L::Coeffs; 2],
@@ -38,7 +39,7 @@ fn same_as_one_by_one<const C: usize, L: BondLaw<C>>(
         let d = nearest(sub(x[ends[0]], x[ends[1]]), &body.periods);
         let far = length(d);
         let turned = if k.is_multiple_of(5) { [0.8, 0.6, 0.0, 0.0] } else { UNTURNED };
-        // Some are strained more than they bear.
+        // Some exceed their strength.
         let length = far * if k.is_multiple_of(11) { 0.7 } else { 0.99 };
         Member {
             kind: 1 + (k % 2) as u16,
@@ -57,7 +58,7 @@ fn same_as_one_by_one<const C: usize, L: BondLaw<C>>(
         Sweep { columns: &columns, coeffs: &coeffs, body, damped, breaks: true, counts: true, groups: None };
     for form in Form::all() {
         let mut out = Out::default();
-        // SAFETY: a form of this processor.
+        // SAFETY: the processor supports this form.
         unsafe { all_in(form, law, &pass, &mut out) };
         let mut breaks = 0;
         for k in columns.living() {
@@ -87,7 +88,7 @@ fn same_as_one_by_one<const C: usize, L: BondLaw<C>>(
         assert!(breaks > 5 && breaks < 150 && out.broken, "{breaks}");
         assert!([3, 17, 18, 160].iter().all(|k| out.force[*k].0 == [0.0; 4]));
         let mut sums = vec![[1.0; 3]; n];
-        // SAFETY: a form of this processor.
+        // SAFETY: the processor supports this form.
         unsafe { add_up_in(form, &columns, &out, 0, &mut sums, None) };
         for (p, sum) in sums.iter().enumerate() {
             let mut force = [0.0; 3];

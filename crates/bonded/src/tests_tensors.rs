@@ -21,7 +21,7 @@ fn blocks(network: &Network, rotations: bool) -> Blocks {
     Blocks::of_network(network, &vec![held; network.particles])
 }
 
-/// All 36 numbers are those of a cubic tensor.
+/// All 36 components are those of a cubic tensor.
 fn cubic(c: &Matrix6, [c11, c12, c44]: [f64; 3], tolerance: f64) {
     for (a, b) in (0..36).map(|k| (k / 6, k % 6)) {
         let wanted = match (a, b) {
@@ -34,7 +34,7 @@ fn cubic(c: &Matrix6, [c11, c12, c44]: [f64; 3], tolerance: f64) {
     }
 }
 
-/// Closed forms of section 10.4 of the page, times k_n/L.
+/// Closed forms of section 10.4 of the documentation, times k_n/L.
 #[test]
 fn lattices_have_their_tensors() {
     let beam = standard(1e-3);
@@ -52,7 +52,7 @@ fn lattices_have_their_tensors() {
     for ((body, c), edge, partners) in [(sc, 4.0 * SC.1, 6), (bcc, 3.0 * BCC.1, 8), (fcc, 3.0 * FCC.1, 12)] {
         assert_eq!(2 * body.bonds.len(), partners * body.x.len());
         let c = c.map(|c| c * beam.normal / 1e-3);
-        // Lengths of bonds are those of sums of coordinates: rounding of 1e-16 of 5 mm.
+        // Bond lengths come from sums of coordinates: rounding of 1e-16 of 5 mm.
         let network = body.network(|_, _| beam);
         for rotations in [true, false] {
             let cell = Cell::new(&network, &blocks(&network, rotations), 1e-10, None);
@@ -83,10 +83,10 @@ fn moduli_of_the_standard_lattice() {
     near(m.mean_young(), m.young[0], 1e-12);
     near(m.mean_poisson(), 7.0 / 41.0, 1e-11);
     near(m.bulk, (1007053466.0 + 2.0 * 207334537.1) / 3.0, 1e-9);
-    // Equal strains: (C11 − C12 + 3 C44)/5; equal stresses: 5/(2/(C11 − C12)·2 + 3/C44).
+    // Uniform strain: (C11 − C12 + 3 C44)/5; uniform stress: 5/(2/(C11 − C12)·2 + 3/C44).
     let (a, b) = (1007053466.0 - 207334537.1, 503526733.0);
     near(m.shear, 0.5 * ((a + 3.0 * b) / 5.0 + 5.0 / (4.0 / a + 3.0 / b)), 1e-9);
-    // No resistance to shear across the axes at all.
+    // No resistance to shear between the axes.
     let c = Estimate::new(
         &lattice(&SC.0, SC.1, 4, true).network(|_, length| {
             Beam { young: 1e9, poisson: 0.2, radius: 0.4e-3, length }.stiffness(Shear::None)
@@ -99,7 +99,7 @@ fn moduli_of_the_standard_lattice() {
     assert!(Moduli::new(&[[f64::NAN; 6]; 6]).is_none() && Moduli::new(&[[-1.0; 6]; 6]).is_none());
 }
 
-/// A cell of points at random that push each other apart for a while, bonded to a dozen partners.
+/// A cell of random points that repel each other for a while, bonded to a dozen partners.
 fn pack(seed: u32, n: usize) -> (Body, f64) {
     let mut rng = ParkMiller::new(seed);
     let edge = 1e-3 * (n as f64 * std::f64::consts::PI / 6.0 / 0.55).cbrt();
@@ -131,7 +131,7 @@ fn sweeps_of_a_periodic_pack_converge_to_its_tensor() {
     let orders = [0, 1, 2, 300].map(|order| {
         let found = Estimate::new(&network, order);
         let c = found.whole(volume);
-        // The parts of all particles, by the formula as it stands in the paper.
+        // The contributions of all particles, by the formula as printed in the paper.
         let local = found.local(&network);
         for (at, a) in (0..36).map(|k| (k / 6, k % 6)).zip(c.iter().flatten()) {
             let sum: f64 = local.iter().map(|c| c[super::six::at(at.0, at.1)]).sum();
@@ -141,16 +141,17 @@ fn sweeps_of_a_periodic_pack_converge_to_its_tensor() {
     });
     println!("z {}: {orders:?}, without rotations {fixed}, with {with}", 2 * body.bonds.len() / body.x.len());
     near(orders[3], fixed, 1e-6);
-    // All the rest follows the mean field from above; with rotations a body is softer still.
+    // All estimates are below the mean field; with rotations a body is softer still.
     assert!(orders[..3].iter().all(|a| *a <= orders[0] && *a > fixed) && with < fixed);
     near(e(&mean_field(&network, volume)), orders[0], 1e-12);
-    // In closed form, for bonds in all directions alike: E = s (2 + 3ξ)/(3 (4 + ξ)), ν = (1 − ξ)/(4 + ξ), s = Σ k_n L²/V.
+    // In closed form, for isotropic bond directions: E = s (2 + 3ξ)/(3 (4 + ξ)), ν = (1 − ξ)/(4 + ξ), s = Σ
+    // k_n L²/V.
     let s: f64 =
         (0..network.bonds()).map(|k| network.k[k].normal * network.length(k).powi(2)).sum::<f64>() / volume;
     let xi = network.k[0].shear / network.k[0].normal;
-    // 1 %: directions of 950 bonds.
+    // 1 %: the directions of 950 bonds.
     near(orders[0], s * (2.0 + 3.0 * xi) / (3.0 * (4.0 + xi)), 0.01);
-    // From other fields the same, in fewer steps.
+    // The same from other initial fields, in fewer steps.
     let first = Cell::new(&network, &blocks(&network, true), 1e-6, None);
     let again = Cell::new(&network, &blocks(&network, true), 1e-6, Some(first.clone()));
     assert!(again.iterations.iter().sum::<usize>() < first.iterations.iter().sum());
@@ -159,7 +160,7 @@ fn sweeps_of_a_periodic_pack_converge_to_its_tensor() {
 #[test]
 fn particles_without_support_are_left_out_of_the_estimate() {
     let mut body = lattice(&SC.0, SC.1, 4, true);
-    // One particle beside, on a single spring.
+    // One extra particle on a single spring.
     let n = body.x.len() as u32;
     body.x.push([0.4e-3, 0.4e-3, 0.4e-3]);
     body.bonds.push(([0, n], [0.4e-3; 3]));
@@ -175,7 +176,7 @@ fn particles_without_support_are_left_out_of_the_estimate() {
 
 #[test]
 fn layers_stand_one_behind_the_other() {
-    // Half of a periodic block is twice as stiff; bonds between belong half to either.
+    // Half of a periodic block is twice as stiff; bonds across the boundary belong to both halves equally.
     let body = lattice(&SC.0, SC.1, 4, true);
     let network = body.network(|k, _| {
         let z = |end: usize| body.x[body.bonds[k].0[end] as usize][2];
@@ -185,8 +186,9 @@ fn layers_stand_one_behind_the_other() {
     let z: Vec<f64> = body.x.iter().map(|x| x[2]).collect();
     let found = Estimate::new(&network, 0);
     let layers = Layers::new(&found.local(&network), &z, &vec![1e-9; 64], [-0.5e-3, 3.5e-3], 2, 2);
-    // By hand: of the four gaps along z those at 0.5 mm and across the face (mean 1.5 mm) are soft, at 1.5 mm soft, 2.5 mm stiff. The lower
-    // slab holds one and two halves of soft ones, the upper one and two halves of which one is stiff: 16 k_n/2 and 16 k_n 1.5/2.
+    // By hand: of the four gaps along z those at 0.5 mm and across the face (mean 1.5 mm) are soft, 1.5 mm is
+    // soft, 2.5 mm stiff. The lower slab has one and two halves of soft ones, the upper one has one and two
+    // halves of which one is stiff: 16 k_n/2 and 16 k_n 1.5/2.
     let k = 502654.824574367 * 16.0;
     assert_eq!(layers.slabs.len(), 2);
     near(layers.slabs[0], k * 1e-3, 1e-12);

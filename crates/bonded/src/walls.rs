@@ -1,18 +1,19 @@
-//! Planes at the ends of a sample, which push what touches them by Hertz' law, along the axis alone.
+//! Planes at the ends of a sample, with Hertz contacts along the axis.
 //!
-//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2. The force does not depend on how particles turn, so that displacements
-//! may be of any size.
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), section 2.2. The force does not depend on rotations,
+//! so displacements may have any size.
 
 use super::six::Six;
 
-/// Contacts of particles with the planes at both ends of a sample, which push along the axis alone. The low plane stands still.
+/// Contacts of particles with the planes at both ends of a sample, with forces along the axis. The low plane
+/// is fixed.
 #[derive(Clone, Debug, Default)]
 pub struct Walls {
     /// Direction of the axis.
     pub axis: usize,
-    /// How far the high plane moves along it [length].
+    /// Displacement of the high plane along the axis [length].
     pub delta: f64,
-    /// For each end who may touch: place, overlap before anything moves, 4/3 E* √R.
+    /// Possible contacts of each end: particle, initial overlap, 4/3 E* √R.
     pub near: [Vec<(u32, f64, f64)>; 2],
 }
 
@@ -29,17 +30,17 @@ impl Walls {
         self.near.iter().all(Vec::is_empty)
     }
 
-    /// How many touch at each end.
+    /// The number of contacts at each end.
     pub fn touching(&self, u: &[Six]) -> [usize; 2] {
         [0, 1].map(|end| self.near[end].iter().filter(|c| self.state(end, u, **c)[0] > 0.0).count())
     }
 
-    /// By how much both planes come closer to the body between them to push with a force [length].
+    /// The approach of the two planes under a force [length].
     pub fn yielding(&self, force: f64) -> f64 {
         (0..2).map(|end| self.depth(end, force)).sum()
     }
 
-    /// Σ κ (δ − gap)^3/2 = F for the depth δ of one plane, by halving what brackets it.
+    /// Solves Σ κ (δ − gap)^3/2 = F for the depth δ of one plane, by bisection.
     fn depth(&self, end: usize, force: f64) -> f64 {
         let near = &self.near[end];
         if near.is_empty() || force <= 0.0 {
@@ -60,7 +61,7 @@ impl Walls {
         0.5 * (low + high)
     }
 
-    /// With which force each plane pushes [force].
+    /// The force of each plane [force].
     pub fn push(&self, u: &[Six]) -> [f64; 2] {
         [0, 1].map(|end| self.near[end].iter().map(|c| self.state(end, u, *c)[0]).sum())
     }
@@ -74,13 +75,13 @@ impl Walls {
         }
     }
 
-    /// Stiffnesses along the axis by particle, those of both planes together.
+    /// Axial stiffnesses by particle, summed over both planes.
     pub fn tangent(&self, u: &[Six]) -> Vec<(u32, f64)> {
         let of = |end: usize| self.near[end].iter().map(move |c| (c.0, self.state(end, u, *c)[1]));
         of(0).chain(of(1)).filter(|(_, k)| *k > 0.0).collect()
     }
 
-    /// ∫ F dδ of all [energy].
+    /// ∫ F dδ over all contacts [energy].
     pub fn energy(&self, u: &[Six]) -> f64 {
         let before = |c: &(u32, f64, f64)| 0.4 * c.2 * c.1.max(0.0).powf(2.5);
         let now = |end: usize, c: &(u32, f64, f64)| {

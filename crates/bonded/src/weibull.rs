@@ -2,8 +2,8 @@
 
 use perigrain_base::math::scatter::{gamma, uniform};
 
-/// A number of a Weibull distribution of mean 1 that belongs to a pair of IDs and a seed, whatever the order in which bonds are made:
-/// (−ln u)^(1/m)/Γ(1 + 1/m), u uniform. `modulus` m > 0.
+/// A sample of a Weibull distribution with mean 1, determined by a pair of IDs and a seed, independent of the
+/// order in which bonds are made: (−ln u)^(1/m)/Γ(1 + 1/m), u uniform. `modulus` m > 0.
 pub fn strength(modulus: f64, seed: u64, ids: [u32; 2]) -> f64 {
     let [low, high] = [ids[0].min(ids[1]), ids[0].max(ids[1])].map(u64::from);
     let u = uniform(seed, low << 32 | high);
@@ -14,7 +14,8 @@ pub fn strength(modulus: f64, seed: u64, ids: [u32; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// 10⁵ pairs: the mean has a standard error of 0.1 %, the standard deviation one of 0.3 %; four of them.
+    /// 10⁵ pairs: the mean has a standard error of 0.1 %, the standard deviation one of 0.3 %; the tolerance
+    /// is four of these.
     #[test]
     fn mean_and_deviation_are_those_of_the_distribution() {
         let (n, m) = (100_000, 3.0);

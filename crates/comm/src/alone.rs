@@ -1,9 +1,9 @@
-//! The only rank there is.
+//! The communicator of a single process.
 
 use super::{Comm, Gone};
 use std::time::Duration;
 
-/// The only rank: what it sends, it sends to itself.
+/// A single rank: messages go to itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Alone;
 

@@ -1,8 +1,8 @@
-//! Values that only the first rank finds out, so that they are the same on all: times, files, the environment.
+//! Values determined by the first rank, so that they are equal on all: times, files, the environment.
 
 use super::{present, several};
 
-/// A number of the first rank; others need not find it out.
+/// A number from the first rank; on the others `own` is not evaluated.
 pub fn number(own: impl FnOnce() -> f64) -> f64 {
     if !several() {
         return own();
@@ -15,12 +15,12 @@ pub fn number(own: impl FnOnce() -> f64) -> f64 {
     f64::from_le_bytes(value)
 }
 
-/// A yes or no of the first rank.
+/// A truth value from the first rank.
 pub fn truth(own: impl FnOnce() -> bool) -> bool {
     number(|| f64::from(u8::from(own()))) != 0.0
 }
 
-/// Bytes of the first rank.
+/// Bytes from the first rank.
 pub fn bytes(own: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
     if !several() {
         return own();
@@ -31,7 +31,7 @@ pub fn bytes(own: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Text of the first rank, or that it has none.
+/// Text from the first rank, if it has one.
 pub fn text(own: impl FnOnce() -> Option<String>) -> Option<String> {
     if !several() {
         return own();

@@ -1,16 +1,16 @@
-//! Names of machines.
+//! Host names.
 
 use super::Comm;
 use std::collections::BTreeSet;
 
-/// Longest name of a machine that is passed on [bytes].
+/// Longest host name that is exchanged [bytes].
 const NAME: usize = 64;
 
-/// This machine's name.
+/// The name of this host.
 #[cfg(unix)]
 pub fn host() -> String {
     let mut name = [0u8; 256];
-    // SAFETY: the call writes at most so many bytes, and the last one stays zero.
+    // SAFETY: the call writes at most this many bytes, and the last one stays zero.
     let failed = unsafe { libc::gethostname(name.as_mut_ptr().cast(), name.len() - 1) } != 0;
     let end = name.iter().position(|b| *b == 0).unwrap_or(0);
     if failed || end == 0 {
@@ -20,21 +20,21 @@ pub fn host() -> String {
     }
 }
 
-/// This machine's name.
+/// The name of this host.
 #[cfg(not(unix))]
 pub fn host() -> String {
     std::env::var("COMPUTERNAME").unwrap_or_else(|_| "this machine".into())
 }
 
-/// A file that holds these bytes and has no name.
+/// An unnamed file with these bytes.
 ///
 /// # Errors
-/// The system grants none.
+/// The system refuses to create it.
 #[cfg(target_os = "linux")]
 pub fn file_of(bytes: &[u8]) -> std::io::Result<std::fs::File> {
     use std::io::{Seek, Write};
     use std::os::fd::FromRawFd;
-    // SAFETY: makes a new file in memory.
+    // SAFETY: creates a new file in memory.
     let fd = unsafe { libc::memfd_create(c"perigrain".as_ptr(), libc::MFD_CLOEXEC) };
     if fd < 0 {
         return Err(std::io::Error::last_os_error());
@@ -46,16 +46,16 @@ pub fn file_of(bytes: &[u8]) -> std::io::Result<std::fs::File> {
     Ok(file)
 }
 
-/// A file that holds these bytes and has no name.
+/// An unnamed file with these bytes.
 ///
 /// # Errors
-/// Always: several ranks read files on Linux alone.
+/// Always: reading files on several ranks is supported on Linux only.
 #[cfg(not(target_os = "linux"))]
 pub fn file_of(_bytes: &[u8]) -> std::io::Result<std::fs::File> {
     Err(std::io::ErrorKind::Unsupported.into())
 }
 
-/// The machine of each rank.
+/// The host name of each rank.
 pub fn nodes(comm: &dyn Comm) -> Vec<String> {
     let mut all = vec![0u8; NAME * comm.size()];
     let own = host();

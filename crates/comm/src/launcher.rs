@@ -1,9 +1,9 @@
-//! What has started this process: a launcher of several ranks, or a person.
+//! Detects how this process was started: by a launcher of several ranks, or by itself.
 
 use super::Comm;
 use std::sync::Arc;
 
-/// Variables that launchers set: the number of ranks, this rank, and the launcher's name.
+/// Variables that launchers set: number of ranks, this rank; and the launcher's name.
 const LAUNCHERS: [(&str, &str, &str); 4] = [
     ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK", "Open MPI"),
     ("PMI_SIZE", "PMI_RANK", "MPICH or its kin"),
@@ -11,22 +11,23 @@ const LAUNCHERS: [(&str, &str, &str); 4] = [
     ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID", "srun"),
 ];
 
-/// Set to `none` it lets each process of a launcher run by itself, else it names the MPI library to load.
+/// With the value `none`, each process of a launcher runs by itself; any other value names the MPI library to
+/// load.
 pub(crate) const CHOICE: &str = "PERIGRAIN_MPI";
 
-/// A launcher, as its environment tells.
+/// A launcher, from its environment variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Launched {
-    /// How many processes it has started.
+    /// Number of processes it has started.
     pub size: usize,
-    /// Which of them this is.
+    /// Rank of this process.
     pub rank: usize,
     /// Its name.
     pub by: &'static str,
 }
 
-/// The launcher that has started several processes, this among them; `None` for one alone, and where each is to run by itself
-/// (`PERIGRAIN_MPI=none`).
+/// The launcher that has started this process among several; `None` for a single process, and with
+/// `PERIGRAIN_MPI=none`.
 pub fn launched() -> Option<Launched> {
     found(|key| std::env::var(key).ok())
 }
@@ -43,7 +44,7 @@ fn found(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
     LAUNCHERS.iter().find_map(several)
 }
 
-/// A program that a rank starts is none of the ranks.
+/// Prepares a program started by a rank so that it does not take itself for a rank.
 pub fn set_apart(command: &mut std::process::Command) {
     for (size, rank, _) in LAUNCHERS {
         command.env_remove(size).env_remove(rank);
@@ -52,15 +53,15 @@ pub fn set_apart(command: &mut std::process::Command) {
     command.env_remove(super::local::SEAT);
 }
 
-/// Joins the ranks that the launcher has started.
+/// Joins the ranks of a launcher.
 ///
 /// # Errors
-/// No MPI library that can be used; a library that sees other ranks than the launcher has started.
+/// No usable MPI library; a library with another number of ranks than the launcher.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn open(by: &Launched) -> Result<Arc<dyn Comm>, String> {
     let mpi = super::Mpi::open()?;
     if mpi.size() != by.size {
-        // A library of another kind than the launcher's sees one rank in each process.
+        // A library of another kind than the launcher's sees a single rank in each process.
         return Err(format!(
             "{} is loaded, which sees {} rank{} where {} has started {}: it is not the launcher's library",
             mpi.library(),
@@ -73,10 +74,10 @@ pub fn open(by: &Launched) -> Result<Arc<dyn Comm>, String> {
     Ok(Arc::new(mpi))
 }
 
-/// Joins the ranks that the launcher has started.
+/// Joins the ranks of a launcher.
 ///
 /// # Errors
-/// Always: MPI libraries are found at run time on Linux alone.
+/// Always: MPI libraries are loaded at run time on Linux only.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn open(_by: &Launched) -> Result<Arc<dyn Comm>, String> {
     Err("MPI libraries are loaded on Linux alone".into())
@@ -94,7 +95,7 @@ mod tests {
             found(|key| set.iter().find(|(k, _)| k == key).map(|(_, v)| v.clone()))
         };
         assert_eq!(of(&[]), None);
-        // A job script has these from the queue, and no launcher has started it.
+        // A job script has these variables from the queue without any launcher.
         assert_eq!(of(&[("SLURM_NTASKS", "4"), ("SLURM_PROCID", "0")]), None);
         assert_eq!(of(&[("OMPI_COMM_WORLD_SIZE", "1"), ("OMPI_COMM_WORLD_RANK", "0")]), None);
         let open = of(&[("OMPI_COMM_WORLD_SIZE", "3"), ("OMPI_COMM_WORLD_RANK", "2")]).unwrap();

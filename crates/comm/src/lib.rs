@@ -1,12 +1,14 @@
-//! Ranks: several processes that run one deck together, and what they say to each other.
+//! Ranks: several processes that run one deck together, and their communication.
 //!
-//! [`Comm`] is what a rank can do: send to partners, add up, find a largest value, hand out what the first rank has. [`Alone`] is
-//! the only rank there is, [`Local`] are ranks on this machine connected by sockets, [`Mpi`] is any MPI library, found at run time.
-//! A program says which one holds for the present thread by [`run_as`]; everything else asks [`present`], [`several`], [`is_first`],
-//! or takes values that must not differ between ranks (times, files, the environment) from [`told`].
+//! [`Comm`] has the operations of a rank: exchange with partners, sums, maxima, broadcasts from the first
+//! rank. [`Alone`] is a single rank, [`Local`] connects ranks on one machine by sockets, [`Mpi`] uses any MPI
+//! library, loaded at run time. A program selects the communicator of the current thread by [`run_as`]; other
+//! code uses [`present`], [`several`] and [`is_first`], and takes values that must be equal on all ranks
+//! (times, files, the environment) from [`told`].
 //!
-//! All ranks call the same functions in the same order, but for letters ([`Comm::post`]), which a rank takes when it looks for them. A rank that ends
-//! without a word ends the others; where it is a letter that does not come the program says what follows.
+//! All ranks call the same functions in the same order, except for letters ([`Comm::post`]), which a rank
+//! takes when it polls for them. A rank that ends unexpectedly ends the others; if a letter cannot arrive any
+//! more, the caller handles it.
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 mod mpi;
@@ -36,58 +38,60 @@ pub use present::{is_first, present, run_as, several};
 
 use std::time::Duration;
 
-/// What a rank can do together with the others. Every method but the first three is called by all ranks.
+/// Operations of a rank. All ranks must call every method except the first three.
 ///
-/// A partner that is gone is no error to handle: the program ends with a message that names it.
+/// A lost partner is not an error to handle: the program ends with a message that names it.
 pub trait Comm: Send + Sync {
     /// This rank, from 0.
     fn rank(&self) -> usize;
 
-    /// How many there are.
+    /// The number of ranks.
     fn size(&self) -> usize;
 
-    /// What carries messages, for people.
+    /// Name of the transport, for messages.
     fn library(&self) -> String;
 
-    /// Sends to and receives from each partner at once. Lengths are known on both sides.
+    /// Sends to and receives from each partner simultaneously. Both sides know the lengths.
     fn swap(&self, out: &[(usize, &[u8])], into: &mut [(usize, &mut [u8])]);
 
-    /// Hands every rank's piece to all. `all` holds the pieces in the order of ranks, `counts` their lengths; this rank's own is
-    /// in its place.
+    /// Distributes every rank's piece to all. `all` holds the pieces in rank order, `counts` their lengths;
+    /// this rank's own piece is already in place.
     fn gather_all(&self, all: &mut [u8], counts: &[usize]);
 
-    /// Adds up numbers over all ranks.
+    /// Sums numbers over all ranks.
     fn sum(&self, values: &mut [i64]);
 
-    /// The largest of each number over all ranks.
+    /// The maximum of each number over all ranks.
     fn most(&self, values: &mut [f64]);
 
     /// Hands the first rank's bytes to all.
     fn broadcast(&self, bytes: &mut Vec<u8>);
 
-    /// Sends a letter to another rank, which takes it by [`Comm::letter`]. Letters between two ranks keep their order. They are for ranks
-    /// that wait for each other in no fixed order, and that do nothing else together until all letters are taken.
+    /// Sends a letter to another rank, which receives it by [`Comm::letter`]. Letters between two ranks keep
+    /// their order. They are for ranks that wait for each other in no fixed order, and that call no other
+    /// operation until all letters are received.
     fn post(&self, to: usize, letter: &[u8]);
 
-    /// The next letter of another rank, if it has come; never waits. Sends on what this rank has posted.
+    /// The next letter from another rank, if it has arrived; never waits. Progresses this rank's own letters.
     ///
     /// # Errors
-    /// The other rank has ended. A launcher of MPI ends all ranks before one could see it.
+    /// The other rank has ended. An MPI launcher ends all ranks before this can be observed.
     fn letter(&self, from: usize) -> Result<Option<Vec<u8>>, Gone>;
 
-    /// Sends on what this rank has posted; whether all of it has left.
+    /// Progresses this rank's own letters; returns whether all have been sent.
     fn posted(&self) -> bool;
 
-    /// Waits until all ranks have come here, for so long at most; whether they have. The last thing that ranks do together.
+    /// Waits until all ranks have called this, at most for `patience`; returns whether they have. The last
+    /// operation of all ranks.
     fn meet(&self, patience: Duration) -> bool;
 
-    /// Ends this rank's part, once all have met.
+    /// Closes this rank, after all have met.
     fn close(&self);
 
-    /// Ends all ranks at once.
+    /// Ends all ranks immediately.
     fn abort(&self, code: i32) -> !;
 
-    /// A piece of every rank, of any length, in the order of ranks; `own` is this one's.
+    /// Collects a piece of any length from every rank, in rank order; `own` is this one's.
     fn pieces(&self, own: Vec<u8>) -> Vec<Vec<u8>> {
         let (me, size) = (self.rank(), self.size());
         let mut lengths = vec![0u8; size * 8];
@@ -103,10 +107,10 @@ pub trait Comm: Send + Sync {
         counts.iter().filter_map(|count| rest.split_off(..*count).map(<[u8]>::to_vec)).collect()
     }
 
-    /// Sends pieces of any length to any partners; what others have sent here, in the order of ranks.
+    /// Sends pieces of any length to any partners; returns the pieces received, in rank order.
     fn exchange(&self, out: Vec<(usize, Vec<u8>)>) -> Vec<(usize, Vec<u8>)> {
         let (me, size) = (self.rank(), self.size());
-        // Row `r` of this square table: what rank `r` sends to each.
+        // Row `r` of this square table: the lengths that rank `r` sends to each.
         let mut lengths = vec![0u8; size * size * 8];
         for (to, piece) in &out {
             let at = (me * size + to) * 8;
@@ -132,7 +136,7 @@ pub trait Comm: Send + Sync {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gone;
 
-/// A rank cannot be reached any more: says so and ends this one.
+/// A rank cannot be reached any more: prints this and ends the process.
 fn lost(me: usize, other: usize) -> ! {
     eprintln!("error: rank {me} on {}: rank {other} has ended without a message", host());
     std::process::exit(1)

@@ -1,6 +1,8 @@
-//! Ranks on one machine, each pair of them connected by sockets: processes that the first one starts, or threads of a test.
+//! Ranks on one machine, connected pairwise by sockets: processes started by the first rank, or threads of a
+//! test.
 //!
-//! What goes over a socket are frames: a kind, a length, the bytes. Ranks that call different functions are found out by the kind.
+//! Data on a socket is sent in frames: a kind, a length, the bytes. The kind reveals ranks that call
+//! different operations.
 
 use super::mail::Mail;
 use super::swap::{self, Coming, Going, GoneRank};
@@ -14,13 +16,14 @@ use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-/// The variable by which a started process knows its place: its rank, the number of ranks, and a socket for each.
+/// Variable that defines the place of a started process: its rank, the number of ranks, and a socket for
+/// each.
 pub(super) const SEAT: &str = "PERIGRAIN_SEAT";
 
-/// Bytes of a frame before what it carries: its kind and its length.
+/// Size of a frame header: kind and length.
 pub(super) const HEAD: usize = 9;
 
-/// What a frame belongs to.
+/// The operation a frame belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Kind {
@@ -33,35 +36,35 @@ pub(super) enum Kind {
     Letter,
 }
 
-/// A rank's sockets to the others, by rank; none to itself.
+/// A rank's sockets by rank; `None` for itself.
 type Sockets = Vec<Option<UnixStream>>;
 
-/// A rank beside others on the same machine.
+/// A rank on the same machine as the others.
 pub struct Local {
     rank: usize,
     sockets: Sockets,
     /// Letters to and from each rank.
     mail: Mutex<Vec<Mail>>,
-    /// Whether the ranks are processes; else they are threads of this one.
+    /// Whether the ranks are processes; otherwise they are threads.
     apart: bool,
-    /// The processes that the first rank has started.
+    /// The processes started by the first rank.
     children: Mutex<Vec<Child>>,
 }
 
-/// The place of a process that [`Local::start`] has started.
+/// The place of a process started by [`Local::start`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seat(String);
 
 impl Seat {
-    /// This process' place, if it was started with one.
+    /// The place of this process, if it was started with one.
     pub fn given() -> Option<Self> {
         std::env::var(SEAT).ok().map(Self)
     }
 
-    /// Takes the place.
+    /// Opens the communicator.
     ///
     /// # Errors
-    /// A variable that this program has not written.
+    /// A variable that was not set by this program.
     pub fn take(self) -> Result<Local, String> {
         let wrong = || format!("{SEAT} is `{}`, which no perigrain has set", self.0);
         let numbers: Option<Vec<RawFd>> = self.0.split(' ').map(|n| n.parse().ok()).collect();
@@ -71,21 +74,22 @@ impl Seat {
             return Err(wrong());
         }
         let own = |(k, fd): (usize, &RawFd)| {
-            // SAFETY: the process that started this one has opened the socket for it alone; its number is used once.
+            // SAFETY: the parent process has opened the socket for this process alone; its number is used
+            // once.
             (k != rank).then(|| unsafe { UnixStream::from_raw_fd(*fd) })
         };
         let sockets: Vec<_> = sockets.iter().enumerate().map(own).collect();
         for socket in sockets.iter().flatten() {
-            // Programs that a deck starts do not keep it open.
+            // Programs started by a deck must not inherit it.
             inherited(socket.as_raw_fd(), false).map_err(|e| format!("a socket to another rank: {e}"))?;
         }
         Ok(Local::new(rank, sockets, true, vec![]))
     }
 }
 
-/// Whether a program that this process becomes has the file open still.
+/// Sets whether a file stays open across exec.
 fn inherited(fd: RawFd, yes: bool) -> std::io::Result<()> {
-    // SAFETY: changes a flag of a file that is open.
+    // SAFETY: changes a flag of an open file.
     let done = unsafe { libc::fcntl(fd, libc::F_SETFD, if yes { 0 } else { libc::FD_CLOEXEC }) };
     if done < 0 { Err(std::io::Error::last_os_error()) } else { Ok(()) }
 }
@@ -96,17 +100,18 @@ impl Local {
         Self { rank, sockets, mail: Mutex::new(mail), apart, children: Mutex::new(children) }
     }
 
-    /// As many ranks for threads of this process.
+    /// Ranks for threads of this process.
     ///
     /// # Errors
-    /// The system grants no more sockets.
+    /// The system refuses to create more sockets.
     pub fn threads(size: usize) -> std::io::Result<Vec<Self>> {
         let rows = mesh(size)?;
         let seat = |(rank, sockets)| Self::new(rank, sockets, false, vec![]);
         Ok(rows.into_iter().enumerate().map(seat).collect())
     }
 
-    /// Starts the other ranks by this command, which begins a program that takes its [`Seat`]; this process is the first rank.
+    /// Starts the other ranks by this command, which runs a program that takes its [`Seat`]; this process is
+    /// the first rank.
     ///
     /// # Errors
     /// Processes cannot be started.
@@ -122,7 +127,7 @@ impl Local {
             command.env(SEAT, place).stdin(std::process::Stdio::null());
             let keep =
                 move || fds.iter().try_for_each(|fd| inherited(*fd, true)).and_then(|()| die_with_parent());
-            // SAFETY: only calls of the system between fork and exec.
+            // SAFETY: only system calls between fork and exec.
             unsafe { command.pre_exec(keep) };
             children.push(command.spawn()?);
         }
@@ -136,7 +141,7 @@ impl Local {
         }
     }
 
-    /// The other rank is gone.
+    /// The other rank is lost.
     fn gone(&self, other: usize) -> ! {
         if self.apart {
             lost(self.rank, other);
@@ -150,7 +155,7 @@ impl Local {
         }
     }
 
-    /// The length of the frame that comes.
+    /// Receives the header of a frame; returns its length.
     fn head(&self, from: usize, kind: Kind) -> usize {
         let (mut socket, mut head) = (self.socket(from), [0; HEAD]);
         if socket.read_exact(&mut head).is_err() {
@@ -171,7 +176,7 @@ impl Local {
         }
     }
 
-    /// The first rank makes one of all ranks' bytes, and all have it.
+    /// The first rank combines the bytes of all ranks and distributes the result.
     fn combine(&self, kind: Kind, bytes: &mut [u8], add: impl Fn(&mut [u8], &[u8])) {
         if self.rank > 0 {
             self.send(0, kind, bytes);
@@ -185,7 +190,7 @@ impl Local {
         (1..self.size()).for_each(|to| self.send(to, kind, bytes));
     }
 
-    /// As [`Local::combine`], of numbers of eight bytes.
+    /// Like [`Local::combine`], for numbers of eight bytes.
     fn numbers<T: Copy>(
         &self,
         kind: Kind,
@@ -210,7 +215,7 @@ impl Local {
     }
 }
 
-/// A socket from each rank to each other one.
+/// A socket between each pair of ranks.
 fn mesh(size: usize) -> std::io::Result<Vec<Sockets>> {
     let mut rows: Vec<Sockets> = (0..size).map(|_| (0..size).map(|_| None).collect()).collect();
     for a in 0..size {
@@ -222,10 +227,10 @@ fn mesh(size: usize) -> std::io::Result<Vec<Sockets>> {
     Ok(rows)
 }
 
-/// A process that another one has started ends with it.
+/// Makes a started process end with its parent.
 #[cfg(target_os = "linux")]
 fn die_with_parent() -> std::io::Result<()> {
-    // SAFETY: changes what this process gets when its parent ends.
+    // SAFETY: sets the signal that this process receives when its parent ends.
     let done = unsafe { libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL) };
     if done < 0 { Err(std::io::Error::last_os_error()) } else { Ok(()) }
 }
@@ -268,7 +273,7 @@ impl Comm for Local {
     fn gather_all(&self, all: &mut [u8], counts: &[usize]) {
         let start = |rank: usize| counts[..rank].iter().sum::<usize>();
         if self.rank > 0 {
-            // What this rank has, the first one need not send back.
+            // The first rank need not send back what this rank already has.
             let own = start(self.rank)..start(self.rank) + counts[self.rank];
             self.send(0, Kind::Gather, &all[own.clone()]);
             self.receive(0, Kind::Gather, &mut all[..own.start]);
@@ -324,7 +329,8 @@ impl Comm for Local {
     }
 
     fn letter(&self, from: usize) -> Result<Option<Vec<u8>>, Gone> {
-        // A rank that waits for one letter sends on those for others too: these may be what the rank it waits for lacks.
+        // A rank that waits for a letter also progresses its own: the other rank may be waiting for one of
+        // them.
         self.posted();
         let mut mail = self.mail.lock().unwrap_or_else(PoisonError::into_inner);
         mail[from].next(self.socket(from))
@@ -338,14 +344,14 @@ impl Comm for Local {
 
     fn close(&self) {
         for child in self.children.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
-            // All have met: it ends by itself.
+            // All ranks have met: it ends by itself.
             let _ = child.wait();
         }
     }
 
     fn abort(&self, code: i32) -> ! {
         for child in self.children.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
-            // One that has ended needs no signal.
+            // A process that has ended needs no signal.
             let _ = child.kill();
             let _ = child.wait();
         }
@@ -357,7 +363,7 @@ impl Comm for Local {
 }
 
 impl Local {
-    /// Whether the other rank comes to [`Comm::meet`] before this time; one that sends something else is elsewhere.
+    /// Whether the other rank calls [`Comm::meet`] before this time; `false` if it sends anything else.
     fn greeted(&self, from: usize, end: Instant) -> bool {
         let mut socket = self.socket(from);
         loop {

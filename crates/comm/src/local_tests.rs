@@ -1,10 +1,10 @@
-//! What ranks do together, over sockets.
+//! Operations over sockets.
 
 use super::*;
 use crate::{broadcast, is_first, present, run_as, several};
 use std::sync::Arc;
 
-/// Does the same on so many ranks, each a thread.
+/// Runs `body` on this many ranks, each a thread.
 fn ranks<T: Send>(size: usize, body: impl Fn() -> T + Sync) -> Vec<T> {
     let seats = Local::threads(size).unwrap();
     std::thread::scope(|s| {
@@ -15,7 +15,7 @@ fn ranks<T: Send>(size: usize, body: impl Fn() -> T + Sync) -> Vec<T> {
     })
 }
 
-/// Ranks come to different points at different times.
+/// Ranks reach different points at different times.
 fn dawdle(turn: usize) {
     let rank = present().rank();
     for _ in 0..(rank * 7 + turn * 3) % 5 {
@@ -86,7 +86,7 @@ fn what_is_sent_need_not_be_known_before() {
     ranks(4, || {
         let comm = present();
         let me = comm.rank();
-        // To the ranks above, each time one byte more.
+        // To all higher ranks, one byte more each time.
         let out = (me + 1..4).map(|to| (to, vec![me as u8; to])).collect();
         let came = comm.exchange(out);
         assert_eq!(came, (0..me).map(|from| (from, vec![from as u8; me])).collect::<Vec<_>>());
@@ -120,7 +120,7 @@ fn ranks_that_end_meet_before() {
         present().meet(Duration::from_secs(5))
     });
     assert_eq!(met, [true; 3]);
-    // One does not come.
+    // One rank does not call it.
     let met = ranks(3, || present().rank() == 2 || present().meet(Duration::from_millis(60)));
     assert_eq!(met, [false, false, true]);
 }
@@ -134,7 +134,7 @@ fn machines_are_named() {
 
 #[test]
 fn letters_are_taken_when_a_rank_looks_for_them() {
-    // The longest ones are more than a socket holds, and both sides send them before either looks.
+    // The longest ones exceed the buffer of a socket, and both sides send them before either polls.
     let lengths = [0, 5, 900_000, 1, 300_000];
     ranks(3, || {
         let comm = present();
@@ -156,14 +156,14 @@ fn letters_are_taken_when_a_rank_looks_for_them() {
         while !comm.posted() {
             std::thread::yield_now();
         }
-        // Then they do together again what they did before.
+        // Afterwards other operations work again.
         assert!(comm.meet(Duration::from_secs(5)));
     });
 }
 
 #[test]
 fn letters_in_a_ring_arrive() {
-    // Each rank looks for letters of the one before it alone, while what it has for the next one is more than a socket holds.
+    // Each rank polls only the one before it, while its data for the next one exceeds the buffer of a socket.
     ranks(3, || {
         let comm = present();
         let me = comm.rank();

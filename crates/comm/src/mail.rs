@@ -1,4 +1,4 @@
-//! Letters over a socket: sent and received as far as the socket allows at the moment, without waiting.
+//! Letters over a socket: sent and received without blocking, as far as the socket allows.
 
 use super::Gone;
 use super::local::{HEAD, Kind};
@@ -6,18 +6,18 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 
-/// Letters to and from one other rank that are under way.
+/// Letters in transit to and from one other rank.
 #[derive(Debug, Default)]
 pub(super) struct Mail {
-    /// Frames that have not left yet.
+    /// Frames that are not sent yet.
     out: VecDeque<u8>,
-    /// The beginning of a frame that has come.
+    /// The received part of a frame.
     came: Vec<u8>,
     gone: bool,
 }
 
 impl Mail {
-    /// Sends a letter, now or when the socket takes it.
+    /// Sends a letter, at once or when the socket accepts it.
     pub fn post(&mut self, socket: &UnixStream, letter: &[u8]) {
         self.out.push_back(Kind::Letter as u8);
         self.out.extend((letter.len() as u64).to_le_bytes());
@@ -25,7 +25,7 @@ impl Mail {
         self.send(socket);
     }
 
-    /// Sends on what waits; whether all has left. What is for a rank that has ended has left too.
+    /// Sends pending data; returns whether all has been sent. Data for a rank that has ended counts as sent.
     pub fn send(&mut self, socket: &UnixStream) -> bool {
         while !self.out.is_empty() && !self.gone {
             let (piece, _) = self.out.as_slices();
@@ -39,7 +39,7 @@ impl Mail {
         true
     }
 
-    /// The next letter, if it has come as a whole.
+    /// The next letter, if it has arrived completely.
     ///
     /// # Errors
     /// The other rank has ended.
@@ -70,7 +70,7 @@ impl Mail {
     }
 }
 
-/// Does what never waits.
+/// Performs a non-blocking operation.
 fn at_once(
     socket: &UnixStream,
     act: impl FnOnce(&UnixStream) -> std::io::Result<usize>,

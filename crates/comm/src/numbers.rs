@@ -1,12 +1,12 @@
-//! Numbers as the bytes of messages between ranks, whose processors are alike.
+//! Numbers as bytes of messages between ranks, all of which run on the same kind of processor.
 
-/// A number of a fixed count of bytes.
+/// A number of fixed size.
 pub trait Number: Copy + Default {
-    /// Bytes of one.
+    /// Size in bytes.
     const BYTES: usize = size_of::<Self>();
-    /// Writes numbers to as many places.
+    /// Writes numbers to a buffer of matching size.
     fn write(numbers: &[Self], to: &mut [u8]);
-    /// Reads numbers from as many places.
+    /// Reads numbers from a buffer of matching size.
     fn read(numbers: &mut [Self], from: &[u8]);
 }
 
@@ -37,7 +37,7 @@ pub fn put<T: Number>(bytes: &mut Vec<u8>, numbers: &[T]) {
     T::write(numbers, &mut bytes[at..]);
 }
 
-/// Takes as many numbers from the front of a message, which has them.
+/// Removes numbers from the front of a message, which must contain them.
 #[inline]
 pub fn take<T: Number>(bytes: &mut &[u8], numbers: &mut [T]) {
     let (own, rest) = bytes.split_at(size_of_val(numbers));
@@ -45,7 +45,7 @@ pub fn take<T: Number>(bytes: &mut &[u8], numbers: &mut [T]) {
     *bytes = rest;
 }
 
-/// Takes `N` numbers from the front of a message; none where it ends.
+/// Removes `N` numbers from the front of a message; `None` at its end.
 #[inline]
 pub fn next<T: Number, const N: usize>(bytes: &mut &[u8]) -> Option<[T; N]> {
     let mut numbers = [T::default(); N];

@@ -1,4 +1,4 @@
-//! Which rank the present thread works for.
+//! The communicator of the current thread.
 
 use super::{Alone, Comm};
 use std::cell::RefCell;
@@ -8,24 +8,24 @@ thread_local! {
     static PRESENT: RefCell<Arc<dyn Comm>> = RefCell::new(Arc::new(Alone));
 }
 
-/// The ranks of the present thread.
+/// The communicator of the current thread.
 pub fn present() -> Arc<dyn Comm> {
     PRESENT.with_borrow(Clone::clone)
 }
 
-/// Whether the present thread is one of several ranks.
+/// Whether the current thread is one of several ranks.
 pub fn several() -> bool {
     PRESENT.with_borrow(|comm| comm.size() > 1)
 }
 
-/// Whether the present thread is the first rank, or the only one: it alone prints and writes files.
+/// Whether the current thread is the first rank, or the only one: it alone prints and writes files.
 pub fn is_first() -> bool {
     PRESENT.with_borrow(|comm| comm.rank() == 0)
 }
 
-/// Does work on this thread as one of these ranks.
+/// Runs `work` on this thread as one of these ranks.
 pub fn run_as<T>(comm: Arc<dyn Comm>, work: impl FnOnce() -> T) -> T {
-    /// Puts back what held before, also where the work panics.
+    /// Restores the previous communicator, even if the work panics.
     struct Before(Arc<dyn Comm>);
     impl Drop for Before {
         fn drop(&mut self) {

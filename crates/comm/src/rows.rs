@@ -1,12 +1,12 @@
-//! Rows of numbers that ranks have found, together on all of them.
+//! Rows of numbers found by ranks, collected on all of them.
 
 use super::numbers::{next, put};
 use super::present;
 
-/// A row: whole numbers that say what it is about, and what it says.
+/// A row: a key of integers, and values.
 pub type Row<const K: usize, const N: usize> = ([u32; K], [f64; N]);
 
-/// The rows of all ranks, in the order of what they are about; rows about the same as the ranks come.
+/// The rows of all ranks, ordered by key; rows of equal key in rank order.
 pub fn of_all<const K: usize, const N: usize>(own: impl IntoIterator<Item = Row<K, N>>) -> Vec<Row<K, N>> {
     let mut letter = vec![];
     for (about, numbers) in own {
@@ -24,7 +24,7 @@ pub fn of_all<const K: usize, const N: usize>(own: impl IntoIterator<Item = Row<
     all
 }
 
-/// Whether this holds on all ranks.
+/// Whether `here` is true on all ranks.
 pub fn all_agree(here: bool) -> bool {
     let mut against = [if here { 0.0 } else { 1.0 }];
     present().most(&mut against);

@@ -1,4 +1,4 @@
-//! Frames to and from several ranks at once, on one thread: as much at a time as each socket takes or has.
+//! Frames to and from several ranks at once, on one thread: as much at a time as each socket accepts or has.
 
 use super::local::{HEAD, Kind};
 use rustix::event::{PollFd, PollFlags, poll};
@@ -7,29 +7,29 @@ use rustix::net::{RecvAncillaryBuffer, RecvFlags, SendAncillaryBuffer, SendFlags
 use std::io::{IoSlice, IoSliceMut};
 use std::os::unix::net::UnixStream;
 
-/// This rank is gone.
+/// This rank is lost.
 #[derive(Debug)]
 pub struct GoneRank(pub usize);
 
-/// The beginning of a frame that carries so many bytes.
+/// The header of a frame with this many bytes.
 pub fn head(kind: Kind, length: usize) -> [u8; HEAD] {
     let mut head = [kind as u8; HEAD];
     head[1..].copy_from_slice(&(length as u64).to_le_bytes());
     head
 }
 
-/// A frame on its way to another rank.
+/// An outgoing frame.
 pub struct Going<'a> {
     with: usize,
     socket: &'a UnixStream,
     head: [u8; HEAD],
     bytes: &'a [u8],
-    /// How many bytes have left, those of the head among them.
+    /// Number of bytes sent, including the header.
     done: usize,
 }
 
 impl<'a> Going<'a> {
-    /// All of these bytes, to a rank at the other end of this socket.
+    /// A frame with these bytes, for a rank at the other end of this socket.
     pub fn new(with: usize, socket: &'a UnixStream, kind: Kind, bytes: &'a [u8]) -> Self {
         Self { with, socket, head: head(kind, bytes.len()), bytes, done: 0 }
     }
@@ -38,10 +38,10 @@ impl<'a> Going<'a> {
         HEAD + self.bytes.len() - self.done
     }
 
-    /// Sends what the socket takes, and waits until it takes all where it is to `wait`; whether all has left.
+    /// Sends what the socket accepts, and with `wait` everything; returns whether all has been sent.
     ///
     /// # Errors
-    /// The other rank is gone.
+    /// The other rank is lost.
     pub fn send(&mut self, wait: bool) -> Result<bool, GoneRank> {
         let flags = if wait { SendFlags::empty() } else { SendFlags::DONTWAIT };
         while self.left() > 0 {
@@ -60,19 +60,19 @@ impl<'a> Going<'a> {
     }
 }
 
-/// A frame that comes from another rank.
+/// An incoming frame.
 pub struct Coming<'a> {
     with: usize,
     socket: &'a UnixStream,
     wanted: [u8; HEAD],
     head: [u8; HEAD],
     bytes: &'a mut [u8],
-    /// How many bytes have come, those of the head among them.
+    /// Number of bytes received, including the header.
     done: usize,
 }
 
 impl<'a> Coming<'a> {
-    /// As many bytes as there is room for, of this kind, from a rank at the other end of this socket.
+    /// A frame of this kind that fills the buffer, from a rank at the other end of this socket.
     pub fn new(with: usize, socket: &'a UnixStream, kind: Kind, bytes: &'a mut [u8]) -> Self {
         Self { with, socket, wanted: head(kind, bytes.len()), head: [0; HEAD], bytes, done: 0 }
     }
@@ -81,11 +81,11 @@ impl<'a> Coming<'a> {
         HEAD + self.bytes.len() - self.done
     }
 
-    /// Takes what the socket has, and waits for all where it is to `wait`; whether all has come. A frame of another kind or length is a fault
-    /// of this program, and ends it.
+    /// Receives what the socket has, and with `wait` everything; returns whether all has been received. A
+    /// frame of another kind or length is a bug in this program, and ends it.
     ///
     /// # Errors
-    /// The other rank is gone.
+    /// The other rank is lost.
     pub fn receive(&mut self, wait: bool) -> Result<bool, GoneRank> {
         let flags = if wait { RecvFlags::WAITALL } else { RecvFlags::DONTWAIT };
         while self.left() > 0 {
@@ -111,10 +111,10 @@ impl<'a> Coming<'a> {
     }
 }
 
-/// Sends and takes all of these, of two with one rank the first one first.
+/// Sends and receives all of these frames; of two frames with one rank the first comes first.
 ///
 /// # Errors
-/// A rank that is gone.
+/// A rank is lost.
 pub fn swap(out: &mut [Going], into: &mut [Coming]) -> Result<(), GoneRank> {
     loop {
         let before = left(out, into);
@@ -125,7 +125,7 @@ pub fn swap(out: &mut [Going], into: &mut [Coming]) -> Result<(), GoneRank> {
             }
         }
         if waiting.is_empty() {
-            // Nothing waits for this rank any more: it may wait for one after the other.
+            // No rank waits for this one any more: it may wait for one after the other.
             return into.iter_mut().try_for_each(|frame| frame.receive(true).map(drop));
         }
         waiting.clear();
@@ -140,16 +140,16 @@ pub fn swap(out: &mut [Going], into: &mut [Coming]) -> Result<(), GoneRank> {
     }
 }
 
-/// How many bytes have not left or come yet.
+/// The number of bytes not yet sent or received.
 fn left(out: &[Going], into: &[Coming]) -> usize {
     out.iter().map(Going::left).chain(into.iter().map(Coming::left)).sum()
 }
 
-/// Waits until a socket takes or has something.
+/// Waits until a socket accepts or has data.
 fn wait(out: &[Going], into: &[Coming]) {
     let sending = out.iter().filter(|frame| frame.left() > 0).map(|f| PollFd::new(f.socket, PollFlags::OUT));
     let taking = into.iter().filter(|frame| frame.left() > 0).map(|f| PollFd::new(f.socket, PollFlags::IN));
     let mut sockets: Vec<PollFd> = sending.chain(taking).collect();
-    // Whatever ends the wait, a signal too: all sockets are tried again.
+    // Whatever ends the wait, including a signal: all sockets are tried again.
     let _ = poll(&mut sockets, None);
 }

@@ -1,4 +1,4 @@
-//! Per-particle attributes that dumps can show: `id`, `x`, `vx`, `radius`, `c_ID[2]`, `v_name` ….
+//! Per-particle attributes for dumps: `id`, `x`, `vx`, `radius`, `c_ID[2]`, `v_name` ….
 
 use perigrain_base::diag::{Code, Result};
 use perigrain_base::math::vec3;
@@ -11,23 +11,23 @@ use perigrain_plan::{Stage, When};
 use perigrain_styles::{BuildCx, Reading, SealCx, Wants};
 use perigrain_world::{Domain, Numbers, World};
 
-/// An attribute as a deck names it.
+/// An attribute named in a deck.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute {
-    /// As written.
+    /// The word in the deck.
     pub word: String,
-    /// What it stands for.
+    /// Its source.
     pub source: Source,
 }
 
-/// Where an attribute's values come from.
+/// Source of an attribute's values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A core property of particles.
     Core(Core),
     /// A compute, fix or atom-style variable.
     Value(ValueRef),
-    /// A column of fix property/atom; whole numbers or not.
+    /// A column of fix property/atom; `true` for integers.
     Custom(Numbers, bool),
 }
 
@@ -38,21 +38,21 @@ pub enum Core {
     Id,
     /// Type.
     Kind,
-    /// Process that owns it: 0, there is one.
+    /// Process that owns it: 0, because there is only one.
     Process(i64),
-    /// Mass, as LAMMPS' `rmass` holds it.
+    /// Mass, as in LAMMPS' `rmass`.
     Mass,
     /// Position.
     X(usize),
-    /// Position as a fraction of the box.
+    /// Position in fractions of the box.
     Scaled(usize),
-    /// Position with box crossings undone.
+    /// Unwrapped position.
     Unwrapped(usize),
-    /// The same as a fraction of the box.
+    /// Unwrapped position in fractions of the box.
     ScaledUnwrapped(usize),
-    /// The same in a cell ten times as large around the same middle (dump cfg).
+    /// Position in fractions of a cell ten times as large with the same centre (dump cfg).
     Tenth(usize),
-    /// Box crossings.
+    /// Image counts.
     Image(usize),
     /// Velocity.
     V(usize),
@@ -72,7 +72,7 @@ pub enum Core {
     Molecule,
     /// Charge.
     Charge,
-    /// A component of the dipole moment, or its size.
+    /// A component of the dipole moment, or its magnitude.
     Moment(Option<usize>),
     /// Name of the type (`dump_modify element`).
     Element,
@@ -124,15 +124,15 @@ pub const CORE: &[(&str, Core)] = &[
     ("element", Core::Element),
 ];
 
-/// LAMMPS' attributes for things that perigrain's particles do not have.
+/// LAMMPS' attributes of properties that perigrain's particles do not have.
 const ELSEWHERE: &[&str] = &["angmomx", "angmomy", "angmomz"];
 
-/// What `c_ID[*]` becomes: one attribute per column.
+/// Expands `c_ID[*]`: one attribute per column.
 pub fn expand(word: &Word, cx: &BuildCx) -> Result<Vec<Attribute>> {
     cx.expand(word, Wants::PerAtom)?.iter().map(|word| attribute(word, cx)).collect()
 }
 
-/// Reads one attribute.
+/// Parses one attribute.
 pub fn attribute(word: &Word, cx: &BuildCx) -> Result<Attribute> {
     let text = word.text.as_str();
     if let Some((_, core)) = CORE.iter().find(|(name, _)| *name == text) {
@@ -157,7 +157,7 @@ pub fn attribute(word: &Word, cx: &BuildCx) -> Result<Attribute> {
     })
 }
 
-/// Refuses what the atom style does not carry.
+/// Refuses attributes that the atom style does not have.
 fn requires(core: Core, word: &Word, cx: &BuildCx) -> Result<()> {
     let style = cx.world.particles.style;
     let (there, need) = match core {
@@ -176,12 +176,12 @@ fn requires(core: Core, word: &Word, cx: &BuildCx) -> Result<()> {
 }
 
 impl Attribute {
-    /// A core attribute without a deck's word.
+    /// A core attribute, without a word in a deck.
     pub fn core(word: &str, core: Core) -> Self {
         Self { word: word.into(), source: Source::Core(core) }
     }
 
-    /// Whether it shows whole numbers.
+    /// Whether its values are integers.
     pub fn kind(&self) -> Kind {
         match self.source {
             Source::Core(Core::Id | Core::Kind | Core::Molecule | Core::Process(_) | Core::Image(_)) => {
@@ -193,12 +193,12 @@ impl Attribute {
         }
     }
 
-    /// Where its values will be when `when` fires.
+    /// Binds it to the location of its values when `when` fires.
     pub fn bind(&self, cx: &mut dyn SealCx, when: &When) -> Result<Bound> {
         match &self.source {
             Source::Core(core) => Ok(Bound::Core(*core)),
             Source::Value(r) => {
-                // Of a fix that offers both, as a wall with `contacts`, particles show their own column.
+                // If a fix offers both kinds, such as a wall with `contacts`, particles use their own column.
                 let own = cx.reading(r, Wants::PerAtom, Stage::Output, when);
                 Ok(Bound::Value(own.or_else(|_| cx.value(r, Stage::Output, when))?))
             }
@@ -210,14 +210,14 @@ impl Attribute {
     }
 }
 
-/// What a snapshot shows.
+/// Data of a snapshot.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
     /// The world.
     pub world: &'a World,
     /// Its box.
     pub domain: &'a Domain,
-    /// Places and box crossings wrapped into the box as it is now, for `dump_modify pbc yes`.
+    /// Positions and image counts wrapped into the current box, for `dump_modify pbc yes`.
     pub wrapped: Option<&'a [([f64; 3], [i32; 3])]>,
     /// The name of each type.
     pub elements: &'a [String],
@@ -233,14 +233,14 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// An attribute that knows where its values are.
+/// An attribute bound to the location of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bound {
-    /// In the core columns.
+    /// Core columns.
     Core(Core),
-    /// In a slot.
+    /// A slot.
     Value(Reading),
-    /// In a column of fix property/atom; whole numbers or not.
+    /// A column of fix property/atom; `true` for integers.
     Custom(Numbers, bool),
 }
 
@@ -261,7 +261,7 @@ impl Bound {
             }
         };
         let (p, d, f) = (&frame.world.particles, frame.domain, *frame);
-        // As LAMMPS: times the inverse length, not divided by the length.
+        // As in LAMMPS: multiplied by the inverse length instead of divided by the length.
         let inverse = |k: usize| 1.0 / (d.hi[k] - d.lo[k]);
         let length = |k: usize| d.hi[k] - d.lo[k];
         match core {
@@ -290,7 +290,7 @@ impl Bound {
             }
             Core::ScaledUnwrapped(k) => {
                 let (lo, inverse) = (d.lo[k], inverse(k));
-                // LAMMPS adds its image offset of 512 and takes it away again, which costs three digits.
+                // LAMMPS adds its image offset of 512 and subtracts it again, which costs three digits.
                 let offset = if frame.world.settings.lammps() { 512.0 } else { 0.0 };
                 Data::float(move |i| {
                     (f.x(i)[k] - lo) * inverse + (f64::from(f.image(i)[k]) + offset) - offset

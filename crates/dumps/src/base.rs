@@ -1,4 +1,4 @@
-//! What all dumps share: which particles, in which order, when, and into which file.
+//! Shared by all dumps: selection and order of particles, times and files.
 
 mod clock;
 mod keywords;
@@ -28,29 +28,29 @@ use perigrain_world::field::{
 };
 use perigrain_world::{Domain, GroupId, Key, Numbers, Region, World};
 
-/// What outlives a run: open files and what belongs to them.
+/// State that persists between runs: open files and their data.
 #[derive(Debug)]
 pub struct State {
-    /// The file or files.
+    /// The output file or files.
     pub target: Target,
-    /// The latest step written.
+    /// The last step written.
     pub last: Option<i64>,
     /// The list of snapshots of a `vtk` dump.
     pub series: Option<Series>,
     /// The view that an `image` dump keeps.
     pub view: Option<View>,
-    /// What a `movie` dump has made so far.
+    /// State of a `movie` dump.
     pub movie: Option<Movie>,
-    /// The next time to write at, for `every/time`.
+    /// The next output time, for `every/time`.
     next_time: Option<f64>,
-    /// Files of single snapshots that still exist, for `maxfiles`.
+    /// Files of single snapshots that exist, for `maxfiles`.
     kept: VecDeque<PathBuf>,
 }
 
-/// The order of rows.
+/// Order of rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sort {
-    /// As stored.
+    /// Storage order.
     Off,
     /// By id.
     Id,
@@ -67,23 +67,23 @@ pub struct Threshold {
     value: Option<f64>,
 }
 
-/// A threshold whose attribute has been found: left side, comparison, right side.
+/// A threshold with its attribute bound: left side, comparison, right side.
 type Test<T> = (T, fn(f64, f64) -> bool, Option<f64>);
 
-/// When snapshots are made, where that is not at multiples of the dump's interval.
+/// Snapshot times, if they are not at multiples of the dump's interval.
 #[derive(Clone, Debug)]
 enum Rhythm {
-    /// The interval of the dump.
+    /// At multiples of the dump's interval.
     Steps,
-    /// At steps that a variable names.
+    /// At steps given by a variable.
     Named(ValueRef),
     /// At multiples of a time.
     Time(f64),
-    /// At times that a variable names.
+    /// At times given by a variable.
     NamedTime(ValueRef),
 }
 
-/// What all dumps share.
+/// Data of all dumps.
 #[derive(Clone, Debug)]
 pub struct Base {
     /// The dump's ID.
@@ -91,10 +91,10 @@ pub struct Base {
     /// Its style.
     pub style: &'static str,
     group: GroupId,
-    /// Whether processes could share the files: `%` stands in the name.
+    /// Whether the file name contains `%`, by which processes could share the output.
     shared: bool,
     append: bool,
-    /// How tightly files are packed (`compression_level`), for styles that always do.
+    /// Compression level (`compression_level`), for styles that always compress.
     pub level: Option<i64>,
     pad: usize,
     every: Option<i64>,
@@ -114,28 +114,28 @@ pub struct Base {
     state: Arc<Mutex<State>>,
 }
 
-/// What a style gets to write: a world at rest.
+/// Input of a style's writer: the world between steps.
 pub struct Shot<'a> {
     /// The world.
     pub world: &'a World,
-    /// The present step.
+    /// The current step.
     pub step: i64,
-    /// Particle indices in order.
+    /// Particle indices in output order.
     pub rows: Vec<u32>,
     /// The style's attributes.
     pub data: Vec<Data<'a>>,
-    /// What outlives the run.
+    /// The persistent state.
     pub state: &'a mut State,
 }
 
 /// Styles that can write LAMMPS' binary files.
 const BINARY: [&str; 2] = ["atom", "custom"];
 
-/// Further styles whose files may have `%` in their names, as in LAMMPS.
+/// Further styles that allow `%` in file names, as in LAMMPS.
 const SHARED: [&str; 2] = ["cfg", "local"];
 
 impl Base {
-    /// Reads the file name; `endings` are those the style can write (none: any).
+    /// Reads the file name; `endings` are the extensions the style can write (empty: any).
     pub fn new(style: &'static str, args: &mut Args, cx: &BuildCx, endings: &[&str]) -> Result<Self> {
         let word = args.expect("the file name")?;
         let binary = BINARY.contains(&style);
@@ -182,7 +182,7 @@ impl Base {
         })
     }
 
-    /// Refuses a name without `*` where every snapshot is a file of its own; `write_dump` needs none.
+    /// Refuses a name without `*` if every snapshot is a separate file; `write_dump` needs no `*`.
     pub fn needs_star(&self, args: &Args, cx: &BuildCx) -> Result<()> {
         if self.state().target.pattern.many() || cx.id == "WRITE_DUMP" {
             return Ok(());
@@ -192,23 +192,23 @@ impl Base {
         Err(d.help("put a `*` into the file name: it becomes the step").into())
     }
 
-    /// What outlives a run.
+    /// The persistent state.
     pub fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether it has written snapshots into one file for all.
+    /// Whether it has written snapshots into a common file.
     pub fn growing(&self) -> bool {
         let state = self.state();
         state.last.is_some() && !state.target.pattern.many()
     }
 
-    /// The interval that `dump_modify … every N` asked for.
+    /// The interval set by `dump_modify … every N`.
     pub fn every(&self) -> Option<i64> {
         self.every
     }
 
-    /// The op: at its times it selects and sorts particles and lets the style write them.
+    /// The op: at output times it selects and sorts particles and calls the style's writer.
     pub fn seal(
         &self,
         cx: &mut dyn SealCx,
@@ -265,7 +265,7 @@ impl Base {
         let electric = of(style.charged, CHARGE) | of(style.dipole, MU);
         let reads =
             X | V | F | IMAGE | MASK | TAG | KIND | MASS | RADIUS | OMEGA | TORQUE | VOLUME | electric;
-        // A file is there from the first step on, as in LAMMPS.
+        // The file exists from the first step on, as in LAMMPS.
         let when = if self.state().target.pattern.many() { when } else { when.or(When::First) };
         Ok(StepOp::new(
             name,
@@ -278,14 +278,14 @@ impl Base {
         .boxed())
     }
 
-    /// Tells the file what `dump_modify` asks of it.
+    /// Passes the options of `dump_modify` to the file.
     fn aim(&self) {
         let target = &mut self.state().target;
         (target.append, target.pattern.pad) = (self.append, self.pad);
         target.level = self.level.and_then(|level| u32::try_from(level).ok());
     }
 
-    /// When snapshots may be due; whether they are is decided then.
+    /// Steps at which snapshots may be due; `due` decides.
     pub fn when(&self, cx: &mut dyn SealCx, every: i64) -> Result<When> {
         let when = match (&self.rhythm, every) {
             (_, 0) | (Rhythm::Time(_) | Rhythm::NamedTime(_), _) => return Ok(When::Always),
@@ -295,7 +295,7 @@ impl Base {
         Ok(if self.first { when.or(When::First) } else { when })
     }
 
-    /// What gives the next time from the present one, for `every/time`.
+    /// The source of the next output time, for `every/time`.
     fn clock(&self, cx: &mut dyn SealCx) -> Result<Option<Clock>> {
         Ok(match &self.rhythm {
             Rhythm::Steps | Rhythm::Named(_) => None,
@@ -307,7 +307,7 @@ impl Base {
         })
     }
 
-    /// Whether this step is to be written: not twice, and the first step only if asked or a multiple.
+    /// Whether this step is to be written: not twice, and the first step only if requested or a multiple.
     fn due(&self, w: &mut World, t: &Tick, every: i64, clock: &mut Option<Clock>) -> Result<bool> {
         if every == 0 {
             return Ok(true);
@@ -345,7 +345,7 @@ impl Base {
         Ok(())
     }
 
-    /// Particles that pass, in order, and the values that `LAST` will compare with next time.
+    /// Selected particles in order, and the values for the next comparison with `LAST`.
     fn rows(
         &self,
         frame: &Frame<'_>,
@@ -389,7 +389,7 @@ impl Base {
 /// Values of this snapshot for the next one, and their columns.
 type Last = Vec<(Numbers, Vec<f64>)>;
 
-/// Places and box crossings wrapped into the box.
+/// Positions and image counts wrapped into the box.
 fn wrapped(w: &World, domain: &Domain) -> Vec<([f64; 3], [i32; 3])> {
     let p = &w.particles;
     (0..w.n())

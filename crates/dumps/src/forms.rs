@@ -1,4 +1,4 @@
-//! Dumps `xyz`, `yaml` and `cfg`: the particles of `dump custom` in other forms.
+//! Dumps `xyz`, `yaml` and `cfg`: like `dump custom` in other formats.
 
 use super::attribute::{Attribute, Core, Source};
 use super::base::Base;
@@ -87,7 +87,7 @@ impl DumpStyle for Cfg {
     }
 }
 
-/// A dump of the style `xyz` into this file.
+/// A dump of style `xyz` into this file.
 pub(super) fn xyz(mut base: Base, _: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
     base.elements = (1..=cx.world.types).map(|k| k.to_string()).collect();
     let mut columns = vec![Attribute::core("element", Core::Element)];
@@ -95,7 +95,7 @@ pub(super) fn xyz(mut base: Base, _: &mut Args, cx: &BuildCx) -> Result<Box<dyn 
     Ok(Box::new(Text::new(base, Form::Xyz, Layout::Custom(columns))))
 }
 
-/// A dump of the style `cfg` into this file; its attributes follow.
+/// A dump of style `cfg` into this file; parses its attributes.
 pub(super) fn cfg(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
     base.needs_star(args, cx)?;
     let span = args.here();
@@ -109,7 +109,7 @@ pub(super) fn cfg(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn D
     }
     columns[1].source = Source::Core(Core::Element);
     for c in &mut columns {
-        // As LAMMPS: no brackets in the names of auxiliary properties.
+        // As in LAMMPS: no brackets in the names of auxiliary properties.
         c.word = c.word.replace("][", "_").replace('[', "_").replace(']', "");
     }
     if unwrapped {

@@ -34,7 +34,7 @@ impl Style for Image {
     }
 }
 
-/// The page.
+/// The page text.
 const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diameter` is a number [length], `type`, an \
     attribute, or `auto`: the diameter of spheres, the edge of a peridynamic particle's cube of volume times √2 (so \
     that no light falls through a body), else 1.\n\n\
@@ -63,7 +63,7 @@ impl DumpStyle for Image {
 }
 
 impl Declared {
-    /// Reads the words behind the name of the file.
+    /// Reads the words after the file name.
     ///
     /// # Errors
     /// Every mistake in them.
@@ -93,7 +93,7 @@ impl Declared {
         Ok(dump)
     }
 
-    /// Reads a keyword that movies alone have.
+    /// Reads a keyword of movies only.
     fn paces(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
         let Some(pace) = &mut self.pace else { return Ok(false) };
         match word.text.as_str() {
@@ -109,8 +109,8 @@ fn positive(d: f64, word: &Word) -> Result<f64> {
     if d > 0.0 { Ok(d) } else { fail(Code::BAD_VALUE, word.span, "a diameter must be greater than zero") }
 }
 
-/// The diameter of a sphere in pictures. Cubes of a body, and spheres as wide as their cube, are drawn as wide as their diagonal, so
-/// that no light falls through the body.
+/// The diameter of a sphere in pictures. Cells of a body, and spheres as wide as their cell, are drawn with
+/// the diameter of the cell's diagonal, so that the body has no gaps.
 pub fn auto_diameter(w: &World, i: usize) -> f64 {
     const OVERLAP: f64 = std::f64::consts::SQRT_2;
     let p = &w.particles;
@@ -123,7 +123,7 @@ pub fn auto_diameter(w: &World, i: usize) -> f64 {
     }
 }
 
-/// How large spheres are drawn.
+/// Source of sphere diameters.
 #[derive(Clone, Debug)]
 enum Size {
     Auto,
@@ -132,14 +132,14 @@ enum Size {
     Attribute(Attribute),
 }
 
-/// A dump of pictures, file by file or as a movie.
+/// A dump of pictures, as separate files or as a movie.
 #[derive(Clone, Debug)]
 pub struct Declared {
     base: Base,
     colour: Attribute,
     size: Size,
     options: Options,
-    /// How a movie is played; nothing where each picture is a file.
+    /// Frame rate of a movie; `None` for separate pictures.
     pace: Option<Pace>,
 }
 
@@ -225,7 +225,7 @@ impl Declared {
         let path = shot.state.target.pattern.at(shot.step);
         let image = render(&scene, &view, &self.options.look);
         if image.pixels.is_empty() {
-            // Given up: the run ends, and its files with it.
+            // Interrupted: the run ends, and its files are closed.
             return Ok(());
         }
         if let Some(pace) = self.pace {
@@ -252,7 +252,7 @@ impl Declared {
         }
     }
 
-    /// Colours of the rows and what explains them.
+    /// Colours of the rows, and their legend.
     fn paint(&self, w: &World, rows: &[usize], data: &Data<'_>) -> (Vec<Colour>, Option<Legend>) {
         let o = &self.options;
         let fixed = |i: usize| {

@@ -1,6 +1,6 @@
 //! Dumps: snapshots of particles in files; one file each, one line each in [`DUMPS`].
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod attribute;

@@ -1,4 +1,4 @@
-//! Dump `local`: values of pairs, bonds and the like as text.
+//! Dump `local`: values of pairs, bonds and other local data as text.
 
 use super::base::{Base, Sort, column, unknown};
 use super::{Dump, DumpStyle};
@@ -43,7 +43,7 @@ struct Declared {
     base: Base,
     columns: Vec<Column>,
     names: Vec<String>,
-    /// Column names that `colname` has set.
+    /// Column names set by `colname`.
     renamed: Vec<(usize, String)>,
     formats: Formats,
     header: bool,
@@ -58,7 +58,7 @@ impl DumpStyle for Local {
     }
 }
 
-/// A dump of the style `local` into this file; its values follow.
+/// A dump of style `local` into this file; parses its values.
 pub(super) fn local(mut base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
     base.sort = Sort::Off;
     let (mut columns, mut names) = (vec![], vec![]);
@@ -111,7 +111,7 @@ fn reference(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
     }
 }
 
-/// Keywords of all dumps that concern particles only.
+/// Keywords of dumps that apply to particles only.
 const OF_PARTICLES: &[&str] = &["element", "pbc", "refresh", "region", "thresh"];
 
 const OWN: &[&str] = &["colname", "format", "header", "label", "time", "units"];
@@ -216,7 +216,7 @@ impl Declared {
         if matches!(self.columns[column], Column::Index) { Kind::Int } else { Kind::Float }
     }
 
-    /// What stands above a column.
+    /// The heading of a column.
     fn title(&self, column: usize) -> &str {
         let new = self.renamed.iter().rev().find(|(k, _)| *k == column);
         new.map_or(&self.names[column], |(_, name)| name)

@@ -1,4 +1,4 @@
-//! Dumps `atom/gz`, `custom/gz`, `cfg/gz`, `xyz/gz` and `local/gz`: files that are compressed, as tightly as one likes.
+//! Dumps `atom/gz`, `custom/gz`, `cfg/gz`, `xyz/gz` and `local/gz`: compressed files with a selectable level.
 
 use super::base::Base;
 use super::{Dump, DumpStyle, forms, local, text};
@@ -11,7 +11,7 @@ pub struct Packed {
     name: &'static str,
     syntax: &'static str,
     example: &'static str,
-    /// Reads what follows the file name.
+    /// Reads the words after the file name.
     build: fn(Base, &mut Args, &BuildCx) -> Result<Box<dyn Dump>>,
 }
 

@@ -1,4 +1,4 @@
-//! The options of `dump image` and what they mean for camera, colours and text.
+//! Options of `dump image`, and their translation into camera, colours and text.
 
 use perigrain_base::diag::{Code, Result, fail, nearest};
 use perigrain_base::gate;
@@ -40,11 +40,11 @@ pub const KEYWORDS: &[&str] = &[
     "zoom",
 ];
 
-/// Keywords after which the picture is framed anew.
+/// Keywords that reset the framing of the picture.
 pub const MOVES: &[&str] =
     &["view", "up", "zoom", "center", "perspective", "frame", "region", "thresh", "adiam", "size"];
 
-/// Keywords of LAMMPS that are refused by name.
+/// LAMMPS' keywords that are refused by name.
 const ELSEWHERE: &[&str] = &[
     "amap",
     "atrans",
@@ -69,7 +69,7 @@ const ELSEWHERE: &[&str] = &[
     "tri",
 ];
 
-/// What a picture shows when no centre is given.
+/// What is framed if no centre is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Framing {
     First,
@@ -84,7 +84,7 @@ enum End {
     Number(f64),
 }
 
-/// Everything that can be said about a picture.
+/// All options of a picture.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Size, background, light.
@@ -99,20 +99,20 @@ pub struct Options {
     pub diameter: Option<f64>,
     /// Whether there is a legend.
     pub legend: bool,
-    /// What the legend is called, if not by its attribute.
+    /// Title of the legend, if not the attribute's name.
     pub legend_text: Option<String>,
-    /// Text above.
+    /// Text at the top.
     pub title: String,
-    /// Whether the time stands below.
+    /// Whether the time is shown at the bottom.
     pub time: bool,
     /// Whether the box is drawn.
     pub box_edges: bool,
     /// Whether walls are drawn.
     pub walls: bool,
-    /// Whether a length stands below.
+    /// Whether a scale bar is shown at the bottom.
     pub scale_bar: bool,
     camera: Camera,
-    /// Centre as fractions of the box, moving with it or not.
+    /// Centre in fractions of the box; fixed or moving with it.
     centre: Option<[f64; 3]>,
     framing: Framing,
     range: [End; 2],
@@ -141,11 +141,11 @@ impl Default for Options {
     }
 }
 
-/// What a pixel takes until it is in its file: depths and what is seen there of four samples, depths for the shade, colour, and
-/// the packed bytes.
+/// Bytes per pixel until the picture is written: depths and colours of four samples, depths for the shading,
+/// final colour, and compressed bytes.
 const BYTES_PER_PIXEL: f64 = 46.0;
 
-/// The longest side of a picture: above it neither viewers nor memory last.
+/// The longest side of a picture: viewers and memory set this limit.
 const LONGEST: i64 = 16384;
 
 fn pixels(args: &mut Args, what: &str) -> Result<usize> {
@@ -158,7 +158,7 @@ fn pixels(args: &mut Args, what: &str) -> Result<usize> {
 }
 
 impl Options {
-    /// Reads one keyword with its values; `modify` tells `dump_modify` from the dump line.
+    /// Reads one keyword with its values; `modify` distinguishes `dump_modify` from the dump line.
     pub fn read(&mut self, word: &Word, args: &mut Args, cx: &BuildCx, modify: bool) -> Result<bool> {
         match word.text.as_str() {
             "size" => {
@@ -207,7 +207,7 @@ impl Options {
         Ok(true)
     }
 
-    /// Keywords that change the dress, not the content.
+    /// Keywords for appearance, not content.
     fn dress(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
         match word.text.as_str() {
             "legend" => match args.expect("yes, no or a text")? {
@@ -256,7 +256,7 @@ impl Options {
         Ok(true)
     }
 
-    /// The name over the legend.
+    /// The title of the legend.
     pub fn legend_title(&self, word: &str) -> String {
         let plain = word.strip_prefix("c_").or(word.strip_prefix("f_")).or(word.strip_prefix("v_"));
         self.legend_text.clone().unwrap_or_else(|| plain.unwrap_or(word).to_string())
@@ -282,11 +282,12 @@ impl Options {
                 }
             }
         }
-        // One value throughout is drawn as the low end.
+        // A single value everywhere is drawn as the low end.
         if range[0] == range[1] { [range[0], range[0] + 1.0] } else { range }
     }
 
-    /// The view of this snapshot; `kept` holds the first one's, which shows the box where there is nothing yet.
+    /// The view of this snapshot; `kept` stores the first one, which shows the box if there are no particles
+    /// yet.
     pub fn view<I>(&self, domain: &Domain, spheres: impl Fn() -> I, kept: &mut Option<View>) -> View
     where
         I: Iterator<Item = ([f64; 3], f64)>,
@@ -294,7 +295,7 @@ impl Options {
         let bounds = domain.bounds();
         let at = |f: [f64; 3]| [0, 1, 2].map(|k| bounds[k][0] + f[k] * (bounds[k][1] - bounds[k][0]));
         let camera = Camera { centre: self.centre.map(at), ..self.camera.clone() };
-        // A box that is drawn should also be seen.
+        // If the box is drawn, it is framed.
         let framing = if self.box_edges { Framing::Box } else { self.framing };
         match framing {
             Framing::Each => camera.frame(spheres()),
@@ -321,7 +322,7 @@ pub fn edges(d: &Domain) -> Vec<[[f64; 3]; 2]> {
     lines
 }
 
-/// The line below a picture: the time with a handy prefix.
+/// The line at the bottom of a picture: the time with a suitable SI prefix.
 pub fn time_line(w: &World) -> String {
     let (time, units) = (w.clock.time(), w.settings.units);
     match units.name() {
@@ -339,7 +340,8 @@ pub fn time_line(w: &World) -> String {
     }
 }
 
-/// Text for the picture. LAMMPS puts no variables into quotes, so outside of them `_` stands for a blank.
+/// Text for the picture. LAMMPS does not substitute variables within quotes, so outside of quotes `_` stands
+/// for a blank.
 fn spoken(word: &Word) -> String {
     if word.quoted { word.text.clone() } else { word.text.replace('_', " ") }
 }
@@ -361,7 +363,7 @@ fn fraction(args: &mut Args, what: &str) -> Result<f32> {
     Ok(args.non_negative(what)?.min(1.0) as f32)
 }
 
-/// `yes|no [seed] strength` of LAMMPS' `ssao` and `depthcue`; only the strength matters here.
+/// `yes|no [seed] strength` of LAMMPS' `ssao` and `depthcue`; only the strength has an effect here.
 fn switched(args: &mut Args, seed: bool) -> Result<f32> {
     let on = args.flag("the switch")?;
     if seed {

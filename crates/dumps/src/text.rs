@@ -18,7 +18,7 @@ pub struct Atom;
 /// `dump … custom`.
 pub struct Custom;
 
-/// The page of `custom`.
+/// Page text of `custom`.
 const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, as fractions of the box `xs ys zs`, \
     with box crossings undone `xu yu zu xsu ysu zsu`, box crossings `ix iy iz`, velocities `vx vy vz`, forces \
     `fx fy fz`, the type's name `element`, for spheres `radius diameter omegax omegay omegaz tqx tqy tqz`, for peridynamic particles `volume`, and \
@@ -84,12 +84,12 @@ impl DumpStyle for Custom {
     }
 }
 
-/// A dump of the style `atom` into this file.
+/// A dump of style `atom` into this file.
 pub(super) fn atom(base: Base, _: &mut Args, _: &BuildCx) -> Result<Box<dyn Dump>> {
     Ok(Box::new(Text::new(base, Form::Native, Layout::Atom { scaled: true, image: false })))
 }
 
-/// A dump of the style `custom` into this file; its attributes follow.
+/// A dump of style `custom` into this file; parses its attributes.
 pub(super) fn custom(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
     let attributes = attributes(args, cx)?;
     Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(attributes))))
@@ -110,12 +110,12 @@ pub(super) fn attributes(args: &mut Args, cx: &BuildCx) -> Result<Vec<Attribute>
     Ok(attributes)
 }
 
-/// What a snapshot looks like.
+/// Output format of a snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
     /// LAMMPS' own text.
     Native,
-    /// One YAML document each.
+    /// YAML, one document per snapshot.
     Yaml,
     /// XYZ.
     Xyz,
@@ -124,7 +124,7 @@ pub(super) enum Form {
 }
 
 impl Form {
-    /// Further keywords of `dump_modify`.
+    /// Additional keywords of `dump_modify`.
     fn keywords(self, atom: bool) -> &'static [&'static str] {
         match self {
             Form::Native if atom => &["colname", "format", "header", "image", "scale", "time", "units"],
@@ -136,7 +136,7 @@ impl Form {
     }
 }
 
-/// Which columns.
+/// Selection of columns.
 #[derive(Clone, Debug)]
 pub(super) enum Layout {
     Atom { scaled: bool, image: bool },
@@ -171,7 +171,7 @@ pub(super) struct Text {
     header: bool,
     layout: Layout,
     formats: Formats,
-    /// Column names that `colname` has set.
+    /// Column names set by `colname`.
     names: Vec<(usize, String)>,
     time: bool,
     units: bool,
@@ -279,7 +279,7 @@ impl Dump for Text {
 }
 
 impl Text {
-    /// A dump of these columns.
+    /// A dump with these columns.
     pub(super) fn new(base: Base, form: Form, layout: Layout) -> Self {
         let formats = Formats::default();
         Self {
@@ -295,12 +295,12 @@ impl Text {
         }
     }
 
-    /// Another format for a column (from 0) than the usual one, until `dump_modify format` says more.
+    /// Sets the default format of a column (from 0), until `dump_modify format` changes it.
     pub(super) fn default_format(&mut self, column: usize, format: &str) -> Result<()> {
         self.formats.set_column(column, Kind::Float, format)
     }
 
-    /// What binary files call the style.
+    /// Style name in binary files.
     fn magic(&self) -> &'static str {
         match self.layout {
             Layout::Atom { .. } => "DUMPATOM",
@@ -312,7 +312,7 @@ impl Text {
         self.form.keywords(matches!(self.layout, Layout::Atom { .. }))
     }
 
-    /// One keyword of these styles.
+    /// Reads one keyword of these styles.
     fn own(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
         if !self.own_keywords().contains(&word.text.as_str()) {
             return Ok(false);
@@ -339,7 +339,7 @@ impl Text {
         }
         let mut kinds: Vec<Kind> = self.layout.attributes().iter().map(Attribute::kind).collect();
         if let (Form::Cfg(_), Some(kind)) = (self.form, kinds.get_mut(1)) {
-            // The deck speaks of a type; what is written is its name, whatever the format.
+            // The deck gives a type; the output is its name, in any format.
             *kind = Kind::Int;
         }
         if self.form == Form::Xyz && which.text != "line" {
@@ -371,7 +371,7 @@ impl Text {
         Ok(())
     }
 
-    /// A column, counted from 0.
+    /// Parses a column, counted from 0.
     fn column(&self, word: &Word) -> Result<usize> {
         column(word, self.layout.attributes().iter().map(|a| a.word.as_str()))
     }

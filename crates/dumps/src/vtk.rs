@@ -116,10 +116,10 @@ struct Column {
     vector: bool,
 }
 
-/// What `x y z` are called when they are joined.
+/// Name of the vector of `x y z`.
 const POSITION: &str = "position";
 
-/// Joins x, y, z into vectors.
+/// Combines x, y, z components into vectors.
 fn group(attributes: &[Attribute]) -> Vec<Column> {
     let mut columns = vec![];
     let mut k = 0;
@@ -177,7 +177,7 @@ impl Owned {
 }
 
 impl Declared {
-    /// Writes one file, and its line in the series unless this is a `write_dump`.
+    /// Writes one file and, unless this is a `write_dump`, its entry in the series.
     fn write(&self, shot: Shot<'_>, columns: &[Column], every: i64) -> Result<()> {
         let rows = &shot.rows[..];
         let x = &shot.world.particles.x;

@@ -1,4 +1,4 @@
-//! Whether triangles are the surface of a body: closed, two-sided, and nowhere through itself.
+//! Checks that triangles bound a body: closed, orientable, and without self-intersection.
 
 use super::exact::{side2, side3};
 use super::read::Surface;
@@ -9,28 +9,28 @@ use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use perigrain_base::par;
 
-/// Below this area over the square of the longest side a triangle has none.
+/// A triangle whose area over the square of its longest side is below this counts as degenerate.
 const FLAT: f64 = 1e-12;
 
-/// Why triangles are no surface of a body. Triangles are numbered from 0.
+/// Reasons why triangles do not bound a body. Triangles are numbered from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// There is none.
+    /// There are no triangles.
     Empty,
-    /// A triangle without area.
+    /// A degenerate triangle.
     Flat(usize),
-    /// Edges that border one triangle only: how many, and the first one by triangle and corner where it begins.
+    /// Edges with a single triangle: their number, and the first one by triangle and corner where it begins.
     Open(usize, [usize; 2]),
-    /// Edges that border more than two triangles.
+    /// Edges with more than two triangles.
     Crowded(usize, [usize; 2]),
-    /// A surface with one side only: where the two sides meet.
+    /// A one-sided surface: where the two sides meet.
     OneSided([usize; 2]),
-    /// Pairs of triangles that cross, touch or lie on each other: how many, and the first one.
+    /// Pairs of triangles that cross, touch or overlap: their number, and the first one.
     Crossing(usize, [usize; 2]),
 }
 
 impl Fault {
-    /// The sentence about it, with places and numbers as they stand in the file.
+    /// The message, with positions and numbers as in the file.
     pub fn text(&self, surface: &Surface) -> String {
         let triangles = &surface.triangles;
         let point = |p: &Vec3| format!("({})", p.map(|x| general(x, 6)).join(" "));
@@ -65,7 +65,7 @@ impl Fault {
         }
     }
 
-    /// What can be done about it.
+    /// The remedy.
     pub fn help(&self) -> &'static str {
         match self {
             Fault::Empty => "faces are needed, not points and lines alone",
@@ -84,7 +84,7 @@ impl Fault {
     }
 }
 
-/// Whether each triangle has an area.
+/// Checks that no triangle is degenerate.
 pub fn areas(triangles: &[Triangle]) -> Result<(), Fault> {
     if triangles.is_empty() {
         return Err(Fault::Empty);
@@ -95,7 +95,7 @@ pub fn areas(triangles: &[Triangle]) -> Result<(), Fault> {
     }
 }
 
-/// The first triangle without area, those of corners that are no numbers included.
+/// The first degenerate triangle, including those with corners that are not finite.
 pub fn flat(triangles: &[Triangle]) -> Option<usize> {
     let longest = |t: &Triangle| {
         let square = |k: usize| {
@@ -107,8 +107,8 @@ pub fn flat(triangles: &[Triangle]) -> Option<usize> {
     triangles.iter().position(|t| area(t).is_nan() || area(t) <= FLAT * longest(t))
 }
 
-/// Every side of every triangle: its two corners, the smaller number first, and three times the triangle's number plus the
-/// corner where it begins; sides of one edge follow each other.
+/// Every side of every triangle: its two corners, the smaller number first, and three times the triangle's
+/// number plus the corner where it begins; sides of one edge are consecutive.
 pub fn edges(corners: &[[u32; 3]]) -> Vec<([u32; 2], usize)> {
     let side = |(k, c): (usize, &[u32; 3])| {
         [0, 1, 2].map(|e| {
@@ -121,7 +121,8 @@ pub fn edges(corners: &[[u32; 3]]) -> Vec<([u32; 2], usize)> {
     all
 }
 
-/// The neighbour across each side, and whether it runs along the common edge the same way, as it should not.
+/// The neighbour across each side, and whether it runs along the common edge in the same direction (which is
+/// an inconsistent orientation).
 pub struct Sides(Vec<[(u32, bool); 3]>);
 
 /// Finds the neighbours across all sides of a closed surface.
@@ -150,7 +151,7 @@ pub fn closed(triangles: &[Triangle]) -> Result<Sides, Fault> {
 }
 
 impl Sides {
-    /// Turns triangles so that all of them see the outside counterclockwise; returns how many.
+    /// Flips triangles so that all are counterclockwise seen from outside; returns the number flipped.
     pub fn orient(&self, triangles: &mut [Triangle], tree: &Tree) -> Result<usize, Fault> {
         const NONE: u32 = u32::MAX;
         let n = triangles.len();
@@ -186,7 +187,7 @@ impl Sides {
         Ok(turn.iter().filter(|t| **t).count())
     }
 
-    /// Turns a part as a whole, so that it holds a positive volume or, within another one, is a hole.
+    /// Flips a part as a whole, so that it encloses a positive volume or, within another part, is a hole.
     fn outward(
         &self,
         members: &[usize],
@@ -212,7 +213,7 @@ impl Sides {
     }
 }
 
-/// Whether no triangle meets another one but in common corners and edges.
+/// Checks that triangles meet in common corners and edges only.
 pub fn crossings(triangles: &[Triangle], tree: &Tree) -> Result<(), Fault> {
     let corners = weld(triangles);
     let chunk = |range: std::ops::Range<usize>| {
@@ -234,7 +235,7 @@ pub fn crossings(triangles: &[Triangle], tree: &Tree) -> Result<(), Fault> {
     if count == 0 { Ok(()) } else { Err(Fault::Crossing(count, first)) }
 }
 
-/// Whether two triangles meet elsewhere than in the corners that have the same numbers.
+/// Whether two triangles meet elsewhere than in the corners with equal numbers.
 fn cross_each_other(a: &Triangle, ca: &[u32; 3], b: &Triangle, cb: &[u32; 3]) -> bool {
     let (low, high) = (bounds(a), bounds(b));
     if (0..3).any(|d| low.0[d] > high.1[d] || low.1[d] < high.0[d]) {
@@ -247,14 +248,14 @@ fn cross_each_other(a: &Triangle, ca: &[u32; 3], b: &Triangle, cb: &[u32; 3]) ->
             let meets = |t: &Triangle, o: &Triangle| (0..3).any(|k| line_meets(&t[k], &t[(k + 1) % 3], o));
             meets(a, b) || meets(b, a)
         }
-        // Of one common corner: the sides across from it.
+        // One common corner: tests the opposite sides.
         2 => {
             let meets = |t: &Triangle, l: [bool; 3], o: &Triangle| {
                 (0..3).any(|k| l[k] && l[(k + 1) % 3] && line_meets(&t[k], &t[(k + 1) % 3], o))
             };
             meets(a, la, b) || meets(b, lb, a)
         }
-        // Of a common edge: folded back onto each other.
+        // A common edge: tests whether one is folded onto the other.
         1 => {
             let apex = |t: &Triangle, l: [bool; 3]| l.iter().position(|l| *l).map(|k| (k, t[k]));
             let (Some((k, p)), Some((_, q))) = (apex(a, la), apex(b, lb)) else { return true };
@@ -267,7 +268,7 @@ fn cross_each_other(a: &Triangle, ca: &[u32; 3], b: &Triangle, cb: &[u32; 3]) ->
     }
 }
 
-/// Whether the line between two places meets a triangle, ends and rims included.
+/// Whether the segment between two points meets a triangle, including ends and edges.
 fn line_meets(p: &Vec3, q: &Vec3, t: &Triangle) -> bool {
     let (sp, sq) = (side3(&t[0], &t[1], &t[2], p), side3(&t[0], &t[1], &t[2], q));
     if sp * sq > 0 {

@@ -1,16 +1,16 @@
-//! How much of a body lies within boxes, exactly.
+//! Exact volumes of a body within boxes.
 
 use super::tree::Tree;
 use super::{Solid, Triangle};
 use perigrain_base::math::vec3::Vec3;
 
-/// A body as seen in other coordinates, where the boxes lie along the axes.
+/// A body in transformed coordinates in which the boxes are axis-aligned.
 pub struct Columns {
     triangles: Vec<Triangle>,
     tree: Tree,
 }
 
-/// A convex polygon of few corners: a triangle that up to six planes have cut.
+/// A convex polygon with few corners: a triangle cut by up to six planes.
 #[derive(Clone, Copy)]
 struct Polygon {
     corners: [Vec3; 9],
@@ -18,7 +18,7 @@ struct Polygon {
 }
 
 impl Solid {
-    /// The body as `map`, which is linear, shows it.
+    /// The body transformed by the linear `map`.
     pub fn columns(&self, map: impl Fn(Vec3) -> Vec3) -> Columns {
         let triangles: Vec<Triangle> = self.triangles().iter().map(|t| t.map(&map)).collect();
         let tree = Tree::new(&triangles);
@@ -27,8 +27,9 @@ impl Solid {
 }
 
 impl Columns {
-    /// The volume of the body within a box, in these coordinates: a line upwards leaves the body through faces that look up
-    /// and enters it through others, so that the heights at which it does so, kept within the box, add up with these signs.
+    /// The volume of the body within a box, in these coordinates: a vertical line leaves the body through
+    /// upward faces and enters it through downward ones, so the heights of these crossings, clamped to the
+    /// box, are summed with these signs.
     pub fn volume(&self, lo: Vec3, hi: Vec3) -> f64 {
         let mut volume = 0.0;
         self.tree.meet(lo, [hi[0], hi[1], f64::INFINITY], |k| {
@@ -40,8 +41,8 @@ impl Columns {
     }
 }
 
-/// The volume between the lower face of a box and a triangle, or the upper face where that is lower; negative where the
-/// triangle looks down.
+/// The volume between the lower face of a box and a triangle, or the upper face where that is lower; negative
+/// for a triangle that faces down.
 fn below(t: &Triangle, lo: Vec3, hi: Vec3) -> f64 {
     let mut p = Polygon { corners: [[0.0; 3]; 9], count: 3 };
     p.corners[..3].copy_from_slice(t);
@@ -50,7 +51,7 @@ fn below(t: &Triangle, lo: Vec3, hi: Vec3) -> f64 {
     }
     p = p.cut(2, lo[2], false);
     let within = p.cut(2, hi[2], true).integral(lo[2]).0;
-    // What lies in the upper face is within the box, and must count once.
+    // What lies in the upper face belongs to the box, and must count once.
     if p.corners[..p.count].iter().all(|c| c[2] <= hi[2]) {
         return within;
     }
@@ -58,7 +59,7 @@ fn below(t: &Triangle, lo: Vec3, hi: Vec3) -> f64 {
 }
 
 impl Polygon {
-    /// What lies on one side of the plane across axis `d`.
+    /// The part on one side of a plane normal to axis `d`.
     fn cut(&self, d: usize, at: f64, lower: bool) -> Self {
         let mut out = Self { corners: [[0.0; 3]; 9], count: 0 };
         let height = |p: &Vec3| if lower { at - p[d] } else { p[d] - at };
@@ -85,7 +86,8 @@ impl Polygon {
         }
     }
 
-    /// The integral of the height over `base` over the area as seen from above, and that area; both with its sign.
+    /// The integral of the height above `base` over the area projected from above, and that area; both
+    /// signed.
     fn integral(&self, base: f64) -> (f64, f64) {
         let (mut volume, mut area) = (0.0, 0.0);
         for k in 2..self.count {

@@ -1,5 +1,5 @@
-//! On which side points lie, without rounding errors: adaptive predicates after Shewchuk (1997), "Adaptive precision
-//! floating-point arithmetic and fast robust geometric predicates", Discrete & Computational Geometry 18, 305.
+//! Exact orientation tests: adaptive predicates after Shewchuk (1997), "Adaptive precision floating-point
+//! arithmetic and fast robust geometric predicates", Discrete & Computational Geometry 18, 305.
 
 use perigrain_base::math::vec3::Vec3;
 
@@ -9,10 +9,10 @@ const EPS: f64 = f64::EPSILON / 2.0;
 const BOUND_2: f64 = (3.0 + 16.0 * EPS) * EPS;
 const BOUND_3: f64 = (7.0 + 56.0 * EPS) * EPS;
 
-/// A sum of numbers that do not overlap, smallest first: exactly one number.
+/// A sum of non-overlapping numbers, smallest first, that represents one number exactly.
 type Sum = Vec<f64>;
 
-/// 1 where a, b, c run counterclockwise, −1 where clockwise, 0 on one line.
+/// 1 if a, b, c are counterclockwise, −1 if clockwise, 0 if collinear.
 pub fn side2(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i8 {
     let left = (a[0] - c[0]) * (b[1] - c[1]);
     let right = (a[1] - c[1]) * (b[0] - c[0]);
@@ -24,7 +24,7 @@ pub fn side2(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i8 {
     sign_of(&minus(&times(&d(a, 0), &d(b, 1)), &times(&d(a, 1), &d(b, 0))))
 }
 
-/// 1 where d lies below the plane of a, b, c, seen so that they run counterclockwise; −1 above, 0 on it.
+/// 1 if d is below the plane of a, b, c, seen so that they are counterclockwise; −1 above, 0 on it.
 pub fn side3(a: &Vec3, b: &Vec3, c: &Vec3, d: &Vec3) -> i8 {
     let [p, q, r] = [a, b, c].map(|v| [v[0] - d[0], v[1] - d[1], v[2] - d[2]]);
     let minors = [[q[0] * r[1], q[1] * r[0]], [r[0] * p[1], r[1] * p[0]], [p[0] * q[1], p[1] * q[0]]];
@@ -56,7 +56,7 @@ fn sign_of(sum: &[f64]) -> i8 {
     sum.last().map_or(0, |x| sign(*x))
 }
 
-/// a + b and what rounding takes from it.
+/// a + b and its rounding error.
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let part = s - a;
@@ -121,8 +121,8 @@ mod tests {
         assert_eq!(side3(&a, &b, &c, &[5.0, 7.0, 0.0]), 0);
     }
 
-    // Shewchuk's example: places a few units in the last place from the line through (12, 12) and (24, 24). The oracle is
-    // arithmetic with whole numbers of 2⁻⁵³.
+    // Shewchuk's example: points a few units in the last place from the line through (12, 12) and (24, 24).
+    // The oracle is integer arithmetic in units of 2⁻⁵³.
     #[test]
     fn next_to_a_line_the_side_is_that_of_whole_numbers() {
         let unit = 2f64.powi(-53);
@@ -134,7 +134,7 @@ mod tests {
                 let (px, py) = (whole(p[0]), whole(p[1]));
                 let exact = (ax - px) * (by - py) - (ay - py) * (bx - px);
                 assert_eq!(i128::from(side2([12.0, 12.0], [24.0, 24.0], p)), exact.signum(), "{i} {j}");
-                // The same in space, in the plane across it.
+                // The same in space, in the plane normal to it.
                 let lift = |q: [f64; 2]| [q[0], q[1], 0.0];
                 let up = [3.0, 3.0, 7.0];
                 let space = side3(&lift([12.0, 12.0]), &lift([24.0, 24.0]), &up, &lift(p));

@@ -1,4 +1,4 @@
-//! Walls of triangles: which places a sphere touches, edges and corners counted once.
+//! Walls of triangles: the contact points of a sphere, with shared edges and corners counted once.
 
 use super::check::flat;
 use super::seams::Seams;
@@ -7,42 +7,42 @@ use super::{Triangle, weld};
 use perigrain_base::math::triangle::{Feature, nearest};
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
 
-/// A place of a surface near a sphere.
+/// A point of a surface near a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
     /// The number of the triangle.
     pub part: u32,
     /// Unit vector from the nearest point to the sphere's centre.
     pub normal: Vec3,
-    /// How far the centre is from that point [length].
+    /// Distance of the centre from that point [length].
     pub distance: f64,
-    /// The piece of the triangle that is nearest.
+    /// The feature of the triangle on which it lies.
     feature: Feature,
-    /// A neighbour is nearer, or stands for both.
+    /// Whether a neighbour is nearer or represents both.
     hidden: bool,
 }
 
-/// Of contacts with one patch whose normals differ by less than this (45°) the nearest one stands for all.
+/// Contacts with one patch whose normals differ by less than this (45°) are represented by the nearest one.
 const ALIKE: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Distances that differ by less, relative to themselves, belong to one shared edge or corner.
+/// Distances with a smaller relative difference belong to one shared edge or corner.
 const SAME: f64 = 1e-10;
-/// Rounding's share of a reach, so that boxes miss nothing.
+/// Relative allowance for rounding in a reach, so that box tests miss nothing.
 const SLACK: f64 = 1e-9;
 
 /// A surface of triangles at rest.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
     triangles: Vec<Triangle>,
-    /// Unit vectors across the triangles.
+    /// Unit normals of the triangles.
     normals: Vec<Vec3>,
-    /// Corners by number: those at the same place are one.
+    /// Corner numbers: equal positions have equal numbers.
     corners: Vec<[u32; 3]>,
     /// The smooth patch of each triangle.
     patch: Vec<u32>,
     tree: Tree,
-    /// Places nearer to each other than this are one [length].
+    /// Positions closer than this are treated as equal [length].
     miss: f64,
-    /// Edges, or parts of edges, that border one triangle only.
+    /// Number of edges, or parts of edges, with a single triangle.
     pub open_edges: usize,
 }
 
@@ -50,7 +50,7 @@ impl Facets {
     /// The surface of these triangles.
     ///
     /// # Errors
-    /// The number (from 0) of a triangle without area.
+    /// The number (from 0) of a degenerate triangle.
     pub fn new(triangles: Vec<Triangle>) -> Result<Self, usize> {
         if let Some(bad) = flat(&triangles) {
             return Err(bad);
@@ -67,18 +67,18 @@ impl Facets {
         &self.triangles
     }
 
-    /// The farthest corner from an axis of unit length through a point.
+    /// The largest distance of a corner from an axis of unit length through a point.
     pub fn farthest(&self, point: Vec3, axis: Vec3) -> f64 {
         let far = |p: &Vec3| length(cross(axis, sub(*p, point)));
         self.triangles.iter().flatten().map(far).fold(0.0, f64::max)
     }
 
-    /// Whether one contact may follow another: their triangles lie in one smooth patch.
+    /// Whether one contact may continue as another: their triangles belong to one smooth patch.
     pub fn passes(&self, from: u32, to: u32) -> bool {
         self.patch.get(from as usize) == self.patch.get(to as usize)
     }
 
-    /// Whether some triangle is nearer than `reach`.
+    /// Whether some triangle is within `reach`.
     pub fn close(&self, x: Vec3, reach: f64) -> bool {
         let mut found = false;
         self.visit(x, reach, |k| {
@@ -88,7 +88,7 @@ impl Facets {
         found
     }
 
-    /// The numbers of the triangles nearer than `reach`, in their order.
+    /// The numbers of the triangles within `reach`, in order.
     pub fn around(&self, x: Vec3, reach: f64, out: &mut Vec<u32>) {
         let from = out.len();
         self.visit(x, reach, |k| {
@@ -100,15 +100,16 @@ impl Facets {
         out[from..].sort_unstable();
     }
 
-    /// The places nearer than `reach`: one for each face, edge or corner that is nearest in its surroundings, and of
-    /// those in one smooth patch that look alike the nearest.
+    /// The contact points within `reach`: one for each locally nearest face, edge or corner, and the nearest
+    /// one of those in a smooth patch with similar normals.
     pub fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
         let mut members = vec![];
         self.around(x, reach, &mut members);
         self.near_among(&members, x, reach, out);
     }
 
-    /// The places nearer than `reach`, as [`Facets::near`] finds them, where `members` has all triangles so near, in their order.
+    /// The contact points within `reach`, as in [`Facets::near`]; `members` must contain all triangles within
+    /// reach, in order.
     pub fn near_among(&self, members: &[u32], x: Vec3, reach: f64, out: &mut Vec<Near>) {
         let from = out.len();
         for &k in members {
@@ -142,19 +143,19 @@ impl Facets {
         out.truncate(kept);
     }
 
-    /// Calls `visit` for the triangles whose boxes may be so near, until it says stop.
+    /// Calls `visit` for triangles whose boxes are within reach, until it returns stop.
     fn visit(&self, x: Vec3, reach: f64, visit: impl FnMut(u32) -> bool) {
         let wide = |d: usize| reach + SLACK * (reach + x[d].abs());
         self.tree.meet([0, 1, 2].map(|d| x[d] - wide(d)), [0, 1, 2].map(|d| x[d] + wide(d)), visit);
     }
 
-    /// The height of a place above the plane of triangle `k`, along its normal.
+    /// The height of a point above the plane of triangle `k`, along its normal.
     #[inline]
     fn height(&self, k: usize, x: Vec3) -> f64 {
         dot(sub(x, self.triangles[k][0]), self.normals[k])
     }
 
-    /// Whether triangle `k` is nearer than `reach`.
+    /// Whether triangle `k` is within `reach`.
     fn reaches(&self, k: u32, x: Vec3, reach: f64) -> bool {
         let k = k as usize;
         if self.height(k, x).abs() >= reach {
@@ -164,17 +165,18 @@ impl Facets {
         dot(d, d) < reach * reach
     }
 
-    /// The nearest place of triangle `k`, with the way from there in place of the normal; nothing where it is not nearer than `reach`.
+    /// The nearest point of triangle `k`, with the vector from there to `x` in the field of the normal;
+    /// `None` beyond `reach`.
     #[inline]
     fn place(&self, k: u32, x: Vec3, reach: f64) -> Option<Near> {
         let at = k as usize;
-        // Most of those that were near a while ago end here.
+        // Most triangles that were near some steps ago are rejected here.
         let height = self.height(at, x);
         if height.abs() >= reach {
             return None;
         }
         let (point, feature) = nearest(x, &self.triangles[at]);
-        // Of a face the height above it: exactly along its normal wherever the foot lies.
+        // For a face, the height above it: exactly along its normal.
         let apart = match feature {
             Feature::Face => scale(height, self.normals[at]),
             _ => sub(x, point),
@@ -183,14 +185,14 @@ impl Facets {
         (distance < reach).then_some(Near { part: k, normal: apart, distance, feature, hidden: false })
     }
 
-    /// Marks places that others stand for: of a common edge or corner, and where triangles lie on each other at all.
+    /// Marks points represented by others: on a common edge or corner, and where triangles overlap.
     fn hide(&self, x: Vec3, found: &mut [Near]) {
         let mut seen = 0;
         for k in 0..found.len() {
             found[k].hidden = found.iter().any(|other| self.shares(&found[k], other));
             seen += usize::from(!found[k].hidden);
         }
-        // Corners that lie on an edge, that miss each other a little, and faces that lie on faces have no common numbers.
+        // Corners on an edge, corners with a small gap, and faces on faces have no common corner numbers.
         if seen > 1 {
             for k in 0..found.len() {
                 found[k].hidden |= found.iter().any(|other| self.lies_on(x, &found[k], other));
@@ -198,7 +200,8 @@ impl Facets {
         }
     }
 
-    /// Whether `near` is an edge or corner that belongs to `other`'s triangle, too, which is nearer or stands for both.
+    /// Whether `near` is on an edge or corner that also belongs to `other`'s triangle, which is nearer or
+    /// represents both.
     fn shares(&self, near: &Near, other: &Near) -> bool {
         let shared: &[usize] = match near.feature {
             Feature::Face => return false,
@@ -215,7 +218,7 @@ impl Facets {
         shared.iter().all(|s| theirs.contains(&own[*s]))
     }
 
-    /// Whether the place of `near` lies on `other`'s triangle, which is nearer, or has the smaller number.
+    /// Whether the point of `near` lies on `other`'s triangle, which is nearer or has the smaller number.
     fn lies_on(&self, x: Vec3, near: &Near, other: &Near) -> bool {
         if near.hidden || (other.distance, other.part) >= (near.distance, near.part) {
             return false;
@@ -226,7 +229,7 @@ impl Facets {
     }
 }
 
-/// The unit vector across a triangle.
+/// The unit normal of a triangle.
 fn normal([a, b, c]: &Triangle) -> Vec3 {
     let n = cross(sub(*b, *a), sub(*c, *a));
     scale(1.0 / length(n), n)
@@ -264,7 +267,8 @@ mod tests {
         }
         // In the corner of floor and wall: both.
         assert_eq!(seen(&m, [3.5, 2.2, 0.9]), [(up, 0.9), ([-1.0, 0.0, 0.0], 0.5)]);
-        // Beyond the rim: its edge; beyond its corner: the corner. Distances 0.5 by 3 : 4 : 5, and by 2 : 3 : 6 : 7.
+        // Beyond the rim: its edge; beyond its corner: the corner. Distances 0.5 by 3 : 4 : 5 and 2 : 3 : 6 :
+        // 7.
         let rim = seen(&m, [-0.3, 2.0, 0.4]);
         assert!(rim.len() == 1 && (rim[0].1 - 0.5).abs() < 1e-15 && (rim[0].0[0] + 0.6).abs() < 1e-15);
         let tip = seen(&m, [-0.2, -0.3, 0.6]);
@@ -273,7 +277,7 @@ mod tests {
         assert_eq!(seen(&m, [1.0, 2.0, -0.5]), [([0.0, 0.0, -1.0], 0.5)]);
         assert!(seen(&m, [1.0, 2.0, 1.5]).is_empty() && !m.close([1.0, 2.0, 1.5], 1.0));
         assert!(m.close([1.0, 2.0, 1.5], 1.6));
-        // Springs pass between the two halves of the floor, not between floor and wall.
+        // Springs are passed between the two halves of the floor, not between floor and wall.
         assert!(m.passes(0, 1) && !m.passes(0, 2) && m.open_edges == 6);
     }
 
@@ -288,13 +292,14 @@ mod tests {
 
     #[test]
     fn a_valley_of_small_angle_is_felt_once() {
-        // Two slopes of 0.1: a sphere in the middle touches both, and both look alike.
+        // Two slopes of 0.1: a sphere in the middle touches both, with similar normals.
         let [a, b] = [[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
         let m = Facets::new(vec![[a, b, [4.0, 2.0, 0.4]], [a, b, [-4.0, 2.0, 0.4]]]).unwrap();
         assert_eq!(seen(&m, [0.01, 2.0, 0.9]).len(), 1);
     }
 
-    /// The floor from -2 to 2, its left half of two triangles and its right half of fourteen with other corners, `gap` apart.
+    /// The floor from -2 to 2, its left half of two triangles and its right half of fourteen with other
+    /// corners, `gap` apart.
     fn patched(gap: f64) -> Facets {
         let [a, b, c, d] = [[-2.0, -2.0, 0.0], [0.0, -2.0, 0.0], [0.0, 2.0, 0.0], [-2.0, 2.0, 0.0]];
         let mut floor = vec![[a, b, c], [a, c, d]];
@@ -310,7 +315,7 @@ mod tests {
     fn corners_on_edges_and_small_gaps_are_no_seams() {
         for gap in [0.0, 1e-9, -1e-9] {
             let m = patched(gap);
-            // On the seam, beside it, on a corner of one side; and all around.
+            // On the seam, beside it, on a corner of one side; and on all sides.
             for y in [0.0, 0.1, 2.0 / 7.0, 6.0 / 7.0] {
                 for x in [0.0, 0.5 * gap, gap, 1e-12, -1e-5, 1e-5, -0.3, 0.3] {
                     let seen = seen(&m, [x, y, 0.9]);
@@ -318,17 +323,18 @@ mod tests {
                     assert!((seen[0].0[2] - 1.0).abs() < 1e-15, "{seen:?}");
                 }
             }
-            // Springs pass across it, and its rim alone is open: 2 + 1 sides on the left, 2 + 7 on the right.
+            // Springs are passed across it, and only its rim is open: 2 + 1 sides on the left, 2 + 7 on the
+            // right.
             assert!(m.passes(0, 4) && m.open_edges == 12, "{}", m.open_edges);
         }
-        // A gap through which something can fall is one.
+        // A gap wide enough for something to fall through stays a gap.
         let m = patched(1e-3);
         assert!(!m.passes(0, 4) && m.open_edges == 20, "{}", m.open_edges);
     }
 
     #[test]
     fn faces_that_lie_on_each_other_count_once() {
-        // Two squares of one plane that overlap and share no corner.
+        // Two overlapping squares of one plane without common corners.
         let square = |x: f64| {
             let [a, b, c, d] = [[x, 0.0, 0.0], [x + 2.0, 0.0, 0.0], [x + 2.0, 2.0, 0.0], [x, 2.0, 0.0]];
             [[a, b, c], [a, c, d]]
@@ -341,13 +347,13 @@ mod tests {
 
     #[test]
     fn a_fin_on_a_plate_makes_a_corner() {
-        // It stands on the inside of the plate's faces and shares no corner with them.
+        // It stands on the inside of the plate's faces without common corners.
         let [a, b, c, d] = [[-2.0, -2.0, 0.0], [2.0, -2.0, 0.0], [2.0, 2.0, 0.0], [-2.0, 2.0, 0.0]];
         let [e, f, g, h] = [[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [0.5, 1.0, 1.0], [0.5, -1.0, 1.0]];
         let m = Facets::new(vec![[a, b, c], [a, c, d], [e, f, g], [e, g, h]]).unwrap();
         assert_eq!(seen(&m, [0.2, 0.1, 0.4]).len(), 2);
         assert_eq!(seen(&m, [1.2, 0.1, 0.4]).len(), 2);
-        // Beyond its end the plate alone.
+        // Beyond its end the plate only.
         assert_eq!(seen(&m, [0.5, 1.2, 0.1]).len(), 2);
         assert_eq!(seen(&m, [0.5, 1.2, -0.1]).len(), 1);
     }

@@ -1,8 +1,8 @@
-//! Surfaces of triangles: read from files, checked, and asked what is inside, what is near and what they cut.
+//! Triangle surfaces: file formats, checks, inside tests, nearest points and cuts.
 //!
-//! Knows no deck, no world and no units.
+//! Independent of decks, the world and units.
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod check;
@@ -36,9 +36,9 @@ use perigrain_base::math::vec3::{cross, sub};
 /// Three corners.
 pub type Triangle = [[f64; 3]; 3];
 
-/// Numbers for corners: the same for the same place.
+/// Numbers the corners so that equal positions have equal numbers.
 fn weld(triangles: &[Triangle]) -> Vec<[u32; 3]> {
-    // Adding zero makes one of both zeros.
+    // Adding zero turns −0 into 0.
     let key = |p: &[f64; 3]| p.map(|a| (a + 0.0).to_bits());
     let mut all: Vec<([u64; 3], u32)> =
         triangles.as_flattened().iter().zip(0..).map(|(p, k)| (key(p), k)).collect();
@@ -54,13 +54,13 @@ fn weld(triangles: &[Triangle]) -> Vec<[u32; 3]> {
     corners
 }
 
-/// The axis along which a triangle looks widest.
+/// The axis along which the projection of a triangle is largest.
 fn widest(t: &Triangle) -> usize {
     let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
     (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0)
 }
 
-/// A place as seen along an axis.
+/// A point projected along an axis.
 fn seen_along(p: &[f64; 3], axis: usize) -> [f64; 2] {
     [p[(axis + 1) % 3], p[(axis + 2) % 3]]
 }

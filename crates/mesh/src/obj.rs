@@ -3,7 +3,7 @@
 use super::Triangle;
 use super::read::fan;
 
-/// Lines about looks, groups, and what is no surface: points and lines.
+/// Skipped lines: appearance, groups, and elements that are not surfaces (points and lines).
 const PASSED: [&str; 14] = [
     "vt",
     "vn",
@@ -21,7 +21,7 @@ const PASSED: [&str; 14] = [
     "lod",
 ];
 
-/// Reads an OBJ file; the first object's name and the triangles.
+/// Reads an OBJ file: the first object's name and the triangles.
 pub fn read(bytes: &[u8]) -> Result<(String, Vec<Triangle>), String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "it is no text".to_string())?;
     let (mut points, mut triangles, mut name) = (vec![], vec![], None);
@@ -32,7 +32,7 @@ pub fn read(bytes: &[u8]) -> Result<(String, Vec<Triangle>), String> {
         let wrong = |what: String| Err(format!("line {}: {what}", n + 1));
         match words.as_slice() {
             [] => {}
-            // A fourth number is a weight, six are a corner with a colour.
+            // A fourth number is a weight; six numbers are a corner with a colour.
             ["v", x, y, z, ..] => {
                 let numbers = [x, y, z].map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite()));
                 let [Some(x), Some(y), Some(z)] = numbers else {
@@ -66,7 +66,7 @@ pub fn read(bytes: &[u8]) -> Result<(String, Vec<Triangle>), String> {
     Ok((name.unwrap_or_default(), triangles))
 }
 
-/// The corner that `7`, `7/1/2` or, counted from the last one back, `-1` names, from 0.
+/// The corner named by `7`, `7/1/2` or, counted backwards from the last one, `-1`; from 0.
 fn place(word: &str, count: usize) -> Option<usize> {
     let k: i64 = word.split('/').next()?.parse().ok()?;
     match usize::try_from(k) {

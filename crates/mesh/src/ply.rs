@@ -1,4 +1,4 @@
-//! PLY files: text, and binary of either byte order.
+//! PLY files: text, and binary in either byte order.
 
 use super::Triangle;
 use super::read::fan;
@@ -10,7 +10,7 @@ enum Encoding {
     Big,
 }
 
-/// A kind of number: its bytes, and whether it is a fraction or has a sign.
+/// A number type: its size, and whether it is floating-point or signed.
 #[derive(Clone, Copy)]
 struct Kind {
     bytes: usize,
@@ -20,7 +20,7 @@ struct Kind {
 
 struct Property {
     name: String,
-    /// Kind of the count that a list begins with.
+    /// Type of the count at the beginning of a list.
     list: Option<Kind>,
     kind: Kind,
 }
@@ -31,7 +31,7 @@ struct Element {
     properties: Vec<Property>,
 }
 
-/// The numbers behind the header, one by one.
+/// The numbers after the header, one by one.
 enum Numbers<'b> {
     Text(std::str::SplitAsciiWhitespace<'b>),
     Bytes(&'b [u8], bool),
@@ -94,7 +94,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
             "vertex" => corners(element, &mut numbers, &mut points)?,
             "face" => faces(element, &mut numbers, &points, &mut triangles)?,
             "tristrips" => return Err("its triangles are strips (`tristrips`): write them as faces".into()),
-            // Edges, materials and the like: read past.
+            // Edges, materials and other elements are skipped.
             _ => rows(element, &mut numbers, |_, _| {}, |_, _| Ok(()))?,
         }
     }
@@ -159,7 +159,7 @@ fn header(bytes: &[u8]) -> Result<Header<'_>, String> {
     }
 }
 
-/// Reads the rows of an element: each property's single number, and each list.
+/// Reads the rows of an element: each scalar property and each list.
 fn rows(
     element: &Element,
     numbers: &mut Numbers,
@@ -236,7 +236,7 @@ fn faces(
             }
             polygon.clear();
             for x in list {
-                // Only whole numbers from 0 on name corners.
+                // Only integers from 0 on are valid corner numbers.
                 let whole = *x >= 0.0 && x.fract() == 0.0 && *x < points.len() as f64;
                 polygon.push(if whole {
                     *x as usize

@@ -1,16 +1,16 @@
-//! Which kind of file a surface stands in, and its triangles.
+//! Detects the format of a surface file, and reads its triangles.
 
 use super::check::flat;
 use super::{Triangle, obj, ply, stl, vtp};
 
-/// A kind of file.
+/// File formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// STL as text or, if true, binary.
     Stl(bool),
     /// Wavefront OBJ.
     Obj,
-    /// Polygon file format, of any of its three encodings.
+    /// Polygon file format, in any of its three encodings.
     Ply,
     /// VTK XML `PolyData`.
     Vtp,
@@ -28,23 +28,23 @@ impl Format {
     }
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// The object's name, where the file gives one.
+    /// The object's name, if the file gives one.
     pub name: String,
-    /// What kind of file it was.
+    /// Format of the file.
     pub format: Format,
-    /// The triangles in the order of the file; polygons are cut into fans.
+    /// The triangles in file order; polygons are cut into fans.
     pub triangles: Vec<Triangle>,
-    /// Numbers, from 0, of those that were left out.
+    /// Numbers, from 0, of omitted triangles.
     pub left_out: Vec<usize>,
-    /// Lines of comments in a format that has none.
+    /// Comment lines in a format that has none.
     pub comments: usize,
 }
 
 impl Surface {
-    /// Leaves out triangles without area, which nothing can lean on and which enclose nothing.
+    /// Omits degenerate triangles, which have no normal and enclose nothing.
     pub fn leave_out_flat(&mut self) {
         let flat = |t: &Triangle| flat(std::slice::from_ref(t)).is_some();
         self.left_out = (0..self.triangles.len()).filter(|k| flat(&self.triangles[*k])).collect();
@@ -57,26 +57,27 @@ impl Surface {
     }
 }
 
-/// Why a file cannot be read.
+/// Reason why a file cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreadable {
-    /// What it was taken for.
+    /// Assumed format.
     pub format: Format,
-    /// What is wrong with it.
+    /// The error.
     pub what: String,
 }
 
 impl Unreadable {
-    /// The sentence about a file of this name.
+    /// The message for a file of this name.
     pub fn of(&self, file: &str) -> String {
         format!("`{file}` is no {} file: {}", self.format.name(), self.what)
     }
 }
 
-/// Reads the triangles of a file: PLY and VTP are known by their first bytes, OBJ by the name's end, all else is STL.
+/// Reads the triangles of a file: PLY and VTP are recognized by their first bytes, OBJ by the file name
+/// extension, everything else is STL.
 ///
 /// # Errors
-/// What is wrong with the file, with line or place.
+/// The error, with line or position.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Unreadable> {
     let start = bytes.trim_ascii_start();
     let ends = |end: &str| file.len() >= end.len() && file.to_ascii_lowercase().ends_with(end);
@@ -105,7 +106,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Unreadable> {
     Ok(Surface { name, format, triangles, left_out: vec![], comments })
 }
 
-/// Cuts a polygon into triangles around its first corner; nothing comes of less than three corners.
+/// Cuts a polygon into triangles around its first corner; fewer than three corners give none.
 pub fn fan(polygon: &[usize], points: &[[f64; 3]], triangles: &mut Vec<Triangle>) -> Result<(), usize> {
     let place = |k: usize| points.get(k).copied().ok_or(k);
     for pair in polygon.get(1..).unwrap_or_default().windows(2) {

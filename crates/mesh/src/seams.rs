@@ -1,4 +1,4 @@
-//! Where triangles border each other: by common corners, or along edges that lie on each other.
+//! Adjacency of triangles: by common corners, or along edges that lie on each other.
 
 use super::check::edges;
 use super::tree::Tree;
@@ -8,34 +8,34 @@ use perigrain_base::math::vec3::{Vec3, add, dot, length, scale, sub};
 
 /// Neighbours whose normals differ by less than this (30°) belong to one smooth patch.
 const SMOOTH: f64 = 0.866_025_403_784_438_6;
-/// Corners and edges that miss each other by less, as a part of the surface's extent, meet: numbers of 32 bits and texts of
-/// six digits round by so much.
+/// Relative to the extent of the surface, gaps below this between corners and edges are closed: 32-bit
+/// numbers and texts with six digits have rounding errors of this size.
 const MISS: f64 = 1e-6;
 
-/// What a surface's edges say about it.
+/// Adjacency data of a surface.
 pub struct Seams {
     /// The smooth patch of each triangle.
     pub patch: Vec<u32>,
-    /// Edges that border one triangle only, wholly or in part.
+    /// Number of edges that are open, wholly or in part.
     pub open_edges: usize,
-    /// Places nearer to each other than this are one [length].
+    /// Positions closer than this are treated as equal [length].
     pub miss: f64,
 }
 
-/// A side that no other triangle has in common.
+/// A side without a partner of equal corners.
 struct Side {
     triangle: usize,
     ends: [Vec3; 2],
-    /// From where to where along it others lie on it [length].
+    /// Intervals along it that other sides cover [length].
     covered: Vec<[f64; 2]>,
 }
 
 impl Seams {
-    /// Of triangles with these corners and normals.
+    /// For triangles with these corners and normals.
     pub fn new(triangles: &[Triangle], corners: &[[u32; 3]], normals: &[Vec3]) -> Self {
         let mut patch: Vec<u32> = (0..triangles.len() as u32).collect();
         let mut smooth = |a: usize, b: usize| {
-            // The order of corners, and so the sign of normals, need not be the same everywhere.
+            // The order of corners, and so the sign of normals, need not be consistent.
             if dot(normals[a], normals[b]).abs() > SMOOTH {
                 join(&mut patch, a as u32, b as u32);
             }
@@ -58,7 +58,7 @@ impl Seams {
     }
 }
 
-/// Finds the lone sides that lie on each other, and calls `smooth` for their triangles.
+/// Finds unpaired sides that lie on each other, and calls `smooth` for their triangles.
 fn meet(lone: &mut [Side], miss: f64, mut smooth: impl FnMut(usize, usize)) {
     let segments: Vec<Triangle> = lone.iter().map(|Side { ends: [a, b], .. }| [*a, *b, *b]).collect();
     let tree = Tree::new(&segments);
@@ -94,12 +94,12 @@ impl Side {
         (length(whole), scale(1.0 / length(whole), whole))
     }
 
-    /// From where to where another side lies on it; nothing where they only meet in a point.
+    /// The interval along which another side lies on it; `None` if they meet in a point only.
     fn overlap(&self, other: &Self, miss: f64) -> Option<[f64; 2]> {
         let (long, way) = self.along();
         let [from, to] = other.ends.map(|end| dot(sub(end, self.ends[0]), way));
         let (lo, hi) = (from.min(to).max(0.0), from.max(to).min(long));
-        // A point of either is nearer to the other than what is missed: both ends of what they have in common.
+        // A point of one side is within `miss` of the other: the ends of the common interval.
         let near = |at: f64| {
             let own = add(self.ends[0], scale(at, way));
             let part = (at - from) / (to - from);
@@ -109,7 +109,7 @@ impl Side {
         (hi - lo > 4.0 * miss && near(lo) && near(hi)).then_some([lo, hi])
     }
 
-    /// Whether some of it borders no other triangle.
+    /// Whether a part of it is open.
     fn is_open(&mut self, miss: f64) -> bool {
         self.covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let reached =

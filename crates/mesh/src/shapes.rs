@@ -1,9 +1,9 @@
-//! Bodies as triangles, for tests.
+//! Triangulated bodies, for tests.
 
 use super::Triangle;
 use std::f64::consts::TAU;
 
-/// A grid of m × n places that closes in both directions, each square cut in two.
+/// A grid of m × n points that closes in both directions, each square cut in two.
 fn wrapped(m: usize, n: usize, at: impl Fn(usize, usize) -> [f64; 3]) -> Vec<Triangle> {
     let mut t = vec![];
     for i in 0..m {
@@ -25,14 +25,14 @@ pub fn torus(ring: f64, tube: f64, m: usize, n: usize) -> Vec<Triangle> {
     })
 }
 
-/// A block, two triangles a face.
+/// A block with two triangles per face.
 pub fn block(lo: [f64; 3], hi: [f64; 3]) -> Vec<Triangle> {
     let p = |k: usize| [0, 1, 2].map(|d| if k >> d & 1 == 0 { lo[d] } else { hi[d] });
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     faces.into_iter().flat_map(|[a, b, c, d]| [[p(a), p(b), p(c)], [p(a), p(c), p(d)]]).collect()
 }
 
-/// A ball: an octahedron whose faces are quartered so many times, corners on the sphere.
+/// A ball: an octahedron whose faces are quartered `times` times, with corners on the sphere.
 pub fn ball(center: [f64; 3], radius: f64, times: usize) -> Vec<Triangle> {
     let e = |d: usize, s: f64| [0, 1, 2].map(|k| if k == d { s } else { 0.0 });
     let mut t = vec![];

@@ -1,4 +1,4 @@
-//! Surfaces, open or closed, that cut what crosses them.
+//! Surfaces, open or closed, that cut bonds.
 
 use super::check::{self, Fault};
 use super::exact::side3;
@@ -8,7 +8,7 @@ use perigrain_base::math::vec3::{Vec3, cross, sub};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A surface as a cut; copies share it.
+/// A surface as a cut; clones share it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(from = "Vec<Triangle>", into = "Vec<Triangle>")]
 pub struct Sheet(Arc<(Vec<Triangle>, Tree)>);
@@ -30,19 +30,20 @@ impl Sheet {
     /// The cut along these triangles.
     ///
     /// # Errors
-    /// None at all, and triangles without area.
+    /// No triangles, or degenerate ones.
     pub fn new(triangles: Vec<Triangle>) -> Result<Self, Fault> {
         check::areas(&triangles)?;
         Ok(Self::from(triangles))
     }
 
-    /// Whether all its coordinates are numbers.
+    /// Whether all its coordinates are finite.
     pub fn is_sound(&self) -> bool {
         self.0.0.as_flattened().as_flattened().iter().all(|x| x.is_finite())
     }
 
-    /// Whether the line between two places crosses a triangle, edges and corners included; a place on a triangle lies on the
-    /// side of its normal, which points up along the first axis that it does not stand across.
+    /// Whether the segment between two points crosses a triangle, including edges and corners; a point on a
+    /// triangle lies on the side of its normal, which points up along the first axis with a nonzero
+    /// component.
     pub fn cuts(&self, a: Vec3, b: Vec3) -> bool {
         let (triangles, tree) = &*self.0;
         let (lo, hi) = bounds([&a, &b]);
@@ -57,7 +58,7 @@ impl Sheet {
 
 fn crosses(t: &Triangle, a: &Vec3, b: &Vec3) -> bool {
     let [p, q, r] = t;
-    // Which way the normal points does not depend on the order of corners.
+    // The direction of the normal must not depend on the order of corners.
     let up = cross(sub(*q, *p), sub(*r, *p)).into_iter().find(|n| *n != 0.0).is_none_or(|n| n > 0.0);
     let above = |x: &Vec3| match side3(p, q, r, x) {
         0 => true,

@@ -1,4 +1,4 @@
-//! What lies inside a closed surface.
+//! Bodies enclosed by a surface.
 
 use super::check::{self, Fault};
 use super::exact::{side2, side3};
@@ -9,7 +9,7 @@ use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A body within a closed surface of triangles; copies share it.
+/// A body within a closed triangle surface; clones share it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Triangle>", into = "Vec<Triangle>")]
 pub struct Solid(Arc<Inner>);
@@ -33,7 +33,7 @@ impl From<Solid> for Vec<Triangle> {
     }
 }
 
-/// What a file holds was checked when it was written; here it must only do no harm.
+/// The contents of a file were checked when it was written; here they must only be safe.
 impl TryFrom<Vec<Triangle>> for Solid {
     type Error = &'static str;
 
@@ -45,10 +45,10 @@ impl TryFrom<Vec<Triangle>> for Solid {
 }
 
 impl Solid {
-    /// The body within these triangles, which are turned so that all see the outside counterclockwise.
+    /// The body within these triangles, which are flipped so that all are counterclockwise seen from outside.
     ///
     /// # Errors
-    /// What keeps the surface from being closed.
+    /// The fault of a surface that is not closed.
     pub fn new(mut triangles: Vec<Triangle>) -> Result<Self, Fault> {
         check::areas(&triangles)?;
         let tree = Tree::new(&triangles);
@@ -64,12 +64,12 @@ impl Solid {
         self.0.facets.triangles()
     }
 
-    /// How many triangles were turned.
+    /// The number of triangles that were flipped.
     pub fn turned(&self) -> usize {
         self.0.turned
     }
 
-    /// The box around the body.
+    /// The bounding box of the body.
     pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
         self.0.tree.bounds()
     }
@@ -86,7 +86,7 @@ impl Solid {
         self.triangles().iter().map(area).sum()
     }
 
-    /// Whether the point is inside or on the surface; exact, whatever the ray meets.
+    /// Whether the point is inside or on the surface; exact for every position.
     pub fn contains(&self, x: Vec3) -> bool {
         let Some((lo, hi)) = self.bounds() else { return false };
         if !(0..3).all(|d| x[d] >= lo[d] && x[d] <= hi[d]) {
@@ -95,26 +95,27 @@ impl Solid {
         inside(self.triangles(), &self.0.tree, x, |_| true)
     }
 
-    /// Whether the surface is nearer than `reach`.
+    /// Whether the surface is within `reach`.
     pub fn close(&self, x: Vec3, reach: f64) -> bool {
         self.0.facets.close(x, reach)
     }
 
-    /// The places of the surface nearer than `reach`, those that look alike once.
+    /// The contact points of the surface within `reach`, one of those with similar normals.
     pub fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
         self.0.facets.near(x, reach, out);
     }
 
-    /// Whether a contact may follow another: their triangles lie in one smooth patch.
+    /// Whether a contact may continue as another: their triangles belong to one smooth patch.
     pub fn passes(&self, from: u32, to: u32) -> bool {
         self.0.facets.passes(from, to)
     }
 }
 
-/// Whether a point lies on one of the triangles that count, or a ray from there crosses an odd number of them.
+/// Whether a point lies on one of the triangles that count, or a ray from there crosses an odd number of
+/// them.
 ///
-/// The ray goes along an axis, the shortest way out, and passes beside edges and corners as if the point were shifted by an
-/// infinitely small step across it, the same for all triangles.
+/// The ray follows the axis with the shortest way out, and passes beside edges and corners as if the point
+/// were displaced perpendicularly by an infinitesimal step, the same for all triangles.
 pub fn inside(triangles: &[Triangle], tree: &Tree, x: Vec3, counts: impl Fn(u32) -> bool) -> bool {
     let Some((low, high)) = tree.bounds() else { return false };
     let ways = (0..3).flat_map(|d| [(x[d] - low[d], d, false), (high[d] - x[d], d, true)]);
@@ -145,7 +146,8 @@ enum Meets {
     Crosses,
 }
 
-/// The sides of a point at the three edges, as seen along an axis; nothing if they differ, so that it is not in the triangle.
+/// The sides of a point relative to the three edges, projected along an axis; `None` if they differ, so that
+/// it is outside the triangle.
 fn sides(t: &Triangle, x: &Vec3, axis: usize) -> Option<[i8; 3]> {
     let (p, [a, b, c]) = (seen_along(x, axis), [0, 1, 2].map(|k| seen_along(&t[k], axis)));
     let sides = [side2(a, b, p), side2(b, c, p), side2(c, a, p)];
@@ -163,12 +165,14 @@ fn meets(t: &Triangle, x: &Vec3, axis: usize, up: bool) -> Meets {
     let Some(sides2) = sides(t, x, axis) else { return Meets::Not };
     let below = side3(&t[0], &t[1], &t[2], x);
     if below == 0 {
-        // On its plane; all edges in line as seen from here: looked at from where it is widest.
+        // In its plane, with all edges collinear in this projection: project along the axis where the
+        // triangle is widest.
         let widest = widest(t);
         let on = within(axis) && (widest == axis || sides(t, x, widest).is_some());
         return if on { Meets::On } else { Meets::Not };
     }
-    // A point on an edge belongs to the side to which it is shifted: along the first coordinate, then the second.
+    // A point on an edge belongs to the side to which it is displaced: along the first coordinate, then the
+    // second.
     let shifted = |k: usize| match sides2[k] {
         0 => {
             let (a, b) = (seen_along(&t[k], axis), seen_along(&t[(k + 1) % 3], axis));
@@ -186,6 +190,6 @@ fn meets(t: &Triangle, x: &Vec3, axis: usize, up: bool) -> Meets {
     if shifted(1) != turn || shifted(2) != turn {
         return Meets::Not;
     }
-    // Counterclockwise as seen from above and the point below: a ray up crosses it.
+    // Counterclockwise seen from above, and the point below: an upward ray crosses it.
     if (turn * below > 0) == up { Meets::Crosses } else { Meets::Not }
 }

@@ -1,16 +1,16 @@
-//! STL files, text and binary.
+//! STL files, text or binary.
 
 use super::Triangle;
 use std::borrow::Cow;
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Debug, Default, PartialEq)]
 pub struct Read {
-    /// The object's name, that of the first one of several.
+    /// The object's name, or the first of several.
     pub name: String,
     /// All triangles.
     pub triangles: Vec<Triangle>,
-    /// Lines of comments, which the format does not have.
+    /// Comment lines, which the format does not have.
     pub comments: usize,
 }
 
@@ -42,12 +42,12 @@ pub fn read(bytes: &[u8]) -> Found {
     ascii(&text)
 }
 
-/// The number of triangles that a binary file announces.
+/// The number of triangles in a binary header.
 fn announced(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?))
 }
 
-/// Whether its length fits the number of triangles it announces.
+/// Whether the file length fits the number of triangles in its header.
 pub fn is_binary(bytes: &[u8]) -> bool {
     announced(bytes).is_some_and(|count| count > 0 && bytes.len() as u64 == 84 + 50 * u64::from(count))
 }
@@ -62,7 +62,7 @@ fn binary(records: &[u8]) -> Vec<Triangle> {
     records.chunks_exact(50).map(|r| [0, 1, 2].map(|p| corner(r, p))).collect()
 }
 
-/// All the solids of a text.
+/// All solids of a text file.
 fn ascii(text: &str) -> Found {
     let (mut triangles, mut corners, mut name, mut open) = (vec![], vec![], None, false);
     let mut comments = 0;
@@ -128,7 +128,7 @@ mod tests {
         };
         assert_eq!(read(TEXT.as_bytes()), named("one", &corners));
         assert_eq!(read(&packed()), named("solid in binary", &corners));
-        // A file of two solids is both of them.
+        // A file with two solids yields both.
         let both = read(format!("{TEXT}\n{}", TEXT.replace("one", "two")).as_bytes());
         assert_eq!(both, named("one", &[&corners[..], &corners].concat()));
     }

@@ -1,4 +1,4 @@
-//! Bodies within surfaces: what they hold, what is refused, and files of any bytes.
+//! Bodies within surfaces: contents, refusals, and files with arbitrary bytes.
 
 use super::shapes::{ball, block, torus};
 use super::*;
@@ -6,7 +6,7 @@ use perigrain_base::math::vec3::length;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// Numbers between 0 and 1 that look random.
+/// Pseudo-random numbers between 0 and 1.
 fn numbers() -> impl FnMut() -> f64 {
     let mut state = 88172645463325252u64;
     move || {
@@ -22,7 +22,7 @@ fn volumes_of_bodies() {
     let cube = Solid::new(block([1.0; 3], [3.0, 4.0, 5.0])).unwrap();
     assert_eq!((cube.volume(), cube.area(), cube.turned()), (24.0, 52.0, 0));
     assert_eq!(cube.bounds(), Some(([1.0; 3], [3.0, 4.0, 5.0])));
-    // Of a body with flat faces the volume falls short with the square of their size.
+    // The volume of a polyhedral ball is too small by the square of the face size.
     let sphere = Solid::new(ball([5.0, 0.0, 0.0], 2.0, 5)).unwrap();
     assert!((sphere.volume() / (PI * 32.0 / 3.0) - 1.0).abs() < 2e-3, "{}", sphere.volume());
     let ring = Solid::new(torus(3.0, 1.0, 120, 60)).unwrap();
@@ -31,7 +31,8 @@ fn volumes_of_bodies() {
 
 #[test]
 fn a_lattice_through_corners_and_edges_is_never_misjudged() {
-    // Sites lie on faces, edges and corners, and rays from them run along faces and through edges and corners.
+    // Test points lie on faces, edges and corners, and rays from them run along faces and through edges and
+    // corners.
     let solid = Solid::new(block([-2.0, -1.0, 0.0], [2.0, 3.0, 4.0])).unwrap();
     for i in -12..=12 {
         for j in -12..=12 {
@@ -42,7 +43,7 @@ fn a_lattice_through_corners_and_edges_is_never_misjudged() {
             }
         }
     }
-    // An octahedron: |x| + |y| + |z| ≤ 2 with quarters is exact.
+    // An octahedron: |x| + |y| + |z| ≤ 2 is exact in quarters.
     let solid = Solid::new(ball([0.0; 3], 2.0, 0)).unwrap();
     for i in -9..=9i32 {
         for j in -9..=9i32 {
@@ -52,12 +53,12 @@ fn a_lattice_through_corners_and_edges_is_never_misjudged() {
             }
         }
     }
-    // A ball of many triangles whose corners and edges lie above sites.
+    // A ball of many triangles with corners and edges directly above test points.
     let (solid, mut next) = (Solid::new(ball([0.0; 3], 1.0, 4)).unwrap(), numbers());
     let edge = solid.triangles().to_vec();
     for t in &edge {
         for p in t {
-            // Beneath and above corners, a little inside and outside.
+            // Below and above corners, slightly inside and outside.
             assert!(solid.contains(p.map(|x| x * 0.999)) && !solid.contains(p.map(|x| x * 1.001)), "{p:?}");
             assert!(solid.contains(*p));
             let z = p[2] * (next() - 0.5);
@@ -71,7 +72,8 @@ fn places_agree_with_the_ball_and_the_ring() {
     let mut next = numbers();
     let (r, times) = (1.0, 5);
     let sphere = Solid::new(ball([0.0; 3], r, times)).unwrap();
-    // The faces lie within so much of the sphere: a quarter of the square of the longest edge, 0.05, over twice the radius.
+    // The faces are at most this far within the sphere: a quarter of the square of the longest edge, 0.05,
+    // over twice the radius.
     let slack = 0.002;
     let ring = Solid::new(torus(1.0, 0.4, 200, 100)).unwrap();
     let (mut sphere_holds, mut ring_holds) = (0, 0);
@@ -100,15 +102,15 @@ fn wrong_orders_are_turned_and_holes_are_holes() {
     assert!(!right.contains([0.5, 0.0, 0.0]) && right.contains([1.5, 0.0, 0.0]));
     shell.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
     let mended = Solid::new(shell).unwrap();
-    // Corners in another order: other roundings of 512 terms.
+    // A different order of corners: different rounding of 512 terms.
     assert!((mended.volume() / right.volume() - 1.0).abs() < 1e-13);
     let inward = block([0.0; 3], [1.0; 3]).into_iter().map(|[a, b, c]| [a, c, b]).collect();
     let cube = Solid::new(inward).unwrap();
-    // Twelve parts, each rounded.
+    // Twelve terms, each rounded.
     assert!((cube.volume() - 1.0).abs() < 12.0 * f64::EPSILON && cube.turned() == 12);
 }
 
-/// A surface as a file has it.
+/// A surface as read from a file.
 fn surface(triangles: Vec<Triangle>) -> Surface {
     Surface { name: String::new(), format: Format::Obj, triangles, left_out: vec![], comments: 0 }
 }
@@ -134,7 +136,8 @@ fn what_is_no_body_is_named() {
     assert_eq!(fault(vec![]), Fault::Empty);
     let mut open = cube.clone();
     let lid = open.remove(3);
-    // Without the second half of the lid three edges are left alone, the first of them at the other half's third side.
+    // Without the second half of the lid three edges are open, the first of them the third side of the other
+    // half.
     assert_eq!(fault(open.clone()), Fault::Open(3, [2, 2]));
     assert_eq!(
         Fault::Open(3, [2, 2]).text(&surface(open.clone())),
@@ -145,18 +148,19 @@ fn what_is_no_body_is_named() {
     assert_eq!(fault([cube.clone(), vec![flat]].concat()), Fault::Flat(12));
     let crossing = |lo, hi| fault([cube.clone(), block(lo, hi)].concat());
     assert!(matches!(crossing([0.5; 3], [1.5; 3]), Fault::Crossing(n, _) if n > 0));
-    // The same block shifted along x: its edges run within faces. And one that stands on the lid.
+    // The same block shifted along x: its edges run within faces. And one standing on the lid.
     assert!(matches!(crossing([0.5, 0.0, 0.0], [1.5, 1.0, 1.0]), Fault::Crossing(..) | Fault::Crowded(..)));
     assert!(matches!(crossing([0.2, 0.2, 1.0], [0.7, 0.6, 2.0]), Fault::Crossing(..)));
     assert!(Solid::new([cube.clone(), block([1.5; 3], [2.0; 3])].concat()).is_ok());
-    // Two triangles on each other.
+    // Two identical triangles.
     let t = cube[0];
     assert!(matches!(fault(vec![t, [t[0], t[2], t[1]]]), Fault::Crossing(1, [0, 1])));
 }
 
 #[test]
 fn surfaces_of_one_side_are_refused() {
-    // The six-cornered projective plane has one side; it cannot be in space without crossing itself, which is not looked at here.
+    // The projective plane with six corners is one-sided; it must intersect itself in space, which is not
+    // tested here.
     let p = |k: usize| [k as f64, (k * k) as f64, (k * k * k) as f64];
     let faces = [
         [0, 1, 2],
@@ -179,7 +183,7 @@ fn surfaces_of_one_side_are_refused() {
 #[test]
 fn sheets_cut_what_crosses_them() {
     let [a, b, c, d] = [[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 2.0, 1.0], [0.0, 2.0, 1.0]];
-    // Two triangles of opposite order.
+    // Two triangles with opposite orientation.
     let sheet = Sheet::from(vec![[a, b, c], [a, d, c]]);
     let cuts = |x: [f64; 3], y: [f64; 3]| {
         assert_eq!(sheet.cuts(x, y), sheet.cuts(y, x));
@@ -189,7 +193,7 @@ fn sheets_cut_what_crosses_them() {
     // Through the common edge, and through the rim; beside it.
     assert!(cuts([1.0, 1.0, 0.0], [1.0, 1.0, 2.0]) && cuts([2.0, 1.0, 0.0], [2.0, 1.0, 2.0]));
     assert!(!cuts([2.1, 1.0, 0.0], [2.1, 1.0, 2.0]) && !cuts([0.5, 0.5, 1.5], [1.5, 0.5, 1.1]));
-    // Places on the sheet lie above it, whichever triangle they are on.
+    // Points on the sheet count as above it, on either triangle.
     for (x, y) in [(1.5, 0.5), (0.5, 1.5), (1.0, 1.0)] {
         assert!(cuts([x, y, 1.0], [x, y, 0.5]) && !cuts([x, y, 1.0], [x, y, 1.5]));
     }
@@ -198,7 +202,7 @@ fn sheets_cut_what_crosses_them() {
 
 #[test]
 fn parts_in_boxes_add_up_to_the_whole() {
-    // A block from (0.3, 0.3, 0.3) in cells around whole numbers, halved, and in coordinates that are left-handed and skew.
+    // A block from (0.3, 0.3, 0.3) in cells around integers, halved, and in left-handed, skew coordinates.
     let cube = Solid::new(block([0.3; 3], [2.3, 1.5, 2.0])).unwrap();
     let plain = cube.columns(|x| x);
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");
@@ -206,7 +210,7 @@ fn parts_in_boxes_add_up_to_the_whole() {
     near(plain.volume([0.5; 3], [1.5; 3]), 1.0);
     near(plain.volume([1.5, 0.5, 1.5], [2.5, 1.5, 2.5]), 0.8 * 0.5);
     near(plain.volume([5.0; 3], [6.0; 3]), 0.0);
-    // Faces in common: the whole, and nothing above, below and beside it.
+    // Common faces: the whole, and nothing above, below and beside it.
     let (lo, hi) = cube.bounds().unwrap();
     near(plain.volume(lo, hi), cube.volume());
     for d in 0..3 {
@@ -226,7 +230,7 @@ fn parts_in_boxes_add_up_to_the_whole() {
         assert!(part <= 1.0 + 1e-14);
         sum += part;
     }
-    // The parts of 405 boxes, each with rounding errors of 1e-16.
+    // The sum over 405 boxes, each with rounding errors of 1e-16.
     assert!((sum / ring.volume() - 1.0).abs() < 1e-13, "{sum} {}", ring.volume());
 }
 
@@ -239,7 +243,7 @@ fn a_copy_from_its_triangles_is_the_same() {
     assert!(Solid::try_from(vec![[[f64::NAN; 3]; 3]]).is_err());
 }
 
-/// Bytes that look like one of the kinds of files, and are wrong somewhere.
+/// Bytes that resemble one of the formats and contain errors.
 fn files() -> impl Strategy<Value = (String, Vec<u8>)> {
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\

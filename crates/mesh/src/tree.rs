@@ -1,23 +1,23 @@
-//! Boxes within boxes: which triangles may meet a box, a bond or a ray.
+//! Bounding volume hierarchy: triangles that may meet a box, a bond or a ray.
 
 use super::{Triangle, bounds};
 
-/// Triangles in a leaf at most.
+/// Largest number of triangles in a leaf.
 const LEAF: usize = 4;
-/// Deeper than any tree that halves at most 2³² triangles.
+/// Depth that no tree over at most 2³² triangles exceeds.
 const DEEPEST: usize = 64;
 
 #[derive(Clone, Debug)]
 struct Node {
     lo: [f64; 3],
     hi: [f64; 3],
-    /// The first of a leaf's triangles, or the second child; the first one follows.
+    /// A leaf's first triangle, or the second child; the first child is the next node.
     first: u32,
-    /// How many triangles a leaf has; 0 for other nodes.
+    /// Number of triangles in a leaf; 0 for inner nodes.
     count: u32,
 }
 
-/// A tree over the boxes of triangles.
+/// A tree over the bounding boxes of triangles.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     nodes: Vec<Node>,
@@ -56,12 +56,12 @@ impl Tree {
         self.split(high, first + half, triangles, middles);
     }
 
-    /// The box around all.
+    /// The bounding box of all triangles.
     pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
         self.nodes.first().map(|n| (n.lo, n.hi))
     }
 
-    /// Calls `visit` for every triangle of the leaves that meet the box, until it says stop.
+    /// Calls `visit` for every triangle of the leaves that overlap the box, until it returns stop.
     #[inline]
     pub fn meet(&self, lo: [f64; 3], hi: [f64; 3], mut visit: impl FnMut(u32) -> bool) {
         let mut waiting = [0; DEEPEST];
@@ -74,7 +74,7 @@ impl Tree {
                 continue;
             }
             if node.count == 0 {
-                // The first child is worked off first.
+                // The first child is visited first.
                 (waiting[depth], waiting[depth + 1]) = (node.first as usize, at + 1);
                 depth += 2;
                 continue;

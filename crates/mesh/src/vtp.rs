@@ -5,7 +5,7 @@ use super::read::fan;
 use super::vtk::xml::{self, Document};
 use perigrain_base::diag::{Diagnostics, FileId};
 
-/// Rows of faces: the corners of all of them, and where each ends.
+/// Rows of faces: their corners, and the end of each row.
 #[derive(Default)]
 struct Cells {
     connectivity: Vec<f64>,
@@ -30,7 +30,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
     Ok(triangles)
 }
 
-/// What is wrong, and in which line or behind how many bytes.
+/// The message, with line or byte offset.
 fn sentence(e: &Diagnostics, bytes: &[u8]) -> String {
     let at = e.0.first().and_then(|d| d.span).filter(|s| s.file == FileId::BROUGHT).map(|s| s.start as usize);
     match at.map(|at| (at, std::str::from_utf8(&bytes[..at.min(bytes.len())]))) {
@@ -60,7 +60,7 @@ impl Piece {
         self.polys.each(points.len(), |face| fan(face, points, triangles))?;
         self.strips.each(points.len(), |strip| {
             for (k, three) in strip.windows(3).enumerate() {
-                // Every second triangle of a strip runs the other way round.
+                // Every second triangle of a strip has the opposite order.
                 let turned = if k % 2 == 0 { [three[0], three[1]] } else { [three[1], three[0]] };
                 fan(&[turned[0], turned[1], three[2]], points, triangles)?;
             }

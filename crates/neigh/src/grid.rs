@@ -1,6 +1,6 @@
-//! Points in cells: a counting sort, and a walk over the points near a place.
+//! Points in cells: a counting sort, and a search for points near a position.
 
-/// Points sorted into the cells of their own bounding box; periodic images are the caller's business.
+/// Points sorted into the cells of their own bounding box; the caller handles periodic images.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     lo: [f64; 3],
@@ -12,8 +12,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Sorts `members` of `x` into cells of edge `cell` or, where these would be many more than the points, longer.
-    /// Points of one cell keep the order of `members`.
+    /// Sorts `members` of `x` into cells of edge `cell`, or longer ones if there would be many more cells
+    /// than points. Points of one cell keep the order of `members`.
     pub fn fill(&mut self, x: &[[f64; 3]], members: &[u32], cell: f64) {
         (self.lo, self.hi) = extent(x, members.iter().copied());
         let room = 64 + 2 * members.len();
@@ -49,12 +49,13 @@ impl Grid {
         }
     }
 
-    /// Whether the box from `lo` to `hi` meets the points' bounding box.
+    /// Whether the box from `lo` to `hi` overlaps the points' bounding box.
     pub fn meets(&self, lo: &[f64; 3], hi: &[f64; 3]) -> bool {
         !self.points.is_empty() && (0..3).all(|d| lo[d] <= self.hi[d] && hi[d] >= self.lo[d])
     }
 
-    /// Calls `f` with runs of points: all in cells that the box from `lo` to `hi` meets, in a fixed order.
+    /// Calls `f` with runs of points: those in all cells that overlap the box from `lo` to `hi`, in a fixed
+    /// order.
     pub fn near(&self, lo: &[f64; 3], hi: &[f64; 3], mut f: impl FnMut(&[u32])) {
         if !self.meets(lo, hi) {
             return;
@@ -73,7 +74,7 @@ impl Grid {
 
     fn place(&self, x: &[f64; 3]) -> [usize; 3] {
         std::array::from_fn(|d| {
-            // A float below zero becomes 0 in the cast.
+            // A negative float becomes 0 in the cast.
             (((x[d] - self.lo[d]) * self.per_length[d]) as usize).min(self.cells[d] - 1)
         })
     }
@@ -90,7 +91,7 @@ pub fn extent(x: &[[f64; 3]], members: impl Iterator<Item = u32>) -> ([f64; 3], 
     for m in members {
         let p = &x[m as usize];
         for d in 0..3 {
-            // As `min` and `max` have it, which look twice for NaN.
+            // Same results as `min` and `max`, which check for NaN twice.
             lo[d] = if p[d] < lo[d] { p[d] } else { lo[d] };
             hi[d] = if p[d] > hi[d] { p[d] } else { hi[d] };
         }

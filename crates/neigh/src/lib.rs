@@ -1,9 +1,10 @@
-//! Which particles are near each other: cell grids and neighbour lists.
+//! Neighbour search: cell grids and neighbour lists.
 //!
-//! The types that matter most: [`list::Wanted`], how far pairs of types reach; [`list::Pair`], two particles and the image that meets;
-//! [`tiles::Tiles`], points in the order of blocks of cells that threads share. It knows columns of numbers, no world and no law.
+//! Main types: [`list::Wanted`], the reach of pairs of types; [`list::Pair`], two particles and a periodic
+//! image; [`tiles::Tiles`], points in the order of blocks of cells that threads share. The crate works on
+//! columns of numbers and depends on neither the world nor contact laws.
 
-// Units stand in brackets in doc comments, as [length]; they are no links.
+// Units stand in brackets in doc comments, as [length]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod grid;

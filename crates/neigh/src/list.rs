@@ -1,21 +1,21 @@
-//! Neighbour lists: each pair once, within reach plus skin, in an order that only tags decide.
+//! Neighbour lists: each pair once, within reach plus skin, in an order that depends only on tags.
 
 use super::grid::{Grid, extent};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 
-/// How far two types of particles reach for each other.
+/// The interaction distance of two types of particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
     /// R_i + R_j.
     Touch,
-    /// R_i + R_j and this much more (cohesion) [length].
+    /// R_i + R_j plus this distance (cohesion) [length].
     Beyond(f64),
     /// A distance [length].
     Fixed(f64),
 }
 
-/// Which pairs of types (from 1) are wanted and how far they reach; symmetric.
+/// The pairs of types (from 1) that are listed, and their reach; symmetric.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wanted {
     types: usize,
@@ -23,19 +23,19 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Nothing wanted yet.
+    /// Without any pairs.
     pub fn new(types: usize) -> Self {
         Self { types, reach: vec![None; types * types] }
     }
 
-    /// Wants pairs of these types.
+    /// Sets the reach of these types.
     pub fn set(&mut self, a: u16, b: u16, reach: Reach) {
         let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
         self.reach[a * self.types + b] = Some(reach);
         self.reach[b * self.types + a] = Some(reach);
     }
 
-    /// How far these types reach, if they are wanted.
+    /// The reach of these types, if they are listed.
     pub fn get(&self, a: u16, b: u16) -> Option<Reach> {
         self.reach[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
     }
@@ -45,18 +45,18 @@ impl Wanted {
     }
 }
 
-/// What a list must know of the particles: columns of equal length and the box.
+/// Particle data for a list: columns of equal length, and the box.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// Positions, wrapped into the box along periodic directions [length].
     pub x: &'a [[f64; 3]],
-    /// Identities.
+    /// Ids.
     pub tag: &'a [u32],
     /// Types, from 1.
     pub kind: &'a [u16],
-    /// Radii; may be empty where no pair reaches by touch.
+    /// Radii; may be empty if no pair uses them.
     pub radius: &'a [f64],
-    /// Edges of the box; zero where it does not repeat.
+    /// Edges of the box; zero along directions that are not periodic.
     pub period: Periods,
 }
 
@@ -65,18 +65,18 @@ impl View<'_> {
         self.radius.get(i).copied().unwrap_or(0.0)
     }
 
-    /// x_i − (x_j + the edges that `shift` counts).
+    /// x_i − (x_j + `shift` times the edges).
     #[inline]
     pub fn difference(&self, p: &Pair) -> [f64; 3] {
         difference(self.x, &self.period, p)
     }
 }
 
-/// x_i − (x_j + the edges that `shift` counts) for a pair of the list.
+/// x_i − (x_j + `shift` times the edges) for a pair of the list.
 #[inline]
 pub fn difference(x: &[[f64; 3]], period: &Periods, p: &Pair) -> [f64; 3] {
     let (a, b) = (&x[p.i as usize], &x[p.j as usize]);
-    // Most pairs lie within the box.
+    // Most pairs do not cross the boundary.
     if p.shift == [0; 3] {
         return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     }
@@ -84,18 +84,18 @@ pub fn difference(x: &[[f64; 3]], period: &Periods, p: &Pair) -> [f64; 3] {
     std::array::from_fn(|d| a[d] - (b[d] + by[d]))
 }
 
-/// Two particles, the one of smaller tag first, and which image of the second is meant.
+/// Two particles, the one with the smaller tag first, and the image of the second.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pair {
-    /// The particle of smaller tag.
+    /// The particle with the smaller tag.
     pub i: u32,
     /// The other.
     pub j: u32,
-    /// How many periods j's image is away.
+    /// Number of periods by which j's image is shifted.
     pub shift: [i8; 3],
 }
 
-/// Particles of one type and similar size: within a factor of two.
+/// Particles of one type and of similar size: within a factor of two.
 struct Class {
     kind: u16,
     octave: i32,
@@ -103,10 +103,10 @@ struct Class {
     largest: f64,
 }
 
-/// Every wanted pair within reach plus `skin` that `keep(i, j)` lets pass, once, sorted by the two tags.
+/// Every listed pair within reach plus `skin` for which `keep(i, j)`, once, sorted by the two tags.
 ///
-/// Types and sizes are searched class by class, the fewer among the more, so that a few big particles among
-/// many small ones cost what is near them and one look at every small one.
+/// The search runs by pairs of classes of type and size and looks up the smaller class in the larger one: the
+/// cost of a few big particles among many small ones is their neighbours and one test per small one.
 pub fn pairs(
     v: &View,
     wanted: &Wanted,
@@ -115,12 +115,12 @@ pub fn pairs(
 ) -> Vec<Pair> {
     let key = |p: Pair| ([p.i, p.j].map(|k| v.tag[k as usize]), p);
     let mut out: Vec<_> = found(v, wanted, skin, 0.0, keep).into_iter().map(key).collect();
-    // No two agree, so that their order is their tags' and their images', in whatever order they were found.
+    // No two keys are equal, so that the order depends only on tags and images, not on the search.
     out.sort_unstable_by_key(|(tags, p)| (*tags, p.shift));
     out.into_iter().map(|(_, p)| p).collect()
 }
 
-/// Takes those of some pairs of particles into a list of [`pairs`] that are within reach plus `skin`, in their places.
+/// Inserts those of the given pairs that are within reach plus skin into a list of [`pairs`], in order.
 pub fn insert(v: &View, wanted: &Wanted, skin: f64, ends: &[[usize; 2]], list: &mut Vec<Pair>) {
     let key = |p: &Pair| (v.tag[p.i as usize], v.tag[p.j as usize], p.shift);
     for &[i, j] in ends {
@@ -139,9 +139,9 @@ pub fn insert(v: &View, wanted: &Wanted, skin: f64, ends: &[[usize; 2]], list: &
     }
 }
 
-/// How many images of the box lie within `far`, along each axis.
+/// Number of images of the box within `far`, along each axis.
 fn images(far: f64, period: &Periods) -> [i32; 3] {
-    // Along an edge that leans and does not repeat, particles may stand further off in those that do.
+    // Along a tilted edge that is not periodic, particles may be further away in images along the others.
     let further = f64::from(u8::from(period.tilted() && period.length.contains(&0.0)));
     period.heights().map(|height| match height {
         l if l > 0.0 => ((far / l).ceil() + further).min(127.0) as i32,
@@ -149,28 +149,28 @@ fn images(far: f64, period: &Periods) -> [i32; 3] {
     })
 }
 
-/// What a search would find, told before it is made.
+/// Size estimates of a search, before it runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Forecast {
-    /// About how many pairs, where particles lie evenly.
+    /// Approximate number of pairs for a uniform distribution.
     pub pairs: f64,
-    /// The longest reach, skin and sizes with it [length].
+    /// The largest reach, including sizes and skin [length].
     pub reach: f64,
-    /// How many images of the box that goes into along each axis, to one side.
+    /// Number of images of the box within reach along each axis, to one side.
     pub images: [f64; 3],
 }
 
 impl Forecast {
-    /// More images than this to one side are not looked into.
+    /// The largest number of images to one side.
     pub const MOST_IMAGES: f64 = 127.0;
 
-    /// How many images of the box are reached into in all.
+    /// Total number of images within reach.
     pub fn all_images(&self) -> f64 {
         self.images.map(|n| 2.0 * n + 1.0).into_iter().product()
     }
 }
 
-/// How many pairs [`pairs`] would find.
+/// Estimates the number of pairs that [`pairs`] would find.
 pub fn forecast(v: &View, wanted: &Wanted, skin: f64) -> Forecast {
     let classes = classes(v, wanted);
     let mean =
@@ -186,7 +186,7 @@ pub fn forecast(v: &View, wanted: &Wanted, skin: f64) -> Forecast {
             }
             let (lo, hi) = extent(v.x, a.members.iter().chain(&b.members).copied());
             let likely = cutoff(reach, skin, mean(a), mean(b));
-            // The share of all pairs that are within reach, in a box that repeats more than all of them.
+            // The fraction of all pairs within reach, in a box with periodic images.
             let along = |d: usize| match v.period.length[d] {
                 l if l > 0.0 => 2.0 * likely / l,
                 _ if hi[d] - lo[d] > 2.0 * likely => 2.0 * likely / (hi[d] - lo[d]),
@@ -200,10 +200,10 @@ pub fn forecast(v: &View, wanted: &Wanted, skin: f64) -> Forecast {
     out
 }
 
-/// The volume of a sphere in the cube around it, π/6.
+/// The volume fraction of a sphere in its bounding cube, π/6.
 const SPHERE: f64 = std::f64::consts::FRAC_PI_6;
 
-/// How far apart two particles of these radii may be.
+/// The cutoff for two particles of these radii.
 fn cutoff(reach: Reach, skin: f64, ri: f64, rj: f64) -> f64 {
     skin + match reach {
         Reach::Touch => ri + rj,
@@ -212,7 +212,7 @@ fn cutoff(reach: Reach, skin: f64, ri: f64, rj: f64) -> f64 {
     }
 }
 
-/// Those of [`pairs`] in which one is beyond the sizes that are [`small`], in no order to rely on.
+/// Those of [`pairs`] in which at least one particle is not [`small`], in unspecified order.
 pub fn pairs_of_large(
     v: &View,
     wanted: &Wanted,
@@ -222,15 +222,15 @@ pub fn pairs_of_large(
     found(v, wanted, skin, small(v.radius), keep)
 }
 
-/// The radius that small ones stay below: they fill two octaves from the smallest on.
+/// The radius below which particles are small: two octaves from the smallest on.
 pub fn small(radius: &[f64]) -> f64 {
     let least = par::best(radius, f64::INFINITY, |a, r| if r > 0.0 && r < a { r } else { a });
-    // The power of two at or below it: a number without its fraction.
+    // The power of two at or below it: the number without its mantissa.
     let octave = f64::from_bits(least.to_bits() >> 52 << 52);
     4.0 * octave
 }
 
-/// Pairs class by class, in which one is not below `small`.
+/// Pairs by classes, in which at least one radius is not below `small`.
 fn found(
     v: &View,
     wanted: &Wanted,
@@ -274,7 +274,7 @@ fn classes(v: &View, wanted: &Wanted) -> Vec<Class> {
     list
 }
 
-/// The search of one class among another or itself.
+/// The search of one class in another or in itself.
 struct Search<'a, K> {
     v: &'a View<'a>,
     few: &'a Class,
@@ -317,10 +317,11 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
         cutoff(self.reach, self.skin, ri, rj)
     }
 
-    /// Members of the larger class within `far` of the smaller one's bounding box (where nothing repeats).
+    /// Members of the larger class within `far` of the smaller one's bounding box (in directions that are not
+    /// periodic).
     fn nearby(&self, far: f64) -> Vec<u32> {
         let (lo, hi) = extent(self.v.x, self.few.members.iter().copied());
-        // Images across a leaning edge lie elsewhere along the other axes too.
+        // Images across a tilted edge are displaced along the other axes too.
         let free = |d: usize| self.v.period.length[d] > 0.0 || self.v.period.tilted();
         let near = |m: &&u32| {
             let p = &self.v.x[**m as usize];
@@ -338,7 +339,7 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
             let by = v.period.shift(shift.map(f64::from));
             let at: [f64; 3] = std::array::from_fn(|d| x[d] - by[d]);
             let (lo, hi) = (at.map(|a| a - far), at.map(|a| a + far));
-            // Of a pair within one class the search meets both orders: keep one.
+            // Within one class the search finds each pair in both orders: keep one.
             let forward = shift > [0; 3];
             if alone && shift < [0; 3] {
                 return;

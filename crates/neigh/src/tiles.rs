@@ -1,4 +1,4 @@
-//! Particles in the order of cells, and cells in tiles: the spatial order that granular loops and the world work in.
+//! Particles sorted by cells, and cells by tiles: the spatial order used by the granular loops and the world.
 
 mod around;
 mod blocks;
@@ -12,35 +12,36 @@ use perigrain_base::par;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Layers that pairs may reach over: more than there can be.
+/// Upper bound of the layers that pairs may reach across: more than can exist.
 const FARTHEST: f64 = 1e9;
-/// Largest radius in units of the smallest up to which one grid of cells serves all.
+/// Largest ratio of radii for which one grid of cells serves all particles.
 const ALIKE: f64 = 4.0;
-/// Cells per particle at most; beyond that cells grow.
+/// Largest number of cells per particle; beyond it cells are enlarged.
 const SPARSE: usize = 4;
 
-/// Points sorted by tile, a block of cells, and by cell within it: along a fast axis, then a middle one, then a slow one; within a cell
-/// by tag. The order is a function of positions and tags alone. In a box that leans cells lean with it: they are counted in the box
-/// made upright, and as thick between their faces as they are long elsewhere.
+/// Points sorted by tile (a block of cells), and within it by cell: along a fast axis, then a middle one,
+/// then a slow one; within a cell by tag. The order is a function of positions and tags alone. In a tilted
+/// box the cells are tilted too: they are counted in the box made upright, and their thickness between faces
+/// equals their length elsewhere.
 #[derive(Clone, Debug, Default)]
 pub struct Tiles {
     /// Fast, middle and slow axis.
     axes: [usize; 3],
-    /// Cells along these.
+    /// Number of cells along these.
     cells: [usize; 3],
-    /// Whether these repeat.
+    /// Whether these are periodic.
     repeats: [bool; 3],
-    /// Lower corner of the box, and its edges: cells lean with it.
+    /// Lower corner of the box, and its edges: cells are tilted with it.
     corner: [f64; 3],
     period: Periods,
     lo: [f64; 3],
     per_length: [f64; 3],
-    /// Layers of cells in a slab that all pairs reach across at most once.
+    /// Number of cell layers in a slab, such that every pair crosses at most one slab boundary.
     layers: usize,
     blocks: Blocks,
-    /// First place of each cell, and the number of all places.
+    /// First index of each cell in `order`, and the total number of points.
     start: Vec<u32>,
-    /// The point at each place.
+    /// The points in order.
     pub order: Vec<u32>,
 }
 
@@ -55,17 +56,18 @@ struct Line {
 }
 
 impl Line {
-    /// The cell of a point; the first or last one for what is beyond.
+    /// The cell of a point; the first or last one for points beyond the box.
     #[inline]
     fn cell(&self, x: &[f64; 3]) -> u32 {
         (((x[self.axis] - self.lo) * self.per_length) as i32).clamp(0, self.most) as u32
     }
 }
 
-/// How long the edges of cells should be, and how far pairs reach, for spheres whose surfaces are up to `more` apart.
+/// Suitable length of cell edges, and reach of pairs, for spheres with gaps up to `more`.
 ///
-/// Cells of spheres of about one size are as long as pairs reach, and neighbours are in neighbouring cells. Where sizes
-/// differ much, this holds for the [`small`] ones, and [`pairs_of_large`](super::list::pairs_of_large) finds the others.
+/// For spheres of similar size, cells are as long as the reach of pairs, and neighbours are in neighbouring
+/// cells. If sizes differ much, this holds for the [`small`] ones, and
+/// [`pairs_of_large`](super::list::pairs_of_large) finds the others.
 pub fn edges(radius: &[f64], more: f64) -> [f64; 2] {
     let (least, most) = (par::best(radius, f64::INFINITY, f64::min), par::best(radius, 0.0, f64::max));
     let reach = 2.0 * most + more;
@@ -77,10 +79,10 @@ pub fn edges(radius: &[f64], more: f64) -> [f64; 2] {
     [2.0 * larger + more, reach]
 }
 
-/// The image in which nothing is shifted.
+/// The unshifted image.
 pub const HERE: u32 = perigrain_base::math::lanes::NO_SHIFT;
 
-/// How many periods an image is away along x, y and z.
+/// The shift of an image along x, y and z, in periods.
 pub fn shift_of(image: u32) -> [f64; 3] {
     [image % 3, image / 3 % 3, image / 9 % 3].map(|k| f64::from(k) - 1.0)
 }
@@ -98,8 +100,9 @@ fn straightened<'a>(x: &'a [[f64; 3]], lo: &[f64; 3], period: &Periods) -> Cow<'
 }
 
 impl Tiles {
-    /// Sorts all points into cells of at least `edge`, for pairs that reach so far at most; `lo` and `period` describe the
-    /// box, which leans only where it repeats; where it does, its height is at least the reach.
+    /// Sorts all points into cells of at least `edge`, for pairs of at most this reach; `lo` and `period`
+    /// describe the box, which is tilted only along periodic directions; there its height is at least the
+    /// reach.
     pub fn sort(
         &mut self,
         x: &[[f64; 3]],
@@ -134,7 +137,7 @@ impl Tiles {
                 next[c as usize] += 1;
             }
         }
-        // Point by point: there may be more cells than points.
+        // Loops over points, because there may be more cells than points.
         for place in 1..self.order.len() {
             let [before, here] = [place - 1, place].map(|p| self.order[p] as usize);
             let of = cell[here] as usize;
@@ -145,7 +148,7 @@ impl Tiles {
         }
     }
 
-    /// Cells for all points, as [`Tiles::sort`] makes them, into which none is sorted.
+    /// The cells for all points, as in [`Tiles::sort`], without sorting any points.
     pub fn laid_out(x: &[[f64; 3]], edges: [f64; 2], lo: &[f64; 3], period: &Periods) -> Self {
         let mut tiles = Self::default();
         tiles.lay_out(&straightened(x, lo, period), edges, lo, period);
@@ -157,17 +160,17 @@ impl Tiles {
         self.axes
     }
 
-    /// Slabs across the slow axis.
+    /// Slabs normal to the slow axis.
     pub fn slabs(&self) -> Slabs<'_> {
         Slabs { of: self, layers: self.layers }
     }
 
-    /// The layer of cells that a point lies in.
+    /// The cell layer of a point.
     pub fn layer_of(&self, x: &[f64; 3]) -> usize {
         self.line(2).cell(&self.period.straightened(*x, self.corner)) as usize
     }
 
-    /// The slab of the point at each place.
+    /// The slab of each point in order.
     pub fn slab_of_places(&self) -> Vec<usize> {
         let of_layers = self.slabs().of_layers();
         let mut slabs = vec![0; self.order.len()];
@@ -179,12 +182,13 @@ impl Tiles {
         slabs
     }
 
-    /// The colour of a tile: no two that pairs of a third one reach are of the same one.
+    /// The colour of a tile: two tiles within reach of pairs of a third one never have the same colour.
     pub fn colour(&self, tile: usize) -> u8 {
         self.blocks.colour(tile)
     }
 
-    /// The tiles beside one, also around the box: those that its pairs reach, or that pairs of them share with its own.
+    /// The neighbours of a tile, including periodic ones: those that its pairs reach, or that share pairs
+    /// with it.
     pub fn beside(&self, tile: usize) -> Vec<u32> {
         self.blocks.beside(tile)
     }
@@ -194,19 +198,19 @@ impl Tiles {
         self.blocks.count()
     }
 
-    /// The places of a tile.
+    /// The points of a tile, as a range of `order`.
     pub fn members(&self, tile: usize) -> Range<usize> {
         let cells = self.blocks.cells(tile);
         self.start[cells.start] as usize..self.start[cells.end] as usize
     }
 
-    /// Cells along one of the axes, of which 2 is the slow one.
+    /// Cells along axis `k`; 2 is the slow one.
     fn line(&self, k: usize) -> Line {
         let most = self.cells[k].saturating_sub(1) as i32;
         Line { axis: self.axes[k], lo: self.lo[k], per_length: self.per_length[k], most }
     }
 
-    /// For points of the box made upright.
+    /// Lays out the cells, for points of the box made upright.
     fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &Periods) {
         let wider = |a: ([f64; 3], [f64; 3]), b: ([f64; 3], [f64; 3])| {
             let with =
@@ -232,11 +236,12 @@ impl Tiles {
             }
             size *= (all / room).cbrt().clamp(1.01, 1e100);
         };
-        // Spheres larger than all that is there reach over all of it.
+        // Spheres larger than the system reach across all of it.
         let layers = (reach / size).ceil().min(FARTHEST) as usize;
         let far = if reach > size { layers.max(1) } else { 1 };
-        // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin. A box that leans along x
-        // with y alone is mostly sheared so: grains of a slab across y go the same way.
+        // The slow axis: the longest of the directions that are not periodic, or the longest of all if these
+        // are thin. A box tilted along x with y alone is usually sheared that way: grains of a slab normal to
+        // y move alike.
         let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
         let thin = |d: &usize| count[*d] < 4 * far;
         let sheared = Some(1).filter(|_| tilt[0] != 0.0 && tilt[1..] == [0.0; 2]);
@@ -253,14 +258,15 @@ impl Tiles {
         self.per_length = self.axes.map(per_length);
     }
 
-    /// The places of a cell.
+    /// The points of a cell, as a range of `order`.
     fn places(&self, cell: usize) -> Range<usize> {
         self.start[cell] as usize..self.start[cell + 1] as usize
     }
 }
 
-/// Cells cut into slabs across the slow axis, some layers each: pairs of a slab lie in it or reach into the next one, of the last into
-/// the first where the slow axis repeats; there are then an even number of slabs, or one.
+/// Cells cut into slabs of several layers normal to the slow axis: pairs of a slab lie in it or reach into
+/// the next one, those of the last slab into the first if the slow axis is periodic; there is then an even
+/// number of slabs, or one.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs<'a> {
     of: &'a Tiles,
@@ -274,13 +280,13 @@ impl Slabs<'_> {
         if self.of.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
     }
 
-    /// The slab that pairs of slab `k` reach into, if there is one.
+    /// The slab that pairs of slab `k` reach into, if any.
     pub fn next(&self, k: usize) -> Option<usize> {
         let next = (k + 1) % self.count();
         (next > k || self.of.repeats[2]).then_some(next)
     }
 
-    /// The slab of each layer of cells.
+    /// The slab of each cell layer.
     pub fn of_layers(&self) -> Vec<usize> {
         let (layers, slabs) = (self.of.cells[2], self.count());
         let mut of = Vec::with_capacity(layers);

@@ -1,4 +1,4 @@
-//! What goes wrong as exceptions of the package.
+//! Errors as exceptions of the package.
 
 use perigrain::diag::{Diagnostic, Diagnostics, Severity, Sources, render};
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ pub fn raised<'py>(py: Python<'py>, class: &str, args: impl pyo3::call::PyCallAr
     made.map_or_else(|e| e, PyErr::from_value)
 }
 
-/// The scene is at work, or its run asks for something that only holds between runs.
+/// The scene is executing a command, or the operation is only allowed between runs.
 pub fn busy(py: Python<'_>) -> PyErr {
     raised(
         py,
@@ -22,19 +22,19 @@ pub fn busy(py: Python<'_>) -> PyErr {
     )
 }
 
-/// A function that is called within a step asks for something that only holds between commands.
+/// A function called within a step uses an operation that is only allowed between commands.
 pub fn within(py: Python<'_>) -> PyErr {
     let words = "a step is under way: a function of `fix python/invoke` is shown particles, box and settings; commands, \
                  computes, fixes and variables wait until the run is over";
     raised(py, "BusyError", (words,))
 }
 
-/// There is no scene any more.
+/// The scene is closed.
 pub fn closed(py: Python<'_>, why: &str) -> PyErr {
     raised(py, "ClosedError", (why,))
 }
 
-/// What a deck is refused for.
+/// The errors of a deck.
 pub fn deck(py: Python<'_>, problems: &Diagnostics, sources: &Sources) -> PyErr {
     match described(py, problems, sources) {
         Ok(list) => raised(py, "DeckError", (list, render::plain(problems, sources))),

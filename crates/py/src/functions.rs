@@ -1,4 +1,5 @@
-//! Functions in Python for variables of style `python` and the command `python`: those of the program's `__main__`.
+//! Python functions for variables of style `python` and the command `python`: those of the program's
+//! `__main__`.
 
 use perigrain::lang::python::{Functions, Given};
 use pyo3::exceptions::PyTypeError;
@@ -7,7 +8,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString, PyTuple};
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// The functions of `__main__`, and what has been raised there and is not told yet.
+/// The functions of `__main__`, and an exception raised there that has not been reported yet.
 #[derive(Default)]
 pub struct Library(Mutex<Option<PyErr>>);
 
@@ -23,12 +24,12 @@ pub fn names(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 }
 
 impl Library {
-    /// The exception in which code or a function has ended since this was asked last.
+    /// The exception raised by code or a function since the last call.
     pub fn raised(&self) -> Option<PyErr> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// Keeps an exception; its words.
+    /// Stores an exception; returns its text.
     pub fn keep(&self, e: PyErr) -> String {
         let words = e.to_string();
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(e);
@@ -79,7 +80,7 @@ fn object<'py>(py: Python<'py>, given: &Given) -> PyResult<Bound<'py, PyAny>> {
     })
 }
 
-/// What a function has given; numbers of numpy are numbers.
+/// Converts the result of a function; numpy numbers count as numbers.
 fn back(value: &Bound<'_, PyAny>) -> PyResult<Given> {
     if value.is_none() {
         return Ok(Given::Nothing);

@@ -1,4 +1,4 @@
-//! What a scene has behind its lock.
+//! Contents of a scene behind its lock.
 
 use super::errors;
 use super::functions::Library;
@@ -10,27 +10,27 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Why there is no scene, after `close`.
+/// Reason for a missing scene, after `close`.
 pub const CLOSED: &str = "the scene is closed";
-/// Why there is no scene, after a panic.
+/// Reason for a missing scene, after a panic.
 const BROKEN: &str = "the scene is gone: perigrain failed in the middle of a command, which is its own fault";
 
-/// What a lock guards.
+/// The guarded data.
 pub struct Inner {
     pub session: Option<Session>,
     pub looked: Looked,
     pub screen: Screen,
     /// The functions of variables of style python.
     pub library: Arc<Library>,
-    /// What fixes external talk to, by their ids.
+    /// The hooks of fixes external, by fix ID.
     pub hooks: BTreeMap<String, Arc<Hook>>,
     pub why: &'static str,
-    /// It is shown to a function that is called within a step.
+    /// Whether it is a scene that a function sees within a step.
     pub moment: bool,
 }
 
 impl Inner {
-    /// Ends the scene; what is looked at belongs to who looks.
+    /// Ends the scene; memory that is viewed is left to the viewers.
     pub fn end(&mut self, why: &'static str) {
         self.looked.end(self.session.as_mut(), why);
         std::mem::take(&mut self.hooks).values().for_each(|hook| hook.forget());
@@ -38,10 +38,10 @@ impl Inner {
         self.why = why;
     }
 
-    /// After a panic nothing of the session can be trusted.
+    /// After a panic the session's state cannot be trusted.
     pub fn broken(&mut self, py: Python<'_>, words: &str) -> PyErr {
         self.screen.show(py);
-        // What the scene still has of columns that are looked at must outlive it: the session is left behind, not dropped.
+        // Columns with live views must outlive the session: it is leaked, not dropped.
         std::mem::forget(self.session.take());
         self.looked.end(None, BROKEN);
         self.why = BROKEN;

@@ -1,6 +1,7 @@
-//! perigrain as a Python module: the thin layer below the package `perigrain`, which knows no physics and no language.
+//! perigrain as a Python module: the thin layer below the package `perigrain`, without physics or deck
+//! language.
 //!
-//! The types that matter most: [`Scene`], a session behind a lock; [`Memory`], a column of particles that Python looks into.
+//! Main types: [`Scene`], a session behind a lock; [`Memory`], a column of particles viewed from Python.
 
 mod errors;
 mod functions;

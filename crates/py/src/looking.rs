@@ -1,4 +1,4 @@
-//! Decks that are only looked at.
+//! Checks and plans of decks, without running them.
 
 use super::errors;
 use super::screen::Screen;
@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 
 type Variables = Vec<(String, Vec<String>)>;
 
-/// A deck looked at: the session, what it was refused for.
+/// Checks a deck: returns the session and the errors.
 fn look(
     py: Python<'_>,
     mode: Mode,
@@ -33,7 +33,7 @@ fn look(
     outcome.map_err(|e| errors::deck(py, &e, &Default::default()))
 }
 
-/// Every problem of a deck: a list of dictionaries, and all of them as a text.
+/// All problems of a deck: a list of dictionaries, and a text with all of them.
 #[pyfunction]
 pub fn check<'py>(
     py: Python<'py>,
@@ -49,7 +49,7 @@ pub fn check<'py>(
     Ok((list, render::plain(&problems, &session.sources)))
 }
 
-/// What each run of a deck would do in its steps.
+/// The step plan of each run in a deck.
 #[pyfunction]
 pub fn plan(
     py: Python<'_>,

@@ -1,8 +1,8 @@
-//! Columns of particles that Python looks into: the scene's own memory where it lies as LAMMPS has it, else a mirror.
+//! Columns of particles viewed from Python: the scene's own memory if it has LAMMPS' layout, else a mirror.
 //!
-//! While a command works, the scene has copies of the columns that somebody looks into, and the memory seen from outside
-//! stands still. Afterwards it is the scene's again, with the new values; where particles have come or gone it is nobody's, holds
-//! no numbers any more, and lives as long as it is looked at.
+//! While a command executes, the scene works on copies of the viewed columns, and the viewed memory does not
+//! change. Afterwards it becomes the scene's again, with the new values; if particles have been added or
+//! deleted, it is orphaned: it holds no numbers any more, and lives as long as it is viewed.
 
 use perigrain::diag::Result;
 use perigrain::session::{Column, Session};
@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Up to this many numbers it is found out at once whether somebody has changed them from outside.
+/// Up to this many numbers, changes from outside are detected at once.
 const QUICK: usize = 1 << 17;
 
-/// Forces are made anew in any case.
+/// Forces are recomputed in any case.
 const MADE_ANEW: [&str; 2] = ["f", "torque"];
 
 /// Memory taken out of a scene.
@@ -34,7 +34,7 @@ impl Store {
         }
     }
 
-    /// Nothing that could be taken for a number of the scene.
+    /// Fills it with values that cannot be mistaken for the scene's.
     fn void(&mut self) {
         self.reals().fill(f64::NAN);
         if let Self::Wholes(list) = self {
@@ -43,7 +43,7 @@ impl Store {
     }
 }
 
-/// A column that somebody looks into.
+/// A column viewed from Python.
 pub struct Held {
     name: String,
     width: usize,
@@ -52,20 +52,20 @@ pub struct Held {
 }
 
 struct State {
-    /// Where it lies.
+    /// Its address.
     at: usize,
     rows: usize,
-    /// The memory, while it is not the scene's.
+    /// The memory, while it does not belong to the scene.
     kept: Option<Store>,
-    /// Of a mirror: what the scene had.
+    /// For a mirror: the scene's values.
     before: Vec<i32>,
-    /// A print of the numbers as the scene has left them, where it was taken.
+    /// Hash of the numbers as the scene left them, if computed.
     print: Option<u64>,
-    /// Why it means nothing any more.
+    /// Reason why it is stale.
     stale: Option<&'static str>,
 }
 
-/// Tells lists of numbers apart.
+/// Hash of a list of numbers.
 fn print(list: &[f64]) -> u64 {
     let mut sums = [0x9e37_79b9_7f4a_7c15_u64, 1, 2, 3];
     for chunk in list.chunks(4) {
@@ -81,7 +81,7 @@ impl Held {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The column under a name; `None` if the scene has none.
+    /// The column of a name; `None` if the scene has none.
     fn of(session: &mut Session, name: &str) -> Option<Self> {
         let held = |width, whole, state| Self { name: name.into(), width, whole, state: Mutex::new(state) };
         let own = |list: &[f64], rows| State {
@@ -104,7 +104,7 @@ impl Held {
         Some(held(1, true, State { at, rows, kept, before, print: None, stale: None }))
     }
 
-    /// Takes the memory out of the scene, which goes on with a copy; what was changed from outside counts.
+    /// Takes the memory out of the scene, which continues with a copy; changes from outside are applied.
     fn lend(&self, session: &mut Session, counts: bool) -> Result<()> {
         let mut state = self.state();
         if state.stale.is_some() {
@@ -144,7 +144,8 @@ impl Held {
         Ok(())
     }
 
-    /// Puts the memory back into the scene with the new values, or lets it be nobody's where particles are others now.
+    /// Returns the memory to the scene with the new values, or orphans it if the particles are different
+    /// ones.
     fn give_back(&self, session: &mut Session, same: bool) {
         let mut state = self.state();
         if state.stale.is_some() {
@@ -161,7 +162,7 @@ impl Held {
             }
             return;
         }
-        // It was the scene's all the time: nothing has been lent.
+        // It stayed with the scene: nothing has been lent.
         let Some(mut store) = state.kept.take() else { return };
         let back = match (&mut store, session.column(&self.name)) {
             (Store::Ones(list), Some(Column::Ones(own))) => put(list, own, same),
@@ -178,7 +179,7 @@ impl Held {
         }
     }
 
-    /// The scene is over.
+    /// The scene has ended.
     fn end(&self, why: &'static str) {
         self.state().end(why);
     }
@@ -210,7 +211,8 @@ impl<const N: usize> Row for [f64; N] {
     }
 }
 
-/// Gives the values of `own` to `list` and this to the scene; the print of the values, or nothing where they are for others.
+/// Writes the values of `own` to `list` and moves it into the scene; returns the hash of the values, or
+/// `None` if they belong to other particles.
 fn put<T: Row>(list: &mut Vec<T>, own: &mut Vec<T>, same: bool) -> Option<u64> {
     if !same || list.len() != own.len() {
         return None;
@@ -220,17 +222,17 @@ fn put<T: Row>(list: &mut Vec<T>, own: &mut Vec<T>, same: bool) -> Option<u64> {
     Some(print(T::flat(own)))
 }
 
-/// All columns that somebody looks into.
+/// All viewed columns.
 #[derive(Default)]
 pub struct Looked {
     held: Vec<Weak<Held>>,
-    /// Handed out since the last command: what was written counts, even if nobody looks any more.
+    /// Views created since the last command: their changes count even if they are gone.
     recent: Vec<Arc<Held>>,
     roster: [u64; 3],
 }
 
 impl Looked {
-    /// The column under a name, the same for all who ask while one of them looks; `None` if the scene has none.
+    /// The column of a name, shared by all views while one exists; `None` if the scene has none.
     pub fn at(&mut self, session: &mut Session, name: &str) -> Option<Memory> {
         self.held.retain(|held| held.strong_count() > 0);
         let mut all = self.held.iter().filter_map(Weak::upgrade);
@@ -249,10 +251,10 @@ impl Looked {
         Some(Memory(held))
     }
 
-    /// Before a command. `counts`: columns of which it is not known whether they were changed are taken for changed.
+    /// Before a command. `counts`: columns that may have been changed count as changed.
     ///
     /// # Errors
-    /// Whole numbers from outside that cannot be; they are as before then.
+    /// Invalid integers from outside; the previous values are kept.
     pub fn lend(&mut self, session: &mut Session, counts: bool) -> Result<()> {
         self.held.retain(|held| held.strong_count() > 0);
         if self.held.is_empty() {
@@ -273,10 +275,11 @@ impl Looked {
         self.recent.clear();
     }
 
-    /// The scene ends: what is looked at belongs to who looks. Also after a panic, when nothing of the scene is touched.
+    /// Ends the scene; viewed memory is left to the viewers. Also after a panic, when the scene is not
+    /// touched.
     pub fn end(&mut self, session: Option<&mut Session>, why: &'static str) {
         if let Some(session) = session {
-            // What cannot be taken over any more changes nothing.
+            // Changes that cannot be applied any more are ignored.
             let _ = self.lend(session, false);
         }
         self.live().for_each(|held| held.end(why));
@@ -289,37 +292,37 @@ impl Looked {
     }
 }
 
-/// A column of particles in memory; `numpy.asarray` and `ctypes` look into it.
+/// A column of particles in memory, viewed by `numpy.asarray` and `ctypes`.
 #[pyclass(frozen, module = "perigrain._core")]
 pub struct Memory(Arc<Held>);
 
 #[pymethods]
 impl Memory {
-    /// Where it lies.
+    /// Its address.
     #[getter]
     fn address(&self) -> usize {
         self.0.state().at
     }
 
-    /// How many particles.
+    /// The number of particles.
     #[getter]
     fn rows(&self) -> usize {
         self.0.state().rows
     }
 
-    /// How many numbers each of them has.
+    /// Numbers per particle.
     #[getter]
     fn width(&self) -> usize {
         self.0.width
     }
 
-    /// Whether the numbers are whole ones, of 32 bits.
+    /// Whether the numbers are 32-bit integers.
     #[getter]
     fn whole(&self) -> bool {
         self.0.whole
     }
 
-    /// Whether it is a mirror that is read before and written after each command, not the scene's own memory.
+    /// Whether it is a mirror, read before and written after each command, instead of the scene's own memory.
     #[getter]
     fn mirror(&self) -> bool {
         self.0.whole
@@ -331,7 +334,7 @@ impl Memory {
         &self.0.name
     }
 
-    /// Why it means nothing any more; `None` while it does.
+    /// Reason why it is stale; `None` if it is valid.
     #[getter]
     fn stale(&self) -> Option<&'static str> {
         self.0.state().stale

@@ -1,4 +1,4 @@
-//! A scene in the middle of a step, as a function of `fix python/invoke` is shown it.
+//! A scene in the middle of a step, passed to a function of `fix python/invoke`.
 
 use super::errors;
 use super::functions::{Library, names};
@@ -12,7 +12,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::PoisonError;
 
-/// Why there is no scene, after the function.
+/// Reason for a missing scene, after the function.
 const RETURNED: &str = "the function that was shown this scene has returned";
 
 impl Host for Library {
@@ -25,7 +25,7 @@ impl Host for Library {
     }
 }
 
-/// Shows the scene to a function; what is written into columns has changed them when this is over.
+/// Passes the scene to a function; changes of columns are applied afterwards.
 fn called(py: Python<'_>, function: &str, when: Invoked, w: &mut World) -> PyResult<()> {
     let Some(known) = names(py)?.get_item(function)? else {
         return Err(PyTypeError::new_err(format!("there is no function `{function}` any more")));
@@ -50,7 +50,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves it out again; who looks into it still is stale.
+    /// Moves it out again; remaining views become stale.
     fn take_back(&self, py: Python<'_>, w: &mut World) -> PyResult<()> {
         let mut inner = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let Inner { session, looked, why, .. } = &mut *inner;
@@ -61,7 +61,7 @@ impl Scene {
         looked.end(None, RETURNED);
         *why = RETURNED;
         *w = std::mem::take(&mut own.world);
-        // Places may have been written through a view that is gone.
+        // Positions may have been written through a view that is gone.
         w.touch();
         lent.map_err(|e| errors::deck(py, &e, &own.sources))
     }

@@ -1,4 +1,4 @@
-//! Fixes external: functions in Python that give forces, and what they say besides.
+//! Fixes external: Python functions that give forces, and further values.
 
 use super::values;
 use perigrain::session::Rows;
@@ -11,7 +11,7 @@ use pyo3::{PyTraverseError, PyVisit};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// What one fix external talks to. Its lock is held for moments only, and never while Python works.
+/// The link between one fix external and Python. Its lock is held briefly, and never while Python code runs.
 #[derive(Default)]
 pub struct Hook(Mutex<State>);
 
@@ -21,7 +21,7 @@ struct State {
     values: HostValues,
     /// What was said of each particle and nobody has asked for yet.
     each: Each,
-    /// What the function has ended with.
+    /// The exception raised by the function.
     raised: Option<PyErr>,
 }
 
@@ -36,18 +36,18 @@ impl Hook {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The exception in which the function has ended since this was asked last.
+    /// The exception raised by the function since the last call.
     pub fn raised(&self) -> Option<PyErr> {
         self.state().raised.take()
     }
 
-    /// Calls nobody any more. What goes is dropped without the lock: that may run code in Python.
+    /// Removes the function. It is dropped outside the lock, because that may run Python code.
     pub fn forget(&self) {
         let gone = self.state().function.take();
         drop(gone);
     }
 
-    /// Shows Python's garbage collector what is held.
+    /// Exposes held objects to Python's garbage collector.
     pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
         match self.0.try_lock() {
             Ok(state) => state.function.as_ref().map_or(Ok(()), |function| visit.call(function)),
@@ -92,7 +92,7 @@ fn called(py: Python<'_>, function: &Py<PyAny>, call: HostCall<'_>) -> PyResult<
     }
 }
 
-/// Energies and virials of particles from bytes.
+/// Per-particle energies and virials from bytes.
 pub fn each_of(energy: Option<&[u8]>, virial: Option<&[u8]>) -> PyResult<Each> {
     let reals = |bytes: &[u8]| match values::taken(bytes, false)? {
         Rows::Reals(list) => Ok(list),
@@ -104,29 +104,30 @@ pub fn each_of(energy: Option<&[u8]>, virial: Option<&[u8]>) -> PyResult<Each> {
     Ok(Each { energy, virial: virial.map(|list| list.chunks_exact(6).map(six).collect()) })
 }
 
-/// What a fix external talks to, as the package has it in hand.
+/// The package's handle of a fix external.
 #[pyclass(frozen, name = "Outside", module = "perigrain._core")]
 pub struct Handle(pub Arc<Hook>);
 
 #[pymethods]
 impl Handle {
-    /// Sets the function: it gets the step, ids, places and forces, the last as a bytearray to be written into.
+    /// Sets the function: its arguments are step, ids, positions and forces, the last as a bytearray to be
+    /// written.
     fn call(&self, function: Py<PyAny>) {
         let before = self.0.state().function.replace(function);
         drop(before);
     }
 
-    /// Says the energy of the forces.
+    /// Sets the energy of the forces.
     fn energy(&self, energy: f64) {
         self.0.state().values.energy = energy;
     }
 
-    /// Says their virial.
+    /// Sets their virial.
     fn virial(&self, virial: [f64; 6]) {
         self.0.state().values.virial = virial;
     }
 
-    /// Says energies and virials of particles, for the call that is under way.
+    /// Sets per-particle energies and virials for the call in progress.
     #[pyo3(signature = (energy, virial))]
     fn each(&self, energy: Option<&[u8]>, virial: Option<&[u8]>) -> PyResult<()> {
         let given = each_of(energy, virial)?;
@@ -141,7 +142,7 @@ impl Handle {
         Ok(())
     }
 
-    /// Sets one of the values, from 1.
+    /// Sets one of the values; the index counts from 1.
     fn value(&self, index: usize, value: f64) {
         let list = &mut self.0.state().values.vector;
         list.resize(list.len().max(index), 0.0);

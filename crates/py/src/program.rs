@@ -5,7 +5,8 @@ use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Works off a command line; the exit code. `start` are the program and its words that start this one again.
+/// Executes a command line and returns the exit code. `start` is the program with the words that start it
+/// again.
 #[pyfunction]
 pub fn main(py: Python<'_>, start: Vec<OsString>, words: Vec<OsString>) -> u8 {
     let mut own = start.into_iter();

@@ -1,4 +1,4 @@
-//! A session behind a lock, as the package `perigrain` drives it.
+//! A session behind a lock, driven by the package `perigrain`.
 
 use super::errors;
 use super::functions::Library;
@@ -21,21 +21,21 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
-/// A box: its corners, tilts (xy, xz, yz) [length] and which axes repeat.
+/// A box: its corners, tilts (xy, xz, yz) [length] and which axes are periodic.
 type Edges = ([f64; 3], [f64; 3], [f64; 3], [bool; 3]);
 
 /// A row of the step table: the step, and the columns with their values.
 type Row = (i64, Vec<(String, Py<PyAny>)>);
 
-/// A column of a step table: its heading, whether it holds whole numbers, these as bytes.
+/// A column of a step table: its heading, whether it holds integers, and the numbers as bytes.
 type TableColumn<'py> = (String, bool, Bound<'py, PyBytes>);
 
-/// A scene: a deck's world, worked on line by line.
+/// A scene: the state of a deck that is executed line by line.
 #[pyclass(frozen, module = "perigrain._core")]
 pub struct Scene(pub(super) Mutex<Inner>);
 
 impl Scene {
-    /// A scene that [`Scene::show`] fills.
+    /// A scene to be filled by [`Scene::show`].
     pub(super) fn of_a_moment() -> Self {
         let mut inner = Inner::default();
         inner.moment = true;
@@ -63,7 +63,7 @@ impl Scene {
         self.look(py, lent, job)
     }
 
-    /// As [`Scene::ask`], for what may be asked within a step, too.
+    /// Like [`Scene::ask`], for operations that are also allowed within a step.
     fn look<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
         let mut inner = self.lock(py)?;
         let Inner { session, looked, screen, library, why, .. } = &mut *inner;
@@ -89,7 +89,7 @@ impl Scene {
         }
     }
 
-    /// Lines of a deck, which may take long.
+    /// Executes lines of a deck, which may take long.
     fn work(
         &self,
         py: Python<'_>,
@@ -119,7 +119,7 @@ impl Scene {
         };
         looked.give_back(session);
         screen.show(py);
-        // What a function of Python raised is raised on, as Python does.
+        // An exception raised by a Python function is raised again.
         let raised = |library: &Library| library.raised().filter(|_| outcome.is_err());
         let raised = ended.raised.or_else(|| raised(library));
         if let Some(e) = raised.or_else(|| hooks.values().find_map(|hook| hook.raised())) {
@@ -134,7 +134,7 @@ impl Scene {
 
 #[pymethods]
 impl Scene {
-    /// A scene before its first line, as the words of a command line want it.
+    /// A scene before its first line, with the options of a command line.
     #[new]
     fn new(py: Python<'_>, words: Vec<String>) -> PyResult<Self> {
         let screen = Screen::default();
@@ -151,22 +151,22 @@ impl Scene {
         Ok(Self(Mutex::new(inner)))
     }
 
-    /// Works off lines of a deck; the status of `quit`, if that was said.
+    /// Executes lines of a deck; returns the status of `quit`, if given.
     fn command(&self, py: Python<'_>, text: &str, name: &str) -> PyResult<Option<i32>> {
         self.work(py, Session::is_light(text), |session| session.eval(name, text))
     }
 
-    /// Works off a deck from a file.
+    /// Executes a deck from a file.
     fn file(&self, py: Python<'_>, path: PathBuf) -> PyResult<Option<i32>> {
         self.work(py, false, |session| session.eval_file(&path))
     }
 
-    /// The value of a formula or of a word of thermo output.
+    /// The value of a formula or a thermo keyword.
     fn number(&self, py: Python<'_>, formula: &str) -> PyResult<f64> {
         self.with_session(py, true, |session| session.number(formula))
     }
 
-    /// A text with its variables replaced.
+    /// A text with variables substituted.
     fn expand(&self, py: Python<'_>, text: &str) -> PyResult<String> {
         self.with_session(py, true, |session| session.expand(text))
     }
@@ -230,7 +230,7 @@ impl Scene {
         values::slot(py, &slot, n)
     }
 
-    /// Numbers of particles as bytes, whether they are whole, how many each has.
+    /// Per-particle numbers as bytes, whether they are integers, and their number per particle.
     fn gather<'py>(
         &self,
         py: Python<'py>,
@@ -242,13 +242,13 @@ impl Scene {
         if self.lock(py)?.moment && (name.starts_with("c_") || name.starts_with("f_")) {
             return Err(errors::within(py));
         }
-        // What somebody has written into whole numbers counts from the next command on.
+        // Integers written from outside take effect at the next command.
         let (rows, width) = self.look(py, true, |session| session.gathered(name, apart, &order))?;
         let (bytes, whole) = values::rows(py, &rows);
         Ok((bytes, whole, width))
     }
 
-    /// Puts numbers of particles back.
+    /// Writes per-particle numbers.
     fn scatter(
         &self,
         py: Python<'_>,
@@ -261,7 +261,7 @@ impl Scene {
         self.look(py, true, |session| session.scatter(name, &order, &rows))
     }
 
-    /// Makes particles; how many.
+    /// Creates particles; returns their number.
     #[pyo3(signature = (ids, kinds, x, v, images, open))]
     fn create(
         &self,
@@ -279,12 +279,12 @@ impl Scene {
         self.with_session(py, true, |session| session.make_particles(&new))
     }
 
-    /// Gives an empty box other corners, and a triclinic one other tilts (xy, xz, yz).
+    /// Changes the corners of an empty box, and the tilts (xy, xz, yz) of a triclinic one.
     fn reset_box(&self, py: Python<'_>, lo: [f64; 3], hi: [f64; 3], tilt: [f64; 3]) -> PyResult<()> {
         self.with_session(py, true, |session| session.reset_box(lo, hi, tilt))
     }
 
-    /// The box: corners, tilts (xy, xz, yz) and which axes repeat.
+    /// The box: corners, tilts (xy, xz, yz) and which axes are periodic.
     fn domain(&self, py: Python<'_>) -> PyResult<Option<Edges>> {
         self.look(py, false, |session| {
             let domain = session.world.domain.as_ref();
@@ -292,14 +292,14 @@ impl Scene {
         })
     }
 
-    /// Where the particle with an id stands.
+    /// The index of the particle with an id.
     fn place(&self, py: Python<'_>, id: i64) -> PyResult<Option<usize>> {
         self.look(py, false, |session| {
             Ok(u32::try_from(id).ok().and_then(|tag| session.world.particles.index_of(tag)))
         })
     }
 
-    /// From now on all rows of step tables are kept.
+    /// Keeps all rows of step tables from now on.
     fn keep_rows(&self, py: Python<'_>) -> PyResult<()> {
         self.with_session(py, false, |session| {
             session.keep_table_rows();
@@ -307,7 +307,8 @@ impl Scene {
         })
     }
 
-    /// The rows kept so far as columns: heading, whether it holds whole numbers, its numbers as bytes; tables of other columns apart.
+    /// The rows kept so far, by column: heading, whether it holds integers, and the numbers as bytes; tables
+    /// with other columns separately.
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Vec<Vec<TableColumn<'py>>>> {
         let tables = self.look(py, false, |session| Ok(session.table_rows()))?;
         let column = |(name, (whole, values)): (String, (bool, Vec<f64>))| {
@@ -354,12 +355,12 @@ impl Scene {
         })
     }
 
-    /// How many particles there are.
+    /// The number of particles.
     fn count(&self, py: Python<'_>) -> PyResult<usize> {
         self.look(py, false, |session| Ok(session.world.n()))
     }
 
-    /// What a fix external talks to from now on: functions and what they say.
+    /// Links a fix external: its functions and values.
     fn outside(&self, py: Python<'_>, id: &str) -> PyResult<Handle> {
         let known = self.lock(py)?.hooks.get(id).cloned();
         let hook = self.with_session(py, false, |session| {
@@ -375,7 +376,7 @@ impl Scene {
         Ok(Handle(hook))
     }
 
-    /// Says energies and virials of particles to a fix external, between commands.
+    /// Sets per-particle energies and virials of a fix external, between commands.
     #[pyo3(signature = (id, energy, virial))]
     fn external_each(
         &self,
@@ -388,7 +389,7 @@ impl Scene {
         self.with_session(py, false, |session| session.set_each(id, each))
     }
 
-    /// Refuses an index behind the values that a fix offers.
+    /// Refuses an index beyond the values that a fix offers.
     fn has_value(&self, py: Python<'_>, id: &str, index: usize) -> PyResult<()> {
         self.with_session(py, false, |session| session.has_value(id, index))
     }
@@ -406,29 +407,29 @@ impl Scene {
         }
     }
 
-    /// Whether a command is being worked off.
+    /// Whether a command is executing.
     #[getter]
     fn at_work(&self) -> bool {
         self.0.try_lock().map_or_else(|e| matches!(e, TryLockError::WouldBlock), |inner| inner.moment)
     }
 
-    /// Why there is no scene any more; `None` while there is one.
+    /// Reason why the scene has ended; `None` while it exists.
     #[getter]
     fn ended(&self, py: Python<'_>) -> PyResult<Option<&'static str>> {
         let inner = self.lock(py)?;
         Ok(if inner.session.is_some() { None } else { Some(inner.why) })
     }
 
-    /// Hands all output to the system.
+    /// Flushes all output.
     fn flush(&self, py: Python<'_>) -> PyResult<()> {
         self.with_session(py, false, |session| session.flush())
     }
 
-    /// Ends the scene; what is looked at belongs to who looks.
+    /// Ends the scene; viewed memory is left to the viewers.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
         let mut inner = self.lock(py)?;
         if inner.moment {
-            // It belongs to the run, which goes on.
+            // It belongs to the run, which continues.
             return Ok(());
         }
         if let Some(session) = &mut inner.session {

@@ -1,15 +1,16 @@
-//! The screen of a scene: what it says goes to Python's `sys.stdout`, wherever that leads.
+//! Screen output of a scene: written to Python's `sys.stdout`, including redirections.
 
 use pyo3::prelude::*;
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What was said and not shown yet.
+/// Output that has not been written yet.
 #[derive(Clone, Default)]
 pub struct Screen(Arc<Mutex<Vec<u8>>>);
 
 impl Screen {
-    /// Hands over what was said since; a stream that cannot be written is told of as Python does for what nobody can catch.
+    /// Writes new output; errors of the stream are reported as Python does for exceptions that cannot be
+    /// raised.
     pub fn show(&self, py: Python<'_>) {
         let bytes = std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner));
         if bytes.is_empty() {

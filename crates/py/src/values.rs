@@ -1,4 +1,5 @@
-//! Values between Rust and Python: lists of numbers travel as bytes, which become arrays of `ctypes` or numpy there.
+//! Values between Rust and Python: lists of numbers are passed as bytes, which become arrays of `ctypes` or
+//! numpy.
 
 use perigrain::session::{Global, Order, Rows, VariableValue};
 use perigrain::world::Slot;
@@ -12,13 +13,13 @@ pub fn reals<'py>(py: Python<'py>, list: &[f64]) -> Bound<'py, PyBytes> {
     PyBytes::new(py, &bytes)
 }
 
-/// The bytes of whole numbers.
+/// The bytes of integers.
 pub fn wholes<'py>(py: Python<'py>, list: &[i32]) -> Bound<'py, PyBytes> {
     let bytes: Vec<u8> = list.iter().flat_map(|a| a.to_ne_bytes()).collect();
     PyBytes::new(py, &bytes)
 }
 
-/// Numbers, and whether they are whole.
+/// Numbers, and whether they are integers.
 pub fn rows<'py>(py: Python<'py>, rows: &Rows) -> (Bound<'py, PyBytes>, bool) {
     match rows {
         Rows::Wholes(list) => (wholes(py, list), true),
@@ -86,12 +87,13 @@ pub fn variable<'py>(py: Python<'py>, value: VariableValue) -> PyResult<(&'stati
     })
 }
 
-/// What a compute or fix has: number, vector, array, values per particle, local values; lists as bytes with their columns.
+/// The data of a compute or fix: scalar, vector, array, per-particle values, local values; lists as bytes
+/// with their numbers of columns.
 pub fn slot<'py>(py: Python<'py>, slot: &Slot, particles: usize) -> PyResult<Bound<'py, PyTuple>> {
     let o = slot.offers;
     let list = |there: bool, list: &[f64], cols: usize| there.then(|| (reals(py, list), cols));
     let mut atom = slot.atom.clone();
-    // Who came since has none yet.
+    // Particles created since have no value yet.
     atom.resize(particles * slot.cols, 0.0);
     (
         o.scalar.then_some(slot.scalar),

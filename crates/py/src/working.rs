@@ -1,4 +1,4 @@
-//! Work that takes time: on a thread of its own, while Python's threads run and Ctrl-C is heard.
+//! Long operations on a separate thread, while Python threads run and Ctrl-C is handled.
 
 use super::screen::Screen;
 use perigrain::par::STACK;
@@ -12,24 +12,25 @@ use std::time::Duration;
 
 type Panic = Box<dyn Any + Send>;
 
-/// How often the screen is shown and Ctrl-C is looked for.
+/// Interval at which the screen is updated and Ctrl-C is checked.
 const PERIOD: Duration = Duration::from_millis(25);
 
-/// How a piece of work ended.
+/// Result of an operation.
 pub struct Ended<T> {
-    /// What came out; `Err` with the words of a panic.
+    /// The result; `Err` with the text of a panic.
     pub outcome: Result<T, String>,
-    /// What a signal handler of Python has raised in the meantime.
+    /// An exception raised by a Python signal handler in the meantime.
     pub raised: Option<PyErr>,
 }
 
-/// Does `job` right here: for what takes no longer than to begin a thread.
+/// Runs `job` on this thread: for operations shorter than starting a thread.
 pub fn at_once<T>(job: impl FnOnce() -> T) -> Ended<T> {
     let outcome = catch_unwind(AssertUnwindSafe(job)).map_err(|panic| words(&*panic));
     Ended { outcome, raised: None }
 }
 
-/// Does `job` on a thread of its own. What a signal handler raises sets `stop`; the job is expected to end soon then.
+/// Runs `job` on a separate thread. An exception of a signal handler sets `stop`; the job should end soon
+/// then.
 pub fn beside<T: Send>(
     py: Python<'_>,
     screen: &Screen,
@@ -39,7 +40,7 @@ pub fn beside<T: Send>(
     let (outcome, raised) = py.detach(|| {
         thread::scope(|scope| {
             let (done, ended) = channel::<()>();
-            // As much stack as the threads of a run have.
+            // The stack size of the threads of a run.
             let thread = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, move || {
                 let outcome = catch_unwind(AssertUnwindSafe(job));
                 drop(done);
@@ -65,7 +66,7 @@ pub fn beside<T: Send>(
     Ended { outcome: outcome.map_err(|panic| words(&*panic)), raised }
 }
 
-/// What a panic says.
+/// The text of a panic.
 pub fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|s| (*s).to_string());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no reason given".into())

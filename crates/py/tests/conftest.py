@@ -59,7 +59,7 @@ velocity all ramp vx -1 1 x 0 0.004 units box
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """Each test in a folder of its own."""
+    """Each test runs in its own folder."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -91,5 +91,5 @@ def spheres(make):
 
 @pytest.fixture
 def peri(make):
-    """A peridynamic block that is being drawn, before its first step."""
+    """A peridynamic block under tension, before its first step."""
     return make(PERI)

@@ -1,4 +1,4 @@
-"""`fix external`: what a function in Python gives, says and does wrong."""
+"""`fix external`: forces, values and errors of a Python function."""
 
 import gc
 import weakref
@@ -8,7 +8,7 @@ import pytest
 
 import perigrain
 
-# Two grains of mass 1 that feel nothing but what Python says.
+# Two grains of mass 1 on which only Python acts.
 FREE = """
 units lj
 atom_style sphere
@@ -37,9 +37,9 @@ def test_an_oscillator_keeps_its_energy_and_its_period(make):
     lmp.command("run 0")
     before = lmp.get_thermo("etotal")
     lmp.command("run 100")
-    # velocity Verlet: the period is off by (2 pi dt)^2/24 = 1.6e-4, the place near its turn by the square of that
+    # velocity Verlet: the period is off by (2 pi dt)^2/24 = 1.6e-4, the position near its turning point by the square of that
     assert np.abs(lmp.numpy.extract_atom("x") - start).max() < 1e-6
-    # its energy swings by (2 pi dt)^2/4 = 1e-3 of itself, and is back after a period
+    # the relative energy oscillates by (2 pi dt)^2/4 = 1e-3, and returns after a period
     assert lmp.get_thermo("etotal") == pytest.approx(before, rel=1e-5)
 
 
@@ -60,7 +60,7 @@ def test_energies_and_virials_of_particles(make):
 
     def pull(caller, step, n, ids, x, f):
         f[:] = 0.0
-        # More than there are: as in LAMMPS, what stands behind the last particle is left out.
+        # Too many values: as in LAMMPS, those beyond the last particle are ignored.
         lmp.fix_external_set_energy_peratom("pull", [float(k) for k in ids] + [9.0])
         lmp.numpy.fix_external_set_virial_peratom("pull", np.outer(ids, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
 
@@ -68,7 +68,7 @@ def test_energies_and_virials_of_particles(make):
     lmp.command("run 1")
     assert lmp.numpy.extract_compute("e", 1, 1).tolist() == [1.0, 2.0]
     assert lmp.numpy.extract_compute("s", 1, 2)[1].tolist() == [-2.0, -4.0, -6.0, -8.0, -10.0, -12.0]
-    # they count in no sum of the scene
+    # they are not part of any sum of the scene
     assert lmp.get_thermo("pe") == 0.0
     lmp.command("fix_modify pull energy no virial no")
     lmp.command("run 0")
@@ -136,7 +136,7 @@ def test_mistakes_are_named(make):
         lmp.fix_external_set_energy_peratom("pull", [1.0])
     with pytest.raises(perigrain.DeckError, match="has 0 values"):
         lmp.fix_external_set_vector("pull", 1, 1.0)
-    # another fix of this name has no function any more
+    # another fix of this name has no function
     lmp.set_fix_external_callback("pull", lambda *_: None)
     lmp.commands_string("unfix pull\nfix pull all external pf/callback 1 1")
     with pytest.raises(perigrain.DeckError, match="no function to call"):

@@ -30,7 +30,7 @@ def test_a_variable_is_what_a_function_gives(make):
     assert lmp.get_thermo("v_square") == 9.0
     assert lmp.get_thermo("v_twice") == 18.0
     assert lmp.expand("${square}") == "9"
-    # each time anew
+    # evaluated each time
     lmp.command("run 1")
     assert lmp.get_thermo("v_square") == 16.0
 
@@ -119,7 +119,7 @@ def test_a_bench_has_errors_and_orders(tmp_path):
     table = perigrain.bench(FALL, {"dt": [0.1, 0.05, 0.025]}, "ke", folder=tmp_path)
     assert len(table) == 3 and (table["seconds"] >= 0.0).all()
     assert table["ke_error"][0] > table["ke_error"][1] > 0.0
-    # Verlet with drag, errors to the finest run: (0.1 - 0.025)/(0.05 - 0.025) of a first order, 5 of a second one.
+    # Verlet with drag, errors against the finest run: a ratio of (0.1 - 0.025)/(0.05 - 0.025) for first order, 5 for second.
     assert 1.0 < table["ke_order_dt"][1] < 3.0
     assert (tmp_path / "bench" / "bench.csv").is_file()
     with pytest.raises(perigrain.BenchError, match="dtt"):

@@ -1,4 +1,4 @@
-"""`fix python/invoke`: functions that are called within a run, what they see, write and may not do."""
+"""`fix python/invoke`: functions called within a run, what they can read and write, and what is refused."""
 
 import __main__
 import numpy as np
@@ -11,7 +11,7 @@ from test_external import FREE
 
 @pytest.fixture
 def known():
-    """Makes functions known as a script's own, and forgets them."""
+    """Defines functions as a script would, and removes them."""
     names = set()
 
     def make(**functions):
@@ -37,7 +37,7 @@ def test_functions_are_called_at_their_steps(make, known):
     known(forces=forces, after=after)
     lmp.commands_string("fix a all python/invoke 2 post_force forces\nfix b all python/invoke 3 end_of_step after")
     lmp.commands_string("thermo_style custom step press\nthermo 4\nrun 6")
-    # not in the setup; the pressure is read at steps 0, 4 and the last, which leaves all that computes may be asked for, as those of stress/atom
+    # not in the setup; the pressure is read at steps 0, 4 and the last, which excludes computes that need it, such as stress/atom
     assert seen == [("forces", 2, 0), ("after", 3), ("forces", 4, 1), ("forces", 6, 5), ("after", 6)]
     seen.clear()
     lmp.commands_string("unfix a\nrun 3")
@@ -45,7 +45,7 @@ def test_functions_are_called_at_their_steps(make, known):
 
 
 def test_forces_written_within_a_step_move_particles(make, known):
-    """The same pull as by `fix external`, bit for bit."""
+    """The same force as by `fix external`, bit for bit."""
 
     def pull(ptr, vflag):
         with perigrain.lammps(ptr=ptr) as lmp:
@@ -56,7 +56,7 @@ def test_forces_written_within_a_step_move_particles(make, known):
                     f[i][k] += -4.0 * (x[i, k] - 0.5)
 
     def asked(caller, step, n, ids, x, f):
-        # A fix external is called in the setup, too.
+        # A fix external is also called in the setup.
         f[:] = -4.0 * (x - 0.5) if step else 0.0
 
     known(pull=pull)
@@ -91,7 +91,7 @@ def test_what_is_written_after_a_step_counts(make, known):
 
 
 def test_who_is_moved_or_sped_up_meets_others_at_once(make, known):
-    """Lists of neighbours are looked after, whatever a function does to places and speeds."""
+    """Neighbour lists stay valid, whatever a function does to positions and velocities."""
 
     def jump(ptr):
         perigrain.lammps(ptr=ptr).numpy.extract_atom("x")[1] = [0.38, 0.3, 0.3]
@@ -102,11 +102,11 @@ def test_who_is_moved_or_sped_up_meets_others_at_once(make, known):
     known(jump=jump, dart=dart)
     lmp = make(SPHERES)
     lmp.commands_string("fix 2 all python/invoke 40 end_of_step jump\nrun 41")
-    # they overlap by 0.02 at a stiffness of 1000, and part slowly
+    # they overlap by 0.02 at a stiffness of 1000, and separate slowly
     assert lmp.extract_atom("f")[1][0] == pytest.approx(20.0, rel=1e-6)
     lmp = make(SPHERES)
     lmp.commands_string("set atom 2 y 0.3 z 0.3\nthermo_modify energy ignore\nfix 2 all python/invoke 40 end_of_step dart\nrun 56")
-    # 0.3 apart, 0.02 nearer in each step: they meet in the sixteenth
+    # 0.3 apart, 0.02 closer in each step: they meet in the sixteenth
     assert lmp.extract_atom("f")[0][0] < -1000.0
 
 
@@ -143,7 +143,7 @@ def test_what_a_function_may_not_do(make, known):
             with pytest.raises(perigrain.BusyError):
                 asks()
         assert inside.is_running
-        # A type that is none: the run ends, and the particle keeps its own.
+        # An invalid type: the run ends, and the particle keeps its type.
         if inside.extract_global("ntimestep") == 2:
             inside.numpy.extract_atom("type")[0] = 7
         ptr.close()
@@ -174,7 +174,7 @@ def test_mistakes_are_named(make, known):
             lmp.command(f"fix b all python/invoke {words}")
     with pytest.raises(perigrain.DataError, match="python/invoke"):
         perigrain.lammps(ptr=3)
-    # In a deck alone, as LAMMPS' manual has it; `clear` leaves the functions there.
+    # In a deck alone, as in LAMMPS' manual; `clear` keeps the functions.
     lmp.commands_string("clear\n" + FREE)
     lmp.commands_string('''
 python later here """

@@ -1,4 +1,4 @@
-"""The methods that LAMMPS' Python class has: names, shapes, types and numbers as LAMMPS (22 Jul 2025) gives them."""
+"""The methods of LAMMPS' Python class: names, shapes, types and numbers as in LAMMPS (22 Jul 2025)."""
 
 import ctypes
 import math
@@ -10,7 +10,7 @@ import perigrain
 from perigrain import LMP_SIZE_COLS, LMP_SIZE_ROWS, LMP_SIZE_VECTOR, LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_STYLE_LOCAL
 from perigrain import LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 
-# What LAMMPS says of these two spheres after 20 steps of free fall; the sums are exact up to rounding.
+# LAMMPS' results for these two spheres after 20 steps of free fall; the sums are exact up to rounding.
 Z = [0.2999998038000001, 0.6999998037999999]
 KE = 2.0155641651342163e-06
 

@@ -1,4 +1,4 @@
-"""Pages of the manual: their blocks run in order, and what they assert is so."""
+"""Pages of the manual: their code blocks run in order, and their assertions hold."""
 
 import re
 import subprocess
@@ -9,7 +9,7 @@ DOCS = Path(__file__).resolve().parents[3] / "docs"
 
 
 def work_off(page, least=4):
-    """Runs the blocks of a page one after the other; their names."""
+    """Runs the code blocks of a page in order; returns the defined names."""
     blocks = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(encoding="utf-8"), re.S)
     assert len(blocks) >= least
     names = {}
@@ -27,7 +27,7 @@ def test_the_page_of_the_module_works_as_it_stands(folder):
 def test_a_run_is_driven_as_the_page_says(folder):
     work_off("howto/from-python.md")
     made, kept = (where / "from-python.jpg" for where in (folder, DOCS / "howto" / "pictures"))
-    # The same scene with the same bits: as large as the one in the book, give or take what another C library changes.
+    # The same scene with the same bits: as large as the picture in the book, up to differences between C libraries.
     assert abs(made.stat().st_size - kept.stat().st_size) < 0.05 * kept.stat().st_size
 
 

@@ -1,4 +1,4 @@
-"""What a scene does in a process that is not its own: errors, threads, Ctrl-C, several scenes, many of them."""
+"""A scene within another process: errors, threads, Ctrl-C, several scenes, many scenes."""
 
 import os
 import pickle
@@ -100,7 +100,7 @@ def test_scenes_that_come_and_go_leave_nothing(make):
     turns(cycles // 3)
     before = _resident()
     turns(cycles)
-    # a scene of two spheres takes some 100 kB while it is there: one in ten left behind would show
+    # a scene of two spheres takes about 100 kB: a leak of one in ten would show
     assert _resident() - before < max(2000, 10 * cycles), "kB"
 
 

@@ -1,4 +1,4 @@
-"""Scripts that were written for LAMMPS' module run with one import changed, to its numbers."""
+"""Scripts written for LAMMPS' module run with one import changed, with its numbers."""
 
 import subprocess
 import sys
@@ -8,7 +8,7 @@ import pytest
 
 SCRIPTS = Path(__file__).parent / "scripts"
 
-# What the same scripts print with LAMMPS' own module (22 Jul 2025), to all the digits they print.
+# The output of the same scripts with LAMMPS' own module (22 Jul 2025), with all printed digits.
 SAID = {
     "external": """
 x 0.384884203398 0.455621039563 0.384884203398 0.705005499576 0.579747378519 0.814127099719

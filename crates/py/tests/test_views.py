@@ -1,4 +1,4 @@
-"""Arrays that look into a scene: connected while particles are the same, loudly stale afterwards, never dangling."""
+"""Views of a scene: valid while particles are the same, with an error afterwards, never dangling."""
 
 import gc
 import math
@@ -61,7 +61,7 @@ def test_stale_arrays_say_so(spheres, line):
     x, kinds, p = spheres.numpy.extract_atom("x"), spheres.numpy.extract_atom("type"), spheres.extract_atom("x")
     part, own = x[:, 2], x.copy()
     spheres.commands_string(line)
-    if line.startswith("group"):  # a new order is not certain; the array says which
+    if line.startswith("group"):  # reordering is not certain; the array shows whether it happened
         return
     for use in (
         lambda: x[0], lambda: x + 1, lambda: np.sum(x), lambda: x.mean(), lambda: list(x), lambda: repr(x), lambda: part[0],

@@ -1,4 +1,4 @@
-"""What the wheel holds: files, metadata, and stubs that tell what the compiled part has."""
+"""The contents of the wheel: files, metadata, and stubs that match the compiled part."""
 
 import ast
 import importlib.metadata
@@ -37,7 +37,7 @@ def test_files_and_metadata():
         told = subprocess.run([str(script), "-version"], capture_output=True, text=True)
         assert told.returncode == 0 and perigrain.__version__ in told.stdout
     assert "cp39-abi3" in (wheel.read_text("WHEEL") or "")
-    # what is imported is what was installed
+    # the imported package is the installed one
     assert Path(perigrain.__file__).resolve() == Path(str(wheel.locate_file("perigrain/__init__.py"))).resolve()
 
 

@@ -1,18 +1,18 @@
-//! Messages about places in a file that a deck names.
+//! Messages about positions in a file that a deck names.
 
 use super::{Code, Diagnostic, Diagnostics, FileId, Span};
 
-/// The error of a file that is not what it should be at a byte.
+/// The error for a file with invalid data at a byte.
 pub fn broken(at: usize, text: impl Into<String>) -> Diagnostics {
     Diagnostic::error(Code::BAD_FILE, place(at, at + 1), text).into()
 }
 
-/// The refusal of something in a file that perigrain does not know, by name.
+/// The error for an element of a file that perigrain does not support, by name.
 pub fn not_read(at: Span, what: impl std::fmt::Display) -> Diagnostic {
     Diagnostic::error(Code::NOT_SUPPORTED, at, format!("{what} is not in perigrain yet"))
 }
 
-/// The place of some bytes of the file.
+/// The span of some bytes of the file.
 pub fn place(start: usize, end: usize) -> Span {
     Span::new(FileId::BROUGHT, start, end)
 }

@@ -1,6 +1,7 @@
-//! The table of stable diagnostic codes, one per kind of mistake, each with an explanation and a pair of lines.
+//! The table of stable diagnostic codes, one per kind of mistake, each with an explanation and a wrong and a
+//! corrected line.
 
-/// The kind of a mistake, as `PG0101`.
+/// A kind of mistake, such as `PG0101`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Code(pub u16);
 
@@ -10,23 +11,23 @@ impl std::fmt::Display for Code {
     }
 }
 
-/// What there is to say about a code.
+/// Documentation of a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
     /// The code.
     pub code: Code,
-    /// In a few words.
+    /// Short title.
     pub title: &'static str,
-    /// What has happened and what to do.
+    /// Explanation and remedy.
     pub text: &'static str,
-    /// Lines that draw it, in the small scene of `tests/scripts/scene.in` unless they begin with `units`.
+    /// Lines that trigger it, in the small scene of `tests/scripts/scene.in` unless they begin with `units`.
     pub wrong: &'static str,
-    /// The same lines put right.
+    /// The corrected lines.
     pub right: &'static str,
 }
 
 impl Code {
-    /// The code for a name of some kind that nobody has defined.
+    /// The code for an undefined name of some kind.
     pub fn unknown(kind: &str) -> Self {
         match kind {
             "group" => Self::UNKNOWN_GROUP,
@@ -38,7 +39,7 @@ impl Code {
         }
     }
 
-    /// Whether it is about a name that nobody has defined.
+    /// Whether it is about an undefined name.
     pub fn is_unknown_name(self) -> bool {
         self == Self::UNKNOWN_NAME || (Self::UNKNOWN_GROUP..=Self::UNKNOWN_WORD).contains(&self)
     }

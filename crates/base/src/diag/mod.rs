@@ -1,4 +1,4 @@
-//! What went wrong, where, and what to write instead: one diagnostic type for the whole program.
+//! Messages: what went wrong, where, and the remedy; one diagnostic type for the whole program.
 
 pub mod brought;
 mod code;
@@ -13,47 +13,47 @@ pub use code::{CODES, Code, Kind};
 pub use nearest::nearest;
 pub use source::{FileId, Source, Sources, Span};
 
-/// How bad it is.
+/// Severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information.
     Note,
-    /// Runs, but probably not what was meant.
+    /// The deck runs, but probably not as intended.
     Warning,
-    /// Refused.
+    /// The deck is refused.
     Error,
 }
 
-/// A second place that explains the first.
+/// A second position that explains the first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// Where.
+    /// Position.
     pub span: Span,
-    /// What about it.
+    /// Text about it.
     pub text: String,
 }
 
-/// One problem: what, where, why, and what to write instead.
+/// One problem: what, where, why, and the remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// How bad.
+    /// Severity.
     pub severity: Severity,
     /// The kind of mistake; stable, explained by `perigrain explain`.
     pub code: Code,
     /// One sentence, no full stop, lower case.
     pub message: String,
-    /// The words to underline; `None` when no place in a deck is to blame.
+    /// The words to underline; `None` if the problem is not in a deck.
     pub span: Option<Span>,
-    /// Further places.
+    /// Further positions.
     pub labels: Vec<Label>,
-    /// What to do about it.
+    /// Remedies.
     pub help: Vec<String>,
-    /// A text read on the way, where spans in [`FileId::BROUGHT`] point.
+    /// The text of a file that spans in [`FileId::BROUGHT`] refer to.
     pub text: Option<Arc<Source>>,
 }
 
 impl Diagnostic {
-    /// A refusal.
+    /// An error.
     pub fn error(code: Code, span: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Self::new(Severity::Error, code, span, message)
     }
@@ -63,7 +63,7 @@ impl Diagnostic {
         Self::new(Severity::Warning, code, span, message)
     }
 
-    /// A remark.
+    /// A note.
     pub fn note(code: Code, span: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Self::new(Severity::Note, code, span, message)
     }
@@ -85,21 +85,21 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a sentence of advice.
+    /// Adds a remedy.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help.push(text.into());
         self
     }
 
-    /// Adds a second place.
+    /// Adds a second position.
     #[must_use]
     pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into() });
         self
     }
 
-    /// Gives the problem a place when it has none yet.
+    /// Sets the span if there is none yet.
     #[must_use]
     pub fn at(mut self, span: Span) -> Self {
         self.span.get_or_insert(span);
@@ -107,7 +107,7 @@ impl Diagnostic {
     }
 }
 
-/// One or more problems; never empty when it stands for a failure.
+/// One or more problems; never empty as an error.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
@@ -122,12 +122,12 @@ impl Diagnostics {
         self.0.push(d);
     }
 
-    /// Adds all of another's.
+    /// Appends all of another list.
     pub fn append(&mut self, mut other: Diagnostics) {
         self.0.append(&mut other.0);
     }
 
-    /// Each problem once, where it came first; what came several times, as a loop is read turn by turn, says how often.
+    /// Merges repeated problems at their first occurrence, with their count (as in loops).
     #[must_use]
     pub fn together(self) -> Self {
         let (mut out, mut often): (Vec<Diagnostic>, Vec<usize>) = (vec![], vec![]);
@@ -149,12 +149,12 @@ impl Diagnostics {
         Self(out)
     }
 
-    /// Whether one of them refuses.
+    /// Whether there is an error among them.
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|d| d.severity == Severity::Error)
     }
 
-    /// Says in which text places in [`FileId::BROUGHT`] are.
+    /// Sets the text that spans in [`FileId::BROUGHT`] refer to.
     #[must_use]
     pub fn within(mut self, text: &Arc<Source>) -> Self {
         let points = |d: &Diagnostic| {
@@ -165,7 +165,7 @@ impl Diagnostics {
         self
     }
 
-    /// Gives those without a place this one.
+    /// Sets this span where there is none.
     #[must_use]
     pub fn at(self, span: Span) -> Self {
         Self(self.0.into_iter().map(|d| d.at(span)).collect())
@@ -192,16 +192,17 @@ impl std::fmt::Display for Diagnostics {
 
 impl std::error::Error for Diagnostics {}
 
-/// What everything that can go wrong returns.
+/// Result type of all fallible functions.
 pub type Result<T> = core::result::Result<T, Diagnostics>;
 
-/// Why a check cannot go on: a file that only a run of the deck writes. Notes that come back as a failure end a check.
+/// The reason why a check ends early: a file that only a run of the deck writes. A note returned as an error
+/// ends a check.
 pub fn unseen(span: impl Into<Option<Span>>, name: &str) -> Diagnostics {
     let text = format!("`check` cannot look into `{name}`, which the deck itself may have written by now");
     Diagnostic::note(Code::NO_FILE, span, text).into()
 }
 
-/// Short form of a failing return: one error diagnostic.
+/// Returns a single error.
 pub fn fail<T>(code: Code, span: impl Into<Option<Span>>, message: impl Into<String>) -> Result<T> {
     Err(Diagnostic::error(code, span, message).into())
 }

@@ -1,6 +1,6 @@
 //! "Did you mean …": the known word nearest to a mistyped one.
 
-/// The candidate with the smallest edit distance to `word`, if it is near enough to be meant.
+/// The candidate with the smallest edit distance to `word`, if it is a plausible misspelling.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = 1 + word.chars().count() / 4;
     candidates
@@ -11,7 +11,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, c)| c)
 }
 
-/// Edits (insert, delete, replace, swap neighbours) that turn `a` into `b`.
+/// Edit distance between `a` and `b` (insert, delete, replace, swap neighbours).
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut rows = vec![vec![0usize; b.len() + 1]; a.len() + 1];

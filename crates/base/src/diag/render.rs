@@ -1,16 +1,16 @@
-//! Diagnostics as text for people: file, line, column, the line itself with the word underlined.
+//! Diagnostics as text: file, line, column, and the line itself with the word underlined.
 
 use super::{Diagnostic, Diagnostics, FileId, Severity, Sources, Span};
 use codespan_reporting::diagnostic as cs;
 use codespan_reporting::files::{Error, SimpleFiles};
 use codespan_reporting::term::{self, termcolor::Ansi};
 
-/// All problems as plain text (no colours), one after the other.
+/// All problems as plain text (without colours), in order.
 pub fn plain(diagnostics: &Diagnostics, sources: &Sources) -> String {
     all(diagnostics, sources, |config, files, d| term::emit_into_string(config, files, d))
 }
 
-/// All problems with the colours of an ANSI terminal.
+/// All problems with ANSI colours.
 pub fn colored(diagnostics: &Diagnostics, sources: &Sources) -> String {
     all(diagnostics, sources, |config, files, d| {
         let mut out = Ansi::new(Vec::new());
@@ -30,7 +30,7 @@ fn all(
     for source in (0..).map_while(|k| sources.get(FileId(k))) {
         files.add(source.name.clone(), source.text.clone());
     }
-    // ASCII, so that the same text stands in a log file and on any terminal.
+    // ASCII, so that log files and any terminal show the same text.
     let config = term::Config { chars: term::Chars::ascii(), ..Default::default() };
     let mut out = String::new();
     for d in &diagnostics.0 {
@@ -57,7 +57,7 @@ fn convert(d: &Diagnostic, sources: &Sources) -> cs::Diagnostic<usize> {
         .with_notes(d.help.iter().map(|h| format!("help: {h}")).collect())
 }
 
-/// The bytes a span stands for, kept inside its text and on whole characters; `None` without such a text.
+/// The byte range of a span, clamped to its text and to whole characters; `None` if there is no such text.
 fn bytes(span: Span, sources: &Sources) -> Option<(usize, std::ops::Range<usize>)> {
     let text = &sources.get(span.file)?.text;
     let whole = |k: u32| {

@@ -1,20 +1,20 @@
-//! Source texts and places in them.
+//! Source texts and positions in them.
 
 use std::sync::Arc;
 
-/// Which text.
+/// Id of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct FileId(pub u32);
 
 impl FileId {
-    /// A text that is not among the sources: a diagnostic brings it along ([`super::Diagnostic::text`]).
+    /// A text that is not among the sources, but part of a diagnostic ([`super::Diagnostic::text`]).
     pub const BROUGHT: FileId = FileId(u32::MAX);
 }
 
-/// A run of bytes in a source text.
+/// A byte range of a source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Span {
-    /// Which text.
+    /// The text.
     pub file: FileId,
     /// First byte.
     pub start: u32,
@@ -28,7 +28,7 @@ impl Span {
         Self { file, start: start as u32, end: end as u32 }
     }
 
-    /// The smallest span that holds both (of the same text; else the first).
+    /// The smallest span that contains both, if they are in the same text; else the first.
     #[must_use]
     pub fn to(self, other: Span) -> Span {
         if self.file != other.file {
@@ -43,16 +43,16 @@ impl Span {
 pub struct Source {
     /// The file's path, or `<stdin>`.
     pub name: String,
-    /// All of it.
+    /// The whole text.
     pub text: String,
 }
 
-/// Every text read so far.
+/// All texts read so far.
 #[derive(Clone, Debug, Default)]
 pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
-    /// Takes a text in and names it.
+    /// Adds a text with a name.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         self.share(Arc::new(Source { name: name.into(), text: text.into() }))
     }
@@ -66,7 +66,7 @@ impl Sources {
         FileId(k as u32)
     }
 
-    /// Takes in the texts that diagnostics bring along, so that their places can be shown.
+    /// Adds the texts contained in diagnostics, so that their positions can be shown.
     #[must_use]
     pub fn adopt(&mut self, mut list: super::Diagnostics) -> super::Diagnostics {
         for d in &mut list.0 {
@@ -93,7 +93,7 @@ impl Sources {
         self.0.get(id.0 as usize).map(AsRef::as_ref)
     }
 
-    /// The text with this id, to keep.
+    /// A shared reference to the text with this id.
     pub fn keep(&self, id: FileId) -> Option<Arc<Source>> {
         self.0.get(id.0 as usize).cloned()
     }

@@ -1,17 +1,19 @@
-//! Files where several ranks run one deck: the first one reads and writes them, and all have the same bytes and errors.
+//! Files when several ranks run one deck: the first one reads and writes them, and all get the same bytes and
+//! errors.
 
 use super::{Refusal, refuse};
 use crate::comm;
 use std::fs::File;
 use std::io::{Error, ErrorKind, Result, Seek};
 
-/// The last byte of an outcome that goes to other ranks: nothing wrong, refused by the gate, an error of the system, another error.
+/// The last byte of a result sent to other ranks: success, refused by the gate, a system error, another
+/// error.
 const FINE: u8 = 0;
 const REFUSED: u8 = 1;
 const OF_SYSTEM: u8 = 2;
 const OTHER: u8 = 3;
 
-/// The kinds of errors that make a difference; all else is `Other`.
+/// The error kinds that are distinguished; all others become `Other`.
 const KINDS: [ErrorKind; 5] = [
     ErrorKind::NotFound,
     ErrorKind::PermissionDenied,
@@ -20,10 +22,10 @@ const KINDS: [ErrorKind; 5] = [
     ErrorKind::Other,
 ];
 
-/// What the first rank gets, on all ranks; the others do not try.
+/// The result of the first rank, on all ranks; the others do not evaluate `own`.
 ///
 /// # Errors
-/// The first rank's.
+/// The error of the first rank.
 pub fn first(own: impl FnOnce() -> Result<Vec<u8>>) -> Result<Vec<u8>> {
     if !comm::several() {
         return own();
@@ -72,25 +74,25 @@ fn unpack(bytes: &[u8], how: u8) -> Result<Vec<u8>> {
     }
 }
 
-/// Does something to files at the first rank alone; all ranks know whether it worked.
+/// Acts on files on the first rank only; all ranks get the result.
 ///
 /// # Errors
-/// The first rank's.
+/// The error of the first rank.
 pub fn once(act: impl FnOnce() -> Result<()>) -> Result<()> {
     first(|| act().map(|()| vec![])).map(drop)
 }
 
-/// A file that the first rank opens to read, on all ranks: the others have its bytes in memory.
+/// A file opened by the first rank for reading, on all ranks: the others have its bytes in memory.
 ///
 /// # Errors
-/// The first rank's.
+/// The error of the first rank.
 pub(super) fn opened(own: impl FnOnce() -> Result<File>) -> Result<File> {
     let mut here = None;
     let bytes = first(|| {
         let file = own()?;
         let mut bytes = vec![];
         crate::memory::read_file(file.try_clone()?, &mut bytes)?;
-        // What can be read once only has been read.
+        // Files that can be read only once have been read.
         here = Some(file).filter(|file| file.metadata().is_ok_and(|m| m.is_file()));
         Ok(bytes)
     })?;
@@ -100,10 +102,10 @@ pub(super) fn opened(own: impl FnOnce() -> Result<File>) -> Result<File> {
     }
 }
 
-/// A file that the first rank opens to write; what others write goes nowhere.
+/// A file opened by the first rank for writing; output of the others is discarded.
 ///
 /// # Errors
-/// The first rank's.
+/// The error of the first rank.
 pub fn written(own: impl FnOnce() -> Result<File>) -> Result<File> {
     if !comm::several() {
         return own();
@@ -142,7 +144,7 @@ mod tests {
         std::fs::create_dir_all(&folder).unwrap();
         let path = folder.join("a");
         std::fs::write(&path, "some text").unwrap();
-        // Others look for a file that only the first rank has.
+        // The others look for a file that only the first rank has.
         let place = || if comm::is_first() { path.clone() } else { folder.join("not here") };
         let read = on_ranks(|| {
             let mut text = String::new();

@@ -3,17 +3,17 @@
 use super::real::Real;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// tan(3π/8), above which the reciprocal is developed.
+/// tan(3π/8), above which the reciprocal is used.
 const STEEP: f64 = 2.414_213_562_373_095;
 
-/// Below this the fraction of polynomials holds.
+/// Limit of the rational approximation.
 const FLAT: f64 = 0.66;
 
-/// What π/4 and π/2 lack of the numbers that they are rounded to.
+/// Rounding errors of π/4 and π/2.
 const LOW: f64 = 6.123_233_995_736_766e-17;
 
-/// The angle in 0 … π [rad] between a positive x-axis and the point (x, y) with y ≥ 0; 0 at the origin. By the fraction of
-/// polynomials in x² of S. Moshier's Cephes library, to 2 units in the last place.
+/// The angle in 0 … π [rad] between the positive x axis and the point (x, y) with y ≥ 0; 0 at the origin. A
+/// rational approximation in x² from S. Moshier's Cephes library, accurate to 2 units in the last place.
 #[inline(always)]
 pub fn angle<R: Real>(y: R, x: R) -> R {
     let (none, flat) = (y.like(0.0), x.abs());
@@ -23,7 +23,7 @@ pub fn angle<R: Real>(y: R, x: R) -> R {
     let below = R::choose(steep, y, R::choose(middle, y + flat, flat));
     let base = R::choose(steep, y.like(FRAC_PI_2), R::choose(middle, y.like(FRAC_PI_4), none));
     let rest = R::choose(steep, y.like(LOW), R::choose(middle, y.like(0.5 * LOW), none));
-    // At the origin both are zero.
+    // Both are zero at the origin.
     let t = above / R::choose(below.above(none), below, y.like(1.0));
     let z = t * t;
     let p = (((z * -8.750608600031904122785e-1 - 1.615753718733365076637e1) * z - 7.500855792314704667340e1)
@@ -58,7 +58,7 @@ mod tests {
         points
     }
 
-    /// Against the library's atan2, which is right to the last place; two of them at most apart.
+    /// Compared with the library's atan2, which is exact to the last place; at most two units apart.
     #[test]
     fn angles_of_points() {
         for [y, x] in points() {
@@ -79,7 +79,7 @@ mod tests {
                 for lane in 0..N {
                     [y[lane], x[lane]] = points[lane];
                 }
-                // SAFETY: the caller's promise.
+                // SAFETY: the caller's guarantee.
                 let lanes = unsafe { angle(V::of(y), V::of(x)) };
                 out.extend(lanes.numbers());
             }
@@ -92,7 +92,7 @@ mod tests {
         let points = points();
         let points = &points[..points.len() / 8 * 8];
         for form in Form::all() {
-            // SAFETY: a form of this processor.
+            // SAFETY: the processor supports this form.
             let lanes = unsafe { form.run(All(points)) };
             let alone = points.iter().map(|[y, x]| angle(*y, *x).to_bits());
             assert!(lanes.iter().map(|a| a.to_bits()).eq(alone), "{form:?}");

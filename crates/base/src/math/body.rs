@@ -1,4 +1,4 @@
-//! Rotation of rigid bodies: unit quaternions (w first), principal axes, Richardson's step.
+//! Rotation of rigid bodies: unit quaternions (w first), principal axes, Richardson's method.
 
 use super::real::Real;
 use super::vec3::{Vec3, add, cross, dot, length, scale};
@@ -6,20 +6,20 @@ use super::vec3::{Vec3, add, cross, dot, length, scale};
 /// A unit quaternion, the real part first.
 pub type Quat<R = f64> = [R; 4];
 
-/// The orientation of what has not turned.
+/// The identity rotation.
 pub const UNTURNED: Quat = [1.0, 0.0, 0.0, 0.0];
 
 /// Three rows.
 pub type Matrix<R = f64> = [Vec3<R>; 3];
 
-/// |q| = 1.
+/// Scales to |q| = 1.
 #[inline(always)]
 pub fn normalized<R: Real>(q: Quat<R>) -> Quat<R> {
     let norm = q[0].like(1.0) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
     [q[0] * norm, q[1] * norm, q[2] * norm, q[3] * norm]
 }
 
-/// The turn b followed by a, a b.
+/// The rotation b followed by a: a b.
 #[inline(always)]
 pub fn after<R: Real>(a: Quat<R>, b: Quat<R>) -> Quat<R> {
     [
@@ -30,13 +30,13 @@ pub fn after<R: Real>(a: Quat<R>, b: Quat<R>) -> Quat<R> {
     ]
 }
 
-/// The turn back.
+/// The inverse rotation.
 #[inline(always)]
 pub fn back<R: Real>(q: Quat<R>) -> Quat<R> {
     [q[0], -q[1], -q[2], -q[3]]
 }
 
-/// A vector of the body in space, q v q*; v itself, to the bit, where the body has not turned.
+/// A vector of the body frame in space, q v q*; exactly v for the identity.
 #[inline(always)]
 pub fn turned<R: Real>(q: Quat<R>, v: Vec3<R>) -> Vec3<R> {
     let axis = [q[1], q[2], q[3]];
@@ -45,14 +45,14 @@ pub fn turned<R: Real>(q: Quat<R>, v: Vec3<R>) -> Vec3<R> {
     add(add(v, scale(q[0], t)), cross(axis, t))
 }
 
-/// The turn by an angle [rad] about a unit axis.
+/// The rotation by an angle [rad] about a unit axis.
 pub fn turn(axis: Vec3, angle: f64) -> Quat {
     let half = 0.5 * angle;
     let s = half.sin();
     [half.cos(), axis[0] * s, axis[1] * s, axis[2] * s]
 }
 
-/// The turn by a vector's length [rad] about its direction.
+/// The rotation by a vector's length [rad] about its direction.
 pub fn turn_by(vector: Vec3) -> Quat {
     let angle = length(vector);
     if angle > 0.0 { turn(scale(1.0 / angle, vector), angle) } else { UNTURNED }
@@ -84,7 +84,7 @@ pub fn apply_transposed<R: Real>(m: &Matrix<R>, v: Vec3<R>) -> Vec3<R> {
     add(add(scale(v[0], m[0]), scale(v[1], m[1])), scale(v[2], m[2]))
 }
 
-/// The axes of a turned body: the columns of its rotation matrix.
+/// The axes of a rotated body: the columns of its rotation matrix.
 pub fn axes(q: Quat) -> Matrix {
     let m = matrix(q);
     [0, 1, 2].map(|k| [m[0][k], m[1][k], m[2][k]])
@@ -95,7 +95,7 @@ pub fn from_axes([x, y, z]: Matrix) -> Quat {
     let q0 = 0.25 * (x[0] + y[1] + z[2] + 1.0);
     let squares = [q0, q0 - 0.5 * (y[1] + z[2]), q0 - 0.5 * (x[0] + z[2]), q0 - 0.5 * (x[0] + y[1])];
     let mut q = [0.0; 4];
-    // Some square is at least a quarter: divide by that component.
+    // At least one square is a quarter or more: divides by that component.
     if squares[0] >= 0.25 {
         q[0] = squares[0].sqrt();
         q[1] = (y[2] - z[1]) / (4.0 * q[0]);
@@ -131,7 +131,8 @@ fn rate<R: Real>(w: Vec3<R>, q: Quat<R>) -> Quat<R> {
     ]
 }
 
-/// Angular velocity from angular momentum L, orientation and principal moments; none about axes without inertia.
+/// Angular velocity from angular momentum L, orientation and principal moments; zero about axes without
+/// inertia.
 #[inline(always)]
 pub fn spin<R: Real>(momentum: Vec3<R>, q: Quat<R>, moments: Vec3<R>) -> Vec3<R> {
     let m = matrix(q);
@@ -139,21 +140,21 @@ pub fn spin<R: Real>(momentum: Vec3<R>, q: Quat<R>, moments: Vec3<R>) -> Vec3<R>
     apply(&m, [part(inner[0], moments[0]), part(inner[1], moments[1]), part(inner[2], moments[2])])
 }
 
-/// a / b, none where b is zero.
+/// a / b, zero if b is zero.
 #[inline(always)]
 fn part<R: Real>(a: R, b: R) -> R {
     let none = a.like(0.0);
     R::choose(b.abs().above(none), a / b, none)
 }
 
-/// q + h b of unit length.
+/// q + h b, normalized.
 #[inline(always)]
 fn ahead<R: Real>(q: Quat<R>, b: Quat<R>, h: f64) -> Quat<R> {
     normalized([q[0] + b[0] * h, q[1] + b[1] * h, q[2] + b[2] * h, q[3] + b[3] * h])
 }
 
-/// Half a step of q̇ = ½ ω q at constant angular momentum, for a step of `half` = Δt/2: a whole step and two halves,
-/// extrapolated (Richardson). The orientation after the step and the angular velocity at its middle.
+/// A step of q̇ = ½ ω q at constant angular momentum, with `half` = Δt/2: one full step and two half steps,
+/// extrapolated (Richardson). Returns the orientation after the step and the angular velocity at its middle.
 #[inline(always)]
 pub fn richardson<R: Real>(
     q: Quat<R>,
@@ -169,8 +170,8 @@ pub fn richardson<R: Real>(
     (extrapolated(full, ahead(middle, rate(omega, middle), 0.5 * half)), omega)
 }
 
-/// A step of q̇ = ½ ω q at constant ω, `half` being Δt/2, extrapolated as [`richardson`] does: the orientation of a sphere
-/// after the step.
+/// A step of q̇ = ½ ω q at constant ω, with `half` = Δt/2, extrapolated as in [`richardson`]: the orientation
+/// of a sphere after the step.
 #[inline(always)]
 pub fn rolled<R: Real>(q: Quat<R>, omega: Vec3<R>, half: f64) -> Quat<R> {
     let slope = rate(omega, q);
@@ -179,7 +180,7 @@ pub fn rolled<R: Real>(q: Quat<R>, omega: Vec3<R>, half: f64) -> Quat<R> {
     extrapolated(full, ahead(middle, rate(omega, middle), 0.5 * half))
 }
 
-/// From the end of one long step and that of two short ones to a better one.
+/// Richardson extrapolation from one full step and two half steps.
 #[inline(always)]
 fn extrapolated<R: Real>(full: Quat<R>, two: Quat<R>) -> Quat<R> {
     normalized([
@@ -190,10 +191,11 @@ fn extrapolated<R: Real>(full: Quat<R>, two: Quat<R>) -> Quat<R> {
     ])
 }
 
-/// The orientation after a free step of `dt` about the principal axes one after another, each an exact rotation (NO_SQUISH: Miller et
-/// al., J. Chem. Phys. 116, 2002, 8649). It is symplectic. The angular momentum in space stays what it is: a turn about an axis at the rate
-/// L_k/I_k leaves the whole of L alone, so that none of it is formed from the quaternion, whose length rounding would multiply into it
-/// (by 1 + 6 δ in a step for a length of 1 + δ).
+/// The orientation after a free step of `dt` as successive exact rotations about the principal axes
+/// (NO_SQUISH: Miller et al., J. Chem. Phys. 116, 2002, 8649). The method is symplectic. The angular momentum
+/// in space is not changed: a rotation about an axis at the rate L_k/I_k preserves L. L is therefore never
+/// computed from the quaternion, whose length rounding would multiply into it (by 1 + 6 δ in a step for a
+/// length of 1 + δ).
 pub fn no_squish(q: Quat, momentum: Vec3, moments: Vec3, dt: f64) -> Quat {
     let mut q = q;
     let mut inner = apply_transposed(&matrix(q), momentum);
@@ -203,14 +205,14 @@ pub fn no_squish(q: Quat, momentum: Vec3, moments: Vec3, dt: f64) -> Quat {
         let (sin, cos) = (0.5 * angle).sin_cos();
         let side = permuted(q, axis);
         q = std::array::from_fn(|k| cos * q[k] + sin * side[k]);
-        // As the body sees it, the momentum turns the other way.
+        // In the body frame the momentum rotates the other way.
         let ((sin, cos), (a, b)) = (angle.sin_cos(), ((axis + 1) % 3, (axis + 2) % 3));
         (inner[a], inner[b]) = (cos * inner[a] + sin * inner[b], cos * inner[b] - sin * inner[a]);
     }
     normalized(q)
 }
 
-/// q times the unit of one axis: S(q)'s column of it.
+/// q times the unit quaternion of one axis: a column of S(q).
 fn permuted(q: Quat, axis: usize) -> Quat {
     match axis {
         0 => [-q[1], q[0], q[3], -q[2]],
@@ -219,8 +221,8 @@ fn permuted(q: Quat, axis: usize) -> Quat {
     }
 }
 
-/// Principal moments and axes of a symmetric tensor xx yy zz xy xz yz, by Jacobi's rotations: the smallest first, a right-handed frame. Moments
-/// below 1e-7 of the largest are zero.
+/// Principal moments and axes of a symmetric tensor xx yy zz xy xz yz, by Jacobi rotations: the smallest
+/// first, a right-handed frame. Moments below 1e-7 of the largest are set to zero.
 pub fn principal([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> (Vec3, Matrix) {
     let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -312,7 +314,7 @@ mod tests {
             let v = apply_transposed(&m, apply(&m, [1.0, 2.0, 3.0]));
             (0..3).for_each(|k| close(v[k], k as f64 + 1.0));
         }
-        // A quarter turn about z takes x to y.
+        // A quarter turn about z maps x to y.
         let v = apply(&matrix(turn([0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2)), [1.0, 0.0, 0.0]);
         (0..3).for_each(|k| close(v[k], [0.0, 1.0, 0.0][k]));
     }
@@ -326,14 +328,15 @@ mod tests {
         }
         close(dot(cross(axes[0], axes[1]), axes[2]), 1.0);
         assert_eq!(principal([1.0, 1.0, 1e-9, 0.0, 0.0, 0.0]).0, [0.0, 1.0, 1.0]);
-        // Of two equal moments the axes keep their order.
+        // For two equal moments the axes keep their order.
         assert_eq!(
             principal([1.0, 3.0, 3.0, 0.0, 0.0, 0.0]).1,
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
         );
     }
 
-    // An asymmetric top without torque keeps its energy: the error of Richardson's step is of third order per step.
+    // An asymmetric top without torque conserves its energy: the error of Richardson's method is third order
+    // per step.
     #[test]
     fn a_free_top_keeps_its_energy() {
         let (moments, momentum) = ([1.0, 2.0, 3.0], [1.0, 1.5, -0.5]);
@@ -347,15 +350,17 @@ mod tests {
         assert!((energy(q) / before - 1.0).abs() < 1e-7, "{}", energy(q) / before - 1.0);
     }
 
-    /// What particles of the body would sum up to: R I Rᵀ ω, in which each R has the square of the quaternion's length.
+    /// The sum over particles of the body: R I Rᵀ ω, where each R contains the square of the quaternion's
+    /// length.
     fn momentum_of(q: Quat, omega: Vec3, moments: Vec3) -> Vec3 {
         let m = matrix(q);
         let inner = apply_transposed(&m, omega);
         apply(&m, std::array::from_fn(|k| moments[k] * inner[k]))
     }
 
-    // A million steps: a length of 1 + δ would be felt as 1 + 8 δ, and one that rounding lets grow by ε in a step as a loss of momentum that
-    // grows with the square of the steps, 3e-5 here (6e-4 in four million) where L was formed from q and its conjugate momentum.
+    // A million steps: a length of 1 + δ would act as 1 + 8 δ, and a length that rounding increases by ε per
+    // step would change the momentum quadratically in the steps, by 3e-5 here (6e-4 in four million) if L
+    // were computed from q and its conjugate momentum.
     #[test]
     fn exact_rotations_keep_length_and_angular_momentum() {
         for (moments, momentum) in [([0.2, 0.38, 0.38], [0.1, 0.3, 1.0]), ([1.0, 2.0, 3.0], [1.0, 1.5, -0.5])]
@@ -365,14 +370,14 @@ mod tests {
                 q = no_squish(q, momentum, moments, 1e-3);
             }
             let found = momentum_of(q, spin(momentum, q, moments), moments);
-            // Some roundings: nothing adds up.
+            // A few roundings: no drift.
             (0..3).for_each(|k| assert!((found[k] - momentum[k]).abs() < 1e-14, "{found:?}"));
             assert!((q.iter().map(|a| a * a).sum::<f64>() - 1.0).abs() < 1e-15);
         }
     }
 
-    // A body with two equal moments precesses about L at |L|/I (Goldstein, Classical Mechanics, 5.6): its axis after a time t is turned by that
-    // rate times t, whichever axes across it are called principal.
+    // A body with two equal moments precesses about L at |L|/I (Goldstein, Classical Mechanics, 5.6): after a
+    // time t its axis is rotated by that rate times t, for any choice of the other principal axes.
     #[test]
     fn a_symmetric_top_precesses_at_its_rate() {
         let momentum = [0.0, 0.0, 2.0];
@@ -385,7 +390,7 @@ mod tests {
                 exact = no_squish(exact, momentum, moments, dt);
                 other = richardson(other, momentum, spin(momentum, other, moments), moments, 0.5 * dt).0;
             }
-            // A step errs by less than the cube of its largest angle over 6.
+            // The error of a step is below the cube of its largest angle over 6.
             let most = (2.0 / moments[0] * dt).powi(3) / 6.0 * f64::from(steps);
             for q in [exact, other] {
                 let away = super::super::vec3::sub(axes(q)[own], expected);

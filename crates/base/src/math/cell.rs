@@ -1,4 +1,4 @@
-//! Bases of lattices of points: the lattice that vectors span, its shortest basis, bases with a given first vector.
+//! Lattice bases: the lattice spanned by vectors, its shortest basis, and bases with a given first vector.
 
 use super::vec3::{Vec3, cross, dot, length, scale, sub};
 
@@ -14,29 +14,29 @@ pub fn point(basis: &Basis, n: [i32; 3]) -> Vec3 {
     x
 }
 
-/// The vectors whose products with a point are its coordinates; `None` where the basis is flat.
+/// The vectors whose dot products with a point are its coordinates; `None` for a degenerate basis.
 pub fn reciprocal(basis: &Basis) -> Option<Basis> {
     let [a, b, c] = *basis;
     let volume = dot(a, cross(b, c));
-    // Vectors at right angles have a volume of 1 here, what rounding leaves of flat ones is some 1e-16.
+    // Orthogonal vectors have a volume of 1 here; rounding leaves about 1e-16 for degenerate ones.
     let flat = 1e-14 * length(a) * length(b) * length(c);
     (volume.abs() > flat).then(|| [cross(b, c), cross(c, a), cross(a, b)].map(|v| scale(1.0 / volume, v)))
 }
 
-/// Coordinates of a point, not rounded.
+/// Real-valued coordinates of a point.
 pub fn coordinates(reciprocal: &Basis, x: Vec3) -> Vec3 {
     reciprocal.map(|r| dot(r, x))
 }
 
-/// a − n b for the n that leaves the shortest vector.
+/// a − n b with the n that gives the shortest vector.
 fn shortened(a: Vec3, b: Vec3) -> Vec3 {
     sub(a, scale((dot(a, b) / dot(b, b)).round(), b))
 }
 
-/// Makes the vectors of a basis short, the shortest first.
+/// Reduces a basis to short vectors, the shortest first.
 pub fn reduce(basis: &mut [Vec3]) {
     let by_length = |a: &Vec3, b: &Vec3| dot(*a, *a).total_cmp(&dot(*b, *b));
-    // Each round makes one of them shorter by more than rounding, or is the last.
+    // Each iteration makes one vector shorter by more than rounding, or is the last.
     for _ in 0..100 {
         basis.sort_by(by_length);
         let mut shorter = false;
@@ -61,28 +61,28 @@ pub fn reduce(basis: &mut [Vec3]) {
     }
 }
 
-/// The lattice that some vectors span, each known up to an error.
+/// The lattice spanned by vectors that are known up to an error.
 #[derive(Clone, Debug)]
 pub struct Span {
     basis: Vec<Vec3>,
-    /// Shorter vectors count as none.
+    /// Shorter vectors count as zero.
     error: f64,
-    /// A lattice with shorter vectors is none of ours.
+    /// Lattices with shorter vectors are rejected.
     shortest: f64,
 }
 
 impl Span {
-    /// Of no vectors yet.
+    /// Without vectors.
     pub fn new(error: f64, shortest: f64) -> Self {
         Self { basis: vec![], error, shortest }
     }
 
-    /// How many of its vectors are independent.
+    /// The number of independent vectors.
     pub fn rank(&self) -> usize {
         self.basis.len()
     }
 
-    /// Its shortest basis; vectors across stand for those that are missing.
+    /// Its shortest basis; missing vectors are replaced by perpendicular ones.
     pub fn basis(&self) -> Option<Basis> {
         let &first = self.basis.first()?;
         let size = length(first);
@@ -100,7 +100,7 @@ impl Span {
         Some([first, second, third])
     }
 
-    /// Takes in one more vector, by Euclid's algorithm; false if there is no lattice then.
+    /// Adds a vector, by Euclid's algorithm; returns `false` if there is no lattice.
     #[must_use]
     pub fn add(&mut self, vector: Vec3) -> bool {
         let mut vector = vector;
@@ -141,7 +141,7 @@ fn determinant(m: &[[i32; 3]; 3]) -> i32 {
     m[0][0] * minor(1, 2) - m[0][1] * minor(0, 2) + m[0][2] * minor(0, 1)
 }
 
-/// Coordinates in another basis of the same lattice, whose vectors have the coordinates `rows`.
+/// A change of basis within a lattice; the new vectors have the coordinates `rows`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
     /// Coordinates of the new vectors.
@@ -184,8 +184,8 @@ impl Turn {
     }
 }
 
-/// A basis whose first vector is the one with the coordinates `first`, and whose others lead to the nearest lines beside it,
-/// by as little along it as can be; `None` if `first` is a multiple of another point, or too long.
+/// A basis with `first` as its first vector; the others lead to the nearest parallel lines with the smallest
+/// component along it. `None` if `first` is a multiple of another point, or too long.
 pub fn beside(basis: &Basis, first: [i32; 3]) -> Option<Turn> {
     let unit = |k: usize| [0, 1, 2].map(|j| i32::from(j == k));
     let square = |j: usize, k: usize| dot(basis[j], basis[k]).abs() < 1e-9 * dot(basis[k], basis[k]);
@@ -204,7 +204,8 @@ pub fn beside(basis: &Basis, first: [i32; 3]) -> Option<Turn> {
         let across = sub(v, scale(share, along));
         others.push((dot(across, across), share.abs(), n));
     }
-    // Equal but for rounding counts as equal: then the one that leads less far along, then the one that points ahead.
+    // Lengths equal up to rounding count as equal: then the smaller component along it decides, then the
+    // positive direction.
     let size = dot(along, along);
     let key = |v: &(f64, f64, [i32; 3])| ((v.0 / size * 1e6).round(), (v.1 * 1e6).round());
     others.sort_by(|a, b| {
@@ -234,7 +235,8 @@ mod tests {
         assert!(bcc.iter().all(|v| span.add(*v)));
         let basis = span.basis().unwrap();
         assert!((volume(&basis) - 0.5).abs() < 1e-12 && (length(basis[2]) - 0.75f64.sqrt()).abs() < 1e-12);
-        // Neighbours in hexagonal close packing, c = 1.6: sites of the lattice they span are full in every third row.
+        // Neighbours in hexagonal close packing, c = 1.6: every third row of the lattice they span is
+        // occupied.
         let (h, c) = (3f64.sqrt() / 2.0, 0.8);
         let hcp = [
             [1.0, 0.0, 0.0],

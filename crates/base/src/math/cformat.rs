@@ -4,10 +4,10 @@ mod digits;
 
 use std::io::Write;
 
-/// Largest width or precision that is accepted; C has no limit, a log line has.
+/// Largest width or precision accepted; C has no limit, a log line does.
 const LIMIT: usize = 1000;
 
-/// The conversions that are understood; the letter after the flags, width and precision.
+/// Supported conversions: the letter after flags, width and precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Conversion {
     /// `d`, `i`: signed decimal.
@@ -18,63 +18,64 @@ pub enum Conversion {
     Octal,
     /// `x`, `X`: hexadecimal.
     Hex,
-    /// `e`, `E`: exponent always.
+    /// `e`, `E`: always with exponent.
     Exponent,
     /// `f`, `F`: never an exponent.
     Fixed,
-    /// `g`, `G`: whichever of the two suits, trailing zeros dropped.
+    /// `g`, `G`: the more suitable of the two, without trailing zeros.
     General,
     /// `s`: text.
     Text,
 }
 
-/// One conversion, as `%-10.4g`.
+/// One conversion, such as `%-10.4g`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spec {
-    /// `-`: fill on the right.
+    /// `-`: left-justified.
     pub left: bool,
-    /// `+`: sign also when positive.
+    /// `+`: sign for positive numbers too.
     pub plus: bool,
-    /// blank: a blank where a `+` would stand.
+    /// Blank: a blank in place of `+`.
     pub space: bool,
-    /// `#`: keep the point and zeros; `0x` before hexadecimal.
+    /// `#`: keeps the point and zeros; `0x` before hexadecimal.
     pub alternate: bool,
-    /// `0`: fill with zeros after the sign.
+    /// `0`: pads with zeros after the sign.
     pub zero: bool,
-    /// Least number of characters.
+    /// Minimum width.
     pub width: usize,
-    /// Digits after the point (`e f`), significant digits (`g`), least digits (`d`), most characters (`s`).
+    /// Digits after the point (`e f`), significant digits (`g`), minimum digits (`d`), maximum characters
+    /// (`s`).
     pub precision: Option<usize>,
     /// Whether a length modifier (`l`, `ll`, `z`, `j`, `q`) was given.
     pub long: bool,
-    /// What to print.
+    /// The conversion.
     pub conversion: Conversion,
     /// Capital letters.
     pub upper: bool,
 }
 
-/// A stretch of a format string.
+/// A part of a format string.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Piece {
-    /// Copied as it is (`%%` already one `%`).
+    /// Literal text (`%%` is already a single `%`).
     Text(String),
-    /// A value goes here.
+    /// The place of a value.
     Value(Spec),
 }
 
-/// A format string, taken apart once.
+/// A parsed format string.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Format {
     /// Text and conversions in order.
     pub pieces: Vec<Piece>,
 }
 
-/// Why a format string cannot be used.
+/// Why a format string is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormatError {
-    /// Byte of the string at which the trouble starts.
+    /// Byte of the string where the error begins.
     pub at: usize,
-    /// What is wrong, lower case, no full stop.
+    /// The message, lower case, no full stop.
     pub message: String,
 }
 
@@ -89,7 +90,7 @@ impl std::error::Error for FormatError {}
 /// A value for a conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value<'a> {
-    /// A whole number.
+    /// An integer.
     Int(i64),
     /// A number.
     Float(f64),
@@ -98,7 +99,7 @@ pub enum Value<'a> {
 }
 
 impl Format {
-    /// Takes a format string apart.
+    /// Parses a format string.
     pub fn parse(text: &str) -> Result<Self, FormatError> {
         let bytes = text.as_bytes();
         let (mut pieces, mut literal, mut k) = (vec![], Vec::new(), 0);
@@ -135,7 +136,8 @@ impl Format {
         })
     }
 
-    /// Writes the format with these values; conversions without a value leave nothing, spare values are dropped.
+    /// Writes the format with these values; conversions without a value produce nothing, excess values are
+    /// ignored.
     pub fn write(&self, out: &mut Vec<u8>, values: &[Value<'_>]) {
         let mut values = values.iter();
         for piece in &self.pieces {
@@ -159,7 +161,7 @@ impl Format {
 }
 
 impl Spec {
-    /// A single conversion such as `%-8.3f` with nothing around it.
+    /// Parses a single conversion such as `%-8.3f` without surrounding text.
     pub fn parse(text: &str) -> Result<Self, FormatError> {
         if !text.starts_with('%') {
             return Err(FormatError { at: 0, message: "a conversion starts with %".into() });
@@ -173,7 +175,7 @@ impl Spec {
         }
     }
 
-    /// Reads a conversion at a `%`: itself and its length in bytes.
+    /// Parses a conversion at a `%`; returns it with its length in bytes.
     fn read(bytes: &[u8]) -> Result<(Self, usize), &'static str> {
         let mut spec = Self {
             left: false,
@@ -232,18 +234,18 @@ impl Spec {
         Ok((spec, k + 1))
     }
 
-    /// Whether the conversion is for whole numbers.
+    /// Whether the conversion is for integers.
     pub fn is_integer(&self) -> bool {
         use Conversion::{Hex, Octal, Signed, Unsigned};
         matches!(self.conversion, Signed | Unsigned | Octal | Hex)
     }
 
-    /// Whether the conversion is for numbers with a point.
+    /// Whether the conversion is for floating-point numbers.
     pub fn is_float(&self) -> bool {
         matches!(self.conversion, Conversion::Exponent | Conversion::Fixed | Conversion::General)
     }
 
-    /// Writes a value, converted where conversion and value differ: a float is cut to a whole number for `%d`.
+    /// Writes a value, converted if its type differs: a float is truncated to an integer for `%d`.
     pub fn value(&self, out: &mut Vec<u8>, value: Value<'_>) {
         match value {
             Value::Text(t) => self.string(out, t),
@@ -256,8 +258,8 @@ impl Spec {
         }
     }
 
-    /// Writes a whole number under an integer conversion. Unsigned conversions of a negative number without
-    /// `l` show 32 bits, as C does with an `int`.
+    /// Writes an integer. Unsigned conversions of a negative number without `l` use 32 bits, like C with an
+    /// `int`.
     pub fn integer(&self, out: &mut Vec<u8>, value: i64) {
         let start = out.len();
         let unsigned = match i32::try_from(value) {
@@ -292,7 +294,7 @@ impl Spec {
         self.pad(out, start, prefix, self.precision.is_none());
     }
 
-    /// Writes a number under `%e`, `%f` or `%g` with C's rounding (exact value, ties to even).
+    /// Writes a number by `%e`, `%f` or `%g` with C's rounding (exact value, ties to even).
     pub fn float(&self, out: &mut Vec<u8>, x: f64) {
         let start = out.len();
         let size = x.abs();
@@ -325,7 +327,7 @@ impl Spec {
         self.pad(out, start, prefix, size.is_finite());
     }
 
-    /// `%g`: `digits` significant ones; an exponent when it is below -4 or not below `digits`.
+    /// `%g` with `digits` significant digits; with an exponent if it is below -4 or not below `digits`.
     fn general(&self, out: &mut Vec<u8>, size: f64, digits: usize) {
         let start = out.len();
         let exponent = digits::significant(out, size, digits);
@@ -348,7 +350,7 @@ impl Spec {
         }
     }
 
-    /// Writes text, cut to the precision.
+    /// Writes text, truncated to the precision.
     pub fn string(&self, out: &mut Vec<u8>, text: &str) {
         let start = out.len();
         let most = self.precision.unwrap_or(usize::MAX);
@@ -357,7 +359,7 @@ impl Spec {
         self.pad(out, start, 0, false);
     }
 
-    /// Puts the sign before what was written since `start`; its length.
+    /// Inserts the sign before the output since `start`; returns its length.
     fn sign(&self, out: &mut Vec<u8>, start: usize, negative: bool) -> usize {
         let sign = match (negative, self.plus, self.space) {
             (true, ..) => b'-',
@@ -369,7 +371,7 @@ impl Spec {
         1
     }
 
-    /// Fills up to the width; zeros go after the first `prefix` characters.
+    /// Pads to the width; zeros go after the first `prefix` characters.
     fn pad(&self, out: &mut Vec<u8>, start: usize, prefix: usize, zeros: bool) {
         let missing = self.width.saturating_sub(out.len() - start);
         if missing == 0 {
@@ -385,7 +387,7 @@ impl Spec {
     }
 }
 
-/// A number as C's `%.{digits}g`.
+/// A number as by C's `%.{digits}g`.
 pub fn general(x: f64, digits: usize) -> String {
     let spec = Spec {
         left: false,
@@ -410,7 +412,7 @@ pub fn shortest(x: f64) -> impl std::fmt::Display {
     impl std::fmt::Display for Shortest {
         fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
             let size = self.0.abs();
-            // Where C's %g would leave the exponent away.
+            // The range in which C's %g omits the exponent.
             if size == 0.0 || (1e-4..1e16).contains(&size) {
                 write!(f, "{}", self.0)
             } else if !size.is_finite() {
@@ -444,7 +446,7 @@ fn insert(out: &mut Vec<u8>, at: usize, count: usize, byte: u8) {
     out[at..at + count].fill(byte);
 }
 
-/// Reads digits; none is zero.
+/// Parses digits; no digits give zero.
 fn read_number(bytes: &[u8], k: &mut usize) -> Result<usize, &'static str> {
     let mut n = 0usize;
     while let Some(d) = bytes.get(*k).filter(|b| b.is_ascii_digit()) {
@@ -457,7 +459,7 @@ fn read_number(bytes: &[u8], k: &mut usize) -> Result<usize, &'static str> {
     Ok(n)
 }
 
-/// Bytes that came out of UTF-8 text and ASCII digits, as text again.
+/// Bytes from UTF-8 text and ASCII digits, as text.
 fn text_of(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned())
 }

@@ -1,15 +1,15 @@
-//! Exponential function and arcsine for numbers in lanes, with the same bits for one number and in all lanes.
+//! Exponential function and arcsine in lanes, with the same bits for a single number and for all lanes.
 //!
-//! Where formulas call the mathematical library lane by lane, a step of plastic grains spends a tenth of its time there. Coefficients
-//! interpolate at Chebyshev's points, reckoned with 60 digits.
+//! With calls of the math library for each lane, plastic grains would spend a tenth of a step there. The
+//! coefficients interpolate at Chebyshev points, computed with 60 digits.
 
 use super::real::{ROUND, Real};
 use std::f64::consts::{FRAC_PI_2, LOG2_E};
 
-/// ln 2 in two parts: whole multiples of up to 2¹¹ of the first are exact.
+/// ln 2 in two parts: integer multiples of the first by up to 2¹¹ are exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
 
-/// Beyond these the exponential function is infinite, or 0.
+/// Outside these the exponential function is infinite, or 0.
 const RANGE: [f64; 2] = [-746.0, 710.0];
 
 /// (eʳ − 1 − r)/r² for |r| ≤ ln(2)/2: interpolates within 3e-17.
@@ -26,7 +26,8 @@ const EXP: [f64; 10] = [
     2.510038549551032e-08,
 ];
 
-/// (asin(s)/s − 1)/z for z = s² up to a quarter: interpolates within 2e-15, which is 6e-17 of the arcsine.
+/// (asin(s)/s − 1)/z for z = s² up to a quarter: interpolates within 2e-15, a relative error of 6e-17 of the
+/// arcsine.
 const ASIN: [f64; 12] = [
     0.1666666666666665,
     0.07500000000020764,
@@ -42,7 +43,7 @@ const ASIN: [f64; 12] = [
     0.028169218060881414,
 ];
 
-/// Σ cₖ xᵏ with an even number of coefficients, two at a time: half as long a chain of results that wait for each other.
+/// Σ cₖ xᵏ with an even number of coefficients, two at a time: this halves the dependency chain.
 #[inline(always)]
 pub fn polynomial<R: Real, const N: usize>(x: R, c: &[f64; N]) -> R {
     let (square, mut sum) = (x * x, x.like(0.0));
@@ -52,24 +53,24 @@ pub fn polynomial<R: Real, const N: usize>(x: R, c: &[f64; N]) -> R {
     sum
 }
 
-/// eˣ, within two units of the last place; what is below the least normal number within its last place.
+/// eˣ, within two units in the last place; subnormal results within their last place.
 #[inline(always)]
 pub fn exp<R: Real>(x: R) -> R {
-    // In this order what is no number stays none.
+    // In this order NaN stays NaN.
     let x = x.like(RANGE[1]).least(x.like(RANGE[0]).most(x));
     let n = x * LOG2_E + ROUND - ROUND;
     let r = x - n * LN_2[0] - n * LN_2[1];
     let one = r * r * polynomial(r, &EXP) + r + 1.0;
-    // In two factors, as 2ⁿ itself may be too large or too small.
+    // In two factors, because 2ⁿ itself may overflow or underflow.
     let half = n * 0.5 + ROUND - ROUND;
     one * half.power_of_two() * (n - half).power_of_two()
 }
 
-/// Arcsine of −1 … 1, within two units of the last place.
+/// Arcsine of −1 … 1, within two units in the last place.
 #[inline(always)]
 pub fn asin<R: Real>(x: R) -> R {
     let (size, half) = (x.abs(), x.like(0.5));
-    // Beyond a half the angle is a right angle less twice that of √((1 − |x|)/2).
+    // Beyond one half the angle is π/2 minus twice that of √((1 − |x|)/2).
     let far = size.above(half);
     let z = R::choose(far, half - size * 0.5, size * size);
     let s = R::choose(far, z.sqrt(), size);
@@ -84,7 +85,7 @@ mod tests {
     use crate::math::form::{Form, InLanes};
     use crate::math::lanes::Lanes;
 
-    /// Units of the last place between two numbers.
+    /// Difference of two numbers in units in the last place.
     fn off(a: f64, b: f64) -> u64 {
         a.to_bits().abs_diff(b.to_bits())
     }
@@ -116,7 +117,7 @@ mod tests {
         assert!(asin(f64::NAN).is_nan() && asin(1.0 + 1e-9).is_nan());
     }
 
-    /// Both functions of some numbers.
+    /// Both functions for some numbers.
     struct Both<'a>(&'a [f64], &'a mut Vec<[f64; 2]>);
 
     impl InLanes for Both<'_> {
@@ -125,7 +126,7 @@ mod tests {
         #[inline(always)]
         unsafe fn run<const N: usize, V: Lanes<N>>(self) {
             for some in self.0.chunks_exact(N) {
-                // SAFETY: the caller's promise.
+                // SAFETY: the caller's guarantee.
                 let x = unsafe { V::of(std::array::from_fn(|k| some[k])) };
                 let [e, a] = [exp(x * 300.0), asin(x)].map(V::numbers);
                 self.1.extend((0..N).map(|k| [e[k], a[k]]));
@@ -138,7 +139,7 @@ mod tests {
         let numbers: Vec<f64> = between(-1.3, 1.3).take(20_000).chain([f64::NAN; 8]).collect();
         for form in Form::all() {
             let mut out = vec![];
-            // SAFETY: a form of this processor.
+            // SAFETY: the processor supports this form.
             unsafe { form.run(Both(&numbers, &mut out)) };
             assert_eq!(out.len(), numbers.len());
             for (x, [e, a]) in numbers.iter().zip(out) {

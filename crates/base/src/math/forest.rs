@@ -1,6 +1,7 @@
-//! Which things hang together: sets that are joined pair by pair, each named by one of its members.
+//! Disjoint sets (union-find), each named by one of its members.
 
-/// The member that names the set of `k` (after [`join`] the smallest); `root[k]` leads there, at first to `k` itself.
+/// The member that names the set of `k` (the smallest, after [`join`]); `root[k]` leads there, and is
+/// initially `k`.
 #[inline]
 pub fn find(root: &mut [u32], mut k: u32) -> u32 {
     while root[k as usize] != k {
@@ -10,7 +11,7 @@ pub fn find(root: &mut [u32], mut k: u32) -> u32 {
     k
 }
 
-/// Makes one set of those that `a` and `b` belong to.
+/// Joins the sets of `a` and `b`.
 #[inline]
 pub fn join(root: &mut [u32], a: u32, b: u32) {
     let (a, b) = (find(root, a), find(root, b));

@@ -1,16 +1,17 @@
-//! The largest eigenvalue of a symmetric matrix of which only products are known, by Lanczos' method.
+//! The largest eigenvalue of a symmetric matrix given by its products, by Lanczos' method.
 
 use super::rng::ParkMiller;
 use crate::par;
 
-/// Most products asked for.
+/// Maximum number of products.
 const MOST: usize = 300;
-/// The search ends when ten more vectors raise the eigenvalue by less than this part: on lattices the rest is then below 5e-4.
+/// The search ends when ten more vectors raise the eigenvalue by less than this fraction: on lattices the
+/// error is then below 5e-4.
 const SETTLED: f64 = 1e-4;
 
-/// The largest eigenvalue of the matrix whose product with a vector of `n` rows of N numbers is `times`: from below, right to some
-/// 5e-4 of it. It contains power iteration and is never worse. `rounding`: the part of the eigenvalue that is but error of `times`.
-/// `None` where it is not positive.
+/// The largest eigenvalue of the matrix whose product with a vector of `n` rows of N numbers is `times`: a
+/// lower bound, with a relative accuracy of about 5e-4. It includes power iteration and is never worse.
+/// `rounding`: relative error of `times`. `None` if the eigenvalue is not positive.
 pub fn largest_eigenvalue<const N: usize>(
     n: usize,
     rounding: f64,
@@ -32,7 +33,7 @@ pub fn largest_eigenvalue<const N: usize>(
         tops.push(top);
         let settled = tops.len() > 20 && top - tops[tops.len() - 11] < SETTLED * top;
         let size = normalize(&mut next);
-        // Beyond this the space is used up: what is left is the error of the products.
+        // Beyond this the space is exhausted: the rest is the error of the products.
         if settled || size <= rounding * top.abs() {
             break;
         }
@@ -52,7 +53,7 @@ fn combine<const N: usize>(a: &mut [[f64; N]], b: &[[f64; N]], s: f64) {
     a.iter_mut().zip(b).for_each(|(a, b)| (0..N).for_each(|d| a[d] += s * b[d]));
 }
 
-/// Gives a vector the length 1; the length it had.
+/// Normalizes a vector; returns its previous length.
 fn normalize<const N: usize>(a: &mut [[f64; N]]) -> f64 {
     let size = dot(a, a).sqrt();
     if size > 0.0 {
@@ -100,7 +101,7 @@ mod tests {
             (0..q.len()).map(|k| [2.0 * at(k) - at(k + 1) - at(k.wrapping_sub(1))]).collect()
         };
         let found = largest_eigenvalue(9, 1e-12, chain).unwrap();
-        // Nine vectors use the space up.
+        // Nine vectors exhaust the space.
         assert!((found - top).abs() < 1e-12, "{found}");
     }
 }

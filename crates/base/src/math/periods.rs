@@ -1,9 +1,9 @@
-//! The edges of a box that repeats, upright or tilted: where its images are.
+//! The edges of a periodic box, upright or tilted, and its images.
 
 use super::vec3::{Vec3, same};
 
-/// Three edges a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz); a length is zero where the box does not repeat, which may lean all
-/// the same.
+/// Three edges a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz); a length is zero along a direction that is
+/// not periodic, which may still be tilted.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Periods {
     /// lx, ly, lz [length].
@@ -25,7 +25,7 @@ impl Periods {
         Self { length, tilt: [0.0; 3] }
     }
 
-    /// Whether some edge leans.
+    /// Whether some edge is tilted.
     #[inline]
     pub fn tilted(&self) -> bool {
         self.tilt != [0.0; 3]
@@ -37,20 +37,20 @@ impl Periods {
         [[lx, 0.0, 0.0], [xy, ly, 0.0], [xz, yz, lz]]
     }
 
-    /// How far away the image is that lies so many edges off.
+    /// The displacement of the image that is `n` edges away.
     #[inline]
     pub fn shift(&self, n: [f64; 3]) -> Vec3 {
         let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
         [n[0] * lx + n[1] * xy + n[2] * xz, n[1] * ly + n[2] * yz, n[2] * lz]
     }
 
-    /// [`Periods::shift`] of an image that somebody is in; nearly all are in the one that is nowhere else.
+    /// [`Periods::shift`] for an image in use; nearly always the unshifted one.
     #[inline]
     pub fn shift_of(&self, image: [i32; 3]) -> Vec3 {
         if image == [0; 3] { [0.0; 3] } else { self.shift(image.map(f64::from)) }
     }
 
-    /// Along each edge the part of it at which a place lies that is `d` away from the corner, 0 there and 1 at the other end.
+    /// Fractions of the edges for a position `d` from the corner: 0 there and 1 at the other end.
     pub fn fractions(&self, d: Vec3) -> Vec3 {
         let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
         let z = d[2] / lz;
@@ -58,8 +58,8 @@ impl Periods {
         [(d[0] - y * xy - z * xz) / lx, y, z]
     }
 
-    /// Where a place would be were the edges from the corner `lo` upright: between the same faces along each of them. Edges that do
-    /// not repeat must be upright ([`Periods::repeats_where_it_leans`]).
+    /// The position if the edges from the corner `lo` were upright: between the same faces along each of
+    /// them. Edges that are not periodic must be upright ([`Periods::repeats_where_it_leans`]).
     #[inline]
     pub fn straightened(&self, x: Vec3, lo: Vec3) -> Vec3 {
         if !self.tilted() {
@@ -71,29 +71,30 @@ impl Periods {
         [x[0] - y * xy - z * xz, x[1] - z * yz, x[2]]
     }
 
-    /// Whether the edges that lean are among those that repeat, as LAMMPS asks for.
+    /// Whether all tilted edges are periodic, as LAMMPS requires.
     pub fn repeats_where_it_leans(&self) -> bool {
         let ([_, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
         (xy == 0.0 || ly > 0.0) && ([xz, yz] == [0.0; 2] || lz > 0.0)
     }
 
-    /// How much farther along each axis two places may be from each other in the box made upright than they are, at most.
+    /// Upper bound of the additional distance along each axis between two positions when the box is made
+    /// upright.
     pub fn spread(&self) -> Vec3 {
         let ([_, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
-        // By how much one goes along x and y where one goes along y and z within the faces.
+        // Displacement along x and y per displacement along y and z within the faces.
         let (by_y, by_z) = (over(xy, ly), over(yz, lz));
         let x_by_z = over(xz, lz) - by_y * by_z;
         [(1.0 + by_y * by_y + x_by_z * x_by_z).sqrt(), (1.0 + by_z * by_z).sqrt(), 1.0]
     }
 
-    /// The lengths in which the images are sought: the distance of each pair of faces, zero where the box does not repeat.
+    /// The distance of each pair of faces, zero along directions that are not periodic.
     pub fn heights(&self) -> Vec3 {
         let (length, spread) = (self.length, self.spread());
         [0, 1, 2].map(|k| length[k] / spread[k])
     }
 
-    /// How many edges away the image is that brings a difference near the shortest one: along z, then y, then x, as LAMMPS.
-    /// Where the difference is shorter than half of every height, it is that one.
+    /// Number of edges to the image that brings a difference close to the shortest one: along z, then y, then
+    /// x, as in LAMMPS. If the difference is shorter than half of every height, it is the shortest.
     pub fn turns(&self, mut d: Vec3) -> [f64; 3] {
         let mut turns = [0.0; 3];
         for k in [2, 1, 0] {
@@ -109,14 +110,14 @@ impl Periods {
         turns
     }
 
-    /// A difference to the image that [`Periods::turns`] finds. Millions ask while bonds are made: it stays in registers unless edges
-    /// lean and the image is another one.
+    /// The difference to the image found by [`Periods::turns`]. Called millions of times while bonds are
+    /// made: it stays in registers unless edges are tilted and the image is another one.
     #[inline]
     pub fn nearest(&self, mut d: Vec3) -> Vec3 {
         let far = |k: usize, d: &Vec3| self.length[k] > 0.0 && d[k].abs() > 0.5 * self.length[k];
         if self.tilted() && (far(0, &d) || far(1, &d) || far(2, &d)) {
-            // Taken apart: handed on as it comes, both ways out would go through memory, and 100,000 particles on a lattice would
-            // start in 0.35 s in place of 0.23.
+            // Destructured: returned as an array it would go through memory, and 100,000 particles on a
+            // lattice would start in 0.35 s instead of 0.23.
             let [x, y, z] = self.brought(d);
             return [x, y, z];
         }
@@ -136,7 +137,7 @@ impl Periods {
     }
 }
 
-/// A part of an edge; none of one that does not repeat.
+/// A fraction of an edge; zero for an edge that is not periodic.
 #[inline]
 fn over(a: f64, edge: f64) -> f64 {
     if edge > 0.0 { a / edge } else { 0.0 }
@@ -189,11 +190,11 @@ mod tests {
 
     #[test]
     fn heights_are_the_distances_of_faces() {
-        // A rhombus of edge 2 leaning by 30 degrees.
+        // A rhombus of edge 2 tilted by 30 degrees.
         let lean = Periods { length: [2.0, 3.0f64.sqrt(), 5.0], tilt: [1.0, 0.0, 0.0] };
         let [x, y, z] = lean.heights();
         assert!((x - 3.0f64.sqrt()).abs() < 1e-15 && y == 3.0f64.sqrt() && z == 5.0);
-        // Where x does not repeat, a lean of y along it brings nothing nearer.
+        // If x is not periodic, a tilt of y along x does not shorten any distance.
         let open = Periods { length: [0.0, 2.0, 0.0], tilt: [7.0, 0.0, 0.0] };
         assert_eq!(open.heights(), [0.0, 2.0, 0.0]);
         assert_eq!(open.shift([0.0, -1.0, 0.0]), [-7.0, -2.0, 0.0]);

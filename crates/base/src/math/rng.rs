@@ -1,15 +1,16 @@
-//! The two random streams a LAMMPS deck can see, bit for bit: Park–Miller for particles and velocities, Marsaglia for formulas.
+//! LAMMPS' two random number generators, bit for bit: Park–Miller for particles and velocities, Marsaglia for
+//! formulas.
 
 /// 2³¹ − 1, the modulus of the Park–Miller generator.
 const MODULUS: u64 = 2_147_483_647;
 
 /// The Park–Miller "minimal standard" generator (Comm. ACM 31, 1192 (1988)): s ← 16807 s mod (2³¹ − 1).
 ///
-/// LAMMPS draws created particles and velocities from it; the same seed gives the same bits here.
+/// LAMMPS draws created particles and velocities from it; the same seed gives the same numbers here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParkMiller {
     state: u64,
-    /// The second number of the last Gaussian pair, not handed out yet.
+    /// The second number of the last Gaussian pair, if unused.
     spare: Option<f64>,
 }
 
@@ -19,24 +20,24 @@ impl ParkMiller {
         Self { state: u64::from(seed), spare: None }
     }
 
-    /// Where the stream stands, as numbers that [`Self::resumed`] takes: the state, and a Gaussian number held back
+    /// The state of the stream, for [`Self::resumed`]: the generator's state, and an unused Gaussian number
     /// (NaN for none).
     pub fn stand(&self) -> [f64; 2] {
         [self.state as f64, self.spare.unwrap_or(f64::NAN)]
     }
 
-    /// The stream that stood there.
+    /// The stream with this state.
     pub fn resumed([state, spare]: [f64; 2]) -> Self {
         Self { state: state as u64, spare: (!spare.is_nan()).then_some(spare) }
     }
 
-    /// Starts the stream again; a Gaussian number still held back is forgotten.
+    /// Restarts the stream; an unused Gaussian number is discarded.
     pub fn reset(&mut self, seed: u32) {
         *self = Self::new(seed);
     }
 
-    /// Starts the stream that belongs to a place: seed and bytes of the coordinates, hashed by Jenkins'
-    /// one-at-a-time function over *signed* bytes, cut to 27 bits, then five numbers thrown away.
+    /// Restarts the stream for a position: seed and bytes of the coordinates, hashed by Jenkins'
+    /// one-at-a-time function over *signed* bytes, reduced to 27 bits; then five numbers are skipped.
     pub fn reset_at(&mut self, seed: u32, place: [f64; 3]) {
         let mut bytes = [0u8; 28];
         bytes[..4].copy_from_slice(&seed.to_le_bytes());
@@ -48,7 +49,7 @@ impl ParkMiller {
         self.skip(5);
     }
 
-    /// Throws `n` uniform numbers away.
+    /// Skips `n` uniform numbers.
     pub fn skip(&mut self, n: usize) {
         for _ in 0..n {
             self.uniform();
@@ -101,24 +102,24 @@ fn polar_pair(mut uniform: impl FnMut() -> f64) -> (f64, f64) {
 /// Marsaglia, Zaman and Tsang's "universal" generator (Stat. Prob. Lett. 9, 35 (1990)): a lagged Fibonacci
 /// sequence minus an arithmetic one, 24 bits each.
 ///
-/// LAMMPS draws `random(…)` and `normal(…)` of formulas from it, after throwing the first number away.
+/// LAMMPS draws `random(…)` and `normal(…)` of formulas from it, after skipping the first number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marsaglia {
     table: [f64; 97],
-    /// Where the two lags stand.
+    /// Indices of the two lags.
     at: (usize, usize),
     weyl: f64,
     spare: Option<f64>,
 }
 
-/// 2⁻²⁴, the grain of Marsaglia's numbers.
+/// 2⁻²⁴, the resolution of Marsaglia's numbers.
 const GRAIN: f64 = 1.0 / 16_777_216.0;
 
 impl Marsaglia {
-    /// The largest seed the generator can tell from others.
+    /// The largest seed that the generator distinguishes.
     pub const MAX_SEED: u32 = 900_000_000;
 
-    /// The stream LAMMPS uses for this seed (1 … [`Self::MAX_SEED`]).
+    /// LAMMPS' stream for this seed (1 … [`Self::MAX_SEED`]).
     pub fn new(seed: u32) -> Self {
         let s = seed.clamp(1, Self::MAX_SEED) - 1;
         let (ij, kl) = (s / 30_082, s % 30_082);
@@ -141,14 +142,14 @@ impl Marsaglia {
         stream
     }
 
-    /// Where the stream stands, as numbers that [`Self::resumed`] takes.
+    /// The state of the stream, for [`Self::resumed`].
     pub fn stand(&self) -> Vec<f64> {
         let (a, b) = self.at;
         let head = [a as f64, b as f64, self.weyl, self.spare.unwrap_or(f64::NAN)];
         head.into_iter().chain(self.table).collect()
     }
 
-    /// The stream that stood there; `None` if these numbers are no stream's.
+    /// The stream with this state; `None` if the numbers are not a valid state.
     pub fn resumed(stand: &[f64]) -> Option<Self> {
         let (&[a, b, weyl, spare], table) = stand.split_first_chunk()?;
         let at = ((a as usize).min(96), (b as usize).min(96));
@@ -185,7 +186,7 @@ fn wrapped(x: f64, period: f64) -> f64 {
 mod tests {
     use super::*;
 
-    // Oracle: box 0..3, `create_atoms 1 random 4 9281 NULL`, which throws 30 numbers away first.
+    // Oracle: box 0..3, `create_atoms 1 random 4 9281 NULL`, which skips 30 numbers first.
     #[test]
     fn uniform_is_lammps_stream() {
         let mut r = ParkMiller::new(9281);
@@ -202,8 +203,8 @@ mod tests {
         assert_eq!(x, oracle);
     }
 
-    // Oracle: `velocity all create 1.5 4928 loop geom mom no dist gaussian` at the places above; all speeds
-    // carry one temperature factor, so ratios are compared (two roundings each: 4 ulp).
+    // Oracle: `velocity all create 1.5 4928 loop geom mom no dist gaussian` at the positions above; all
+    // speeds share one temperature factor, so ratios are compared (two roundings each: 4 ulp).
     #[test]
     fn stream_of_a_place_is_lammps_stream() {
         let places = [
@@ -228,7 +229,7 @@ mod tests {
         }
     }
 
-    // Oracle: `velocity all create 1.5 4928 loop local mom no dist gaussian`, 100 numbers thrown away first.
+    // Oracle: `velocity all create 1.5 4928 loop local mom no dist gaussian`, with 100 numbers skipped first.
     #[test]
     fn gaussian_pairs_come_in_lammps_order() {
         let oracle = [2.3828890888091903, -0.936122761996113, -1.9465882516016164, 0.1619934845072834];
@@ -240,8 +241,8 @@ mod tests {
         }
     }
 
-    // Oracle: formulas random(0,1,12345) and normal(0,1,12345), which LAMMPS hands on with 15 digits; the last
-    // number came as normal(…)*1e6 - 1.17517e6 = 4.0271174591034704.
+    // Oracle: formulas random(0,1,12345) and normal(0,1,12345), which LAMMPS prints with 15 digits; the last
+    // number was printed as normal(…)*1e6 - 1.17517e6 = 4.0271174591034704.
     #[test]
     fn marsaglia_is_lammps_formula_stream() {
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} {b}");

@@ -1,22 +1,23 @@
-//! Factors that scatter about 1: numbers that belong to a seed and a particle or a place, whatever the order they are drawn in.
+//! Random factors with mean 1: determined by a seed and a particle or position, independent of the order of
+//! evaluation.
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
-/// How factors of mean 1 are distributed.
+/// Distributions with mean 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distribution {
-    /// Weibull's, of this modulus m: the part (1 − exp(−(Γ(1 + 1/m) f)^m)) lies below f.
+    /// Weibull, with modulus m: the fraction (1 − exp(−(Γ(1 + 1/m) f)^m)) is below f.
     Weibull(f64),
-    /// The normal one, of this standard deviation; what is farther than three of them from 1 is moved to there.
+    /// Normal, with this standard deviation; truncated to three standard deviations.
     Normal(f64),
 }
 
 impl Distribution {
-    /// The factor that as many lie below as of standard normal numbers below `g`.
+    /// The factor with the same quantile as the standard normal number `g`.
     pub fn factor(self, g: f64) -> f64 {
         match self {
             Self::Weibull(m) => {
-                // −ln of the part above: where that is nearly 1, of the part below.
+                // −ln of the fraction above; if that is close to 1, computed from the fraction below.
                 let log = if g < 0.0 { -(-below(g)).ln_1p() } else { -below(-g).ln() };
                 log.powf(1.0 / m) / gamma(1.0 + 1.0 / m)
             }
@@ -25,7 +26,7 @@ impl Distribution {
     }
 }
 
-/// A whole number mixed up: G. Steele, D. Lea, C. Flood, Proc. OOPSLA 2014 (splitmix64).
+/// Hash of an integer: G. Steele, D. Lea, C. Flood, Proc. OOPSLA 2014 (splitmix64).
 pub fn mixed(z: u64) -> u64 {
     let z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -33,30 +34,30 @@ pub fn mixed(z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A number between 0 and 1, neither of them, that belongs to a seed and another whole number.
+/// A number strictly between 0 and 1, determined by a seed and another integer.
 pub fn uniform(seed: u64, of: u64) -> f64 {
     ((mixed(mixed(seed) ^ of) >> 12) as f64 + 0.5) / (1u64 << 52) as f64
 }
 
-/// A standard normal number that belongs to a seed and another whole number, below 2⁶³ (Box and Muller 1958).
+/// A standard normal number, determined by a seed and another integer below 2⁶³ (Box and Muller 1958).
 pub fn gaussian(seed: u64, of: u64) -> f64 {
     let [a, b] = [0, 1].map(|k| uniform(seed, 2 * of + k));
     (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
 }
 
-/// Waves that a field is the sum of.
+/// Number of waves in a field.
 const WAVES: u64 = 256;
 
-/// A random field, standard normal at each place and with the correlation exp(−r²/2L²) between two at the distance r: a sum of
-/// waves whose vectors are drawn from its spectrum (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 191 (1991)).
+/// A random field, standard normal at each position, with correlation exp(−r²/2L²) at distance r: a sum of
+/// waves with wave vectors drawn from its spectrum (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 191 (1991)).
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// Vectors and phases.
+    /// Wave vectors and phases.
     waves: Vec<([f64; 3], f64)>,
 }
 
 impl Field {
-    /// The field of a seed and a correlation length, which repeats with the periods that are finite.
+    /// The field of a seed and a correlation length, periodic with the finite `periods`.
     pub fn new(seed: u64, length: f64, periods: [f64; 3]) -> Self {
         let wave = |n: u64| {
             let k = [0, 1, 2].map(|d| {
@@ -69,15 +70,15 @@ impl Field {
         Self { waves: (0..WAVES).map(wave).collect() }
     }
 
-    /// Its value at a place.
+    /// Its value at a position.
     pub fn at(&self, x: [f64; 3]) -> f64 {
         let wave = |(k, phase): &([f64; 3], f64)| (k[0] * x[0] + k[1] * x[1] + k[2] * x[2] + phase).cos();
         SQRT_2 / (WAVES as f64).sqrt() * self.waves.iter().map(wave).sum::<f64>()
     }
 }
 
-/// The part of standard normal numbers that lies below `x`: near 0 by the series of Marsaglia (J. Stat. Softw. 11, 4 (2004)), far
-/// below by Laplace's continued fraction; to 12 digits.
+/// The standard normal distribution function: near 0 by the series of Marsaglia (J. Stat. Softw. 11, 4
+/// (2004)), far below by Laplace's continued fraction; accurate to 12 digits.
 pub fn below(x: f64) -> f64 {
     let density = (-0.5 * x * x).exp() / TAU.sqrt();
     if x < -3.0 {
@@ -96,7 +97,7 @@ pub fn below(x: f64) -> f64 {
     0.5 + density * sum
 }
 
-/// Γ(x) for x ≥ 1 by Stirling's series beyond 10 and the recurrence from there, to 13 digits.
+/// Γ(x) for x ≥ 1, by Stirling's series beyond 10 and the recurrence from there; accurate to 13 digits.
 pub fn gamma(x: f64) -> f64 {
     let (mut z, mut divisor) = (x, 1.0);
     while z < 10.0 {
@@ -136,7 +137,7 @@ mod tests {
         }
     }
 
-    /// The largest distance of the distribution of some numbers from the one they are drawn from.
+    /// The largest distance between the distribution function of some numbers and the expected one.
     fn distance(mut all: Vec<f64>, below: impl Fn(f64) -> f64) -> f64 {
         all.sort_unstable_by(f64::total_cmp);
         let n = all.len() as f64;
@@ -147,7 +148,8 @@ mod tests {
         all.iter().enumerate().map(off).fold(0.0, f64::max)
     }
 
-    /// Kolmogorov and Smirnov: one seed in twenty is farther off than 1.36/√n. The mean has a standard error of σ/√n; three of them.
+    /// Kolmogorov and Smirnov: one seed in twenty deviates by more than 1.36/√n. The mean has a standard
+    /// error of σ/√n; the tolerance is three of these.
     #[test]
     fn factors_are_those_of_the_distributions() {
         let n = 10_000;
@@ -167,7 +169,8 @@ mod tests {
         assert!(distance(all, |f| below((f - 1.0) / 0.2)) < limit);
     }
 
-    /// Many fields at two places: means, variances and products have standard errors of 1/√n, √(2/n) and at most √(2/n); four of them.
+    /// Many fields at two positions: means, variances and products have standard errors of 1/√n, √(2/n) and
+    /// at most √(2/n); the tolerance is four of these.
     #[test]
     fn fields_are_correlated_as_far_as_their_length() {
         let (n, length) = (2_000, 0.5);

@@ -1,35 +1,36 @@
-//! Four vectors of three numbers, as they follow each other in memory, in three times four lanes.
+//! Four vectors of three numbers, contiguous in memory, in three times four lanes.
 
 #[cfg(target_arch = "x86_64")]
 use super::four::Avx2;
 use super::four::{Four, Plain};
 
-/// Between four numbers, one for each vector, and the twelve components of four vectors x y z, x y z, x y z, x y z.
+/// Conversion between four numbers, one per vector, and the twelve components of four vectors: x y z, x y z,
+/// x y z, x y z.
 pub trait Threes: Four {
-    /// Each number three times: beside the components of its vector.
+    /// Each number three times, aligned with the components of its vector.
     fn spread(self) -> [Self; 3];
     /// The four x, the four y and the four z.
     fn parted(twelve: [Self; 3]) -> [Self; 3];
 }
 
-/// Twelve numbers from `p` on.
+/// Loads twelve numbers from `p` on.
 ///
 /// # Safety
-/// `p` must be readable for twelve numbers; the processor must have what the form needs.
+/// `p` must be readable for twelve numbers; the processor must support the form.
 #[inline(always)]
 pub unsafe fn load<F: Four>(p: *const f64) -> [F; 3] {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe { [F::load(p), F::load(p.add(4)), F::load(p.add(8))] }
 }
 
-/// Writes twelve numbers.
+/// Stores twelve numbers.
 ///
 /// # Safety
 /// `p` must be writable for twelve numbers.
 #[inline(always)]
 pub unsafe fn store<F: Four>(twelve: [F; 3], p: *mut f64) {
     let [a, b, c] = twelve;
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantee.
     unsafe {
         a.store(p);
         b.store(p.add(4));
@@ -40,7 +41,7 @@ pub unsafe fn store<F: Four>(twelve: [F; 3], p: *mut f64) {
 /// The same vector four times.
 ///
 /// # Safety
-/// The processor must have what the form needs.
+/// The processor must support the form.
 #[inline(always)]
 pub unsafe fn repeated<F: Four>([x, y, z]: [f64; 3]) -> [F; 3] {
     let twelve = [x, y, z, x, y, z, x, y, z, x, y, z];
@@ -99,7 +100,7 @@ mod tests {
 
     unsafe fn both<F: Threes>() {
         let twelve: [f64; 12] = std::array::from_fn(|k| k as f64);
-        // SAFETY: passed on; arrays of twelve and of four numbers.
+        // SAFETY: the caller's guarantee; arrays of twelve and of four numbers.
         unsafe {
             let parted = F::parted(load(twelve.as_ptr())).map(|f: F| f.numbers());
             assert_eq!(parted, [[0.0, 3.0, 6.0, 9.0], [1.0, 4.0, 7.0, 10.0], [2.0, 5.0, 8.0, 11.0]]);
@@ -113,7 +114,7 @@ mod tests {
 
     #[test]
     fn components_find_their_places() {
-        // SAFETY: the portable form needs nothing; the other one only where there is AVX2.
+        // SAFETY: the portable form has no requirements; the other one is used only with AVX2.
         unsafe {
             both::<Plain>();
             #[cfg(target_arch = "x86_64")]

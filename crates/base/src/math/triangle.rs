@@ -1,8 +1,8 @@
-//! The point of a triangle that is nearest to a place.
+//! The nearest point of a triangle.
 
 use super::vec3::{Vec3, add, dot, scale, sub};
 
-/// Which piece of a triangle a point belongs to.
+/// The feature of a triangle that a point lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// Its inside.
@@ -13,7 +13,8 @@ pub enum Feature {
     Corner(u8),
 }
 
-/// The nearest point of a triangle, and the piece it belongs to (Ericson, Real-Time Collision Detection, 5.1.5).
+/// The nearest point of a triangle, and the feature it lies on (Ericson, Real-Time Collision Detection,
+/// 5.1.5).
 #[inline]
 pub fn nearest(p: Vec3, [a, b, c]: &[Vec3; 3]) -> (Vec3, Feature) {
     let (ab, ac, ap) = (sub(*b, *a), sub(*c, *a), sub(p, *a));
@@ -55,7 +56,7 @@ mod tests {
     #[test]
     fn every_piece_is_found() {
         let t = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-        // Places and nearest points by hand.
+        // Positions and nearest points by hand.
         for (p, point, feature) in [
             ([1.0, 1.0, 2.0], [1.0, 1.0, 0.0], Feature::Face),
             ([-1.0, -1.0, 1.0], [0.0; 3], Feature::Corner(0)),

@@ -1,9 +1,10 @@
-//! Two of a kind of number at once: a long formula whose results wait for each other is evaluated for two things in turns.
+//! Two numbers evaluated together: a long formula with a dependency chain is evaluated for two inputs in an
+//! interleaved way.
 
 use super::real::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Two numbers, or lanes of numbers. Every one has the bits that it would have alone.
+/// Two numbers, or lanes of numbers. Each has the bits that it would have alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twice<R>(pub [R; 2]);
 

@@ -1,4 +1,4 @@
-//! Plain names for the vector algebra of kernels on three components.
+//! Vector algebra on three components, for kernels.
 
 use super::real::Real;
 
@@ -20,7 +20,7 @@ pub fn sub<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// Whether a = b: compared in line, where `==` of arrays is a loop.
+/// Whether a = b: inlined comparisons, where `==` of arrays is a loop.
 #[inline(always)]
 pub fn same(a: Vec3, b: Vec3) -> bool {
     a[0] == b[0] && a[1] == b[1] && a[2] == b[2]
@@ -50,7 +50,7 @@ pub fn length<R: Real>(a: Vec3<R>) -> R {
     dot(a, a).sqrt()
 }
 
-/// `yes` where the mask says so, else `no`.
+/// `yes` where the mask is set, else `no`.
 #[inline(always)]
 pub fn choose<R: Real>(mask: R::Mask, yes: Vec3<R>, no: Vec3<R>) -> Vec3<R> {
     [R::choose(mask, yes[0], no[0]), R::choose(mask, yes[1], no[1]), R::choose(mask, yes[2], no[2])]

@@ -1,4 +1,5 @@
-//! The allocator of the program: memory that is not there, or beyond `-limit memory`, ends it with a message instead of an abort.
+//! The program's allocator: when memory is exhausted, or exceeds `-limit memory`, it ends the program with a
+//! message instead of an abort.
 
 use crate::diag::{Code, Diagnostic, FileId, Source, Span};
 use crate::gate;
@@ -9,54 +10,55 @@ use std::process::exit;
 use std::sync::atomic::{AtomicBool, AtomicIsize, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, RwLock};
 
-/// Pieces of this size and more are compared with the memory that the machine has left [byte].
+/// Allocations of at least this size are compared with the machine's free memory [byte].
 const LARGE: usize = 64 << 20;
-/// Under a limit, pieces of this size and more are compared with what the process has [byte].
+/// With a limit, allocations of at least this size are compared with the memory of the process [byte].
 const NOTABLE: usize = 1 << 20;
-/// Of a limit, this part is left for what the allocator keeps beside the pieces that are asked for.
+/// Fraction of a limit that is reserved for the allocator's own overhead.
 const MARGIN: f64 = 0.05;
 
-/// Bytes that may be held, counted from when the limit was set.
+/// Bytes that may be allocated, counted from when the limit was set.
 static MOST: AtomicIsize = AtomicIsize::new(isize::MAX);
-/// Bytes held, counted from when the limit was set.
+/// Bytes allocated, counted from when the limit was set.
 static HELD: AtomicIsize = AtomicIsize::new(0);
-/// The program is being ended.
+/// Set while the program is being ended.
 static ENDING: AtomicBool = AtomicBool::new(false);
-/// What says the last words.
+/// Prints the final message.
 static SPEAKER: OnceLock<Speaker> = OnceLock::new();
-/// The text of the deck that is read now.
+/// The text of the deck that is being read.
 static TEXT: RwLock<Option<Arc<Source>>> = RwLock::new(None);
-/// The bytes of the line that runs now: first, and one past the last.
+/// The byte range of the line being executed: first, and one past the last.
 static LINE: AtomicU64 = AtomicU64::new(0);
 
-/// Shows a message to people.
+/// Prints a message.
 type Speaker = Box<dyn Fn(Diagnostic) + Send + Sync>;
 
 thread_local! {
-    /// This thread says the last words: it gets memory whatever the limit.
+    /// Set on the thread that prints the final message: it gets memory despite the limit.
     static SPEAKING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// The system's allocator behind a fence. Without a limit a piece of memory costs one look at a number more.
+/// The system's allocator with checks. Without a limit an allocation costs one additional load.
 pub struct Fence;
 
-// SAFETY: all pieces are the system's, of the layouts that were asked for; what is refused never comes back to the caller.
+// SAFETY: all memory comes from the system, with the layouts requested; a refused request never returns to
+// the caller.
 unsafe impl GlobalAlloc for Fence {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         admit(layout.size());
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's guarantee.
         given(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         admit(layout.size());
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's guarantee.
         given(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn dealloc(&self, piece: *mut u8, layout: Layout) {
         back(layout.size());
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's guarantee.
         unsafe { System.dealloc(piece, layout) }
     }
 
@@ -65,12 +67,12 @@ unsafe impl GlobalAlloc for Fence {
             Some(more) => admit(more),
             None => back(layout.size() - size),
         }
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's guarantee.
         given(unsafe { System.realloc(piece, layout, size) }, size)
     }
 }
 
-/// Lets a piece pass, or ends the program.
+/// Admits an allocation, or ends the program.
 #[inline]
 fn admit(size: usize) {
     let most = MOST.load(Ordering::Relaxed);
@@ -94,7 +96,7 @@ fn look(size: usize, most: isize) {
     }
 }
 
-/// Takes note of a piece that is given back.
+/// Records a deallocation.
 #[inline]
 fn back(size: usize) {
     if MOST.load(Ordering::Relaxed) != isize::MAX {
@@ -102,7 +104,7 @@ fn back(size: usize) {
     }
 }
 
-/// A piece as the system gave it; where it gave none, the program ends.
+/// The pointer from the system; if it is null, the program ends.
 #[inline]
 fn given(piece: *mut u8, size: usize) -> *mut u8 {
     if piece.is_null() {
@@ -111,7 +113,7 @@ fn given(piece: *mut u8, size: usize) -> *mut u8 {
     piece
 }
 
-/// Ends the program with a message, unless it is this thread that says it.
+/// Ends the program with a message, unless this thread is printing it.
 #[cold]
 fn refuse(size: usize) {
     if SPEAKING.get() {
@@ -123,7 +125,7 @@ fn refuse(size: usize) {
         }
     }
     SPEAKING.set(true);
-    // What goes wrong while the words are said must not leave an allocator by unwinding.
+    // A panic while the message is printed must not unwind out of the allocator.
     let _ = catch_unwind(AssertUnwindSafe(|| {
         let problem = placed(message(size as f64));
         match SPEAKER.get() {
@@ -164,32 +166,33 @@ fn placed(mut problem: Diagnostic) -> Diagnostic {
     problem
 }
 
-/// Says which text the next lines are of.
+/// Sets the text of the following lines.
 pub fn reads(text: Arc<Source>) {
     if let Ok(mut now) = TEXT.write() {
         *now = Some(text);
     }
 }
 
-/// Says which line of the text runs.
+/// Sets the line of the text that is being executed.
 #[inline]
 pub fn at(line: Span) {
     LINE.store(u64::from(line.start) << 32 | u64::from(line.end), Ordering::Relaxed);
 }
 
-/// Says what shows the message with which the fence ends the program; only the first one counts.
+/// Sets the function that prints the message with which the allocator ends the program; only the first one
+/// counts.
 pub fn speaks(speaker: impl Fn(Diagnostic) + Send + Sync + 'static) {
     let _ = SPEAKER.set(Box::new(speaker));
 }
 
-/// From now on the program may have so many bytes in all.
+/// Limits the total memory of the program from now on.
 pub(crate) fn limit(bytes: f64) {
     let left = bytes * (1.0 - MARGIN) - super::resident().unwrap_or(0.0);
     HELD.store(0, Ordering::Relaxed);
     MOST.store(left.max(0.0) as isize, Ordering::Relaxed);
 }
 
-/// Bytes that a limit leaves by the count of the fence.
+/// Bytes left by the limit according to the allocator's count.
 pub(crate) fn limited() -> Option<f64> {
     let most = MOST.load(Ordering::Relaxed);
     (most != isize::MAX).then(|| (most.saturating_sub(HELD.load(Ordering::Relaxed))).max(0) as f64)

@@ -1,9 +1,10 @@
-//! What memory the machine, the process' own limits (`ulimit -v`, `prlimit`) and a container leave; all of it as the system tells it.
+//! Free memory as reported by the system: of the machine, within the process limits (`ulimit -v`, `prlimit`)
+//! and of a container.
 
 use std::fs::read_to_string;
 use std::path::Path;
 
-/// Bytes that can still be asked for, where the system tells.
+/// Bytes that can still be allocated, if the system reports them.
 pub fn bytes() -> Option<f64> {
     [
         machine(),
@@ -16,23 +17,23 @@ pub fn bytes() -> Option<f64> {
     .reduce(f64::min)
 }
 
-/// Bytes that can still be asked for by all programs of the machine, or of this one's container, together.
+/// Bytes that all programs of the machine, or of this container, can still allocate together.
 pub fn shared() -> Option<f64> {
     machine().into_iter().chain(container()).reduce(f64::min)
 }
 
-/// Bytes that the program has, where the system tells.
+/// Bytes used by the program, if the system reports them.
 pub fn resident() -> Option<f64> {
     kilobytes("/proc/self/status", "VmRSS:")
 }
 
-/// What the machine has left, swap space with it.
+/// Free memory of the machine, including swap space.
 fn machine() -> Option<f64> {
     let swap = kilobytes("/proc/meminfo", "SwapFree:").unwrap_or(0.0);
     Some(kilobytes("/proc/meminfo", "MemAvailable:")? + swap)
 }
 
-/// What a limit of the process leaves of what it counts.
+/// What a process limit leaves.
 fn of_process(limit: &str, used: &str) -> Option<f64> {
     let text = read_to_string("/proc/self/limits").ok()?;
     let most =
@@ -40,7 +41,7 @@ fn of_process(limit: &str, used: &str) -> Option<f64> {
     Some((most - kilobytes("/proc/self/status", used)?).max(0.0))
 }
 
-/// What the narrowest of the groups of processes around this one leaves (cgroups, second version).
+/// What the tightest control group around this process leaves (cgroups v2).
 fn container() -> Option<f64> {
     let text = read_to_string("/proc/self/cgroup").ok()?;
     let own = text.lines().find_map(|l| l.strip_prefix("0::/"))?;
@@ -49,7 +50,7 @@ fn container() -> Option<f64> {
     group.ancestors().take_while(|folder| folder.starts_with(root)).filter_map(left_in).reduce(f64::min)
 }
 
-/// What a group of processes may still have; files that it holds in memory make room.
+/// What a control group may still allocate; cached files count as free.
 fn left_in(folder: &Path) -> Option<f64> {
     let number = |file: &str| read_to_string(folder.join(file)).ok()?.trim().parse::<f64>().ok();
     let most = number("memory.max")?;
@@ -61,7 +62,7 @@ fn left_in(folder: &Path) -> Option<f64> {
     Some((most - number("memory.current")? + files).max(0.0))
 }
 
-/// A number of kilobytes behind a name, in bytes.
+/// A number of kilobytes after a name, in bytes.
 fn kilobytes(file: &str, name: &str) -> Option<f64> {
     let text = read_to_string(file).ok()?;
     let line = text.lines().find_map(|l| l.strip_prefix(name))?;

@@ -1,10 +1,11 @@
-//! Threads with the same bits for any number of them.
+//! Threads with results that are the same bits for any number of them.
 //!
-//! Work is cut into parts by a rule that knows only the size of the problem, never the number of threads:
-//! [`for_rows`], [`for_rows_if`], [`for_chunks`] and [`each`] where parts do not touch each other's data, [`two_colours`] where a part
-//! also writes into the next one, [`ordered`] where parts write into several others, [`sum`], [`reduce`] and [`best`] where parts are added up along a fixed tree. Which thread does
-//! which part may vary, the order of additions never does. All run inline on one thread or when there is only one
-//! part; [`both`] does two things beside each other. [`Trial`] finds out whether threads pay.
+//! Work is divided by a rule that depends only on the size of the problem, never on the number of threads:
+//! [`for_rows`], [`for_rows_if`], [`for_chunks`] and [`each`] for parts with separate data, [`two_colours`]
+//! for parts that also write into the next one, [`ordered`] for parts that write into several others,
+//! [`sum`], [`reduce`] and [`best`] for reductions along a fixed tree. The assignment of parts to threads may
+//! vary, the order of additions does not. All of them run inline on one thread or for a single part; [`both`]
+//! runs two tasks concurrently. [`Trial`] measures whether threads pay off.
 
 pub mod ordered;
 mod pays;

@@ -1,5 +1,5 @@
-//! Parts that write to the same places, each after certain others: whichever thread does what and when, every place receives its
-//! additions in the same order.
+//! Parts that write to common rows in a fixed order: each row receives its additions in the same order, on
+//! any threads at any time.
 
 use super::pool::{for_rows, threads};
 use std::cmp::Reverse;
@@ -8,34 +8,35 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, AtomicUsize, Ordering}
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Which parts come before which. A clone is empty.
+/// The order of parts. A clone is empty.
 #[derive(Debug, Default)]
 pub struct Precedence {
-    /// The parts that come after each, one part's behind the other's; where they end.
+    /// The successors of each part, concatenated; `ends` holds the end of each.
     after: Vec<u32>,
     ends: Vec<usize>,
-    /// How many come before each.
+    /// The number of predecessors of each part.
     before: Vec<u32>,
-    /// Parts in an order that one thread can follow: each after those that come before it, and otherwise near those before it in number.
+    /// Parts in an order for a single thread: each after its predecessors, and otherwise close to its
+    /// predecessors in number.
     line: Vec<usize>,
     /// Parts by colour, and by number within a colour.
     ranks: Vec<u32>,
-    /// The least time that each has taken [ns], where that is measured; else empty.
+    /// The shortest time of each part [ns], if measured; else empty.
     times: Vec<AtomicU64>,
     state: Mutex<State>,
 }
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Debug, Default)]
 struct State {
-    /// How many parts before each are not done.
+    /// The number of unfinished predecessors of each part.
     left: Vec<AtomicU32>,
-    /// By thread: how many of its parts have been taken, and these.
+    /// Per thread: the number of its parts taken, and its parts.
     shares: Vec<(AtomicUsize, Vec<u32>)>,
 }
 
 impl State {
-    /// Begins a run of parts in this order, each after so many, with so many threads.
+    /// Begins a run of parts in this order, with these numbers of predecessors and this number of threads.
     fn begin(&mut self, (ranks, before): (&[u32], &[u32]), threads: usize) {
         self.left.resize_with(before.len(), Default::default);
         self.left.iter_mut().zip(before).for_each(|(left, before)| *left.get_mut() = *before);
@@ -49,7 +50,7 @@ impl State {
         self.shares.iter_mut().for_each(|(taken, _)| *taken.get_mut() = 0);
     }
 
-    /// The next part of a share, if all are done that come before it.
+    /// The next part of a share, if all its predecessors are done.
     fn take(&self, share: usize) -> Option<usize> {
         let (taken, parts) = &self.shares[share];
         loop {
@@ -77,15 +78,16 @@ impl Clone for Precedence {
     }
 }
 
-/// So often a thread looks whether a part can be taken before it lets others have the processor.
+/// Number of attempts to take a part before a thread yields the processor.
 const PATIENCE: u32 = 200;
 
-/// Threads for which bounds are given.
+/// Numbers of threads for which speedup bounds are given.
 const THREADS: [usize; 3] = [8, 16, 64];
 
 impl Precedence {
-    /// That of parts of these colours, each of which writes to places of these others: of two that do, the one of the lower colour comes
-    /// first. Two of one colour must not write to the same place.
+    /// The order of parts with these colours, each of which writes to rows of the parts in `others`: of two
+    /// parts with common rows, the one with the lower colour comes first. Two parts of one colour must not
+    /// have common rows.
     pub fn of(colours: &[u8], others: &[Vec<u32>]) -> Self {
         let mut ranks: Vec<u32> = (0..colours.len() as u32).collect();
         ranks.sort_by_key(|part| colours[*part as usize]);
@@ -103,24 +105,24 @@ impl Precedence {
         Self { after, ends, before, line: lined_up(colours, others), ranks, ..Self::default() }
     }
 
-    /// How many parts there are.
+    /// The number of parts.
     pub fn parts(&self) -> usize {
         self.before.len()
     }
 
-    /// Parts in the order of one thread.
+    /// Parts in the order of a single thread.
     pub fn line(&self) -> &[usize] {
         &self.line
     }
 
-    /// The parts that come after one.
+    /// The successors of a part.
     fn after(&self, part: usize) -> &[u32] {
         let from = if part == 0 { 0 } else { self.ends[part - 1] };
         &self.after[from..self.ends[part]]
     }
 
-    /// Calls `work` for each part once, on all threads, each after those that come before it. A thread takes parts of neighbouring numbers,
-    /// and those of others where none of its own can be taken.
+    /// Calls `work` once for each part, on all threads, after its predecessors. A thread takes parts with
+    /// neighbouring numbers, and parts of other threads when none of its own is ready.
     pub fn run(&self, work: impl Fn(usize) + Sync) {
         let failed = AtomicBool::new(false);
         let work = |part: usize| {
@@ -149,7 +151,7 @@ impl Precedence {
                 {
                     return;
                 } else {
-                    // Others are at work on what comes before; they may be waiting for a processor.
+                    // Other threads work on the predecessors; they may be waiting for a processor.
                     idle += 1;
                     if idle < PATIENCE { std::hint::spin_loop() } else { std::thread::yield_now() }
                 }
@@ -157,7 +159,7 @@ impl Precedence {
         });
     }
 
-    /// From now on the time is kept that each part takes, or no longer.
+    /// Starts or stops measuring the time of each part.
     pub fn keep_times(&mut self, keep: bool) {
         let parts = if keep { self.parts() } else { 0 };
         self.times.resize_with(parts, || u64::MAX.into());
@@ -171,8 +173,8 @@ impl Precedence {
         done
     }
 
-    /// How many parts of this size at most there are, the time that all of them take, and by how much some numbers of threads can be
-    /// faster at most, from the times of parts alone; nothing where no times have been kept.
+    /// The largest number of parts of this size, their total time, and the largest possible speedup for some
+    /// numbers of threads by the times of parts; `None` if no times were measured.
     pub fn described(&self, size: &str) -> Option<String> {
         let times: Vec<u64> = self.times.iter().map(|time| time.load(Ordering::Relaxed)).collect();
         if times.is_empty() || times.contains(&u64::MAX) {
@@ -187,8 +189,8 @@ impl Precedence {
         Some(format!("{} tile(s) of {size} at most, {ms:.3} ms for forces; bound: {bounds}", times.len()))
     }
 
-    /// When all parts are done, if so many threads take them as [`Precedence::run`] has them do, each takes its time, and nothing else
-    /// takes time.
+    /// The time at which all parts are done if this many threads take them as in [`Precedence::run`],
+    /// counting the times of parts only.
     fn critical_path(&self, times: &[u64], threads: usize) -> u64 {
         let (mut left, mut place) = (self.before.clone(), vec![0; self.parts()]);
         self.ranks.iter().zip(0..).for_each(|(part, at)| place[*part as usize] = at);
@@ -214,7 +216,7 @@ impl Precedence {
     }
 }
 
-/// Parts in an order that follows these colours, each after those of lower ones beside it.
+/// Parts in an order that follows these colours, each after its neighbours with lower colours.
 fn lined_up(colours: &[u8], others: &[Vec<u32>]) -> Vec<usize> {
     let (mut line, mut taken, mut open) = (vec![], vec![false; colours.len()], vec![]);
     for first in 0..colours.len() {
@@ -235,7 +237,7 @@ fn lined_up(colours: &[u8], others: &[Vec<u32>]) -> Vec<usize> {
     line
 }
 
-/// Says that a part has failed, if it has: nothing waits for what comes after it then.
+/// Signals that a part has panicked: its successors must not be waited for.
 struct Alarm<'a>(&'a AtomicBool);
 
 impl Drop for Alarm<'_> {
@@ -251,7 +253,7 @@ mod tests {
     use super::super::set_threads;
     use super::*;
 
-    /// A ring of parts that each write to both neighbours.
+    /// A ring of parts, each of which writes to both neighbours.
     fn ring(n: usize) -> Precedence {
         let colours: Vec<u8> = (0..n).map(|k| (k % 2) as u8).collect();
         let others: Vec<Vec<u32>> =

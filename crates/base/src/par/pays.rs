@@ -1,23 +1,23 @@
-//! Whether threads pay: now and then a run is timed with all of them and without.
+//! Measures whether threads pay off: from time to time a run is timed with all threads and with one.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Whether the calling thread does all work by itself.
+/// Whether the calling thread does all work itself.
 static ALONE: AtomicBool = AtomicBool::new(false);
-/// Whether a loop has had parts to share since somebody asked.
+/// Whether a loop has had parts to share since the last check.
 static SHARED: AtomicBool = AtomicBool::new(false);
-/// What the last run has found out; taken out while a run goes on.
+/// The result of the last run; taken out during a run.
 static LAST: Mutex<Option<Found>> = Mutex::new(None);
 
-/// Whether loops are to be left to the calling thread.
+/// Whether loops must run on the calling thread.
 #[inline]
 pub(super) fn alone() -> bool {
     ALONE.load(Ordering::Relaxed)
 }
 
-/// A loop has parts that threads could share.
+/// Records that a loop has parts that threads could share.
 #[inline]
 pub(super) fn shares() {
     if !SHARED.load(Ordering::Relaxed) {
@@ -25,25 +25,27 @@ pub(super) fn shares() {
     }
 }
 
-/// How long a window lasts, at least.
+/// Minimum duration of a window.
 const SPAN: Duration = Duration::from_millis(5);
-/// What is not counted after a change: threads fall asleep or wake up, memory moves from core to core.
+/// Steps and time ignored after a change: threads fall asleep or wake up, memory moves between cores.
 const SETTLING: (u32, Duration) = (3, Duration::from_millis(1));
-/// Steps that take longer are many threads' work on any machine, and a trial would be dear.
+/// Longer steps are work for many threads on any machine, and a trial would be expensive.
 const LONG: Duration = Duration::from_millis(10);
-/// To look at the clock takes some 30 ns: of shorter steps than this several are timed together, [`MOST_TOGETHER`] at most.
+/// Reading the clock takes about 30 ns: shorter steps than this are timed together, at most
+/// [`MOST_TOGETHER`].
 const WORTH_A_LOOK: Duration = Duration::from_micros(4);
 const MOST_TOGETHER: u32 = 16;
-/// Of two that take nearly the same time the one that is in use stays.
+/// Of two nearly equal modes the current one is kept.
 const CLEARLY: f64 = 0.95;
-/// A step with threads counts as so many times as long: what saves less than a tenth takes from others on the machine what it does not
-/// need, and where they are busy it loses more in some windows than it gains in others.
+/// Penalty on steps with threads: a saving below a tenth takes cores from other programs, and on a busy
+/// machine it loses more in some windows than it gains in others.
 const DEAR: f64 = 1.1;
-/// And of two that differ by more than this the trial has been no accident.
+/// A ratio beyond which a trial is certain.
 const FAR: f64 = 0.8;
-/// Windows between the first two trials that tell little.
+/// Number of windows between the first two trials without a clear result.
 const FIRST_REST: f64 = 8.0;
-/// A trial may take this part of the time: as many windows lie between trials as one without threads takes times more, over this.
+/// Maximum cost of trials as a fraction of the time: the number of windows between trials is the relative
+/// slowdown without threads, divided by this.
 const COST: f64 = 0.01;
 
 /// Time and number of steps of one kind.
@@ -59,54 +61,55 @@ impl Sum {
         self.time += time;
     }
 
-    /// Seconds per step, if there are enough to tell.
+    /// Seconds per step, if there are enough steps.
     fn mean(self) -> Option<f64> {
         (self.steps > 0).then(|| self.time.as_secs_f64() / f64::from(self.steps))
     }
 }
 
-/// Which way of working wins, and how long it has been left alone.
+/// The faster mode, and the interval between trials.
 #[derive(Clone, Copy, Debug)]
 struct Found {
     alone: bool,
     rest: f64,
 }
 
-/// Where a trial stands.
+/// State of a trial.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// The way that won goes on for some windows.
+    /// The faster mode runs for some windows.
     Rest(u32),
     /// It is timed.
     Before,
-    /// The other way is timed.
+    /// The other mode is timed.
     Other { before: f64 },
-    /// The way that won is timed again: scenes change.
+    /// The faster mode is timed again, because the system changes.
     After { before: f64, other: f64 },
 }
 
-/// Times the steps of a run with all threads and with one, and goes on with what is faster. Which it is hangs on the scene (small
-/// loops are done before another thread has seen them) and on what else the machine does; results do not hang on it.
+/// Times the steps of a run with all threads and with one, and continues with the faster mode. Which one is
+/// faster depends on the system (small loops end before other threads could start) and on the load of the
+/// machine; results do not depend on it.
 #[derive(Debug)]
 pub struct Trial {
     found: Found,
     phase: Phase,
-    /// End of the last step, where the clock was looked at.
+    /// End of the last step at which the clock was read.
     last: Option<Instant>,
-    /// Steps since then, of how many, and whether lists were made in one.
+    /// Steps since then, their target number, and whether lists were made in one of them.
     together: u32,
     look_after: u32,
     anew: bool,
-    /// When the present window began, and its steps so far.
+    /// Start of the current window, and its number of steps.
     since: Instant,
     seen: u32,
-    /// Steps that made lists anew, and the others.
+    /// Steps that remade lists, and the others.
     sums: [Sum; 2],
 }
 
 impl Trial {
-    /// The trial of a run that begins; `None` where there is one thread only. Of two runs at a time in one program each tries for
-    /// both, which costs time and changes no result.
+    /// The trial of a run that begins; `None` with a single thread. Two simultaneous runs in one program
+    /// share the setting, which costs time and changes no result.
     pub fn begin() -> Option<Self> {
         if super::threads() < 2 {
             return None;
@@ -133,10 +136,11 @@ impl Trial {
         }
     }
 
-    /// A step is made; `anew`: lists were made in it, which is another kind of work.
+    /// Records a step; `anew`: lists were remade, which is another kind of work.
     #[inline]
     pub fn step(&mut self, anew: bool) {
-        // Where no loop has parts to share there is nothing to try, and to look at the clock takes longer than small loops.
+        // If no loop has parts to share there is nothing to try, and reading the clock takes longer than
+        // small loops.
         if SHARED.load(Ordering::Relaxed) {
             self.together += 1;
             self.anew |= anew;
@@ -146,7 +150,7 @@ impl Trial {
         }
     }
 
-    /// The steps since the last look end now.
+    /// Ends the interval since the last clock reading.
     fn timed(&mut self, now: Instant) {
         let (steps, anew) = (std::mem::take(&mut self.together), std::mem::take(&mut self.anew));
         let Some(last) = self.last.replace(now) else {
@@ -183,7 +187,7 @@ impl Trial {
         self.phase = match (self.phase, quiet) {
             (Phase::Rest(left), _) if left > 0 => Phase::Rest(left - 1),
             (Phase::Rest(_), _) => Phase::Before,
-            // Not one quiet step, of a scene that has some or of one that has none.
+            // There was not a single step without rebuilding, either by chance or always.
             (_, None) => Phase::Rest(if anew.steps > 0 { FIRST_REST as u32 } else { 0 }),
             (Phase::Before, Some(before)) if before > LONG.as_secs_f64() => {
                 self.found.alone = false;
@@ -195,14 +199,14 @@ impl Trial {
         };
     }
 
-    /// Goes on with what is faster: the `other` way or `this` one [seconds per step].
+    /// Continues with the faster mode: the `other` one or `this` one [seconds per step].
     fn judge(&mut self, other: f64, this: f64) -> Phase {
         let [other, this] = if self.found.alone { [DEAR * other, this] } else { [other, DEAR * this] };
         if other < CLEARLY * this {
             self.found = Found { alone: !self.found.alone, rest: FIRST_REST };
         } else {
             let most = ((other / this - 1.0).max(0.1) / COST).max(FIRST_REST);
-            // What is this clear at once need not be asked again soon.
+            // A clear result need not be measured again soon.
             self.found.rest = if this < FAR * other { most } else { (2.0 * self.found.rest).min(most) };
         }
         Phase::Rest(self.found.rest as u32)
@@ -220,8 +224,8 @@ impl Drop for Trial {
 mod tests {
     use super::*;
 
-    /// Steps through `windows` windows of a scene whose steps take `together` or `alone` milliseconds; the part of them
-    /// made alone.
+    /// Simulates `windows` windows of a system with steps of `together` or `alone` milliseconds; returns the
+    /// fraction of steps made alone.
     fn part_alone(trial: &mut Trial, windows: u32, [together, alone]: [f64; 2]) -> f64 {
         let mut now = trial.last.unwrap_or(trial.since);
         let mut made = [0.0; 2];
@@ -241,17 +245,17 @@ mod tests {
     #[test]
     fn the_faster_way_is_found_again_when_the_machine_changes() {
         let mut trial = Trial::of(Found { alone: false, rest: FIRST_REST });
-        // Two threads pay: a trial takes a hundredth of the time in the long run.
+        // Two threads pay off: trials take a hundredth of the time in the long run.
         assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.02);
-        // Another program takes a core.
+        // Another program occupies a core.
         assert!(part_alone(&mut trial, 1000, [0.3, 0.2]) > 0.85);
         assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.3);
-        // What saves a fifteenth is used, and not begun.
+        // A mode that saves a fifteenth is kept, but not started.
         assert!(part_alone(&mut trial, 1000, [0.14, 0.15]) < 0.2);
         assert!(part_alone(&mut trial, 1000, [0.3, 0.2]) > 0.85);
         assert!(part_alone(&mut trial, 1000, [0.14, 0.15]) > 0.9);
         assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.3);
-        // What saves nothing is left.
+        // A mode without gain is left.
         assert!(part_alone(&mut trial, 1000, [0.1, 0.1]) > 0.9);
         drop(trial);
         assert!(!alone());

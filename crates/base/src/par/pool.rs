@@ -1,4 +1,4 @@
-//! The thread pool and loops over parts; the only user of rayon.
+//! The thread pool and loops over parts; the only code that uses rayon.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -10,24 +10,25 @@ use super::{CHUNK, pays};
 use rayon::{ThreadPool, Yield};
 
 static POOL: RwLock<Option<Arc<Pool>>> = RwLock::new(None);
-/// The number of its threads: asked for several times in a step, and a lock takes as long as the motion of a few particles.
+/// The number of threads: read several times per step, where a lock would cost as much as moving a few
+/// particles.
 static THREADS: AtomicUsize = AtomicUsize::new(1);
 
-/// Threads, and whether they look out for work.
+/// The threads, and whether they are looking for work.
 struct Pool {
     threads: ThreadPool,
-    /// The number + 1 of the thread for which the others do; 0 if they sleep.
+    /// Number + 1 of the thread whose work the others look for; 0 while they sleep.
     awake: Arc<AtomicUsize>,
 }
 
-/// Room on the stack of each thread [bytes]: loops compiled without optimisation need some megabytes.
+/// Stack size of each thread [bytes]: loops compiled without optimization need some megabytes.
 pub const STACK: usize = 16 << 20;
 
-/// More threads than this are not started, however many are asked for: results are the same.
+/// Maximum number of threads, however many are requested: results are the same.
 const MOST: usize = 1024;
 
-/// Sets the number of threads for everything that follows; 0 means all cores. Returns what was obtained:
-/// one thread if the system grants no more.
+/// Sets the number of threads from now on; 0 means all cores. Returns the number obtained: one thread if the
+/// system grants no more.
 pub fn set_threads(n: usize) -> usize {
     let n = if n == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { n };
     let n = n.min(MOST);
@@ -42,19 +43,19 @@ pub fn set_threads(n: usize) -> usize {
     threads()
 }
 
-/// The number of threads in use: one where more do not pay.
+/// The number of threads in use: one if more do not pay off.
 #[inline]
 pub fn threads() -> usize {
     if pays::alone() { 1 } else { most_threads() }
 }
 
-/// The largest number of threads that may be in use.
+/// The largest number of threads that may be used.
 #[inline]
 pub fn most_threads() -> usize {
     THREADS.load(Ordering::Relaxed)
 }
 
-/// The calling thread's number, below [`most_threads`]: for scratch memory of one piece per thread.
+/// The calling thread's index, below [`most_threads`]: for per-thread scratch memory.
 pub fn slot() -> usize {
     rayon::current_thread_index().unwrap_or(0)
 }
@@ -63,8 +64,8 @@ fn pool() -> Option<Arc<Pool>> {
     POOL.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Runs `work` on a thread of the pool if there is one: loops inside it start without handing over between threads,
-/// which takes longer than a loop over a few thousand particles.
+/// Runs `work` on a thread of the pool, if there is one: loops inside it start without a handover between
+/// threads, which takes longer than a loop over a few thousand particles.
 pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         None => work(),
@@ -77,7 +78,7 @@ pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     }
 }
 
-/// Runs `work` inside the pool if there is one and `parts` are worth it, else right here.
+/// Runs `work` inside the pool if there is one and `parts` are enough, else on this thread.
 #[inline]
 pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) -> R {
     match entered(parts) {
@@ -90,7 +91,7 @@ pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) 
     }
 }
 
-/// The pool, awake, if there is one and `parts` are worth it.
+/// The pool, awake, if there is one and `parts` are enough.
 #[inline]
 fn entered(parts: usize) -> Option<Arc<Pool>> {
     if parts < 2 {
@@ -110,12 +111,12 @@ fn woken() -> Option<Arc<Pool>> {
     Some(pool)
 }
 
-/// What threads are handed: work known by its address. All that hands over between threads is compiled once then, here, and not again
-/// for each loop of each crate, where it was a quarter to a half of what had to be compiled; a call by an address costs nothing
-/// beside handing over.
+/// Work as a trait object: all handover code is then compiled once, here, instead of for each loop of each
+/// crate, where it took a quarter to a half of the compile time; an indirect call costs little compared with
+/// the handover.
 type Work<'a> = &'a mut (dyn FnMut() + Send);
 
-/// Work to be done once, and what comes of it.
+/// Work to be done once, and its result.
 struct Once<F, R> {
     work: Option<F>,
     out: Option<R>,
@@ -137,13 +138,14 @@ impl<R, F: FnOnce() -> R> Once<F, R> {
 }
 
 impl Pool {
-    /// Does the work on a thread of the pool.
+    /// Runs the work on a thread of the pool.
     fn install(&self, work: Work) {
         self.threads.install(work);
     }
 
-    /// Has the other threads look out for work of this one for a while: between two loops of a step they would fall asleep, and
-    /// to wake one takes longer than many a loop. Who is not of the pool waits for a thread anyway.
+    /// Makes the other threads look for work of this one for a while: between two loops of a step they would
+    /// fall asleep, and waking one takes longer than many loops. A thread outside the pool must wait for a
+    /// pool thread anyway.
     fn wake(&self) {
         let Some(home) = self.threads.current_thread_index() else { return };
         if self.awake.load(Ordering::Relaxed) == home + 1 {
@@ -159,15 +161,15 @@ impl Pool {
     }
 }
 
-/// How long a thread that finds no work looks for some.
+/// How long an idle thread looks for work.
 const PATIENCE: Duration = Duration::from_millis(1);
 
 thread_local! {
-    /// Whether the thread looks out for work already, or waits for another one to end some.
+    /// Whether this thread is looking for work, or waits for another one to finish.
     static LOOKS_OUT: Cell<Looks> = const { Cell::new(Looks::Not) };
 }
 
-/// What a thread without work of its own does.
+/// State of a thread without work of its own.
 #[derive(Clone, Copy, PartialEq)]
 enum Looks {
     Not,
@@ -175,13 +177,13 @@ enum Looks {
     ForAnEnd,
 }
 
-/// Does what work there is until there has been none for a while.
+/// Executes available work until there has been none for a while.
 fn look_out(awake: &AtomicUsize) {
     match LOOKS_OUT.get() {
         Looks::Not => LOOKS_OUT.set(Looks::ForWork),
-        // What it finds may be to look out.
+        // The work found may be another call of this function.
         Looks::ForWork => return,
-        // Who waits for this thread must not wait for it to run out of patience: it is asked again.
+        // A thread that waits for this one must not wait until it times out: it will be woken again.
         Looks::ForAnEnd => return awake.store(0, Ordering::Relaxed),
     }
     let mut last = Instant::now();
@@ -196,15 +198,15 @@ fn look_out(awake: &AtomicUsize) {
     awake.store(0, Ordering::Relaxed);
 }
 
-/// Does both, the second on another thread if one looks out for work. A thread that has done its part does other work until the other
-/// part ends, and looks out for that: [`rayon::join`] alone falls asleep soon.
+/// Runs both, the second on another thread if one is looking for work. A thread that has finished its part
+/// does other work until the other part ends: [`rayon::join`] alone soon falls asleep.
 pub(super) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     let (mut a, mut b) = (Once::new(a), Once::new(b));
     join_work(&mut || a.run(), &mut || b.run());
     (a.out(), b.out())
 }
 
-/// As [`join`].
+/// Like [`join`].
 fn join_work(a: Work, b: Work) {
     let done = AtomicBool::new(false);
     let first = || {
@@ -225,8 +227,8 @@ fn join_work(a: Work, b: Work) {
     rayon::join(first, second);
 }
 
-/// Does two things at the same time, if there are threads and more rows to work on than one chunk: another thread takes longer to
-/// see work than a few grains take.
+/// Runs two tasks concurrently, if there are threads and more rows than one chunk: starting another thread
+/// takes longer than the work for a few grains.
 pub fn both<A: Send, B: Send>(
     rows: usize,
     a: impl FnOnce() -> A + Send,
@@ -235,7 +237,7 @@ pub fn both<A: Send, B: Send>(
     enter(rows.div_ceil(CHUNK), |threaded| if threaded { join(a, b) } else { (a(), b()) })
 }
 
-/// Calls `f` once for each of `n` parts, in any order; parts must not write what others touch.
+/// Calls `f` once for each of `n` parts, in any order; parts must not write data that others access.
 pub fn for_rows(n: usize, f: impl Fn(usize) + Sync) {
     let f = &f;
     enter(n, |threaded| {
@@ -247,14 +249,14 @@ pub fn for_rows(n: usize, f: impl Fn(usize) + Sync) {
     });
 }
 
-/// [`for_rows`] where that is `worth` another thread's while, else part by part.
+/// [`for_rows`] if that is `worth` starting other threads, else part by part.
 pub fn for_rows_if(worth: bool, n: usize, f: impl Fn(usize) + Sync) {
     if worth { for_rows(n, f) } else { (0..n).for_each(f) }
 }
 
-/// Calls `f` for the parts 0, 2, 4, ..., and for each of 1, 3, 5, ... after the two beside it: part `k` may write into part
-/// `k + 1` as well (the last one into the first if there is an even number of them), and every particle receives its additions in
-/// the same order for any number of threads.
+/// Calls `f` for the parts 0, 2, 4, ..., and for each of 1, 3, 5, ... after its two neighbours: part `k` may
+/// also write into part `k + 1` (the last one into the first if their number is even), and every particle
+/// receives its additions in the same order for any number of threads.
 pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
     let f = &f;
     enter(n, |threaded| {
@@ -266,8 +268,8 @@ pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
     });
 }
 
-/// The order in which one thread calls the parts of [`two_colours`]: an odd part comes right after the two even ones beside it, and what
-/// it touches is in fast memory still.
+/// The single-thread order of the parts in [`two_colours`]: an odd part follows its two even neighbours, so
+/// that its data is still in cache.
 pub fn in_turn(n: usize) -> impl Iterator<Item = usize> {
     let beside = |even: usize| [Some(even), even.checked_sub(1)].into_iter().flatten();
     let last = (n > 0 && n.is_multiple_of(2)).then(|| n - 1);

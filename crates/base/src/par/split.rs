@@ -1,4 +1,4 @@
-//! Cutting several columns at the same places, so that chunks of them can be worked on at once.
+//! Splitting several columns at the same rows, so that chunks can be processed concurrently.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::CHUNK;
 use super::pool::{enter, join};
 
-/// Columns that can be cut in two at one place: slices, and tuples of up to six of them.
+/// Columns that can be split in two: slices, and tuples of up to six of them.
 pub trait Split: Sized + Send {
     /// The number of rows.
     fn rows(&self) -> usize;
@@ -32,7 +32,7 @@ impl<T: Send> Split for &mut [T] {
     }
 }
 
-/// Columns that may be missing.
+/// Optional columns.
 impl<S: Split> Split for Option<S> {
     fn rows(&self) -> usize {
         self.as_ref().map_or(0, S::rows)
@@ -46,7 +46,7 @@ impl<S: Split> Split for Option<S> {
 pub struct Rows<'a, T> {
     /// All rows, one after the other.
     pub data: &'a mut [T],
-    /// How many numbers a row has, perhaps none.
+    /// Numbers per row, possibly zero.
     pub width: usize,
 }
 
@@ -108,19 +108,20 @@ pub fn each<S: Split>(columns: S, f: impl Fn(usize, S) + Sync) {
     enter(columns.rows().div_ceil(CHUNK), |threaded| halve(0, columns, threaded, &f));
 }
 
-/// Calls `f` for every chunk of [`CHUNK`] indices below `n`; chunks must not write what others touch.
+/// Calls `f` for every chunk of [`CHUNK`] indices below `n`; chunks must not write data that others access.
 pub fn for_chunks(n: usize, f: impl Fn(Range<usize>) + Sync) {
     super::for_rows(n.div_ceil(CHUNK), |k| f(k * CHUNK..n.min((k + 1) * CHUNK)));
 }
 
-/// A column that several parts write at the same time, each at its own places.
+/// A column that several parts write concurrently, each at its own rows.
 pub struct Shared<'a, T> {
     start: *mut T,
     len: usize,
     life: PhantomData<&'a mut [T]>,
 }
 
-// SAFETY: access goes through `get`, whose callers promise that no two threads touch one element at a time.
+// SAFETY: access goes through `get`, whose callers guarantee that no two threads access one element at a
+// time.
 unsafe impl<T: Send> Sync for Shared<'_, T> {}
 
 impl<'a, T> Shared<'a, T> {
@@ -134,22 +135,22 @@ impl<'a, T> Shared<'a, T> {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Elements `range`, to be written.
+    /// Elements `range`, mutable.
     ///
     /// # Safety
-    /// No other thread may touch these elements until the returned borrow ends.
+    /// No other thread may access these elements until the returned borrow ends.
     ///
     /// # Panics
     /// If the range is out of bounds.
     #[allow(clippy::mut_from_ref)]
     pub unsafe fn get(&self, range: Range<usize>) -> &mut [T] {
         assert!(range.start <= range.end && range.end <= self.len);
-        // SAFETY: in bounds by the assertion; exclusive by the caller's promise.
+        // SAFETY: in bounds by the assertion; exclusive by the caller's guarantee.
         unsafe { std::slice::from_raw_parts_mut(self.start.add(range.start), range.len()) }
     }
 

@@ -1,11 +1,12 @@
-//! Reductions along a tree that depends on the number of rows alone: same bits for any thread count.
+//! Reductions along a tree that depends only on the number of rows: the same bits for any number of threads.
 
 use std::ops::Range;
 
 use super::pool::{self, enter};
 use super::{CHUNK, Split};
 
-/// Maps every chunk of [`CHUNK`] indices below `n` and joins the results along a fixed tree; `None` if `n` is 0.
+/// Maps every chunk of [`CHUNK`] indices below `n` and joins the results along a fixed tree; `None` if `n` is
+/// 0.
 pub fn reduce<T: Send>(
     n: usize,
     map: impl Fn(Range<usize>) -> T + Sync,
@@ -35,8 +36,8 @@ pub fn reduce<T: Send>(
     Some(enter(n.div_ceil(CHUNK), |threaded| tree(0..n, threaded, &map, &join)))
 }
 
-/// Calls `map(first row, chunk)` for every chunk of [`CHUNK`] rows of columns of equal length, as
-/// [`each`](super::each) does, and joins what it returns along a fixed tree; `None` if there are no rows.
+/// Calls `map(first row, chunk)` for every chunk of [`CHUNK`] rows of columns of equal length, like
+/// [`each`](super::each), and joins the results along a fixed tree; `None` if there are no rows.
 pub fn reduce_each<S: Split, T: Send>(
     columns: S,
     map: impl Fn(usize, S) -> T + Sync,
@@ -60,7 +61,7 @@ pub fn reduce_each<S: Split, T: Send>(
                 pool::join(|| tree(start, low, true, map, join), || tree(start + mid, high, true, map, join));
             return join(a, b);
         }
-        // From behind: what a loop before has touched last is in fast memory still.
+        // From the end: the data that the previous loop accessed last is still in cache.
         let b = tree(start + mid, high, false, map, join);
         join(tree(start, low, false, map, join), b)
     }
@@ -68,7 +69,7 @@ pub fn reduce_each<S: Split, T: Send>(
     (n > 0).then(|| enter(n.div_ceil(CHUNK), |threaded| tree(0, columns, threaded, &map, &join)))
 }
 
-/// Joins what came of each chunk along the tree of [`reduce`]; `None` if there are no chunks.
+/// Joins the results of chunks along the tree of [`reduce`]; `None` if there are no chunks.
 pub fn along_tree<T: Copy>(came: &[T], join: impl Fn(T, T) -> T) -> Option<T> {
     fn tree<T: Copy>(came: &[T], join: &impl Fn(T, T) -> T) -> Option<T> {
         if came.len() < 2 {
@@ -80,7 +81,7 @@ pub fn along_tree<T: Copy>(came: &[T], join: impl Fn(T, T) -> T) -> Option<T> {
     tree(came, &join)
 }
 
-/// Element by element a + b: joins sums of several numbers.
+/// Element-wise a + b: joins sums of several numbers.
 pub fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
     std::array::from_fn(|k| a[k] + b[k])
 }
@@ -90,13 +91,14 @@ pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     reduce(n, |range| range.fold(0.0, |sum, i| sum + term(i)), |a, b| a + b).unwrap_or(0.0)
 }
 
-/// The largest `term(i)` for `i` below `n`; negative infinity if there is none. NaNs are ignored.
+/// The largest `term(i)` for `i` below `n`; negative infinity if `n` is 0. NaNs are ignored.
 pub fn max(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     reduce(n, |range| range.fold(f64::NEG_INFINITY, |m, i| m.max(term(i))), f64::max)
         .unwrap_or(f64::NEG_INFINITY)
 }
 
-/// What is left of `first` and all numbers of a list if of two the `better` one stays, whatever the order: eight at a time.
+/// Reduces `first` and a list of numbers by `better`, which must be independent of the order: eight at a
+/// time.
 pub fn best(list: &[f64], first: f64, better: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
     let of = |range: Range<usize>| {
         let (eights, rest) = list[range].as_chunks::<8>();
@@ -126,7 +128,7 @@ mod tests {
             .into();
         set_threads(1);
         assert!(bits.windows(2).all(|b| b[0] == b[1]));
-        // Round-off of the plain sum: n terms of size 100, 1e-16 each, added up as a random walk.
+        // Rounding of the plain sum: n terms of size 100, 1e-16 each, as a random walk.
         let plain: f64 = (0..n).map(term).sum();
         assert!((sum(n, term) - plain).abs() < 1e-8 * plain.abs().max(1.0));
         assert_eq!(sum(0, term), 0.0);

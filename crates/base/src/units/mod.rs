@@ -1,9 +1,9 @@
-//! Unit systems and the constants each defines.
+//! Unit systems and their constants.
 
 /// LAMMPS' eight unit systems.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum UnitSystem {
-    /// Lennard-Jones: everything reduced.
+    /// Lennard-Jones: all quantities reduced.
     #[default]
     Lj,
     /// Grams per mole, ångström, femtoseconds, kcal per mole.
@@ -25,7 +25,8 @@ pub enum UnitSystem {
 /// Names a deck can give, in LAMMPS' order.
 pub const NAMES: [&str; 8] = ["lj", "real", "metal", "si", "cgs", "electron", "micro", "nano"];
 
-/// What a unit system fixes. The values are LAMMPS' own (22 Jul 2025), so that temperatures and pressures agree.
+/// Constants of a unit system. The values are LAMMPS' own (22 Jul 2025), so that temperatures and pressures
+/// agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constants {
     /// Boltzmann's constant, energy per temperature.
@@ -44,9 +45,9 @@ pub struct Constants {
     pub vxmu2f: f64,
     /// Length² per time to kinematic viscosity.
     pub xxt2kmu: f64,
-    /// Time step when the deck sets none.
+    /// Default time step.
     pub dt: f64,
-    /// Neighbour skin when the deck sets none.
+    /// Default neighbour skin.
     pub skin: f64,
 }
 
@@ -63,7 +64,7 @@ impl UnitSystem {
         NAMES[self as usize]
     }
 
-    /// What one unit of length, of time and of velocity is called, as LAMMPS' manual has it; nothing for reduced ones.
+    /// Names of the units of length, time and velocity, as in LAMMPS' manual; empty for reduced units.
     pub fn symbols(self) -> [&'static str; 3] {
         match self {
             Self::Lj => ["", "", ""],
@@ -77,7 +78,7 @@ impl UnitSystem {
         }
     }
 
-    /// Names of lengths from small to large, each with the power of ten of units that it is.
+    /// Names of lengths from small to large, each as a power of ten of the unit.
     pub fn lengths(self) -> &'static [(i32, &'static str)] {
         match self {
             Self::Lj => &[],
@@ -90,12 +91,13 @@ impl UnitSystem {
         }
     }
 
-    /// Whether `lattice` takes a reduced density, and energies are printed per particle.
+    /// Whether `lattice` uses a reduced density, and energies are printed per particle.
     pub fn is_reduced(self) -> bool {
         self == Self::Lj
     }
 
-    /// One unit of length, mass and time in metres, kilograms and seconds; `None` for reduced and molecular units.
+    /// The units of length, mass and time in metres, kilograms and seconds; `None` for reduced and molecular
+    /// units.
     pub fn mechanical(self) -> Option<[f64; 3]> {
         match self {
             Self::Si => Some([1.0, 1.0, 1.0]),
@@ -106,7 +108,7 @@ impl UnitSystem {
         }
     }
 
-    /// A charge times an electric field, as forces count [force/(charge field)].
+    /// Factor from charge times electric field to force [force/(charge field)].
     pub fn field_to_force(self) -> f64 {
         match self {
             Self::Real => 23.060549,

@@ -1,4 +1,4 @@
-//! The numbers of the page on bonded particles: states, slopes, strengths, what is kept.
+//! Numbers of the documentation of bonded particles: states, derivatives, strengths, conservation.
 
 use super::*;
 use perigrain_base::math::body::{Quat, UNTURNED, turn};
@@ -18,13 +18,13 @@ const LAW: Potential = Potential { shear: Shear::Paper, criterion: Criterion::Su
 const X: Vec3 = [1.0, 0.0, 0.0];
 const Z: Vec3 = [0.0, 0.0, 1.0];
 
-/// The first particle at the origin, the second at `a`, then moved by `u`; both turned.
+/// The first particle at the origin, the second at `a`, then displaced by `u`; both rotated.
 fn ends(a: Vec3, u: Vec3, quat: [Quat; 2]) -> Ends<f64> {
     let l = length(a);
     Ends { r: scale(-1.0, add(a, u)), length: l, axis: scale(-1.0 / l, a), quat }
 }
 
-/// The same with the second end first.
+/// The same with exchanged ends.
 fn swapped(b: &Ends<f64>) -> Ends<f64> {
     Ends { r: scale(-1.0, b.r), axis: scale(-1.0, b.axis), quat: [b.quat[1], b.quat[0]], ..*b }
 }
@@ -44,7 +44,7 @@ fn mixed() -> Ends<f64> {
     ends([0.6, 0.48, 0.64], [0.02, -0.03, 0.01], quat)
 }
 
-/// Computed independently, with 13 digits; they are the tolerance.
+/// Computed independently with 13 digits, which are the tolerance.
 #[test]
 fn states_and_their_energies() {
     let resultant = |b: &Ends<f64>| {
@@ -75,7 +75,7 @@ fn states_and_their_energies() {
             [0.006856059647546, -0.013141142509223, -0.007739636277175],
             [0.01661348158811, -0.014664587419419, 0.00460342535684],
         ];
-        // From either end the same.
+        // The same from either end.
         let first = b.axis == mixed().axis;
         let wanted = if first { [f, t[0], t[1]] } else { [f.map(|a| -a), t[1], t[0]] };
         near(acts, wanted, 1e-12);
@@ -83,7 +83,7 @@ fn states_and_their_energies() {
     }
 }
 
-/// Central differences of the energy with steps of 1e-5: their own error is about 1e-10.
+/// Central differences of the energy with steps of 1e-5, accurate to about 1e-10.
 #[test]
 fn forces_and_torques_are_slopes_of_the_energy() {
     let b = mixed();
@@ -111,7 +111,7 @@ fn the_standard_bond_in_each_mode() {
     let l = 1e-3;
     let act = |b: &Ends<f64>| LAW.act(&k, &OWN, b, None);
     let still = |quat| ends([l, 0.0, 0.0], [0.0; 3], quat);
-    // The numbers have 8 digits at least.
+    // The numbers have at least 8 digits.
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 3e-8 * b.abs(), "{a} {b}");
     let pulled = act(&ends([l, 0.0, 0.0], [1e-5, 0.0, 0.0], [UNTURNED; 2]));
     near(pulled.force[0], 5.02654824574);
@@ -141,13 +141,15 @@ fn beams_break_at_their_strength() {
     let near = |a: f64, tolerance: f64| assert!((a - 1.0).abs() < tolerance, "{a}");
     near(load(&ends(l, [1e-5, 0.0, 0.0], [UNTURNED; 2])), 1e-10);
     near(load(&ends(l, [0.0; 3], [UNTURNED, turn(X, 0.0300045)])), 1e-6);
-    // Where the number is that of small angles, its square is the tolerance. 0.025 rad between the ends.
+    // Where the reference is the small-angle value, its square is the tolerance. 0.025 rad between the ends.
     near(load(&ends(l, [0.0; 3], [turn(Z, -0.0125), turn(Z, 0.0125)])), 6e-4);
-    // Moved across it is stretched by 7.2e-8 as well, which bears 0.7 % of the other strength: the larger share counts.
+    // Displaced perpendicularly it is also stretched by 7.2e-8, which uses 0.7 % of the other strength: the
+    // larger fraction counts.
     near(load(&ends(l, [0.0, 1.2e-5, 0.0], [UNTURNED; 2])), 2e-4);
-    // Pressed it does not break.
+    // Under compression it does not break.
     assert_eq!(load(&ends(l, [-1e-5, 0.0, 0.0], [UNTURNED; 2])), 0.0);
-    // Half of each: the sum breaks, apart they hold; and a factor of 1/2 on the strength breaks it in tension alone.
+    // Half of each: the sum criterion breaks, the separate one does not; a strength factor of 1/2 breaks it
+    // in tension alone.
     let half = ends(l, [0.5e-5, 0.0, 0.0], [turn(Z, -0.00625), turn(Z, 0.00625)]);
     near(load(&half), 1e-2);
     let apart = Potential { criterion: Criterion::Separate, ..LAW };
@@ -158,7 +160,8 @@ fn beams_break_at_their_strength() {
     assert!((LAW.act(&k, &OWN, &half, None).load - 0.5).abs() < 1e-10);
 }
 
-/// T₁ + T₂ + r × F₁ = 0 with dashpots and fading; what dashpots take up is what they do against the motion.
+/// T₁ + T₂ + r × F₁ = 0 with dashpots and fading; the dissipated power is the work of the dashpots against
+/// the motion.
 #[test]
 fn angular_momentum_is_kept_and_dashpots_take_up_power() {
     let mut k = coeffs();
@@ -180,7 +183,7 @@ fn angular_momentum_is_kept_and_dashpots_take_up_power() {
     assert!(acts.power > 0.0 && (work + acts.power).abs() < 1e-12 * acts.power, "{work} {}", acts.power);
 }
 
-/// A body that has only moved and turned as a whole has no force but rounding, and one that has not moved exactly none.
+/// A body after a rigid motion has only rounding forces, and one that has not moved exactly zero.
 #[test]
 fn rigid_motions_cost_nothing() {
     let k = coeffs();

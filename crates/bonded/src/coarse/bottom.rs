@@ -1,31 +1,31 @@
-//! The last level, solved.
+//! Direct solution on the coarsest level.
 
 use super::matrix::Matrix;
 use crate::six::Six;
 
-/// L D Lᵀ of a positive semidefinite matrix without zeros.
+/// L D Lᵀ of a dense positive semidefinite matrix.
 pub struct Bottom {
     /// L below its diagonal, row by row.
     l: Vec<f64>,
-    /// 1/D, zero for what nothing resists.
+    /// 1/D, zero for components without resistance.
     over: Vec<f64>,
-    /// Motions that nothing resists, of length 1 by `weights` and across each other.
+    /// Motions without resistance, orthonormal with respect to `weights`.
     idle: Vec<Vec<f64>>,
-    /// By row: the number of particles, times the square of a length for rotations.
+    /// Per row: the number of particles, times the square of a length for rotations.
     weights: Vec<f64>,
 }
 
-/// Once the rows before are eliminated a row of which less than this part is left resists nothing.
+/// A row of which less than this fraction is left after elimination has no resistance.
 const NOTHING: f64 = 1e-10;
 
 impl Bottom {
-    /// Of a matrix between clusters of so many particles; `arm` is what rotations are multiplied by where they are compared with
-    /// displacements [length].
+    /// For a matrix between clusters with these numbers of particles; `arm` is the length that scales
+    /// rotations relative to displacements [length].
     pub fn new(matrix: &Matrix, particles: &[f64], arm: f64) -> Self {
         let n = 6 * matrix.rows();
         let mut a = vec![0.0; n * n];
         for ([i, j], block) in matrix.blocks() {
-            // By columns, which are the rows of its mirror image.
+            // By columns, which are the rows of the transpose.
             for (c, column) in block.iter().enumerate() {
                 a[(6 * j + c) * n + 6 * i..][..6].copy_from_slice(column);
             }
@@ -34,14 +34,14 @@ impl Bottom {
         Self::of((0..n).map(weight).collect(), a)
     }
 
-    /// Of n × n numbers, of which those above the diagonal are not asked for.
+    /// From n × n numbers; those above the diagonal are not used.
     fn of(weights: Vec<f64>, mut l: Vec<f64>) -> Self {
         let n = weights.len();
         let mut over = vec![0.0; n];
         for k in 0..n {
             let (before, row) = l.split_at_mut(k * n);
             let whole = row[k];
-            // L D of this row, column by column; what is divided by D is L.
+            // L D of this row, column by column; division by D gives L.
             for c in 0..k {
                 row[c] -= inner(&row[..c], &before[c * n..][..c]);
             }
@@ -55,7 +55,7 @@ impl Bottom {
         }
         let mut out = Self { l, over, idle: vec![], weights };
         for k in (0..n).filter(|k| out.over[*k] == 0.0) {
-            // L D Lᵀ x = 0 where Lᵀ x is 1 in a row without D.
+            // L D Lᵀ x = 0 for Lᵀ x = 1 in a row without D.
             let mut x = vec![0.0; n];
             x[k] = 1.0;
             out.back(&mut x);
@@ -83,7 +83,8 @@ impl Bottom {
         }
     }
 
-    /// Q A⁻¹ Qᵀ r, with nothing of motions that nothing resists (Q = 1 − N Nᵀ W): these would change no energy, but a body would spin.
+    /// Q A⁻¹ Qᵀ r, without motions that have no resistance (Q = 1 − N Nᵀ W): they would not change the
+    /// energy, but the body would rotate.
     pub fn solve(&self, r: &[Six]) -> Vec<Six> {
         let mut x: Vec<f64> = r.iter().flatten().copied().collect();
         for idle in &self.idle {
@@ -121,8 +122,8 @@ mod tests {
     use super::*;
     use crate::six::unit;
 
-    /// Two nodes with a spring of 3 between their x, 2 to the ground at y of the first: ten motions are free, x of both
-    /// together, y of the second, z and rotations.
+    /// Two nodes with a spring of 3 between their x, and 2 to the ground at y of the first: ten motions are
+    /// free (x of both together, y of the second, z and rotations).
     #[test]
     fn what_is_free_is_left_alone() {
         let mut a = vec![0.0; 144];
@@ -134,10 +135,11 @@ mod tests {
         let bottom = Bottom::of(weights, a);
         assert_eq!(bottom.idle.len(), 10);
         let apart = bottom.solve(&[unit(0).map(|a| -a), unit(0)]);
-        // 1/3 apart, and the middle of the masses where it was.
+        // 1/3 apart, with the centre of mass unchanged.
         assert!((apart[0][0] + 0.25).abs() < 1e-15 && (apart[1][0] - 1.0 / 12.0).abs() < 1e-15, "{apart:?}");
         assert!((bottom.solve(&[unit(1), [0.0; 6]])[0][1] - 0.5).abs() < 1e-15);
-        // A force on both moves nothing: what has no balance is no load. So does a torque that nothing resists.
+        // A force on both moves nothing, because it is not in equilibrium; nor does a torque without
+        // resistance.
         for load in [[unit(0), unit(0).map(|a| 3.0 * a)], [unit(4), [0.0; 6]]] {
             assert!(bottom.solve(&load).iter().flatten().all(|x| x.abs() < 1e-15));
         }

@@ -1,29 +1,31 @@
-//! Who forms which cluster, and how rigid clusters move what is in them.
+//! Formation of clusters, and rigid motions of their members.
 
 use crate::pairs::Lists;
 use crate::six::Six;
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_base::par;
 
-/// The cluster of what stands still.
+/// The cluster index of fixed nodes.
 pub const NONE: u32 = u32::MAX;
 
-/// How far a cluster reaches from its first node. With one ring there are three times as many, solutions take a fifth fewer steps and,
-/// with what it takes to make levels, about as long; in memory, of which 8·10⁶ bonds need much, two are better.
+/// Number of neighbour rings around the first node of a cluster. With one ring there are three times as many
+/// clusters and a fifth fewer steps, and about the same total time including the setup; two rings need less
+/// memory, which matters for 8·10⁶ bonds.
 const RINGS: usize = 2;
 
-/// Clusters of nodes, which are particles or clusters themselves.
+/// Clusters of nodes, which are particles or clusters.
 pub struct Clusters {
-    /// By node; [`NONE`] for what stands still.
+    /// By node; [`NONE`] for fixed nodes.
     pub of: Vec<u32>,
-    /// From the middle of the cluster to the node [length]. Single precision: a cluster is as good as another that is not quite like it.
+    /// Vector from the centre of the cluster to the node [length]. Single precision: a slightly different
+    /// cluster is equally good.
     offset: Vec<[f32; 3]>,
-    /// The nodes of each.
+    /// The nodes of each cluster.
     members: Lists,
 }
 
 impl Clusters {
-    /// `neighbours(node, take)` hands over the neighbours of a node with the vectors to them [length].
+    /// `neighbours(node, take)` passes the neighbours of a node to `take`, with the vectors to them [length].
     pub fn new(
         nodes: usize,
         stands: impl Fn(usize) -> bool,
@@ -39,8 +41,8 @@ impl Clusters {
         out
     }
 
-    /// A node that has none of its neighbours in a cluster yet forms one with all of them, and with theirs; offsets are from that node.
-    /// How many come to be.
+    /// A node without neighbours in a cluster forms one with all of them, and with their neighbours; offsets
+    /// are relative to that node. Returns the number of clusters.
     fn begin(
         &mut self,
         stands: &impl Fn(usize) -> bool,
@@ -73,7 +75,7 @@ impl Clusters {
         count
     }
 
-    /// Who is left joins the cluster that most of its neighbours were in before anybody joined.
+    /// Remaining nodes join the cluster that most of their neighbours were in before this stage.
     fn join(
         &mut self,
         stands: &impl Fn(usize) -> bool,
@@ -81,21 +83,21 @@ impl Clusters {
     ) {
         let first = self.of.clone();
         for k in (0..first.len()).filter(|k| first[*k] == NONE && !stands(*k)) {
-            // Cluster, how many neighbours are in it, and where it is seen from the first of them.
+            // Cluster, number of neighbours in it, and position relative to the first of them.
             let mut near: Vec<(u32, u32, Vec3)> = vec![];
             neighbours(k, &mut |j, d| match near.iter_mut().find(|n| n.0 == first[j]) {
                 _ if first[j] == NONE => {}
                 Some(n) => n.1 += 1,
                 None => near.push((first[j], 1, sub(self.offset(j), d))),
             });
-            // Some neighbour is in a cluster, else it had begun one itself.
+            // Some neighbour is in a cluster; otherwise this node would have started one.
             if let Some((cluster, _, x)) = near.iter().reduce(|best, n| if n.1 > best.1 { n } else { best }) {
                 (self.of[k], self.offset[k]) = (*cluster, single(*x));
             }
         }
     }
 
-    /// Makes offsets those from the middle of each.
+    /// Makes offsets relative to the centre of each cluster.
     fn centre(&mut self) {
         for row in (0..self.count()).map(|cluster| self.members.of(cluster)) {
             let sum = row.iter().fold([0.0; 3], |sum, k| add(sum, self.offset[*k as usize].map(f64::from)));
@@ -106,28 +108,28 @@ impl Clusters {
         }
     }
 
-    /// From the middle of its cluster to a node [length].
+    /// Vector from the centre of its cluster to a node [length].
     #[inline(always)]
     pub fn offset(&self, k: usize) -> Vec3 {
         self.offset[k].map(f64::from)
     }
 
-    /// How many.
+    /// The number of clusters.
     pub fn count(&self) -> usize {
         self.members.len()
     }
 
-    /// The nodes of one.
+    /// The nodes of a cluster.
     pub fn members(&self, cluster: usize) -> impl Iterator<Item = usize> {
         self.members.of(cluster).iter().map(|k| *k as usize)
     }
 
-    /// The sum of something over the nodes of each.
+    /// A sum over the nodes of each cluster.
     pub fn sums(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..self.count()).map(|cluster| self.members(cluster).map(&of).sum()).collect()
     }
 
-    /// Pᵀ r: what forces and torques on nodes are on clusters.
+    /// Pᵀ r: forces and torques on nodes summed to clusters.
     pub fn gather(&self, r: impl Fn(usize) -> Six + Sync) -> Vec<Six> {
         let mut out = vec![[0.0; 6]; self.count()];
         par::each(&mut out[..], |start, rows: &mut [Six]| {
@@ -146,14 +148,14 @@ fn single(x: Vec3) -> [f32; 3] {
     x.map(|x| x as f32)
 }
 
-/// The motion of what is at x in a rigid body: u + θ × x, θ.
+/// The motion at x of a rigid body: u + θ × x, θ.
 #[inline(always)]
 pub fn carried(x: Vec3, m: &Six) -> Six {
     let more = cross([m[3], m[4], m[5]], x);
     [m[0] + more[0], m[1] + more[1], m[2] + more[2], m[3], m[4], m[5]]
 }
 
-/// Force and torque at x as those of the rigid body: F, M + x × F.
+/// Force and torque at x as those on the rigid body: F, M + x × F.
 #[inline(always)]
 pub fn handed(x: Vec3, f: &Six) -> Six {
     let more = cross(x, [f[0], f[1], f[2]]);

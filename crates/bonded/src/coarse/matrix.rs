@@ -1,4 +1,4 @@
-//! Symmetric matrices of 6 × 6 blocks, by rows: what rigid clusters resist.
+//! Symmetric matrices of 6 × 6 blocks, by rows: resistance between rigid clusters.
 
 use super::Parts;
 use super::clusters::{Clusters, NONE, carried, handed};
@@ -20,17 +20,17 @@ struct Row {
     beside: Vec<Block>,
 }
 
-/// A block beside the diagonal.
+/// An off-diagonal block.
 #[derive(Clone)]
 struct Block {
     column: u32,
-    /// From the node of the row to that of the column [length].
+    /// Vector from the node of the row to that of the column [length].
     vector: Vec3,
     numbers: Matrix6,
 }
 
 impl Row {
-    /// The block of a column, which is seen at `vector` from here.
+    /// The block of a column, at `vector` from this node.
     fn block(&mut self, column: u32, vector: Vec3) -> &mut Matrix6 {
         let at = self.beside.iter().position(|b| b.column == column).unwrap_or(self.beside.len());
         if at == self.beside.len() {
@@ -46,7 +46,7 @@ impl Matrix {
         par::each(&mut out[..], |start, rows: &mut [Row]| {
             for (k, row) in (start..).zip(rows) {
                 make(k, row);
-                // Symmetric to the bit, as its factors are.
+                // Symmetric to the bit, like its factors.
                 let diagonal = packed(&row.diagonal);
                 (row.diagonal, row.factor) = (full(&diagonal), Factor::new(&diagonal, 0));
             }
@@ -54,12 +54,12 @@ impl Matrix {
         Self(out)
     }
 
-    /// How many rows of blocks.
+    /// The number of block rows.
     pub fn rows(&self) -> usize {
         self.0.len()
     }
 
-    /// All blocks by columns, with their places, those on the diagonal as well.
+    /// All blocks by columns, with their row and column numbers, including the diagonal.
     pub fn blocks(&self) -> impl Iterator<Item = ([usize; 2], &Matrix6)> {
         self.0.iter().enumerate().flat_map(|(k, row)| {
             let beside = row.beside.iter().map(move |b| ([k, b.column as usize], &b.numbers));
@@ -76,13 +76,13 @@ impl Matrix {
         out
     }
 
-    /// D⁻¹ r of a row, D the blocks on the diagonal.
+    /// D⁻¹ r for a row; D is the block diagonal.
     #[inline(always)]
     pub fn over(&self, k: usize, r: &Six) -> Six {
         self.0[k].factor.solve(r)
     }
 
-    /// Clusters of what it resists.
+    /// Clusters of its nodes.
     pub fn clusters(&self) -> Clusters {
         let neighbours = |k: usize, take: &mut dyn FnMut(usize, Vec3)| {
             self.0[k].beside.iter().for_each(|b| take(b.column as usize, b.vector));
@@ -110,7 +110,7 @@ impl Matrix {
     }
 }
 
-/// M x for a matrix by its columns: six numbers at a time.
+/// M x for a matrix stored by columns: six numbers at a time.
 #[inline(always)]
 fn add_times(sum: &mut Six, columns: &Matrix6, x: &Six) {
     for (column, x) in columns.iter().zip(x) {
@@ -154,12 +154,12 @@ pub fn of_particles(parts: &Parts, blocks: &Blocks) -> (Clusters, Matrix) {
     (clusters, matrix)
 }
 
-/// The ties of each particle.
+/// The connections of each particle.
 struct Ends<'a> {
     ties: &'a dyn Ties,
-    /// The first one of which it is the lower end; they stand in this order.
+    /// Index of the first one with this particle as lower end; they are in this order.
     first: Vec<u32>,
-    /// Those of which it is the upper end.
+    /// Those with this particle as upper end.
     upper: Lists,
 }
 
@@ -173,7 +173,7 @@ impl<'a> Ends<'a> {
         Self { ties, first, upper }
     }
 
-    /// Those of a particle that resist something.
+    /// The connections of a particle that have any resistance.
     fn of(&self, i: usize) -> impl Iterator<Item = Tie<'a>> {
         let ties = self.ties;
         let lower = self.first[i]..self.first[i + 1];
@@ -182,16 +182,16 @@ impl<'a> Ends<'a> {
     }
 }
 
-/// A tie, seen from one of its ends.
+/// A connection, seen from one of its ends.
 struct Tie<'a> {
     ties: &'a dyn Ties,
     k: usize,
     /// This end and the other one.
     own: usize,
     other: usize,
-    /// Whether this one is the lower end.
+    /// Whether this end is the lower one.
     low: bool,
-    /// To the other end [length].
+    /// Vector to the other end [length].
     vector: Vec3,
 }
 
@@ -212,8 +212,8 @@ impl<'a> Tie<'a> {
         [own, other]
     }
 
-    /// Adds what it resists when the cluster of this end moves to the row of that cluster: PᵀK P is symmetric, so that what comes out
-    /// at the other end is the block beside the diagonal as well.
+    /// Adds its resistance to a motion of this end's cluster to the row of that cluster: PᵀK P is symmetric,
+    /// so the result at the other end is also the off-diagonal block.
     fn add_to(&self, row: &mut Row, cluster: u32, clusters: &Clusters, blocks: &Blocks) {
         let ends = [self.own, self.other];
         let [x, y] = ends.map(|end| clusters.offset(end));
@@ -242,12 +242,12 @@ impl<'a> Tie<'a> {
         }
     }
 
-    /// Whether rigid motions of a cluster that holds both ends do nothing to it: nothing is held, and it leads to the other end where it
-    /// is in this cluster, and not to an image of it.
+    /// Whether it is unaffected by rigid motions of a cluster that contains both ends: no component is held,
+    /// and it leads to the other end itself, not to an image of it.
     fn idle(&self, gap: Vec3, blocks: &Blocks) -> bool {
         let largest = |a: Vec3| a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
         let free = [self.own, self.other].iter().all(|end| blocks.held(*end) == 0);
-        // Places have single precision.
+        // Offsets have single precision.
         free && largest(gap) <= 1e-5 * largest(self.vector)
     }
 }

@@ -1,16 +1,17 @@
-//! Bonds go with their particles: a run puts these in the order of space again and again.
+//! Bonds follow their particles, which a run sorts into spatial order again and again.
 
 use super::{Columns, GROUP, Key};
 use perigrain_base::math::body::UNTURNED;
 use perigrain_base::par::{self, Shared};
 
 impl<const C: usize> Columns<C> {
-    /// The same bonds where particles have changed places: `moved[k]` is the new place of the one at `k`. Each particle has its bonds in
-    /// the order of [`Columns::fill`] with the bonds that hold; the rows themselves stay as they are until they are put in order, which
-    /// takes several times as long and makes no difference to who adds up by particle. Those of which some have broken are put in order.
+    /// The same bonds after a reordering of particles: `moved[k]` is the new index of particle `k`. The bonds
+    /// of each particle are in the order of [`Columns::fill`] with the intact bonds; the rows stay in place
+    /// until they are sorted, which takes several times as long and does not affect sums by particle. Columns
+    /// with broken bonds are sorted.
     ///
     /// # Panics
-    /// If `moved` has no new place for each particle.
+    /// If `moved` does not have a new index for each particle.
     pub fn follow(&mut self, moved: &[u32]) {
         for places in &mut self.ends {
             par::each(&mut places[..], |_, places: &mut [u32]| {
@@ -35,26 +36,26 @@ impl<const C: usize> Columns<C> {
         par::for_chunks(moved.len(), |chunk| {
             for place in chunk {
                 let range = starts[place] as usize..starts[place + 1] as usize;
-                // SAFETY: the ranges of different particles have nothing in common.
+                // SAFETY: the ranges of different particles are disjoint.
                 let own = unsafe { all.get(range) };
                 own.copy_from_slice(old.of(from[place]));
                 let partner = |entry: &u32| {
                     let (bond, end) = (*entry as usize / 2, *entry as usize & 1);
                     (self.kind(bond), self.ends[1 - end][bond], *entry)
                 };
-                // Few, and nearly in order.
+                // Few, and nearly sorted.
                 own.sort_unstable_by_key(partner);
             }
         });
         (self.holders.starts, self.holders.entries) = (starts, entries);
     }
 
-    /// Whether bonds stand in the order of space.
+    /// Whether bonds are in spatial order.
     pub fn in_order(&self) -> bool {
         self.in_order
     }
 
-    /// Puts the bonds that hold in the order of space, as [`Columns::fill`] with them does.
+    /// Sorts the intact bonds into spatial order, as [`Columns::fill`] would.
     pub fn put_in_order(&mut self) {
         let particles = self.particles();
         let living: Vec<u32> = self.living().map(|row| row as u32).collect();
@@ -73,7 +74,7 @@ impl<const C: usize> Columns<C> {
             rows.len(),
             || holders.enter(ends, alive, particles),
             || {
-                // Column by column: bond by bond, all of them would grow in new memory at once.
+                // Column by column: bond by bond, all columns would be reallocated at once.
                 let numbers = own.iter_mut().chain(axis).chain([length]);
                 numbers.for_each(|column| rearrange(column, &rows, &mut room));
                 rearrange(turned, &rows, &mut vec![]);
@@ -85,10 +86,10 @@ impl<const C: usize> Columns<C> {
     }
 }
 
-/// The numbers of a column in another order; `room` changes places with the column.
+/// Reorders the numbers of a column; `room` is swapped with the column.
 fn rearrange<T: Copy + Send + Sync>(column: &mut Vec<T>, rows: &[u32], room: &mut Vec<T>) {
     let Some(any) = column.first() else { return };
-    // All of it is written.
+    // Every element is written.
     room.resize(rows.len(), *any);
     par::each((&mut room[..], rows), |_, (room, rows)| {
         room.iter_mut().zip(rows).for_each(|(to, row)| *to = column[*row as usize]);

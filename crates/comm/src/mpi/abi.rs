@@ -1,13 +1,13 @@
-//! The three binary interfaces of MPI libraries: what their constants are.
+//! Constants of the three binary interfaces of MPI libraries.
 
 use super::{Handle, c_int};
 
-/// Whose constants.
+/// The interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Abi {
     /// Open MPI: handles are addresses within the library.
     Open,
-    /// MPICH and its kin (Intel, MVAPICH, Cray): handles are numbers of four bytes.
+    /// MPICH and its derivatives (Intel, MVAPICH, Cray): handles are four-byte numbers.
     Mpich,
     /// The interface of the MPI 5.0 standard, chapter 20.
     Standard,
@@ -23,7 +23,7 @@ impl Abi {
     }
 }
 
-/// What the constants of an interface are worth.
+/// The constants of an interface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constants {
     pub abi: Abi,
@@ -42,12 +42,12 @@ pub(super) struct Constants {
     pub no_statuses: usize,
     /// `MPI_THREAD_SERIALIZED`.
     pub serialized: c_int,
-    /// An entry of a table of requests [bytes].
+    /// Size of an entry in a table of requests [bytes].
     pub request: usize,
 }
 
 impl Constants {
-    /// Those of an interface; `address` finds Open MPI's within the library.
+    /// The constants of an interface; `address` looks up Open MPI's within the library.
     pub(super) fn of(abi: Abi, address: impl Fn(&str) -> Handle) -> Self {
         match abi {
             Abi::Open => Self {

@@ -1,16 +1,16 @@
-//! The library itself: where it is looked for, and its functions.
+//! The MPI library: search, loading, and its functions.
 
 use super::abi::{Abi, Constants};
 use super::{Handle, c_char, c_int, c_void};
 use crate::launcher::CHOICE;
 use std::ffi::{CStr, CString};
 
-/// Names of the standard interface; then Open MPI's; then MPICH's, which others use too.
+/// File names of the standard interface; then Open MPI's; then MPICH's, which others use too.
 const STANDARD: [&str; 2] = ["libmpi_abi.so.1", "libmpi_abi.so.0"];
 const OPEN: [&str; 1] = ["libmpi.so.40"];
 const MPICH: [&str; 2] = ["libmpich.so.12", "libmpi.so.12"];
 
-/// A library that is loaded.
+/// A loaded library.
 pub(super) struct Library {
     pub f: Functions,
     pub constants: Constants,
@@ -25,10 +25,10 @@ macro_rules! functions {
         }
 
         impl Functions {
-            /// Finds all of them.
+            /// Looks up all functions.
             ///
             /// # Errors
-            /// The name of the first that is not there.
+            /// The name of the first missing function.
             fn of(library: &Handle) -> Result<Self, &'static str> {
                 Ok(Self {
                     $($name: {
@@ -36,7 +36,8 @@ macro_rules! functions {
                         if address == 0 {
                             return Err(stringify!($name));
                         }
-                        // SAFETY: the standard gives the function of this name these arguments; handles are no wider than addresses.
+                        // SAFETY: the standard gives the function of this name these arguments; handles are
+                        // at most as wide as addresses.
                         unsafe { std::mem::transmute::<usize, unsafe extern "C" fn($($argument),*) -> c_int>(address) }
                     }),*
                 })
@@ -66,11 +67,11 @@ functions! {
 /// The address of a name in a library, 0 if it has none.
 fn symbol(library: Handle, name: &str) -> Handle {
     let Ok(name) = CString::new(name) else { return 0 };
-    // SAFETY: the library is open and stays so.
+    // SAFETY: the library is open and stays open.
     unsafe { libc::dlsym(library as *mut c_void, name.as_ptr()) as Handle }
 }
 
-/// The names to try, in order: the one that was chosen, else the standard interface and then the launcher's kind.
+/// The names to try, in order: the configured one, else the standard interface and then the launcher's kind.
 fn names(chosen: Option<String>, open_first: bool) -> Vec<String> {
     if let Some(name) = chosen.filter(|name| !name.is_empty()) {
         return vec![name];
@@ -80,7 +81,8 @@ fn names(chosen: Option<String>, open_first: bool) -> Vec<String> {
     } else {
         MPICH.into_iter().chain(OPEN).collect()
     };
-    // Open MPI of today has no standard interface: a file of this name belongs to another library than its launcher.
+    // Current Open MPI has no standard interface: a file of this name belongs to another library than its
+    // launcher.
     let all: Vec<&str> = if open_first {
         own.into_iter().chain(STANDARD).collect()
     } else {
@@ -92,14 +94,14 @@ fn names(chosen: Option<String>, open_first: bool) -> Vec<String> {
 /// Finds a library and its functions.
 ///
 /// # Errors
-/// None of the names can be loaded, or what is loaded is no MPI library.
+/// None of the names can be loaded, or the loaded file is not an MPI library.
 pub(super) fn find() -> Result<Library, String> {
     let open = std::env::var_os("OMPI_COMM_WORLD_SIZE").is_some();
     let mut why = vec![];
     for name in names(std::env::var(CHOICE).ok(), open) {
         let Ok(file) = CString::new(name.clone()) else { continue };
-        // Open MPI's own plugins look for its symbols, which therefore have to be seen by all.
-        // SAFETY: a library's own initialisation runs.
+        // Open MPI's own plugins look up its symbols, which therefore must be global.
+        // SAFETY: the library's own initialization runs.
         let library = unsafe { libc::dlopen(file.as_ptr(), libc::RTLD_NOW | libc::RTLD_GLOBAL) } as Handle;
         if library == 0 {
             why.push(trouble());
@@ -121,9 +123,9 @@ pub(super) fn find() -> Result<Library, String> {
     Err(why.join("; "))
 }
 
-/// Why a library could not be loaded.
+/// The reason why a library could not be loaded.
 fn trouble() -> String {
-    // SAFETY: the text stands until the next call of the loader by this thread.
+    // SAFETY: the text is valid until this thread calls the loader again.
     unsafe {
         let text = libc::dlerror();
         if text.is_null() {
@@ -149,7 +151,7 @@ mod tests {
 
     #[test]
     fn what_is_no_mpi_library_is_named() {
-        // The C library is there, and has no MPI.
+        // The C library exists, and has no MPI functions.
         let library = unsafe { libc::dlopen(c"libc.so.6".as_ptr(), libc::RTLD_NOW) } as Handle;
         assert!(library != 0 && Functions::of(&library).is_err_and(|lacking| lacking == "MPI_Init_thread"));
     }

@@ -1,28 +1,28 @@
-//! Letters over MPI: a message of a letter's length, then one of its bytes, neither waited for.
+//! Letters over MPI: a message with a letter's length, then one with its bytes, both non-blocking.
 
 use super::{Message, Mpi, PIECE, count};
 use std::ffi::{c_int, c_void};
 
-/// Lengths of letters have this tag, their bytes the next one.
+/// Tag of the lengths of letters; their bytes have the next one.
 const TAG: c_int = 8;
 
-/// Letters of this rank that are under way.
+/// Letters of this rank in transit.
 #[derive(Debug, Default)]
 pub(super) struct Mail {
-    /// Sent, but not surely taken from their buffers.
+    /// Sent, but the buffers may still be in use.
     out: Vec<Piece>,
-    /// Awaited from each rank.
+    /// Receives in progress, by rank.
     into: Vec<Awaited>,
 }
 
-/// A message that goes or comes, and its buffer, which stays where it is until the message is through.
+/// A message in transit, with its buffer, which must not move until the message is complete.
 #[derive(Debug)]
 struct Piece {
     request: u64,
     bytes: Vec<u8>,
 }
 
-/// What is awaited from a rank.
+/// State of receiving from a rank.
 #[derive(Debug, Default)]
 enum Awaited {
     #[default]
@@ -32,7 +32,7 @@ enum Awaited {
 }
 
 impl Mail {
-    /// That of a rank among so many.
+    /// For this many ranks.
     pub fn of(size: usize) -> Self {
         Self { out: vec![], into: (0..size).map(|_| Awaited::Nothing).collect() }
     }
@@ -46,13 +46,13 @@ impl Mail {
         self.send(mpi);
     }
 
-    /// Forgets what has left; whether that is all.
+    /// Removes completed messages; returns whether none is left.
     pub fn send(&mut self, mpi: &Mpi) -> bool {
         self.out.retain_mut(|piece| !piece.is_through(mpi));
         self.out.is_empty()
     }
 
-    /// The next letter, if it has come as a whole.
+    /// The next letter, if it has arrived completely.
     pub fn next(&mut self, mpi: &Mpi, from: usize) -> Option<Vec<u8>> {
         self.send(mpi);
         let receive = |bytes, tag| Piece::begin(mpi, mpi.f.MPI_Irecv, bytes, from, tag);
@@ -79,7 +79,7 @@ impl Piece {
     fn begin(mpi: &Mpi, act: Message, mut bytes: Vec<u8>, partner: usize, tag: c_int) -> Self {
         let mut request = 0u64;
         let piece: *mut c_void = bytes.as_mut_ptr().cast();
-        // SAFETY: the buffer lies on the heap and is kept, unchanged, until the request is through.
+        // SAFETY: the buffer is on the heap and is kept, unchanged, until the request is complete.
         unsafe {
             act(
                 piece,
@@ -96,7 +96,8 @@ impl Piece {
 
     fn is_through(&mut self, mpi: &Mpi) -> bool {
         let mut done = 0;
-        // SAFETY: the request that `begin` has made; one that is through becomes the null request, which is through too.
+        // SAFETY: the request made by `begin`; a completed one becomes the null request, which is complete
+        // too.
         unsafe {
             (mpi.f.MPI_Test)((&raw mut self.request).cast(), &mut done, mpi.c.no_statuses as *mut c_void)
         };

@@ -1,6 +1,6 @@
-//! Any MPI library, found at run time: neither built nor linked against.
+//! Any MPI library, loaded at run time: neither built nor linked against.
 //!
-//! MPI's errors end the job, as its default handler does.
+//! MPI errors end the job, as with the default handler.
 
 mod abi;
 mod library;
@@ -14,17 +14,17 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A handle of MPI's: a pointer, or an `int` that lies in the low half where the calling convention looks for it (x86-64 and
+/// An MPI handle: a pointer, or an `int` in the low half where the calling convention expects it (x86-64 and
 /// aarch64, at most eight arguments).
 type Handle = usize;
 
-/// Bytes that one call carries; its counts are C's `int`.
+/// Largest number of bytes per call; counts are C's `int`.
 const PIECE: usize = 1 << 30;
 
-/// `MPI_Isend` and `MPI_Irecv`, which begin a message.
+/// `MPI_Isend` and `MPI_Irecv`.
 type Message = unsafe extern "C" fn(*mut c_void, c_int, Handle, c_int, c_int, Handle, *mut c_void) -> c_int;
 
-/// Messages between partners have this tag.
+/// Tag of messages between partners.
 const TAG: c_int = 7;
 
 /// A rank of an MPI job.
@@ -34,21 +34,22 @@ pub struct Mpi {
     version: String,
     rank: usize,
     size: usize,
-    /// Ranks meet at their end by a communicator of its own: one that waits elsewhere is not taken for one that has come.
+    /// A separate communicator for the meeting at the end: a rank that waits elsewhere must not count as
+    /// arrived.
     last: Handle,
     mail: Mutex<Mail>,
 }
 
 impl Mpi {
-    /// Loads a library and joins the job's ranks.
+    /// Loads a library and joins the ranks of the job.
     ///
     /// # Errors
-    /// No library, or one that lacks a function or allows calls by one thread only.
+    /// No library, or one that lacks a function or supports calls by a single thread only.
     pub fn open() -> Result<Self, String> {
         let Library { f, constants: c, .. } = library::find()?;
         let version = version(&f);
         let mut granted = 0;
-        // SAFETY: no arguments are handed over, and the last one is written.
+        // SAFETY: no arguments are passed, and the last one is written.
         let failed = unsafe {
             (f.MPI_Init_thread)(std::ptr::null_mut(), std::ptr::null_mut(), c.serialized, &mut granted)
         };
@@ -72,7 +73,7 @@ impl Mpi {
         Ok(mpi)
     }
 
-    /// Constants that do not fit the library would be wrong numbers later.
+    /// Checks that the constants fit the library; wrong ones would produce wrong numbers later.
     fn proves_itself(&self) -> Result<(), String> {
         let (n, me) = (self.size, self.rank);
         let mut sum = [1i64, me as i64];
@@ -93,11 +94,11 @@ impl Mpi {
     }
 }
 
-/// Programs that this rank starts do not have the launcher's socket, whose number a variable holds: one that outlives a rank would keep the
-/// launcher from seeing that the rank has ended.
+/// Programs started by this rank must not inherit the launcher's socket, whose number is in a variable: one
+/// that outlives a rank would hide the rank's end from the launcher.
 fn keep_to_itself(variable: &str) {
     let Some(fd) = std::env::var(variable).ok().and_then(|fd| fd.parse::<c_int>().ok()) else { return };
-    // SAFETY: changes a flag of a file; where there is none of this number it fails.
+    // SAFETY: changes a flag of a file; fails if there is none with this number.
     unsafe { libc::fcntl(fd, libc::F_SETFD, libc::FD_CLOEXEC) };
 }
 
@@ -109,7 +110,7 @@ fn version(f: &Functions) -> String {
     unsafe { (f.MPI_Get_library_version)(text.as_mut_ptr().cast::<c_char>(), &mut length) };
     let text =
         CStr::from_bytes_until_nul(&text).map(|t| t.to_string_lossy().into_owned()).unwrap_or_default();
-    // MPICH fills the line with tabs, Open MPI with where it was built.
+    // MPICH pads the line with tabs, Open MPI appends where it was built.
     let line = text.lines().next().unwrap_or_default();
     line.split(',').next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -136,12 +137,13 @@ impl Comm for Mpi {
         let pieces = |length: usize| length.div_ceil(PIECE);
         let n: usize =
             out.iter().map(|o| pieces(o.1.len())).chain(into.iter().map(|i| pieces(i.1.len()))).sum();
-        // Entries of eight bytes or of four, of which so many are in use.
+        // Entries of eight bytes or of four, of which `used` are in use.
         let (mut requests, mut used) = (vec![0u64; n], 0);
         let table = requests.as_mut_ptr().cast::<u8>();
         let mut post = |act: Message, (piece, length): (*mut c_void, usize), partner: usize| {
             let (byte, world, partner) = (self.c.byte, self.c.world, partner as c_int);
-            // SAFETY: the piece is in use until all are waited for below, while it is borrowed; there is an entry for each.
+            // SAFETY: the piece is borrowed until all requests are waited for below; there is an entry for
+            // each.
             unsafe {
                 act(piece, count(length), byte, partner, TAG, world, table.add(used * self.c.request).cast())
             };
@@ -158,7 +160,7 @@ impl Comm for Mpi {
                 post(self.f.MPI_Isend, (piece.as_ptr().cast_mut().cast(), piece.len()), *to);
             }
         }
-        // SAFETY: all requests made above; statuses are not wanted.
+        // SAFETY: all requests were made above; statuses are not needed.
         unsafe { (self.f.MPI_Waitall)(count(n), table.cast(), self.c.no_statuses as *mut c_void) };
     }
 
@@ -171,7 +173,7 @@ impl Comm for Mpi {
             }
             return;
         }
-        // The place of nothing is what Open MPI calls "in place", and refuses here.
+        // The address of an empty buffer equals Open MPI's "in place", which is refused here.
         if all.is_empty() {
             return;
         }
@@ -183,7 +185,7 @@ impl Comm for Mpi {
             })
             .collect();
         let counts: Vec<c_int> = counts.iter().map(|length| count(*length)).collect();
-        // SAFETY: pieces lie beside each other in `all`, and this rank's is in its place.
+        // SAFETY: pieces are consecutive in `all`, and this rank's is in place.
         unsafe {
             (self.f.MPI_Allgatherv)(
                 self.c.in_place as *const c_void,
@@ -234,12 +236,12 @@ impl Comm for Mpi {
     fn meet(&self, patience: Duration) -> bool {
         let (mut request, end) = (0u64, Instant::now() + patience);
         let request: *mut c_void = (&raw mut request).cast();
-        // SAFETY: the request lives until the test says that it is done, or the job is ended.
+        // SAFETY: the request lives until the test reports completion, or the job ends.
         unsafe { (self.f.MPI_Ibarrier)(self.last, request) };
         let mut pause = Duration::from_micros(20);
         loop {
             let mut done = 0;
-            // SAFETY: the request made above.
+            // SAFETY: the request was made above.
             unsafe { (self.f.MPI_Test)(request, &mut done, self.c.no_statuses as *mut c_void) };
             if done != 0 || Instant::now() >= end {
                 return done != 0;
@@ -250,7 +252,7 @@ impl Comm for Mpi {
     }
 
     fn close(&self) {
-        // SAFETY: nothing is under way, as all ranks have met.
+        // SAFETY: no message is in transit, because all ranks have met.
         unsafe { (self.f.MPI_Finalize)() };
     }
 
@@ -262,10 +264,10 @@ impl Comm for Mpi {
 }
 
 impl Mpi {
-    /// One rank's bytes to all.
+    /// Broadcasts one rank's bytes.
     fn broadcast(&self, bytes: &mut [u8], from: usize) {
         for piece in bytes.chunks_mut(PIECE) {
-            // SAFETY: so many bytes are read at `from` and written elsewhere.
+            // SAFETY: this many bytes are read on rank `from` and written elsewhere.
             unsafe {
                 (self.f.MPI_Bcast)(
                     piece.as_mut_ptr().cast(),
@@ -278,9 +280,9 @@ impl Mpi {
         }
     }
 
-    /// Numbers of all ranks made one, in place.
+    /// Reduces the numbers of all ranks, in place.
     fn reduce(&self, values: *mut c_void, n: usize, (kind, how): (Handle, Handle)) {
-        // SAFETY: `n` numbers of this kind stand at `values`.
+        // SAFETY: there are `n` numbers of this kind at `values`.
         unsafe {
             (self.f.MPI_Allreduce)(
                 self.c.in_place as *const c_void,

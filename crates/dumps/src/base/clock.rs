@@ -1,4 +1,4 @@
-//! `dump_modify every/time`: snapshots at times, not at steps.
+//! `dump_modify every/time`: snapshots at given times instead of steps.
 
 use super::State;
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -7,10 +7,10 @@ use perigrain_plan::Tick;
 use perigrain_styles::Text;
 use perigrain_world::World;
 
-/// How far from a time a step may be and count as there, in steps.
+/// Tolerance for reaching an output time, in steps.
 const NEAR: f64 = 1e-6;
 
-/// What gives the next time from the present one.
+/// Source of the next output time.
 pub(super) enum Clock {
     /// Multiples of a time.
     Multiples(f64),
@@ -19,11 +19,11 @@ pub(super) enum Clock {
 }
 
 impl Clock {
-    /// Whether this step is the first one that reaches the next time; `first`: the first step of the first run is
-    /// asked for.
+    /// Whether this step is the first one at or after the next output time; `first`: the first step of the
+    /// first run is requested.
     ///
     /// # Errors
-    /// A variable that does not lead on.
+    /// A variable that does not increase.
     pub fn strikes(&mut self, state: &mut State, w: &mut World, t: &Tick, first: bool) -> Result<bool> {
         let now = w.clock.time();
         let near = NEAR * t.dt;
@@ -46,7 +46,7 @@ impl Clock {
         state.next_time = Some(match self {
             Clock::Multiples(every) => {
                 let next = next + *every;
-                // Times closer than steps are passed over, where LAMMPS passes over them.
+                // Times closer together than steps are skipped under the same condition as in LAMMPS.
                 if (next - now - near) / t.dt <= -1.0 {
                     next + (((now + t.dt - next) / *every).trunc() + 1.0) * *every
                 } else {
@@ -59,7 +59,7 @@ impl Clock {
     }
 }
 
-/// The time that the variable names now.
+/// The current value of the time variable.
 fn later(text: &mut Text, r: &ValueRef, w: &mut World) -> Result<f64> {
     let now = w.clock.time();
     let named = text(w)?;

@@ -1,4 +1,4 @@
-//! The words of `dump_modify` that all dumps understand.
+//! The keywords of `dump_modify` shared by all dumps.
 
 use super::{Base, Rhythm, Sort, Threshold};
 use crate::attribute::attribute;
@@ -8,7 +8,7 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::{Key, Region};
 
-/// Keywords of `dump_modify` that every style understands.
+/// Keywords of `dump_modify` that every style accepts.
 pub const KEYWORDS: &[&str] = &[
     "append",
     "balance",
@@ -32,7 +32,7 @@ pub const KEYWORDS: &[&str] = &[
     "types",
 ];
 
-/// Keywords of LAMMPS that no style here understands, and why.
+/// LAMMPS' keywords that no style here accepts, with the reason.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("at", "is for dump styles that perigrain does not have"),
     ("compression_level", "is for the styles atom/gz, custom/gz, cfg/gz, xyz/gz and local/gz"),
@@ -47,7 +47,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
 ];
 
 impl Base {
-    /// Reads one keyword of `dump_modify` if all dumps share it.
+    /// Reads one keyword of `dump_modify` if it is shared by all dumps.
     pub fn modify(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
         match word.text.as_str() {
             "append" => self.append = args.flag("append")?,
@@ -95,7 +95,7 @@ impl Base {
             "region" => self.region = region(args, cx)?,
             "sort" => self.sort = sort(args)?,
             "thresh" => self.thresh(args, cx)?,
-            // Snapshots are always handed over whole, which is what these ask for.
+            // Snapshots are always flushed whole, which is what these keywords request.
             "flush" | "buffer" => {
                 args.flag(&word.text)?;
             }
@@ -105,7 +105,7 @@ impl Base {
         Ok(true)
     }
 
-    /// `nfile N` or `fileper N`: one process has one file, whatever N.
+    /// `nfile N` or `fileper N`: one process has one file, for any N.
     fn share(&self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<()> {
         if !self.shared {
             let text = format!("dump_modify {} needs a `%` in the dump's file name", word.text);
@@ -155,10 +155,10 @@ impl Base {
     }
 }
 
-/// A column of these names by number from 1, from -1 backwards, or by name; counted from 0.
+/// A column by number from 1, by number from -1 backwards, or by name; returned as an index from 0.
 ///
 /// # Errors
-/// Names and numbers of no column.
+/// Unknown names and numbers.
 pub fn column<'a>(word: &Word, mut names: impl ExactSizeIterator<Item = &'a str>) -> Result<usize> {
     let n = names.len();
     if let Some(k) = names.position(|name| name == word.text) {
@@ -173,7 +173,7 @@ pub fn column<'a>(word: &Word, mut names: impl ExactSizeIterator<Item = &'a str>
     }
 }
 
-/// Refuses a keyword that neither the style nor all dumps know.
+/// Refuses a keyword that neither the style nor all dumps have.
 pub fn unknown(word: &Word, args: &Args, own: &[&'static str]) -> perigrain_base::diag::Diagnostics {
     if let Some((name, why)) = ELSEWHERE.iter().find(|(name, _)| *name == word.text) {
         return blame(word, Code::NOT_SUPPORTED, format!("dump_modify {name} {why}")).into();
@@ -182,7 +182,7 @@ pub fn unknown(word: &Word, args: &Args, own: &[&'static str]) -> perigrain_base
     args.unknown(word, &known)
 }
 
-/// `v_name` of a variable that yields a number.
+/// `v_name` of a variable with a numeric value.
 fn number_variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
     let word = args.expect("an equal-style variable, as `v_name`")?;
     match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {

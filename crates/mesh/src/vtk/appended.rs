@@ -1,37 +1,37 @@
-//! Raw appended bytes of VTK's XML files, packed by zlib or not, read as they are needed.
+//! Raw appended bytes of VTK XML files, optionally compressed by zlib, read on demand.
 
 use super::numbers::Kind;
 use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom};
 
-/// Deflate packs a thousand bytes into one at most: more than that is forged.
+/// Deflate compresses at most about a thousand bytes into one: a higher ratio is forged.
 pub const DENSEST: u64 = 1100;
 
-/// Where an array's bytes are in its file, and how they are kept.
+/// Location and encoding of an array in its file.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// The first byte of their header.
+    /// First byte of its header.
     pub start: u64,
-    /// What the numbers are.
+    /// Number type.
     pub kind: Kind,
-    /// Their order of bytes, and that of the header.
+    /// Byte order of the numbers and of the header.
     pub big_endian: bool,
-    /// Whether numbers of the header have eight bytes, or four.
+    /// Whether header numbers have eight bytes instead of four.
     pub wide: bool,
-    /// Whether blocks are packed by zlib.
+    /// Whether blocks are compressed by zlib.
     pub packed: bool,
 }
 
-/// The bytes of an array, from the first to the last.
+/// The bytes of an array, in order.
 pub struct Appended<R> {
     file: R,
-    /// The first byte behind the header.
+    /// First byte after the header.
     begin: u64,
-    /// Bytes of the array, unpacked.
+    /// Uncompressed size of the array in bytes.
     length: u64,
-    /// Bytes of each block, packed, and unpacked but for the last one; none where nothing is packed.
+    /// Compressed size of each block, and uncompressed size of all but the last; `None` without compression.
     blocks: Option<(Vec<u64>, u64)>,
     next: usize,
-    /// Bytes still to be taken out of the file: all of them, or those of the present block, unpacked.
+    /// Bytes still to be read: of the whole array, or of the current block after decompression.
     left: u64,
     block: Vec<u8>,
 }
@@ -44,7 +44,7 @@ impl<R: Read + Seek> Appended<R> {
     /// Reads the header.
     ///
     /// # Errors
-    /// The system's; a file that ends before the array does, or whose header cannot be.
+    /// I/O errors; files that end before the array, or with invalid headers.
     pub fn open(mut file: R, place: &Place) -> Result<Self> {
         let end = file.seek(SeekFrom::End(0))?;
         file.seek(SeekFrom::Start(place.start))?;
@@ -82,26 +82,26 @@ impl<R: Read + Seek> Appended<R> {
         Ok(Self { file, begin, length, blocks, next: 0, left, block: vec![] })
     }
 
-    /// Bytes of the array, unpacked.
+    /// Uncompressed size of the array in bytes.
     pub fn length(&self) -> u64 {
         self.length
     }
 
-    /// Back to the first byte.
+    /// Returns to the first byte.
     ///
     /// # Errors
-    /// The system's.
+    /// I/O errors.
     pub fn rewind(&mut self) -> Result<()> {
         self.next = 0;
         self.left = if self.blocks.is_none() { self.length } else { 0 };
         self.file.seek(SeekFrom::Start(self.begin)).map(drop)
     }
 
-    /// Unpacks the next block; `false` where there is none.
+    /// Decompresses the next block; `false` if there is none.
     fn unpack(&mut self) -> Result<bool> {
         let Some((each, size)) = &self.blocks else { return Ok(false) };
         let Some(&packed) = each.get(self.next) else { return Ok(false) };
-        // The last block has what is left.
+        // The last block has the remaining bytes.
         let before = size.saturating_mul(self.next as u64);
         let rest = self.length.saturating_sub(before);
         let want = if self.next + 1 == each.len() { rest } else { *size };
@@ -157,7 +157,7 @@ mod tests {
         if wide { (n as u64).to_le_bytes().to_vec() } else { (n as u32).to_le_bytes().to_vec() }
     }
 
-    /// Three bytes of something else, then the array.
+    /// Three other bytes, then the array.
     fn file(bytes: &[u8], place: &Place) -> Vec<u8> {
         let mut all = vec![b'<', b'>', b'_'];
         if !place.packed {
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// Counts beyond the file cost nothing.
+    /// Sizes beyond the file length must not allocate memory.
     #[test]
     fn forged_headers_are_refused() {
         let bytes = [1u8; 40];
@@ -208,7 +208,7 @@ mod tests {
                 bad[at] ^= 0x7f;
                 let read =
                     Appended::open(Cursor::new(bad), &place).and_then(|mut a| a.read_to_end(&mut vec![]));
-                // The number of blocks may shrink; then the array does.
+                // The number of blocks may become smaller; then so does the array.
                 assert!(read.is_err() || read.is_ok_and(|n| n != bytes.len()), "byte {at}");
             }
             let cut = Appended::open(Cursor::new(&good[..good.len() - 5]), &place)

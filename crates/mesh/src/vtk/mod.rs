@@ -1,4 +1,5 @@
-//! VTK's XML files, whatever data set they hold: surfaces here, meshes and images where particles are made of them.
+//! VTK XML files of any data set type: surfaces here; meshes and images in `geometry`, where particles are
+//! made of them.
 
 pub mod appended;
 pub mod numbers;

@@ -1,32 +1,32 @@
-//! Numbers as files hold them in binary: kinds, byte orders.
+//! Binary numbers: types and byte orders.
 
-/// A kind of number.
+/// A number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Eight bits with a sign.
+    /// Signed, 8 bits.
     I8,
-    /// Eight bits.
+    /// Unsigned, 8 bits.
     U8,
-    /// Sixteen bits with a sign.
+    /// Signed, 16 bits.
     I16,
-    /// Sixteen bits.
+    /// Unsigned, 16 bits.
     U16,
-    /// 32 bits with a sign.
+    /// Signed, 32 bits.
     I32,
-    /// 32 bits.
+    /// Unsigned, 32 bits.
     U32,
-    /// 64 bits with a sign.
+    /// Signed, 64 bits.
     I64,
-    /// 64 bits.
+    /// Unsigned, 64 bits.
     U64,
-    /// 32 bits, a fraction.
+    /// Floating-point, 32 bits.
     F32,
-    /// 64 bits, a fraction.
+    /// Floating-point, 64 bits.
     F64,
 }
 
 impl Kind {
-    /// Its bytes.
+    /// Its size in bytes.
     pub fn size(self) -> usize {
         match self {
             Kind::I8 | Kind::U8 => 1,
@@ -36,7 +36,7 @@ impl Kind {
         }
     }
 
-    /// The whole number without a sign in these bytes, of which there are as many as it has.
+    /// The unsigned integer in these bytes, which must have the size of the type.
     pub fn whole(self, bytes: &[u8], big_endian: bool) -> u64 {
         let mut b = [0u8; 8];
         let size = self.size();
@@ -46,7 +46,7 @@ impl Kind {
         u64::from_le_bytes(b)
     }
 
-    /// The number in these bytes, of which there are as many as it has.
+    /// The number in these bytes, which must have the size of the type.
     pub fn read(self, bytes: &[u8], big_endian: bool) -> f64 {
         let low = self.whole(bytes, big_endian);
         match self {
@@ -70,11 +70,11 @@ impl Kind {
         all
     }
 
-    /// All numbers in these bytes, in the place of those that `all` holds.
+    /// Replaces the contents of `all` by all numbers in these bytes.
     pub fn read_into(self, bytes: &[u8], big_endian: bool, all: &mut Vec<f64>) {
         all.clear();
         match self {
-            // Most images are of these, and large.
+            // Most images have this type, and they are large.
             Kind::U8 => all.extend(bytes.iter().map(|b| f64::from(*b))),
             _ => all.extend(bytes.chunks_exact(self.size()).map(|b| self.read(b, big_endian))),
         }

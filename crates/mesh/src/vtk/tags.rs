@@ -1,4 +1,4 @@
-//! Tags of VTK's XML files.
+//! XML tags of VTK files.
 
 use perigrain_base::diag::brought::{broken, place};
 use perigrain_base::diag::{Result, Span};
@@ -10,13 +10,13 @@ pub struct Tag<'a> {
     pub name: &'a str,
     /// Names and values.
     pub attributes: Vec<(&'a str, &'a str)>,
-    /// It closes an element.
+    /// Whether it closes an element.
     pub closes: bool,
-    /// It opens an element and closes it at once.
+    /// Whether it opens and closes an element.
     pub empty: bool,
-    /// Where it is.
+    /// Its span.
     pub at: Span,
-    /// The byte behind it.
+    /// The byte after it.
     pub end: usize,
 }
 
@@ -27,10 +27,10 @@ impl<'a> Tag<'a> {
     }
 }
 
-/// The next tag from this byte on; comments and declarations are passed over.
+/// The next tag from this byte on; comments and declarations are skipped.
 ///
 /// # Errors
-/// Tags that do not end, or are no text.
+/// Unterminated tags, or tags that are not valid text.
 pub fn next(bytes: &[u8], mut at: usize) -> Result<Option<Tag<'_>>> {
     loop {
         let Some(start) = bytes[at..].iter().position(|b| *b == b'<').map(|k| at + k) else {
@@ -42,7 +42,7 @@ pub fn next(bytes: &[u8], mut at: usize) -> Result<Option<Tag<'_>>> {
             at = start + close + 3;
             continue;
         }
-        // A > within a quoted value ends no tag.
+        // A > within a quoted value does not end the tag.
         let mut quote = None;
         let end = bytes[start..].iter().position(|&b| {
             match quote {

@@ -1,4 +1,4 @@
-//! VTK's XML files: tags, and arrays as text, base64 or raw bytes, packed by zlib or not.
+//! VTK XML files: tags, and arrays as text, base64 or raw bytes, optionally compressed by zlib.
 
 use super::appended::{Appended, DENSEST, Place};
 use super::numbers::Kind;
@@ -9,16 +9,16 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::memory;
 use std::io::{Cursor, ErrorKind, Read};
 
-/// An array of the file, not read yet.
+/// An array of the file that is not read yet.
 #[derive(Clone, Debug)]
 pub struct Array {
     /// Its name.
     pub name: String,
-    /// Numbers for each point or cell.
+    /// Number of components per point or cell.
     pub components: usize,
     kind: Kind,
     format: Format,
-    /// The element it stands in: `Points`, `CellData` …
+    /// The parent element: `Points`, `CellData` …
     of: String,
     at: Span,
 }
@@ -35,7 +35,7 @@ enum Format {
 pub struct Piece {
     attributes: Vec<(String, String)>,
     arrays: Vec<Array>,
-    /// Its opening tag.
+    /// Span of its opening tag.
     pub at: Span,
 }
 
@@ -45,10 +45,10 @@ impl Piece {
         self.attributes.iter().find(|(n, _)| n == name).map(|(_, v)| v.as_str())
     }
 
-    /// An attribute that is a whole number.
+    /// An attribute that is an integer.
     ///
     /// # Errors
-    /// It is not there, or something else.
+    /// The attribute is missing or not an integer.
     pub fn count(&self, name: &str) -> Result<usize> {
         match self.get(name).and_then(|v| v.trim().parse::<u32>().ok()) {
             Some(n) => Ok(n as usize),
@@ -63,11 +63,11 @@ pub struct Document<'a> {
     big_endian: bool,
     wide: bool,
     packed: bool,
-    /// Where appended bytes begin, and whether they are raw.
+    /// Start of appended bytes, and whether they are raw.
     appended: Option<(usize, bool)>,
     /// Attributes of the data set.
     pub attributes: Vec<(String, String)>,
-    /// Its tag.
+    /// Span of its tag.
     pub at: Span,
     /// Its pieces.
     pub pieces: Vec<Piece>,
@@ -77,7 +77,7 @@ impl<'a> Document<'a> {
     /// Reads the tags of a file with a data set of this type.
     ///
     /// # Errors
-    /// Other files, and tags that cannot be.
+    /// Other files, and invalid tags.
     pub fn read(bytes: &'a [u8], set: &str) -> Result<Self> {
         let mut d = Document {
             bytes,
@@ -159,13 +159,13 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
-    /// Takes note of an array; where its content ends.
+    /// Records an array; returns the end of its content.
     fn note(&mut self, tag: &Tag, of: &str, at: usize) -> Result<usize> {
         let end = match tag.empty {
             true => at,
             false => self.bytes[at..].iter().position(|b| *b == b'<').map_or(self.bytes.len(), |k| at + k),
         };
-        // Arrays of the file as a whole, and texts, are nothing for particles.
+        // Arrays of the file as a whole, and strings, are ignored.
         let Some(piece) = self.pieces.last_mut().filter(|_| tag.name == "DataArray") else { return Ok(end) };
         let kind = match tag.get("type") {
             Some("Int8") => Kind::I8,
@@ -219,7 +219,7 @@ impl<'a> Document<'a> {
         piece.arrays.iter().find(|a| a.of == of && (name.is_empty() || a.name == name))
     }
 
-    /// Where an array is that can be read as it is needed: behind the tags, raw.
+    /// Location of an array that can be read on demand: appended raw data.
     pub fn place(&self, a: &Array) -> Option<Place> {
         let (Format::Appended(offset), Some((start, true))) = (a.format, self.appended) else { return None };
         Some(self.place_at(a, (start as u64).checked_add(offset as u64)?))
@@ -233,7 +233,7 @@ impl<'a> Document<'a> {
     /// The numbers of an array.
     ///
     /// # Errors
-    /// Bytes or texts that are none, or end too early.
+    /// Invalid or truncated data.
     pub fn numbers(&self, a: &Array) -> Result<Vec<f64>> {
         let bytes = match a.format {
             Format::Text(from, to) => return self.text(from, to),
@@ -281,7 +281,7 @@ impl<'a> Document<'a> {
         Ok(numbers)
     }
 
-    /// The bytes behind their header.
+    /// The bytes after their header, decompressed.
     fn unpacked(&self, a: &Array, bytes: &[u8]) -> Result<Vec<u8>> {
         let blamed = |e: &std::io::Error| match e.kind() {
             ErrorKind::UnexpectedEof => {

@@ -1,4 +1,4 @@
-//! VTP files as text, in base64, appended and compressed.
+//! VTP files as text, base64, appended and compressed.
 
 use super::*;
 use perigrain_base::base64::encode as base64;
@@ -17,7 +17,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
     zlib.finish().unwrap()
 }
 
-/// A file whose arrays stand as `format` says and `code` makes of their bytes.
+/// A file with arrays in the given `format`, encoded by `code`.
 fn file(attributes: &str, appended: Option<&str>, code: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let points: Vec<u8> = POINTS.iter().flat_map(|x| x.to_le_bytes()).collect();
     let corners: Vec<u8> = [0i64, 1, 2, 3].iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -54,12 +54,12 @@ fn file(attributes: &str, appended: Option<&str>, code: impl Fn(&[u8]) -> Vec<u8
     bytes
 }
 
-/// Bytes behind their number of four bytes.
+/// Bytes after their size in four bytes.
 fn counted(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat()
 }
 
-/// Two blocks of zlib behind their sizes of eight bytes: head and blocks.
+/// Two zlib blocks with their sizes in eight bytes each: header and blocks.
 fn blocks(bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
     let half = bytes.len().div_ceil(2);
     let (a, b) = (packed(&bytes[..half]), packed(&bytes[half..]));
@@ -71,7 +71,7 @@ fn all() -> Vec<Vec<u8>> {
     let zlib = "byte_order=\"LittleEndian\" header_type='UInt64' compressor=\"vtkZLibDataCompressor\"";
     vec![
         file("", None, |b| base64(&counted(b)).into_bytes()),
-        // Head and bytes padded each by itself, as some writers do.
+        // Header and bytes padded separately, as some writers do.
         file("", None, |b| [base64(&(b.len() as u32).to_le_bytes()), base64(b)].concat().into_bytes()),
         file("", Some("raw"), counted),
         file("", Some("base64"), |b| base64(&counted(b)).into_bytes()),
@@ -122,7 +122,7 @@ fn a_file_cut_anywhere_is_refused() {
         let last = bytes.windows(5).position(|w| w == b"</VTK").unwrap() - 20;
         for end in (0..last).step_by(7) {
             let found = read(&bytes[..end]);
-            // What is cut within blanks and the last tags may have all its numbers.
+            // A file cut within trailing blanks or tags may still contain all numbers.
             assert!(found.is_err() || found == Ok(wanted()), "{end}: {found:?}");
         }
     }

@@ -1,4 +1,4 @@
-//! Lists against the double loop over all pairs.
+//! Lists compared with a double loop over all pairs.
 
 use super::*;
 
@@ -20,7 +20,7 @@ struct Scene {
     radius: Vec<f64>,
 }
 
-/// Small grains of types 1 and 2 and a few of type 2 that are ten times as big, in a box of edge 10.
+/// Small grains of types 1 and 2, and a few of type 2 that are ten times as large, in a box of edge 10.
 fn scene(n: usize) -> Scene {
     let mut dice = Dice(7);
     let mut s = Scene { x: vec![], tag: vec![], kind: vec![], radius: vec![] };
@@ -40,7 +40,7 @@ impl Scene {
     }
 }
 
-/// The plain double loop over all pairs and images.
+/// The double loop over all pairs and images.
 fn brute(v: &View, wanted: &Wanted, skin: f64, keep: impl Fn(usize, usize) -> bool) -> Vec<Pair> {
     let mut out = vec![];
     let m = v.period.length.map(|l| i32::from(l > 0.0));
@@ -146,7 +146,7 @@ fn the_order_of_storage_does_not_matter() {
     perigrain_base::par::set_threads(1);
 }
 
-/// One big sphere over a block of many small particles costs little more than looking at each once.
+/// One big sphere above a block of many small particles costs little more than one test per particle.
 #[test]
 fn a_big_sphere_among_many_small_particles() {
     let n = 60;

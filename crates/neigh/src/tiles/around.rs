@@ -1,4 +1,5 @@
-//! What pairs of a tile reach: its points and those of the cells around it, side by side, and which of them are near each cell.
+//! Points within reach of a tile's pairs: its own and those of surrounding cells, in consecutive order, with
+//! the neighbours of each cell.
 
 use super::{HERE, Tiles};
 use std::ops::Range;
@@ -6,12 +7,13 @@ use std::ops::Range;
 /// No cell.
 const NONE: u32 = u32::MAX;
 
-/// A row of cells along the fast axis, as long as a tile and one cell more at both ends.
+/// A row of cells along the fast axis: as long as a tile, plus one cell at each end.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    /// Numbers of the cell before those beside the tile, of the first one of these, and of the one behind them; or [`NONE`].
+    /// Numbers of the cell before those beside the tile, of the first of these, and of the one after them; or
+    /// [`NONE`].
     cells: [u32; 3],
-    /// The images they are seen in.
+    /// Their images.
     images: [u32; 3],
 }
 
@@ -19,41 +21,42 @@ impl Row {
     const NOWHERE: Self = Self { cells: [NONE; 3], images: [HERE; 3] };
 }
 
-/// The cells that pairs of a tile reach, its own among them: rows with one cell more at both ends, layers with one row more at both
-/// ends, and one layer more. Their points are counted as [`Tiles::around`] names them.
+/// The cells within reach of a tile's pairs, including its own: rows with one extra cell at each end, layers
+/// with one extra row at each end, and one extra layer. Their points are counted in the order of
+/// [`Tiles::around`].
 #[derive(Clone, Debug, Default)]
 pub struct Around {
-    /// Cells of the tile along the fast, the middle and the slow axis.
+    /// Number of cells of the tile along the fast, middle and slow axis.
     size: [usize; 3],
-    /// The first point of each cell, and the number of all points.
+    /// The first point of each cell, and the total number of points.
     start: Vec<u32>,
 }
 
-/// The points of a cell of a tile and those of its half neighbourhood: every pair of points in neighbouring cells, each in each of its
-/// images, occurs with one cell only.
+/// The points of a cell of a tile and of its half neighbourhood: every pair of points in neighbouring cells,
+/// in each of its images, belongs to exactly one cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Neighbourhood {
-    /// Those of the cell.
+    /// Points of the cell.
     pub own: Range<usize>,
-    /// These once more with those of the next cell, which follow them; then those of three cells each, in the next row and in three rows of
-    /// the next layer.
+    /// The same followed by those of the next cell; then those of three cells each, in the next row and in
+    /// three rows of the next layer.
     pub rows: [Range<usize>; 5],
 }
 
 impl Around {
-    /// The neighbourhoods of cells with points in them, row by row.
+    /// The neighbourhoods of cells that contain points, row by row.
     #[inline]
     pub fn neighbourhoods(&self) -> Neighbourhoods<'_> {
         Neighbourhoods { of: self, row: 0, cells: 0..0 }
     }
 }
 
-/// A walk over the cells of a tile with points in them.
+/// An iterator over the cells of a tile that contain points.
 pub struct Neighbourhoods<'a> {
     of: &'a Around,
     /// The next row of the tile.
     row: usize,
-    /// Cells that are left of the one before it.
+    /// Remaining cells of the row before it.
     cells: Range<usize>,
 }
 
@@ -89,8 +92,8 @@ impl Iterator for Neighbourhoods<'_> {
 }
 
 impl Tiles {
-    /// The cells that pairs of a tile reach, and its own; calls `f(layer, image, places)` for the points in them, layer by layer: layers
-    /// are counted on through images along the slow axis.
+    /// Finds the cells within reach of a tile's pairs, including its own; calls `f(layer, image, places)` for
+    /// their points, layer by layer: layer numbers continue through images along the slow axis.
     pub fn around(&self, tile: usize, mut f: impl FnMut(usize, u32, Range<usize>)) -> Around {
         let [xs, ys, zs] = self.blocks.extent(tile);
         let size = [xs.len(), ys.len(), zs.len()];
@@ -114,7 +117,7 @@ impl Tiles {
         };
         for z in zs.start..zs.end + 1 {
             for y in ys.start as i32 - 1..ys.end as i32 + 1 {
-                // No pair reaches back within its layer.
+                // Pairs never reach backwards within a layer.
                 let before = z == zs.start && y < ys.start as i32;
                 let row = if before { Row::NOWHERE } else { self.row(&xs, y, z as i32) };
                 take(z, &row, 0, 1);
@@ -126,7 +129,8 @@ impl Tiles {
         Around { size, start }
     }
 
-    /// A coordinate of a cell that may be one beyond the outermost ones, and how many periods away it is seen.
+    /// Wraps a cell coordinate that may be one beyond the outermost cells; returns the number of periods as
+    /// well.
     #[inline]
     fn wrapped(&self, k: usize, at: i32) -> Option<(usize, i32)> {
         let n = self.cells[k] as i32;
@@ -138,7 +142,7 @@ impl Tiles {
         }
     }
 
-    /// The cells beside those along the fast axis, in a row of the other two.
+    /// The cells of a row along the fast axis, at these coordinates along the other two.
     fn row(&self, xs: &Range<usize>, y: i32, z: i32) -> Row {
         let (Some((y, sy)), Some((z, sz))) = (self.wrapped(1, y), self.wrapped(2, z)) else {
             return Row::NOWHERE;

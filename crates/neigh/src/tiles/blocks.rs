@@ -1,41 +1,45 @@
-//! Blocks of cells, which are tiles: how large they are, in which order they follow each other, and where their cells lie.
+//! Blocks of cells, used as tiles: their size, their order, and the positions of their cells.
 
 use std::ops::Range;
 
-/// Tiles, and slabs, hold this many points on average at least: what a list costs by itself is then little beside what its points cost (discs of
+/// Tiles and slabs hold at least this many points on average: the cost per list is then small compared with
+/// that per point (discs of LAMMPS' `in.pour.2d` were 15 % slower in lists of 48 than in lists of 200).
 /// LAMMPS' `in.pour.2d` in lists of 48 were 15 % slower than in lists of 200).
 pub(super) const CROWD: usize = 128;
-/// And at most, where that many tiles come of it: what a tile's contacts read and write stays in the second cache.
+/// And at most this many, if that gives enough tiles: the data of a tile's contacts then fits the
+/// second-level cache.
 const FULL: usize = 1024;
-/// So many tiles there are, if they hold enough points then, that sixteen threads have as much to do as each other.
+/// Number of tiles, given enough points, at which sixteen threads are well balanced.
 const WANTED: usize = 192;
-/// And so many in small scenes where there are cells enough, that threads have something to share.
+/// Number of tiles in small systems with enough cells, so that threads have work to share.
 pub(super) const SHARES: usize = 8;
-/// Fewer points are one tile: no second thread pays for them.
+/// Below this number of points there is one tile: a second thread does not pay off.
 pub(super) const FEW: usize = 256;
-/// How much wider than thick tiles are, the slow axis being across them: grains mostly pass each other in layers across that axis, and
-/// lists of thin layers last longer.
+/// Width of tiles relative to their thickness along the slow axis: grains mostly pass each other in layers
+/// normal to that axis, and lists of thin layers stay valid longer.
 const FLAT: usize = 2;
 
-/// A grid of cells cut into blocks. The cells of a block have neighbouring numbers, row by row.
+/// A grid of cells cut into blocks. The cells of a block have consecutive numbers, row by row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
-    /// Blocks along each axis.
+    /// Number of blocks along each axis.
     along: [usize; 3],
     repeats: [bool; 3],
-    /// Along each axis: what the block that a cell lies in adds to its place, counted row by row, and the cell's place in that.
+    /// Per axis and cell: the contribution of its block to the block index (counted row by row), and the
+    /// position within the block.
     part: [Vec<[u32; 2]>; 3],
-    /// The number of the block at each place, and the place of each number.
+    /// The number of the block at each index, and the index of each number.
     number: Vec<u32>,
     place: Vec<[usize; 3]>,
-    /// The first cell of each block, and the number of all cells.
+    /// The first cell of each block, and the total number of cells.
     first: Vec<usize>,
-    /// By place: the first cell of each block, and how many cells its rows and its layers have.
+    /// Per block index: the first cell, and the number of cells in its rows and layers.
     rows: Vec<[u32; 3]>,
 }
 
 impl Blocks {
-    /// Blocks of so many cells along each axis, the last of which is the slow one and some of which repeat, for so many points.
+    /// Blocks for this many cells along each axis, of which the last is the slow one and some are periodic,
+    /// and this many points.
     pub(super) fn new(cells: [usize; 3], repeats: [bool; 3], points: usize) -> Self {
         let along = cut(cells, repeats, points);
         let step = [1, along[0], along[0] * along[1]];
@@ -61,7 +65,7 @@ impl Blocks {
         blocks
     }
 
-    /// How many blocks.
+    /// The number of blocks.
     pub(super) fn count(&self) -> usize {
         self.place.len()
     }
@@ -71,17 +75,17 @@ impl Blocks {
         self.first[block]..self.first[block + 1]
     }
 
-    /// The colour of a block: no two beside each other, also around the box, are of the same one.
+    /// The colour of a block: neighbouring blocks, including periodic ones, never have the same colour.
     pub(super) fn colour(&self, block: usize) -> u8 {
         let [x, y, z] = self.place[block].map(|at| (at % 2) as u8);
         (z * 2 + y) * 2 + x
     }
 
-    /// The blocks beside one, across faces, edges and corners, also around the box.
+    /// The neighbours of a block across faces, edges and corners, including periodic ones.
     pub(super) fn beside(&self, block: usize) -> Vec<u32> {
         let mut beside = vec![];
         let step = |k: usize, by: usize| match self.place[block][k] + by {
-            // One more than where it leads.
+            // One more than the index it leads to.
             0 if self.repeats[k] => Some(self.along[k] - 1),
             0 => None,
             at if at <= self.along[k] => Some(at - 1),
@@ -102,7 +106,7 @@ impl Blocks {
         [0, 1, 2].map(|k| ends(self.part[k].len(), self.along[k], self.place[block][k]))
     }
 
-    /// Where the cells of a block lie, in the order of their numbers.
+    /// The positions of a block's cells, in the order of their numbers.
     pub(super) fn places(&self, block: usize) -> impl Iterator<Item = [usize; 3]> + use<> {
         let cells = self.part.each_ref().map(Vec::len);
         let [xs, ys, zs] = [0, 1, 2].map(|k| ends(cells[k], self.along[k], self.place[block][k]));
@@ -112,7 +116,7 @@ impl Blocks {
         })
     }
 
-    /// The number of the cell that lies there.
+    /// The number of the cell at a position.
     #[inline]
     pub(super) fn cell(&self, at: [usize; 3]) -> usize {
         let [[bx, x], [by, y], [bz, z]] = [0, 1, 2].map(|k| self.part[k][at[k]]);
@@ -121,7 +125,7 @@ impl Blocks {
     }
 }
 
-/// Into how many blocks the cells along each axis are cut, for so many points.
+/// The number of blocks along each axis, for this many points.
 fn cut(cells: [usize; 3], repeats: [bool; 3], points: usize) -> [usize; 3] {
     let mut cut = [1; 3];
     if points < FEW {
@@ -133,8 +137,8 @@ fn cut(cells: [usize; 3], repeats: [bool; 3], points: usize) -> [usize; 3] {
         let longer = |a: &usize, b: &usize| {
             (weight[*a] * cells[*a] * cut[*b]).cmp(&(weight[*b] * cells[*b] * cut[*a])).then(a.cmp(b))
         };
-        // Around the box there is an even number of blocks, and each has two cells at least: blocks of one colour then reach no common
-        // one.
+        // Along periodic directions there is an even number of blocks with at least two cells each: blocks of
+        // one colour then have no common neighbour within reach.
         let next = |k: usize| cut[k] + if repeats[k] && cut[k] > 1 { 2 } else { 1 };
         let Some(k) = (0..3).filter(|&k| 2 * next(k) <= cells[k]).max_by(longer) else { break };
         let next: [usize; 3] = std::array::from_fn(|d| if d == k { next(k) } else { cut[d] });
@@ -150,19 +154,20 @@ fn cut(cells: [usize; 3], repeats: [bool; 3], points: usize) -> [usize; 3] {
     cut
 }
 
-/// The cells along an axis that a block has.
+/// The cells of a block along an axis.
 #[inline]
 fn ends(cells: usize, blocks: usize, block: usize) -> Range<usize> {
     block * cells / blocks..(block + 1) * cells / blocks
 }
 
-/// The place of the `n`-th block, row by row.
+/// The position of the `n`-th block, row by row.
 fn spread([x, y, _]: [usize; 3], n: usize) -> [usize; 3] {
     [n % x, n / x % y, n / x / y]
 }
 
-/// How far along Hilbert's curve through a cube of blocks the one at `at` lies: blocks near each other along the curve are near each
-/// other in space. By J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004) 381.
+/// The distance of the block at `at` along Hilbert's curve through a cube of blocks: blocks close to each
+/// other along the curve are close in space. After J. Skilling, Programming the Hilbert curve, AIP Conf.
+/// Proc. 707 (2004) 381.
 fn along_curve(at: [usize; 3], along: [usize; 3]) -> u64 {
     let bits = along.iter().max().map_or(1, |n| n.next_power_of_two().ilog2().max(1));
     // The slow axis leads.

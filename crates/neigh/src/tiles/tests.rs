@@ -1,4 +1,4 @@
-//! Tiles against a look at everything, upright and leaning.
+//! Tiles compared with exhaustive search, upright and tilted.
 
 use super::*;
 use perigrain_base::math::rng::ParkMiller;
@@ -9,7 +9,7 @@ fn points(n: usize, box_: [f64; 3]) -> Vec<[f64; 3]> {
     (0..n).map(|_| box_.map(|l| l * random.uniform())).collect()
 }
 
-/// Pairs closer than `cut`, each with the image of the second, by looking at everything.
+/// Pairs closer than `cut`, each with the image of the second, by exhaustive search.
 fn all(x: &[[f64; 3]], cut: f64, period: Periods) -> BTreeSet<(usize, usize, u32)> {
     let mut found = BTreeSet::new();
     for image in 0..27 {

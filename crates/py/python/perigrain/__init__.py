@@ -6,7 +6,7 @@
 
 from ._core import VERSION as __version__
 from .benching import BenchError, bench
-from .constants import *  # noqa: F403  LAMMPS' module has them at its top, too
+from .constants import *  # noqa: F403  at the top level, as in LAMMPS' module
 from .errors import BusyError, ClosedError, DataError, DeckError, InternalError, PerigrainError, StaleError
 from .lmp import lammps
 from .looking import Problem, Report, check, plan

@@ -7,8 +7,8 @@ from . import _core
 
 
 def main() -> int:
-    """Works off the command line; the exit code."""
-    # Each run of a sweep has a folder of its own, and must find this module from there.
+    """Executes the command line; returns the exit code."""
+    # Each run of a sweep has its own folder, and must find this module from there.
     home = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
     return _core.main([sys.executable, "-m", "perigrain"], sys.argv[1:])

@@ -1,4 +1,4 @@
-"""Methods of LAMMPS' Python class that are not here: who asks for one is told what stands in its place."""
+"""Methods of LAMMPS' Python class that are not available: calling one raises an error that names a replacement."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _INSTEAD = {
 
 
 class Named:
-    """Refuses methods that are not here by name."""
+    """Raises an error that names an unavailable method."""
 
     def __getattr__(self, name: str) -> Any:
         instead = _INSTEAD.get(name)
@@ -34,17 +34,17 @@ class Named:
 
 
 class Absent(Named):
-    """Methods that have nothing to do here, and refusals of others."""
+    """Methods without effect here, and refusals of others."""
 
     def addstep_compute(self, cid: str, nextstep: int) -> None:
-        """Does nothing: computes need not be told when they are read next."""
+        """Does nothing: computes are evaluated when they are read."""
 
     def addstep_compute_all(self, nextstep: int) -> None:
-        """Does nothing: computes need not be told when they are read next."""
+        """Does nothing: computes are evaluated when they are read."""
 
     def clearstep_compute(self) -> None:
-        """Does nothing: computes need not be told when they are read next."""
+        """Does nothing: computes are evaluated when they are read."""
 
     def get_gpu_device_info(self) -> str:
-        """There is no device: an empty text."""
+        """No device: an empty text."""
         return ""

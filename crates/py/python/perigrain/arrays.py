@@ -1,4 +1,4 @@
-"""Lists of numbers between bytes, `ctypes`, numpy and plain Python."""
+"""Conversions of number lists between bytes, `ctypes`, numpy and plain Python."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .errors import DataError
 
 
 def array_of(data: bytes, whole: bool) -> Any:
-    """An array of `ctypes` with a copy of these numbers."""
+    """A `ctypes` array with a copy of these numbers."""
     number, size = (c_int, 4) if whole else (c_double, 8)
     return (number * (len(data) // size)).from_buffer_copy(data)
 
@@ -24,9 +24,9 @@ def pointer_to(data: bytes, cols: int) -> Any:
 
 
 def as_bytes(data: Any, whole: bool, what: str) -> bytes:
-    """The bytes of numbers given as a list, an array of `ctypes` or numpy, or anything with a buffer.
+    """The bytes of numbers given as a list, a `ctypes` or numpy array, or anything with a buffer.
 
-    Numbers with fractions are no whole numbers; whole numbers are taken for any.
+    Numbers with fractions are refused as integers; integers are accepted as doubles.
     """
     number = c_int if whole else c_double
     try:

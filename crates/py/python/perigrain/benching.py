@@ -1,4 +1,4 @@
-"""Decks run over their knobs: wall time against error."""
+"""Runs decks over ranges of their parameters: wall time against error."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .reading import Table
 
 
 class BenchError(PerigrainError):
-    """A bench that could not be made, or of which something is missing."""
+    """A bench that failed or is incomplete."""
 
 
 def bench(
@@ -29,15 +29,15 @@ def bench(
     variables: Optional[Dict[str, Value]] = None,
     folder: Union[None, str, "os.PathLike[str]"] = None,
 ) -> Table:
-    """Runs a deck once for each setting of its knobs, one after the other, and measures each against a reference: `perigrain bench`.
+    """Runs a deck once for each combination of its knobs and compares each with a reference: `perigrain bench`.
 
     >>> table = bench(text, {"dt": [4e-6, 2e-6, 1e-6]}, measure=["ke", "v_x"])
     >>> table["seconds"], table["ke_error"], table["ke_order_dt"]
 
-    Knobs are index variables of the deck (`variable dt index 1e-6`), and `threads`. Measures are words of thermo output, `c_ID`, `f_ID`,
-    `v_NAME` or formulas, compared with the finest run, or with the forms of `against`, one for each. Each run is a process of its own.
-    Runs, logs, pictures and the table itself are kept in `folder`, and done once: the same call goes on with what is missing.
-    Columns hold numbers, NaN where there are none; those with words (`problem`, names of norms) are lists of texts.
+    Knobs are index variables of the deck (`variable dt index 1e-6`), and `threads`. Measures are thermo keywords, `c_ID`, `f_ID`,
+    `v_NAME` or formulas, compared with the finest run, or with the closed forms in `against`, one for each. Each run is a separate process.
+    Runs, logs, pictures and the table are kept in `folder` and reused: the same call continues with missing runs.
+    Columns hold numbers, NaN for missing ones; text columns (`problem`, names of norms) are lists of strings.
     """
     several = [measure] if isinstance(measure, str) else list(measure)
     forms = [against] if isinstance(against, str) else list(against or [])
@@ -68,7 +68,7 @@ def bench(
 
 
 def _environment() -> Dict[str, str]:
-    """One in which a process finds this package."""
+    """An environment in which a process finds this package."""
     home = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     path = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
     return {**os.environ, "PYTHONPATH": path}

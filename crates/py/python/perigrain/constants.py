@@ -1,4 +1,4 @@
-"""The numbers by which LAMMPS' Python module names kinds of data."""
+"""LAMMPS' numeric constants for kinds of data."""
 
 LAMMPS_AUTODETECT = None
 LAMMPS_NONE = -1

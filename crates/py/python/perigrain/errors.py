@@ -1,4 +1,4 @@
-"""What can go wrong, by name."""
+"""The exceptions of perigrain."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from typing import Any, Dict, List, Optional
 
 
 class PerigrainError(Exception):
-    """Everything that perigrain raises by itself."""
+    """Base class of all exceptions of perigrain."""
 
 
 class DeckError(PerigrainError):
-    """A line is refused, or its run failed; the scene can be used on.
+    """A line is refused, or its run failed; the scene remains usable.
 
     ``code`` is the kind of mistake (``perigrain explain CODE`` in a terminal), ``message`` one sentence, ``line`` and
-    ``column`` (from 1), ``file`` and ``word`` where it stands, ``help`` what to write instead. ``problems`` has all
-    problems, of which these are the first one's. As a text it is what the terminal would show.
+    ``column`` (from 1), ``file`` and ``word`` the position, ``help`` the remedy. ``problems`` has all
+    problems; these attributes are those of the first one. As a string it is the terminal output.
     """
 
     code: str
@@ -39,25 +39,25 @@ class DeckError(PerigrainError):
         self.help = first.get("help", "")
         self._made_of = (problems, text)
 
-    def __reduce__(self):  # so that it comes through queues between processes
+    def __reduce__(self):  # so that it can be sent through queues between processes
         return (type(self), self._made_of)
 
 
 class DataError(PerigrainError, TypeError, ValueError):
-    """An array of another shape or type than what is asked for."""
+    """An array of another shape or type than required."""
 
 
 class StaleError(PerigrainError):
-    """An array looks at particles that have come, gone or changed places since; extract it anew."""
+    """A view of particles that have been added, deleted or reordered since; extract it again."""
 
 
 class BusyError(PerigrainError):
-    """The scene is in the middle of a command, from another thread or around a callback."""
+    """The scene is executing a command, in another thread or around a callback."""
 
 
 class ClosedError(PerigrainError):
-    """There is no scene any more."""
+    """The scene is closed."""
 
 
 class InternalError(PerigrainError):
-    """A fault of perigrain itself; the scene is gone, others in the process go on. Please report it."""
+    """A bug in perigrain; the scene is lost, others in the process continue. Please report it."""

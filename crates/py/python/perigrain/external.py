@@ -1,4 +1,4 @@
-"""`fix external`: forces that a function in Python gives."""
+"""`fix external`: forces from a Python function."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .views import pointer
 
 
 def _columns(given: Any, width: int, what: str) -> bytes:
-    """Numbers as bytes, so many for each particle."""
+    """Numbers as bytes, a fixed count per particle."""
     import numpy
 
     try:
@@ -24,17 +24,17 @@ def _columns(given: Any, width: int, what: str) -> bytes:
 
 
 class External:
-    """The methods of a scene that concern its fixes external."""
+    """The methods of a scene for fixes external."""
 
     _scene: Any
     _outsides: Dict[str, Any]
 
     def set_fix_external_callback(self, fix_id: str, callback: Callable[..., Any], caller: Any = None) -> None:
-        """Has a function give the forces of a `fix external pf/callback`.
+        """Sets the function that computes the forces of a `fix external pf/callback`.
 
         It is called as `callback(caller, step, n, ids, x, f)`, with numpy arrays `(n,)`, `(n, 3)`, `(n, 3)`, and writes into `f`.
-        All three are copies for this call: `x` cannot be written, and the scene is at work, so that of its methods only those
-        that begin with `fix_external_set_` may be used. An exception ends the run in that step and is raised by the command that ran.
+        All three are copies for this call: `x` is read-only, and since the scene is executing, only its methods
+        that begin with `fix_external_set_` may be called. An exception ends the run in that step and is raised by the command that ran.
         """
         if not callable(callback):
             raise DataError(f"a function is needed, not {type(callback).__name__}")
@@ -49,22 +49,22 @@ class External:
         self._outside(fix_id).call(called)
 
     def fix_external_get_force(self, fix_id: str) -> Any:
-        """A pointer `p[i][j]` into the forces that a fix external adds, in the order in which particles stand."""
+        """A pointer `p[i][j]` into the forces that a fix external adds, in storage order."""
         return pointer(self._external_forces(fix_id))
 
     def fix_external_set_energy_global(self, fix_id: str, eng: float) -> None:
-        """Says the potential energy of the forces, the scalar of the fix."""
+        """Sets the potential energy of the forces, the scalar of the fix."""
         self._outside(fix_id).energy(float(eng))
 
     def fix_external_set_virial_global(self, fix_id: str, virial: Sequence[float]) -> None:
-        """Says the virial of the forces: xx, yy, zz, xy, xz, yz."""
+        """Sets the virial of the forces: xx, yy, zz, xy, xz, yz."""
         six = [float(a) for a in virial]
         if len(six) != 6:
             raise DataError(f"a virial is six numbers, not {len(six)}")
         self._outside(fix_id).virial(six)
 
     def fix_external_set_vector_length(self, fix_id: str, length: int) -> None:
-        """Says how many values the fix has in its vector; not within a run."""
+        """Sets the length of the fix's vector; not allowed within a run."""
         self._outside(fix_id)
         self.command(f"fix_modify {fix_id} vector {int(length)}")  # type: ignore[attr-defined]
 
@@ -75,11 +75,11 @@ class External:
         self._outside(fix_id).value(max(int(idx), 0), float(val))
 
     def fix_external_set_energy_peratom(self, fix_id: str, eng: Any) -> None:
-        """Says the energy of each particle for `compute pe/atom`, in the order in which they stand; it counts in no sum."""
+        """Sets the energy of each particle for `compute pe/atom`, in storage order; it is not part of any sum."""
         self._external_each(fix_id, _columns(eng, 1, "energies"), None)
 
     def fix_external_set_virial_peratom(self, fix_id: str, virial: Any) -> None:
-        """Says the virial of each particle for `compute stress/atom`: six numbers each, xx, yy, zz, xy, xz, yz."""
+        """Sets the virial of each particle for `compute stress/atom`: six numbers each, xx, yy, zz, xy, xz, yz."""
         self._external_each(fix_id, None, _columns(virial, 6, "virials"))
 
     def _external_each(self, fix_id: str, energy: Optional[bytes], virial: Optional[bytes]) -> None:
@@ -97,7 +97,7 @@ class External:
         return memory
 
     def _outside(self, fix_id: str) -> Any:
-        # Within a callback the scene cannot be asked; whom the fix talks to is known then.
+        # Within a callback the scene is busy; the link to the fix is known then.
         known: Optional[Any] = self._outsides.get(fix_id)
         if known is not None and self._scene.at_work:
             return known

@@ -1,4 +1,4 @@
-"""The class `lammps`: perigrain behind the names, arguments and results of LAMMPS' Python module."""
+"""The class `lammps`: perigrain with the names, arguments and results of LAMMPS' Python module."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .errors import DataError
 from .external import External
 from .views import pointer
 
-# The LAMMPS whose language decks are in.
+# The LAMMPS version of the deck language.
 VERSION = 20250722
 
-# Packages of LAMMPS of which there are styles here.
+# LAMMPS packages with styles available here.
 PACKAGES = ["BPM", "GRANULAR", "PERI", "RIGID"]
 
-# LAMMPS' codes of the columns of particles that every scene may have.
+# LAMMPS' codes of the columns that every scene may have.
 _DATATYPES = {
     **dict.fromkeys(["id", "type", "mask", "image", "molecule"], C.LAMMPS_INT),
     **dict.fromkeys(["x", "v", "f", "omega", "torque", "x0", "quat"], C.LAMMPS_DOUBLE_2D),
@@ -48,10 +48,10 @@ class _Commands:
 class lammps(External, Absent):
     """A scene, with the methods of LAMMPS' Python class.
 
-    ``cmdargs`` are the words of a command line (`-log`, `-screen`, `-var`, `-echo`, `-threads` …); what the scene says
-    goes to ``sys.stdout``. Several scenes may live side by side. What goes wrong is a ``perigrain.DeckError`` that knows
-    line, column and remedy, and the scene can be used on. ``ptr`` is what a function of ``fix python/invoke`` is given:
-    the scene of a run that is under way.
+    ``cmdargs`` are the words of a command line (`-log`, `-screen`, `-var`, `-echo`, `-threads` …); screen output
+    goes to ``sys.stdout``. Several scenes may exist at the same time. Errors are ``perigrain.DeckError`` with
+    line, column and remedy, after which the scene remains usable. ``ptr`` is the argument of a function of ``fix python/invoke``:
+    the scene of the current run.
     """
 
     def __init__(
@@ -76,19 +76,19 @@ class lammps(External, Absent):
     # -- lines of a deck
 
     def command(self, cmd: str) -> None:
-        """Works off one line."""
+        """Executes one line."""
         self._ended(self._scene.command(_text(cmd), "command"))
 
     def commands_list(self, cmdlist: Sequence[str]) -> None:
-        """Works off lines; one that ends in `&` goes on in the next."""
+        """Executes lines; one that ends in `&` continues in the next."""
         self._ended(self._scene.command("\n".join(_text(line).rstrip("\n") for line in cmdlist), "commands_list"))
 
     def commands_string(self, multicmd: str) -> None:
-        """Works off a text of several lines."""
+        """Executes a text of several lines."""
         self._ended(self._scene.command(_text(multicmd), "commands_string"))
 
     def file(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Works off a deck from a file."""
+        """Executes a deck from a file."""
         self._ended(self._scene.file(os.fspath(path)))
 
     @property
@@ -99,35 +99,35 @@ class lammps(External, Absent):
     @staticmethod
     def _ended(status: Optional[int]) -> None:
         if status is not None:
-            # `quit` ends the program, as with LAMMPS; here it can be caught.
+            # `quit` ends the program, as in LAMMPS; here it can be caught.
             raise SystemExit(status)
 
     # -- the scene as a whole
 
     def close(self) -> None:
-        """Ends the scene; arrays that look into it are stale from then on."""
+        """Closes the scene; views of its memory become stale."""
         self._scene.close()
         self.opened = 0
         self.lmp = None  # type: ignore[assignment]
 
     def finalize(self) -> None:
-        """Ends the scene."""
+        """Closes the scene."""
         self.close()
 
     def version(self) -> int:
-        """The version of LAMMPS whose language decks are in, as a date; perigrain's own is `perigrain.__version__`."""
+        """The LAMMPS version of the deck language, as a date; perigrain's own version is `perigrain.__version__`."""
         return VERSION
 
     def get_os_info(self) -> str:
-        """What this runs on."""
+        """A description of the platform."""
         return f"{platform.system()} {platform.release()} on {platform.machine()}"
 
     def get_natoms(self) -> int:
-        """How many particles there are."""
+        """The number of particles."""
         return self._scene.count()
 
     def extract_box(self) -> Any:
-        """`[boxlo, boxhi, xy, yz, xz, periodicity, box_change]` as LAMMPS gives it."""
+        """`[boxlo, boxhi, xy, yz, xz, periodicity, box_change]` as in LAMMPS."""
         found = self._scene.domain()
         if found is None:
             raise DataError("there is no box: `create_box` comes first")
@@ -135,39 +135,39 @@ class lammps(External, Absent):
         return list(lo), list(hi), xy, yz, xz, [int(p) for p in periodic], 0
 
     def reset_box(self, boxlo: Sequence[float], boxhi: Sequence[float], xy: float, yz: float, xz: float) -> None:
-        """Gives an empty box other corners, and a triclinic one other tilts."""
+        """Changes the bounds of an empty box, and the tilts of a triclinic one."""
         self._scene.reset_box(_three(boxlo, "boxlo"), _three(boxhi, "boxhi"), _three([xy, xz, yz], "the tilts"))
 
     def get_thermo(self, name: str) -> float:
-        """The present value of a word of thermo output, or of `c_ID`, `f_ID`, `v_NAME`, or of a formula of these."""
+        """The current value of a thermo keyword, of `c_ID`, `f_ID`, `v_NAME`, or of a formula of these."""
         return self._scene.number(_text(name))
 
     def eval(self, expr: str) -> float:
-        """The value of a formula as an equal-style variable would have it."""
+        """The value of a formula, as in an equal-style variable."""
         return self._scene.number(_text(expr))
 
     def expand(self, line: str) -> str:
-        """A text with `$x`, `${name}` and `$(formula)` replaced."""
+        """A text with `$x`, `${name}` and `$(formula)` substituted."""
         return self._scene.expand(_text(line))
 
     def last_thermo(self) -> Optional[Dict[str, Union[int, float]]]:
-        """The latest row of thermo output by its headings; `None` before the first."""
+        """The last row of thermo output by its headings; `None` before the first."""
         row = self._scene.last_row()
         return None if row is None else dict(row[1])
 
     @property
     def last_thermo_step(self) -> int:
-        """The step of the latest row of thermo output; -1 before the first."""
+        """The step of the last row of thermo output; -1 before the first."""
         row = self._scene.last_row()
         return -1 if row is None else row[0]
 
     @property
     def is_running(self) -> bool:
-        """Whether a command is being worked off, as seen from a callback or another thread."""
+        """Whether a command is executing, for callbacks and other threads."""
         return self._scene.at_work
 
     def extract_setting(self, name: str) -> int:
-        """A setting as the formula `extract_setting(name)` has it; -1 if there is no such setting."""
+        """A setting, as in the formula `extract_setting(name)`; -1 if it does not exist."""
         try:
             return int(self._scene.number(f"extract_setting({_text(name)})"))
         except Exception:
@@ -176,19 +176,19 @@ class lammps(External, Absent):
             return -1
 
     def extract_global_datatype(self, name: str) -> int:
-        """LAMMPS' code of the type of a number of the scene."""
+        """LAMMPS' type code of a global number."""
         found = self._scene.global_(_text(name))
         return C.LAMMPS_NONE if found is None else found[0]
 
     def extract_global(self, name: str, dtype: Optional[int] = None) -> Any:
-        """A number of the scene (`dt`, `ntimestep`, `boxlo`, `units` …), a list of several; `None` if there is none."""
+        """A global number (`dt`, `ntimestep`, `boxlo`, `units` …), several as a list; `None` if it does not exist."""
         found = self._scene.global_(_text(name))
         return None if found is None else found[1]
 
     # -- particles
 
     def extract_atom_datatype(self, name: str) -> int:
-        """LAMMPS' code of the type of a column of particles."""
+        """LAMMPS' type code of a column of particles."""
         name = _text(name)
         if name[:2] in ("i_", "d_"):
             return C.LAMMPS_INT if name[0] == "i" else C.LAMMPS_DOUBLE
@@ -202,10 +202,10 @@ class lammps(External, Absent):
         return memory.width if dtype == C.LMP_SIZE_COLS else memory.rows
 
     def extract_atom(self, name: str, dtype: Optional[int] = None) -> Any:
-        """A pointer into a column of particles, `p[i]` or `p[i][j]`, in the order in which they stand; `None` without it.
+        """A pointer into a column of particles, `p[i]` or `p[i][j]`, in storage order; `None` if it does not exist.
 
-        What is written there counts from the next command on. After particles have come, gone or changed places it
-        reads NaN (whole numbers: the least there is).
+        Changes take effect at the next command. After particles have been added, deleted or reordered it
+        reads NaN (for integers the smallest one).
         """
         memory = self._scene.memory(_text(name))
         if memory is not None:
@@ -214,16 +214,16 @@ class lammps(External, Absent):
         return None if masses is None else cast(array_of(masses, False), POINTER(c_double))
 
     def map_atom(self, atomid: int) -> int:
-        """Where the particle with an id stands; -1 if there is none."""
+        """The index of the particle with an id; -1 if it does not exist."""
         place = self._scene.place(int(atomid))
         return -1 if place is None else place
 
     def encode_image_flags(self, ix: int, iy: int, iz: int) -> int:
-        """Three counts of crossed faces in one number."""
+        """Packs three image counts into one number."""
         return ((ix + 512) & 1023) | (((iy + 512) & 1023) << 10) | (((iz + 512) & 1023) << 20)
 
     def decode_image_flags(self, image: int) -> List[int]:
-        """The three counts that such a number holds."""
+        """Unpacks the three image counts."""
         return [((image >> shift) & 1023) - 512 for shift in (0, 10, 20)]
 
     def create_atoms(
@@ -236,7 +236,7 @@ class lammps(External, Absent):
         image: Optional[Sequence[int]] = None,
         shrinkexceed: bool = False,
     ) -> int:
-        """Makes particles at `x` (three numbers each); those outside the box are left out. How many were made."""
+        """Creates particles at `x` (three numbers each); those outside the box are skipped. Returns the number created."""
         for given, width, what in ((atomid, 1, "atomid"), (atype, 1, "atype"), (x, 3, "x"), (v, 3, "v"), (image, 1, "image")):
             if given is not None and _length(given) != n * width:
                 raise DataError(f"`{what}` of {n} particles are {n * width} numbers, not {_length(given)}")
@@ -249,7 +249,7 @@ class lammps(External, Absent):
             bool(shrinkexceed),
         )
 
-    # -- values of computes, fixes and variables: copies, taken when asked for
+    # -- values of computes, fixes and variables: copies, evaluated on request
 
     def _compute(self, cid: str, cstyle: int, ctype: int) -> Any:
         return _offered("compute", _text(cid), self._scene.compute(_text(cid)), cstyle, ctype)
@@ -258,12 +258,12 @@ class lammps(External, Absent):
         return _offered("fix", _text(fid), self._scene.fix(_text(fid)), fstyle, ftype)
 
     def extract_compute(self, cid: str, cstyle: int, ctype: int) -> Any:
-        """Values of a compute as they are now: a number, or a pointer to a copy of them."""
+        """Current values of a compute: a number, or a pointer to a copy."""
         found = self._compute(cid, cstyle, ctype)
         return pointer_to(*found) if isinstance(found, tuple) else found
 
     def extract_fix(self, fid: str, fstyle: int, ftype: int, nrow: int = 0, ncol: int = 0) -> Any:
-        """Values of a fix: one number of its global ones (row and column from 0), or a pointer to a copy."""
+        """Values of a fix: one of its global numbers (row and column from 0), or a pointer to a copy."""
         found = self._fix(fid, fstyle, ftype)
         if not isinstance(found, tuple):
             return found
@@ -277,9 +277,9 @@ class lammps(External, Absent):
         return numbers[at]
 
     def extract_variable(self, name: str, group: Optional[str] = None, vartype: Optional[int] = None) -> Any:
-        """What a variable says: a number, a text, or an array of `ctypes`; `None` if there is no such variable.
+        """The value of a variable: a number, a text, or an array of `ctypes`; `None` if it does not exist.
 
-        In arrays per particle those outside `group` have 0.
+        Per-atom arrays are 0 outside `group`.
         """
         found = self._scene.variable(_text(name))
         if found is None:
@@ -299,15 +299,15 @@ class lammps(External, Absent):
         return out
 
     def set_variable(self, name: str, value: Any) -> int:
-        """Gives a variable of style string another text; 0, or -1 if there is no such variable."""
+        """Sets a variable of style string; 0, or -1 if it does not exist."""
         return self.set_string_variable(name, value)
 
     def set_string_variable(self, name: str, value: Any) -> int:
-        """Gives a variable of style string another text; 0, or -1 if there is no such variable."""
+        """Sets a variable of style string; 0, or -1 if it does not exist."""
         return self._set(self._scene.set_text, name, str(value))
 
     def set_internal_variable(self, name: str, value: float) -> int:
-        """Gives a variable of style internal another number; 0, or -1 if there is no such variable."""
+        """Sets a variable of style internal; 0, or -1 if it does not exist."""
         return self._set(self._scene.set_number, name, float(value))
 
     def _set(self, how: Any, name: str, value: Any) -> int:
@@ -341,19 +341,19 @@ class lammps(External, Absent):
         self._scene.scatter(_text(name), order, raw, dtype == 0)
 
     def gather_atoms(self, name: str, dtype: int, count: int) -> Any:
-        """`count` numbers of each particle by its id, as an array of `ctypes` (type 0: whole numbers, 1: any)."""
+        """`count` numbers of each particle in id order, as an array of `ctypes` (type 0: integers, 1: doubles)."""
         return self._gather(name, dtype, count, "ids")
 
     def gather_atoms_concat(self, name: str, dtype: int, count: int) -> Any:
-        """The same in the order in which particles stand."""
+        """The same in storage order."""
         return self._gather(name, dtype, count, "places")
 
     def gather_atoms_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int]) -> Any:
-        """The same of the particles with these ids."""
+        """The same for the particles with these ids."""
         return self._gather(name, dtype, count, _chosen(ids, ndata))
 
     def scatter_atoms(self, name: str, dtype: int, count: int, data: Any) -> None:
-        """Puts `count` numbers of each particle, by its id, in."""
+        """Writes `count` numbers of each particle, in id order."""
         self._scatter(name, dtype, count, "ids", data, self.get_natoms())
 
     def scatter_atoms_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int], data: Any) -> None:
@@ -361,46 +361,46 @@ class lammps(External, Absent):
         self._scatter(name, dtype, count, _chosen(ids, ndata), data, ndata)
 
     def gather(self, name: str, dtype: int, count: int) -> Any:
-        """As `gather_atoms`; of computes (`c_ID`), fixes (`f_ID`) and properties (`d_NAME` …) too."""
+        """Like `gather_atoms`, also for computes (`c_ID`), fixes (`f_ID`) and properties (`d_NAME` …)."""
         return self._gather(name, dtype, count, "ids")
 
     def gather_concat(self, name: str, dtype: int, count: int) -> Any:
-        """The same in the order in which particles stand."""
+        """The same in storage order."""
         return self._gather(name, dtype, count, "places")
 
     def gather_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int]) -> Any:
-        """The same of the particles with these ids."""
+        """The same for the particles with these ids."""
         return self._gather(name, dtype, count, _chosen(ids, ndata))
 
     def scatter(self, name: str, dtype: int, count: int, data: Any) -> None:
-        """As `scatter_atoms`."""
+        """Like `scatter_atoms`."""
         self._scatter(name, dtype, count, "ids", data, self.get_natoms())
 
     def scatter_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int], data: Any) -> None:
-        """As `scatter_atoms_subset`."""
+        """Like `scatter_atoms_subset`."""
         self._scatter(name, dtype, count, _chosen(ids, ndata), data, ndata)
 
     def gather_bonds(self) -> Tuple[int, Any]:
-        """How many bonds there are, and type and two ids of each."""
+        """The number of bonds, and type and two ids of each."""
         bonds = self._scene.bonds()
         flat = [k for bond in bonds for k in bond]
         return len(bonds), (c_int * len(flat))(*flat)
 
     def gather_angles(self) -> Tuple[int, Any]:
-        """There are none."""
+        """Always empty."""
         return 0, (c_int * 0)()
 
     gather_dihedrals = gather_angles
     gather_impropers = gather_angles
 
-    # -- what there is
+    # -- queries
 
     def available_styles(self, category: str) -> List[str]:
         """The styles of a category (`pair`, `fix`, `compute`, `dump`, `region`, `command` …)."""
         return list(_core.styles(_text(category)) or [])
 
     def has_style(self, category: str, name: str) -> bool:
-        """Whether there is such a style."""
+        """Whether a style exists."""
         return _text(name) in self.available_styles(category)
 
     def available_ids(self, category: str) -> List[str]:
@@ -408,20 +408,20 @@ class lammps(External, Absent):
         return list(self._scene.ids(_text(category)) or [])
 
     def has_id(self, category: str, name: str) -> bool:
-        """Whether there is such an id."""
+        """Whether an id exists."""
         return _text(name) in self.available_ids(category)
 
     def available_plugins(self, category: Optional[str] = None) -> List[Any]:
-        """There are none."""
+        """Always empty."""
         return []
 
     def has_package(self, name: str) -> bool:
-        """Whether styles of a package of LAMMPS are here."""
+        """Whether styles of a LAMMPS package are available."""
         return name in PACKAGES
 
     @property
     def installed_packages(self) -> List[str]:
-        """Packages of LAMMPS of which there are styles here."""
+        """LAMMPS packages with styles available here."""
         return list(PACKAGES)
 
     has_exceptions = True
@@ -435,20 +435,20 @@ class lammps(External, Absent):
     accelerator_config: Dict[str, Any] = {}
 
     def set_show_error(self, flag: bool) -> bool:
-        """Errors are exceptions and not printed, whatever this says."""
+        """Without effect: errors are exceptions and are not printed."""
         return False
 
     def flush_buffers(self) -> None:
-        """Hands all output to the system."""
+        """Flushes all output."""
         self._scene.flush()
 
     def get_mpi_comm(self) -> None:
-        """There is none: perigrain is one process with threads."""
+        """Always `None`: perigrain is one process with threads."""
         return None
 
     @property
     def numpy(self) -> Any:
-        """The methods that give and take numpy arrays."""
+        """Methods with numpy arrays."""
         if self._numpy is None:
             from .np import numpy_wrapper
 
@@ -463,7 +463,7 @@ _TYPES = {C.LMP_TYPE_SCALAR: "number", C.LMP_TYPE_VECTOR: "vector", C.LMP_TYPE_A
 
 
 def _offered(kind: str, id_: str, found: Tuple[Any, ...], style: int, type_: int) -> Any:
-    """What is meant of all that a compute or fix has: a number, or bytes with columns (1 for vectors)."""
+    """Selects from the results of a compute or fix: a number, or bytes with columns (1 for vectors)."""
     scalar, vector, array, atom, local = found
     rows = {C.LMP_STYLE_GLOBAL: array, C.LMP_STYLE_ATOM: atom, C.LMP_STYLE_LOCAL: local}
     if style not in rows:

@@ -1,4 +1,4 @@
-"""Decks that are only looked at: what is wrong with them, and what their runs would do."""
+"""Checks decks without running them: their problems, and the steps of their runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Value = Union[str, int, float, Sequence[Union[str, int, float]]]
 
 @dataclass(frozen=True)
 class Problem:
-    """One problem of a deck: how bad (`error`, `warning`, `note`), its code, a sentence, where, what to write instead."""
+    """One problem of a deck: severity (`error`, `warning`, `note`), code, message, position, remedy."""
 
     severity: str
     code: str
@@ -26,7 +26,7 @@ class Problem:
 
 
 class Report(List[Problem]):
-    """All problems of a deck, in the order of its lines; as a text what `perigrain check` shows."""
+    """All problems of a deck, in line order; as a string the output of `perigrain check`."""
 
     def __init__(self, problems: Sequence[Problem], text: str) -> None:
         super().__init__(problems)
@@ -34,7 +34,7 @@ class Report(List[Problem]):
 
     @property
     def ok(self) -> bool:
-        """Whether the deck would be run: it may have warnings."""
+        """Whether the deck would run: it may have warnings."""
         return not any(problem.severity == "error" for problem in self)
 
     def __str__(self) -> str:
@@ -47,14 +47,14 @@ class Report(List[Problem]):
 
 
 class Text(str):
-    """A text that notebooks show as it is."""
+    """A text that notebooks display verbatim."""
 
     def _repr_html_(self) -> str:
         return f"<pre>{html.escape(self)}</pre>"
 
 
 def _index(given: Optional[Dict[str, Value]]) -> List[Any]:
-    """Index variables as on a command line."""
+    """Index variables, as on a command line."""
     out = []
     for name, value in (given or {}).items():
         several = value if isinstance(value, (list, tuple)) else [value]
@@ -63,14 +63,14 @@ def _index(given: Optional[Dict[str, Value]]) -> List[Any]:
 
 
 def check(text: str, *, name: str = "deck", folder: str = "", variables: Optional[Dict[str, Value]] = None) -> Report:
-    """Every problem of a deck at once; nothing is computed and no file written.
+    """All problems of a deck at once; nothing is computed and no file is written.
 
-    Files that it names are looked for in `folder`; `variables` are those of a command line.
+    Files named in the deck are looked up in `folder`; `variables` are those of a command line.
     """
     problems, shown = _core.check(text, name, folder, _index(variables))
     return Report([Problem(**p) for p in problems], shown)
 
 
 def plan(text: str, *, name: str = "deck", folder: str = "", variables: Optional[Dict[str, Value]] = None) -> Text:
-    """What each run of a deck would do in its steps, in which order, and what was left out and why; no step is made."""
+    """The operations of each run of a deck in order, and those omitted with the reason; no steps are run."""
     return Text(_core.plan(text, name, folder, _index(variables)))

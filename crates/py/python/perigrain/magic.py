@@ -1,4 +1,4 @@
-"""`%load_ext perigrain`, then `%%perigrain [NAME]` above a cell that holds lines of a deck."""
+"""`%load_ext perigrain`, then `%%perigrain [NAME]` above a cell with lines of a deck."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from .scene import Scene
 
 
 def load(shell: Any) -> None:
-    """Makes the magic known to IPython."""
+    """Registers the magic with IPython."""
 
     def perigrain(line: str, cell: str) -> Any:
-        """Lines of a deck, worked off by the scene NAME (`scene`), which is made if there is none; `new` begins another."""
+        """Executes lines of a deck in the scene NAME (default `scene`), which is created if missing; `new` starts another."""
         words = line.split()
         new = "new" in words
         name = next((word for word in words if word != "new"), "scene")
@@ -24,7 +24,7 @@ def load(shell: Any) -> None:
         try:
             scene.do(cell)
         except DeckError as e:
-            # The place in the cell says more than Python's own trace.
+            # The position in the cell is more useful than Python's traceback.
             print(e, file=sys.stderr)
             raise _Told() from None
 
@@ -32,7 +32,7 @@ def load(shell: Any) -> None:
 
 
 class _Told(Exception):
-    """Ends a cell whose mistake has been told."""
+    """Ends a cell after its error has been printed."""
 
     def _render_traceback_(self) -> Any:
         return ["the cell ends here; the scene can be used on"]

@@ -1,4 +1,4 @@
-"""`lammps.numpy`: the methods that give and take numpy arrays."""
+"""`lammps.numpy`: methods with numpy arrays as arguments and results."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .views import view
 
 
 class numpy_wrapper(Named):
-    """Columns of particles as arrays that look into the scene's memory; all else as copies."""
+    """Columns of particles as views of the scene's memory; everything else as copies."""
 
     def __init__(self, lmp: Any) -> None:
         self.lmp = lmp
@@ -22,10 +22,10 @@ class numpy_wrapper(Named):
     def extract_atom(
         self, name: str, dtype: Optional[int] = None, nelem: Optional[int] = None, dim: Optional[int] = None
     ) -> Any:
-        """A column of particles in the order in which they stand, `(n,)` or `(n, 3)`; `None` if the scene has none.
+        """A column of particles in storage order, `(n,)` or `(n, 3)`; `None` if the scene has none.
 
-        It looks into the scene's memory: what is written into it counts from the next command on. `id` cannot be written.
-        When particles come, go or change places it is stale and raises `perigrain.StaleError`.
+        It is a view of the scene's memory: changes take effect at the next command. `id` is read-only.
+        When particles are added, deleted or reordered the view becomes stale and raises `perigrain.StaleError`.
         """
         memory = self.lmp._scene.memory(name)
         if memory is None:
@@ -35,30 +35,30 @@ class numpy_wrapper(Named):
         return looks if nelem is None else looks[:nelem]
 
     def extract_compute(self, cid: str, cstyle: int, ctype: int) -> Any:
-        """Values of a compute as they are now, as a copy."""
+        """Current values of a compute, as a copy."""
         return _shaped(self.lmp._compute(cid, cstyle, ctype), ctype)
 
     def extract_fix(self, fid: str, fstyle: int, ftype: int, nrow: int = 0, ncol: int = 0) -> Any:
-        """Values of a fix: one number of its global ones, else a copy of all."""
+        """Values of a fix: one of its global numbers, else a copy of all."""
         if fstyle == C.LMP_STYLE_GLOBAL:
             return self.lmp.extract_fix(fid, fstyle, ftype, nrow, ncol)
         return _shaped(self.lmp._fix(fid, fstyle, ftype), ftype)
 
     def extract_variable(self, name: str, group: Optional[str] = None, vartype: Optional[int] = None) -> Any:
-        """What a variable says: a number, a text, or an array."""
+        """The value of a variable: a number, a text, or an array."""
         found = self.lmp.extract_variable(name, group, vartype)
         return numpy.array(found) if hasattr(found, "_length_") else found
 
     def fix_external_get_force(self, fix_id: str) -> Any:
-        """The forces that a fix external adds, `(n, 3)`: looks into the scene's memory as `extract_atom` does."""
+        """The forces that a fix external adds, `(n, 3)`: a view of the scene's memory, as by `extract_atom`."""
         return view(self.lmp._external_forces(fix_id))
 
     def fix_external_set_energy_peratom(self, fix_id: str, eng: Any) -> None:
-        """Says the energy of each particle, as the method of the scene."""
+        """Sets the energy of each particle, like the method of the scene."""
         self.lmp.fix_external_set_energy_peratom(fix_id, eng)
 
     def fix_external_set_virial_peratom(self, fix_id: str, virial: Any) -> None:
-        """Says the virial of each particle, as the method of the scene."""
+        """Sets the virial of each particle, like the method of the scene."""
         self.lmp.fix_external_set_virial_peratom(fix_id, virial)
 
     def gather_bonds(self) -> Any:
@@ -67,21 +67,21 @@ class numpy_wrapper(Named):
         return numpy.array(flat, dtype=numpy.int32).reshape(-1, 3)
 
     def gather_angles(self) -> Any:
-        """There are none."""
+        """Always empty."""
         return numpy.zeros((0, 4), dtype=numpy.int32)
 
     def gather_dihedrals(self) -> Any:
-        """There are none."""
+        """Always empty."""
         return numpy.zeros((0, 5), dtype=numpy.int32)
 
     gather_impropers = gather_dihedrals
 
     def darray(self, raw_ptr: Any, nelem: int, dim: int = 1) -> Any:
-        """A copy of numbers that a pointer of `extract_atom`, `extract_compute` … leads to."""
+        """A copy of the numbers at a pointer returned by `extract_atom`, `extract_compute` …."""
         return self._copied(raw_ptr, nelem, dim, numpy.float64)
 
     def iarray(self, c_int_type: Any, raw_ptr: Any, nelem: int, dim: int = 1) -> Any:
-        """A copy of whole numbers that a pointer leads to."""
+        """A copy of the integers at a pointer."""
         return self._copied(raw_ptr, nelem, dim, numpy.dtype(c_int_type))
 
     @staticmethod

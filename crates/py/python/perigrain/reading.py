@@ -12,20 +12,20 @@ from .errors import DataError
 
 Path = Union[str, "os.PathLike[str]"]
 
-# What stands before the first row of a run, and behind its last.
+# The lines before the first row of a run, and after its last.
 _BEGIN = "Per MPI rank memory allocation"
 _END = "Loop time of"
 
 
 class Table(Dict[str, Any]):
-    """A mapping of columns by heading, as rows of thermo output: ``table["Step"]``, ``pandas.DataFrame(table)``.
+    """A mapping of columns by heading, such as thermo output: ``table["Step"]``, ``pandas.DataFrame(table)``.
 
-    ``len(table)`` is the number of rows, ``table.runs`` has the rows of each run by itself.
+    ``len(table)`` is the number of rows, ``table.runs`` has the rows of each run separately.
     """
 
     def __init__(self, columns: Dict[str, Any], runs: Optional[List["Table"]] = None) -> None:
         super().__init__(columns)
-        #: The rows of each `run` by itself.
+        #: The rows of each `run` separately.
         self.runs: List["Table"] = [self] if runs is None else runs
 
     @property
@@ -66,9 +66,9 @@ class Table(Dict[str, Any]):
 
 
 def read_log(path: Path) -> Table:
-    """All rows of thermo output in a log file, of perigrain or of LAMMPS (styles `one`, `custom`, `multi`, `yaml`).
+    """All thermo output in a log file of perigrain or LAMMPS (styles `one`, `custom`, `multi`, `yaml`).
 
-    Where runs have different columns, those that a row does not have are NaN; ``runs`` has each run by itself.
+    If runs have different columns, missing values are NaN; ``runs`` has each run separately.
     """
     with _opened(path) as file:
         blocks = list(_blocks(file))
@@ -76,7 +76,7 @@ def read_log(path: Path) -> Table:
 
 
 def joined(runs: List[Table]) -> Table:
-    """Tables one below the other."""
+    """Concatenates tables by rows."""
     import numpy
 
     names = list(dict.fromkeys(name for run in runs for name in run))
@@ -88,7 +88,7 @@ def joined(runs: List[Table]) -> Table:
 
 
 def _blocks(lines: Any) -> Iterator[List[str]]:
-    """The lines between a run's beginning and its end, or the end of a log that was cut off."""
+    """The lines between a run's beginning and its end, or the end of an incomplete log."""
     block: Optional[List[str]] = None
     for line in lines:
         if line.startswith(_BEGIN):
@@ -134,7 +134,7 @@ def _multi(block: List[str]) -> Table:
 
 
 def _numbers(names: List[str], rows: List[List[str]]) -> Table:
-    """Rows of numbers; lines in between that say something else (warnings) are left out."""
+    """Rows of numbers; other lines in between (warnings) are skipped."""
     import numpy
 
     kept = []
@@ -155,7 +155,7 @@ def _numbers(names: List[str], rows: List[List[str]]) -> Table:
 
 
 class Frame(Table):
-    """Particles at one moment: columns by name, `step`, `time` (where it is known), `box` and `periodic`."""
+    """Particles at one time: columns by name, `step`, `time` (if known), `box` and `periodic`."""
 
     def __init__(self, columns: Dict[str, Any], step: int, box: Any, periodic: Tuple[bool, ...], time: Optional[float]) -> None:
         super().__init__(columns)
@@ -222,7 +222,7 @@ def _column(words: List[str]) -> Any:
 
 
 def read_restart(path: Path) -> Frame:
-    """The particles of a restart file that perigrain has written: every column the scene has, by LAMMPS' names."""
+    """The particles of a restart file of perigrain: every column of the scene, by LAMMPS' names."""
     from .lmp import lammps
 
     with lammps(cmdargs=["-log", "none", "-screen", "none"]) as lmp:
@@ -231,7 +231,7 @@ def read_restart(path: Path) -> Frame:
 
 
 def frame_of(lmp: Any) -> Frame:
-    """A copy of all that the particles of a scene have now."""
+    """A copy of all current particle data of a scene."""
     import numpy
 
     names = "id type mask molecule image x v f omega torque x0 quat radius rmass vfrac temperature heatflow".split()

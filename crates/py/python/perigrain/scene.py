@@ -1,4 +1,4 @@
-"""A scene of perigrain's own: a deck that is gone on with from Python, looked at as arrays, values, tables and pictures."""
+"""perigrain's own scene: a deck continued from Python, with arrays, values, tables and pictures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Value = Union[str, int, float, Sequence[Union[str, int, float]]]
 
 
 class Picture(bytes):
-    """A PNG that notebooks show; ``save(path)`` writes it."""
+    """A PNG that notebooks display; ``save(path)`` writes it."""
 
     def _repr_png_(self) -> bytes:
         return bytes(self)
@@ -31,15 +31,15 @@ class Picture(bytes):
 
 
 class Scene:
-    """A deck worked off, and what can be done with it then.
+    """A deck that has been executed, and its continuation from Python.
 
     >>> scene = Scene(text, variables={"v": 30})
     >>> for step in scene.steps(1000, every=100):
     ...     print(step, scene["ke"])
     >>> scene.picture("c_damage")
 
-    ``scene["ke"]`` is the value of a word of thermo output, of ``c_ID``, ``f_ID``, ``v_NAME`` or of a formula; columns
-    of particles (``scene.x``, ``scene.v``, ``scene.id`` …) are arrays that look into its memory and cannot be written.
+    ``scene["ke"]`` is the value of a thermo keyword, of ``c_ID``, ``f_ID``, ``v_NAME`` or of a formula; columns
+    of particles (``scene.x``, ``scene.v``, ``scene.id`` …) are read-only views of its memory.
     ``scene.lammps`` is the same scene with the methods of LAMMPS' module.
     """
 
@@ -64,24 +64,24 @@ class Scene:
             self.do(deck)
 
     def do(self, lines: str) -> "Scene":
-        """Works off lines of a deck."""
+        """Executes lines of a deck."""
         self.lammps.commands_string(lines)
         return self
 
     def file(self, path: Union[str, "os.PathLike[str]"]) -> "Scene":
-        """Works off a deck from a file."""
+        """Executes a deck from a file."""
         self.lammps.file(path)
         return self
 
     def run(self, steps: int) -> "Scene":
-        """Makes steps."""
+        """Runs steps."""
         self.lammps.command(f"run {_whole(steps)}")
         return self
 
     def steps(self, steps: int, every: int = 1) -> Iterator[int]:
-        """Makes steps, and gives the step counter before the first, after every so many, and after the last.
+        """Runs steps, and yields the step number before the first, after every `every` steps, and after the last.
 
-        The steps are those of one run, to the bit, if the scene is only looked at in between.
+        The steps are those of a single run, to the bit, if the scene is only read in between.
         """
         steps, every = _whole(steps), _whole(every)
         if every < 1 or steps < 0:
@@ -101,9 +101,9 @@ class Scene:
 
     @property
     def table(self) -> Table:
-        """The rows of thermo output of all runs so far; a row that a second run repeats counts once.
+        """The thermo output of all runs so far; a row that a second run repeats counts once.
 
-        Where runs have different columns, those that a row does not have are NaN; ``runs`` has the rows of each set of columns.
+        If runs have different columns, missing values are NaN; ``runs`` has the rows of each set of columns.
         """
         import numpy
 
@@ -116,7 +116,7 @@ class Scene:
 
     @property
     def step(self) -> int:
-        """The step counter."""
+        """The step number."""
         return self.lammps.extract_global("ntimestep")
 
     @property
@@ -126,7 +126,7 @@ class Scene:
 
     @property
     def box(self) -> Any:
-        """The corners of the box: a row of lower and upper bound per axis."""
+        """The bounds of the box: one row of lower and upper bound per axis."""
         import numpy
 
         lo, hi, *_ = self.lammps.extract_box()
@@ -148,21 +148,21 @@ class Scene:
         return found
 
     def frame(self) -> Frame:
-        """A copy of all that particles have now."""
+        """A copy of all current particle data."""
         return frame_of(self.lammps)
 
     def compute(self, id_: str) -> Any:
-        """What a compute has: its number, vector, array, or values per particle (a copy), whichever comes first."""
+        """The result of a compute: its scalar, vector, array, or per-atom values (a copy), whichever it has first."""
         scalar, *rest = self.lammps._scene.compute(id_)
         return _first(scalar, rest)
 
     def fix(self, id_: str) -> Any:
-        """The same of a fix."""
+        """The same for a fix."""
         scalar, *rest = self.lammps._scene.fix(id_)
         return _first(scalar, rest)
 
     def calibrate(self, words: str) -> Any:
-        """Says `calibrate` with an id of its own; the vector of results, `c_ID[1]` first.
+        """Runs `calibrate` with an id of its own; returns the vector of results, beginning with `c_ID[1]`.
 
         >>> scene.calibrate("dsm all axis z strain -0.01")[0]
         """
@@ -188,7 +188,7 @@ class Scene:
         return f"<Scene of {len(self)} particles at step {self.step}>"
 
     def close(self) -> None:
-        """Ends it."""
+        """Closes the scene."""
         self.lammps.close()
 
     def __enter__(self) -> "Scene":
@@ -199,7 +199,7 @@ class Scene:
 
 
 def _whole(steps: Any) -> int:
-    """A number of steps; 1e4 is one, 10.5 is none."""
+    """Checks a number of steps: 1e4 is valid, 10.5 is not."""
     try:
         if int(steps) == steps:
             return int(steps)
@@ -225,6 +225,6 @@ def _first(scalar: Optional[float], rest: List[Any]) -> Any:
 
 
 def calibrate(deck: str, words: str, **options: Any) -> Any:
-    """Works a deck off, says `calibrate`, and gives the vector of results: ``calibrate(deck, "dsm all axis z strain 1e-3")``."""
+    """Executes a deck, runs `calibrate`, and returns the vector of results: ``calibrate(deck, "dsm all axis z strain 1e-3")``."""
     with Scene(deck, **options) as scene:
         return scene.calibrate(words)

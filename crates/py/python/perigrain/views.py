@@ -1,4 +1,4 @@
-"""Arrays that look into a scene's own memory and say so when it is not the scene's any more."""
+"""Arrays that are views of a scene's memory and raise an error once they are stale."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .errors import StaleError
 
 
 def pointer(memory: Any) -> Any:
-    """A ``ctypes`` pointer into a column: ``p[i]`` or ``p[i][j]``. It keeps the memory; where it is stale it reads NaN."""
+    """A ``ctypes`` pointer into a column: ``p[i]`` or ``p[i][j]``. It keeps the memory alive; when stale it reads NaN."""
     number = c_int if memory.whole else c_double
     row = number if memory.width == 1 else number * memory.width
     looks: Any = cast(memory.address, POINTER(row))
@@ -18,7 +18,7 @@ def pointer(memory: Any) -> Any:
 
 
 def view(memory: Any) -> Any:
-    """A numpy array that looks into a column."""
+    """A numpy array that is a view of a column."""
     import numpy
 
     looks = numpy.asarray(memory).view(_class())
@@ -30,7 +30,7 @@ _made = None
 
 
 def _class() -> Any:
-    """The class of such arrays; made when first asked for, because numpy is not needed for anything else."""
+    """The class of such arrays; created on first use, because nothing else needs numpy."""
     global _made
     if _made is None:
         _made = _make()
@@ -41,7 +41,7 @@ def _make() -> Any:
     import numpy
 
     def fresh(array: Any) -> Any:
-        """The array without its guard, if it may be looked at."""
+        """The array without its guard, if it is not stale."""
         memory = getattr(array, "_memory", None)
         if memory is not None and memory.stale is not None:
             raise StaleError(f"this array of `{memory.name}` is stale: {memory.stale}; extract it anew")
@@ -57,16 +57,16 @@ def _make() -> Any:
         return value
 
     class View(numpy.ndarray):
-        """Looks into the memory of a scene: later steps change its numbers, and what is written into it counts.
+        """A view of a scene's memory: later steps change its numbers, and changes of them take effect.
 
-        It is stale as soon as particles come, go or change places, or the scene is closed: using it raises
-        ``StaleError`` then, and its numbers are NaN for whoever goes around that. ``copy()`` gives an array of one's own.
+        It becomes stale when particles are added, deleted or reordered, or when the scene is closed: using it then raises
+        ``StaleError``; code that bypasses this check reads NaN. ``copy()`` returns an independent array.
         """
 
         _memory: Any = None
 
         def __array_finalize__(self, parent: Any) -> None:
-            # what owns its numbers looks at nothing
+            # an array that owns its data is not a view
             self._memory = None if self.base is None else getattr(parent, "_memory", None)
 
         def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
@@ -103,7 +103,7 @@ def _make() -> Any:
 
         @property
         def stale(self) -> bool:
-            """Whether it means nothing any more."""
+            """Whether it is stale."""
             return self._memory is not None and self._memory.stale is not None
 
     def guarded(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""A spring to the middle, a push in turns and constant forces by `fix external`; runs with `lammps` and with `perigrain`."""
+"""A spring to the middle, a periodic push and constant forces by `fix external`; runs with `lammps` and with `perigrain`."""
 
 import sys
 

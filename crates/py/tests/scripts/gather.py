@@ -1,4 +1,4 @@
-"""Particles taken out, left, made anew and put back, and a box changed: written for LAMMPS' module, which `sys.argv[1]` may name."""
+"""Particles gathered, deleted, created and scattered, and a changed box: written for LAMMPS' module, which `sys.argv[1]` may name."""
 
 import ctypes
 import importlib
@@ -53,7 +53,7 @@ lmp.commands_string("run 10\nrun 20")
 lmp.commands_list(["run 10", "run 20"])
 show("ke", lmp.get_thermo("ke"))
 
-# All particles go and come again where they were.
+# All particles are deleted and created again at the same positions.
 natoms = lmp.get_natoms()
 lmp.command("delete_atoms group all")
 print("left", lmp.get_natoms())

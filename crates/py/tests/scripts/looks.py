@@ -1,4 +1,4 @@
-"""Everything of a scene that has run, asked for once: written for LAMMPS' module, which `sys.argv[1]` may name."""
+"""All data of a scene after a run, read once: written for LAMMPS' module, which `sys.argv[1]` may name."""
 
 import importlib
 import os

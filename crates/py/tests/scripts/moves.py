@@ -1,4 +1,4 @@
-"""Moves of single particles, taken or taken back by the energy after `run 1 pre no post no`: written for LAMMPS' module, which `sys.argv[1]` may name."""
+"""Moves of single particles, accepted or rejected by the energy after `run 1 pre no post no`: written for LAMMPS' module, which `sys.argv[1]` may name."""
 
 import importlib
 import math

@@ -1,4 +1,4 @@
-"""A deck worked off line by line, places pushed and taken back by id: written for LAMMPS' module, which `sys.argv[1]` may name."""
+"""A deck executed line by line, positions changed and restored by id: written for LAMMPS' module, which `sys.argv[1]` may name."""
 
 import importlib
 import sys

@@ -1,4 +1,4 @@
-"""A value watched while a run goes on in pieces without setup: written for LAMMPS' module, which `sys.argv[1]` may name."""
+"""A value watched during a run in pieces without setup: written for LAMMPS' module, which `sys.argv[1]` may name."""
 
 import importlib
 import os

@@ -1,8 +1,8 @@
-//! Decimal digits of a double, exactly rounded: by whole-number arithmetic where 128 bits hold it, else by `std`.
+//! Decimal digits of a double, exactly rounded: by integer arithmetic where 128 bits suffice, else by `std`.
 
 use std::io::Write;
 
-/// 10^27 is the largest power that leaves room for a shift below.
+/// 10^27 is the largest power that leaves room for the shift below.
 const MOST: i32 = 27;
 
 /// 10^k.
@@ -26,7 +26,7 @@ const TENS: [u128; MOST as usize + 1] = {
     list
 };
 
-/// `size`·10^k rounded to a whole number, ties to even; `None` where 128 bits do not suffice.
+/// `size`·10^k rounded to an integer, ties to even; `None` if 128 bits do not suffice.
 fn scaled(size: f64, k: i32) -> Option<u64> {
     let bits = size.to_bits();
     let exponent = (bits >> 52) as i32 & 0x7ff;
@@ -43,7 +43,7 @@ fn scaled(size: f64, k: i32) -> Option<u64> {
         let value = mantissa * TENS[k as usize];
         (value >> shift, value & ((1 << shift) - 1), 1 << (shift - 1))
     } else {
-        // mantissa·2^-shift / 10^-k, doubled so that half a divisor is whole
+        // mantissa·2^-shift / 10^-k, doubled so that half a divisor is an integer
         let divisor = TENS[-k as usize];
         let (value, divisor) = match shift {
             1..=36 => (mantissa, divisor << shift),
@@ -77,7 +77,8 @@ pub(super) fn significant(out: &mut Vec<u8>, size: f64, count: usize) -> i32 {
 
 /// The same by `std`, for any size and count.
 fn spelled(out: &mut Vec<u8>, size: f64, count: usize) -> i32 {
-    // Rust's `{:e}` rounds the exact binary value, ties to even, as glibc does; only the exponent is spelled otherwise.
+    // Rust's `{:e}` rounds the exact binary value, ties to even, like glibc; only the exponent is formatted
+    // differently.
     let (start, decimals) = (out.len(), count.saturating_sub(1));
     // Writing to a Vec cannot fail.
     let _ = write!(out, "{size:.decimals$e}");
@@ -107,7 +108,7 @@ pub(super) fn fixed(out: &mut Vec<u8>, size: f64, decimals: usize) {
     let _ = write!(out, "{size:.decimals$}");
 }
 
-/// Writes the last `count` digits of a whole number, at most 20.
+/// Writes the last `count` digits of an integer, at most 20.
 fn whole(out: &mut Vec<u8>, mut n: u64, count: usize) {
     let mut digits = [b'0'; 20];
     for digit in digits[20 - count..].iter_mut().rev() {
@@ -129,7 +130,8 @@ mod tests {
 
     #[test]
     fn both_ways_agree() {
-        // A fixed linear congruential stream; sizes from 1e-30 to 1e30, some with few bits so that ties occur.
+        // A fixed linear congruential stream; sizes from 1e-30 to 1e30, some with few bits so that ties
+        // occur.
         let mut state = 1u64;
         let mut quick = 0;
         for round in 0..60_000u32 {

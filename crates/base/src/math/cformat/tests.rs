@@ -1,8 +1,8 @@
-//! The conversions against glibc's own `printf`.
+//! The conversions compared with glibc's `printf`.
 
 use super::*;
 
-/// Bits of a double, format and what glibc 2.36's `printf` makes of them, one per line.
+/// Bits of a double, format, and the output of glibc 2.36's `printf`, one per line.
 const GOLDEN: &str = include_str!("golden.tsv");
 
 #[test]
@@ -17,7 +17,7 @@ fn floats_are_glibcs() {
     }
 }
 
-/// Format, value and glibc's answer.
+/// Format, value and glibc's output.
 const INTEGERS: &[(&str, i64, &str)] = &[
     ("%d", 0, "0"),
     ("%i", -7, "-7"),
@@ -49,13 +49,13 @@ fn integers_are_glibcs() {
 
 #[test]
 fn text_and_mixtures() {
-    // As C prints them.
+    // As printed by C.
     let f = Format::parse("100%% %s: %-6s|%.2s|%3d %g").unwrap();
     let values =
         [Value::Text("a"), Value::Text("bcd"), Value::Text("efgh"), Value::Int(5), Value::Float(0.5)];
     assert_eq!(f.text(&values), "100% a: bcd   |ef|  5 0.5");
     assert_eq!(f.specs().count(), 5);
-    // Our own: a value of another kind is converted rather than misread.
+    // An extension: a value of another type is converted instead of misread.
     assert_eq!(Format::parse("%d %g").unwrap().text(&[Value::Float(2.9), Value::Int(3)]), "2 3");
 }
 
@@ -69,7 +69,7 @@ fn nonsense_is_refused() {
     assert!(Spec::parse("%-12.4e").is_ok());
 }
 
-// As LAMMPS 22Jul2025 writes these numbers into a data file.
+// As written by LAMMPS 22Jul2025 into a data file.
 #[test]
 fn shortest_form_is_read_back() {
     let oracle = [
