@@ -45,6 +45,7 @@ fn generated() -> Vec<(PathBuf, String)> {
 const BOOK: [&str; 2] = [
     "# perigrain\n\n\
      [A short tour](tour.md)\n\n\
+     [Gallery](gallery.md)\n\n\
      # How to\n\n\
      - [A first crack in five minutes](howto/first-crack.md)\n\
      - [Find what is wrong with a deck](howto/wrong-deck.md)\n\

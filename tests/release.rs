@@ -1,9 +1,13 @@
-//! What a release is made of agrees: versions and dates of all files, a changelog that is quickly read and a citation.
+//! What a release is made of agrees: versions and dates, a changelog that is quickly read, a short README, a gallery of all examples.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Lines of a README that is read to its end.
+const README: usize = 90;
 
 /// Lines of a version in the changelog.
 const CHANGES: usize = 60;
@@ -11,12 +15,21 @@ const CHANGES: usize = 60;
 /// What lines of the changelog stand under.
 const GROUPS: [&str; 4] = ["Added", "Changed", "Fixed", "Faster"];
 
+/// Bytes of a picture of the gallery.
+const PICTURE: u64 = 150_000;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).into()
 }
 
 fn read(file: &str) -> String {
     fs::read_to_string(root().join(file)).unwrap()
+}
+
+/// Names in a folder.
+fn names(folder: &str) -> BTreeSet<String> {
+    let entries = fs::read_dir(root().join(folder)).unwrap();
+    entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
 /// What stands behind a key at the beginning of a line.
@@ -58,5 +71,40 @@ fn the_changelog_is_read_in_a_minute() {
             assert!(group, "{name}: {line} is none of {GROUPS:?}");
             assert!(!line.starts_with(' '), "{name}: a change has one line, this is a second one: {line}");
         }
+    }
+}
+
+#[test]
+fn the_readme_is_short_and_names_the_test_command_once() {
+    let text = read("README.md");
+    let lines = text.lines().count();
+    assert!(lines <= README, "README.md has {lines} lines, {README} at most");
+    // `.ci/run` runs it.
+    assert_eq!(
+        text.lines().filter(|line| line.starts_with("cargo test")).collect::<Vec<_>>(),
+        ["cargo test"]
+    );
+}
+
+#[test]
+fn the_gallery_shows_every_example() {
+    let page = read("docs/gallery.md");
+    let (examples, pictures) = (names("examples"), names("docs/gallery"));
+    for name in &examples {
+        assert!(
+            page.contains(&format!("](../examples/{name}/in.")),
+            "docs/gallery.md has no link to a deck of {name}"
+        );
+        assert!(
+            page.contains(&format!("](gallery/{name}.jpg)")),
+            "docs/gallery.md shows no picture of {name}"
+        );
+    }
+    let both = page.clone() + &read("README.md");
+    for picture in &pictures {
+        assert!(both.contains(&format!("gallery/{picture})")), "docs/gallery/{picture} is shown nowhere");
+        let bytes = fs::metadata(root().join("docs/gallery").join(picture)).unwrap().len();
+        let most = if picture.ends_with(".gif") { 2_000_000 } else { PICTURE };
+        assert!(bytes <= most, "docs/gallery/{picture} has {bytes} bytes, {most} at most");
     }
 }

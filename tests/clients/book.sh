@@ -23,4 +23,9 @@ fi
 
 rm -rf "$top/target/book"
 "$mdbook" build "$top/docs" -d "$top/target/book"
+# Pages link to decks of examples, which are no part of `docs`: the book gets copies.
+for deck in "$top"/examples/*/in.*; do
+    install -D -m 644 "$deck" "$top/target/book/${deck#"$top/"}"
+done
+sed -i 's|href="\.\./examples/|href="examples/|g' "$top/target/book/gallery.html" "$top/target/book/print.html"
 python3 "$top/tests/clients/links.py" "$top/target/book"
