@@ -1,6 +1,6 @@
 //! `bond_style` and `bond_coeff`: lines that declare forces along bonds.
 
-use super::build::{Context, Declared, needs_box, style};
+use super::declaration::{Context, Declared, needs_box, style};
 use super::node::{BondNode, FixNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_lang::Args;

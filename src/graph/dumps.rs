@@ -1,6 +1,6 @@
 //! `dump`, `undump`, `dump_modify`, `write_dump`: lines that declare snapshots.
 
-use super::build::{Context, Declared, deletes, find, needs_box, provides, style};
+use super::declaration::{Context, Declared, deletes, find, needs_box, provides, style};
 use super::node::{DumpNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_dumps::DUMPS;

@@ -11,10 +11,6 @@ use perigrain_world::adapted::Coefficient;
 use perigrain_world::{DeclaredLine, GroupId, World};
 use std::collections::BTreeMap;
 
-/// Which node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct NodeId(pub usize);
-
 /// The pair style in force.
 #[derive(Clone)]
 pub struct PairNode {

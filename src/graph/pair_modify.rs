@@ -1,6 +1,6 @@
 //! `pair_modify`: options of LAMMPS' pair styles, of which some here know how types are mixed.
 
-use super::build::{Context, Declared};
+use super::declaration::{Context, Declared};
 use super::node::Graph;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;

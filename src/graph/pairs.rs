@@ -1,6 +1,7 @@
 //! `pair_style`, `pair_coeff`, `peri_modify`: lines that declare forces between pairs of particles.
 
-use super::build::{Context, Declared, declare, keep_line, needs_box, style};
+use super::build::declare;
+use super::declaration::{Context, Declared, keep_line, needs_box, style};
 use super::node::{Graph, PairNode};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Command, Word};

@@ -1,9 +1,12 @@
 //! The deck's lines as nodes: one for each place and name, however often a loop passes it; what has gone makes room.
 
-use super::node::NodeId;
 use perigrain_base::diag::{FileId, Span};
 use perigrain_styles::{Use, UseKind};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Which node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NodeId(pub usize);
 
 /// The three kinds of node that keep LAMMPS' imperative order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! A run whose energy has grown beyond reason ends: where time steps are too long, it is made from nothing.
 
 use super::seal::Sealer;
+use super::thermo::Runaway;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{dot, length};
 use perigrain_base::par;
@@ -15,17 +16,6 @@ use perigrain_world::field::{
     TALLY, TRAVEL, TYPE_MASS, V, X, X0,
 };
 use perigrain_world::{Fields, RunStyle, World};
-
-/// What becomes of a run whose energy has grown beyond reason (`thermo_modify energy`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Runaway {
-    /// It ends with an error.
-    Error,
-    /// The log warns once.
-    Warn,
-    /// Nothing.
-    Ignore,
-}
 
 /// The ratio to the energy at the beginning of the run from which on the energy is beyond reason: of a scene without external
 /// work, or kinetic energy where speeds are beyond reason too.

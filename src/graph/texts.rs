@@ -1,8 +1,8 @@
 //! Texts with values in them, and steps that a variable names, for styles that write during a run.
 
-use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use super::seal::Sealer;
+use super::step_env::RunEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, Word, substitute};
 use perigrain_plan::{Stage, When};

@@ -1,19 +1,28 @@
 //! The step table: which columns, when, and the op that prints a row.
 
+mod printing;
+
 use super::keywords;
 use super::ops::Lost;
-use super::row::Row;
-use super::runaway::Runaway;
-use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_output::log::Log;
 use perigrain_output::thermo::{Column, Layout, Line};
-use perigrain_plan::{Op, Stage, When};
+use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, SealCx, Wants};
+use perigrain_world::World;
 use perigrain_world::bonds::LostBond;
-use perigrain_world::{Face, World};
 use std::collections::BTreeSet;
+
+/// What becomes of a run whose energy has grown beyond reason (`thermo_modify energy`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Runaway {
+    /// It ends with an error.
+    Error,
+    /// The log warns once.
+    Warn,
+    /// Nothing.
+    Ignore,
+}
 
 /// What the step table shows and when.
 #[derive(Clone, Debug)]
@@ -288,76 +297,6 @@ impl Thermo {
         }
         .map_err(|e| e.at(text.span))
     }
-
-    /// At which steps a row is printed.
-    ///
-    /// # Errors
-    /// A variable that is gone.
-    pub fn when(&self, s: &mut Sealer) -> Result<When> {
-        let ends = vec![When::First, When::Last];
-        Ok(match (&self.named, self.every) {
-            (Some(r), _) => When::Any([vec![s.steps(r)?], ends].concat()),
-            (None, 0) => When::Any(ends),
-            (None, n) => When::Any([vec![When::Every(n)], ends].concat()),
-        })
-    }
-
-    /// Refuses a fix whose values are not new at the steps of rows.
-    fn compatible(&self, s: &Sealer, r: &ValueRef) -> Result<()> {
-        let every = s.fix_interval(r);
-        if self.named.is_some() || every <= 1 || self.every % every == 0 {
-            return Ok(());
-        }
-        let text =
-            format!("`{r}` is new every {every} steps only, and thermo output comes every {}", self.every);
-        let help = format!("let the interval of `thermo` be a multiple of {every}");
-        Err(Diagnostic::error(Code::CONFLICT, r.span, text).help(help).into())
-    }
-
-    /// The op that prints rows, with its values requested.
-    ///
-    /// # Errors
-    /// Columns that name what no longer exists.
-    pub fn op(&self, s: &mut Sealer, log: Log) -> Result<Box<dyn Op>> {
-        let when = self.when(s)?;
-        let mut layout = self.layout.clone();
-        layout.norm = self.normalized(s.world());
-        let mut sources = self.sources.clone();
-        if self.built_in && (s.deforms() || box_changes(s.world())) {
-            layout.columns.extend(Column::keyword("vol"));
-            sources.push(Source::Keyword("vol".into(), Span::default()));
-        }
-        let mut readings = vec![];
-        let judged = |source: &Source| match source {
-            Source::Ref(r) if s.is_open(r) => Some(r.span),
-            _ => None,
-        };
-        let spans = sources.iter().map(judged).collect();
-        for source in &sources {
-            readings.push(match source {
-                Source::Keyword(name, span) => s.keyword_total(name, *span, Stage::Output, &when)?,
-                Source::Ref(r) => {
-                    self.compatible(s, r)?;
-                    s.value(r, Stage::Output, &when)?
-                }
-            });
-        }
-        Ok(Box::new(Row {
-            layout,
-            readings,
-            spans,
-            when,
-            log,
-            warn: self.lost == Lost::Warn,
-            shown: usize::MAX,
-        }))
-    }
-}
-
-/// Whether a face of the box follows the particles.
-fn box_changes(w: &World) -> bool {
-    let follows = |f: &Face| matches!(f, Face::Shrink | Face::ShrinkMin);
-    w.domain.as_ref().is_some_and(|d| d.boundary.0.iter().flatten().any(follows))
 }
 
 /// A note at a word that changes nothing here.

@@ -1,9 +1,9 @@
 //! The ops that put values of computes, thermo keywords and variables into slots.
 
 use super::answers::Declared;
-use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use super::measure;
+use super::step_env::RunEnv;
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Value, Vars};
 use perigrain_plan::{About, Needs, Op, OpClass, Span as Rows, Stage, Tick};

@@ -3,7 +3,8 @@
 use super::planning::depends_on_a_run;
 use super::{Mode, Session, brief, commands, later};
 use crate::graph::Role;
-use crate::graph::build::{Context, declare};
+use crate::graph::build::declare;
+use crate::graph::declaration::Context;
 use crate::graph::env::DeckValues;
 use crate::graph::regions::place_following;
 use perigrain_base::diag::Result;

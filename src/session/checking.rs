@@ -1,7 +1,7 @@
 //! Checks across nodes before a run: errors where LAMMPS refuses, warnings where it would run all the same.
 
 use super::Session;
-use crate::graph::build::Context;
+use crate::graph::declaration::Context;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Label, Result, Span};
 use perigrain_lang::{Command, Script, Word};
 use perigrain_styles::common::orthogonal;

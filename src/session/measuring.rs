@@ -1,7 +1,7 @@
 //! Results of an executed deck in numbers: the cost of its runs, and values by their words.
 
 use super::Session;
-use crate::graph::build::Context;
+use crate::graph::declaration::Context;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, nearest};
 use perigrain_lang::{Expr, Kind, RefKind, ValueRef, Word, substitute};

@@ -3,7 +3,7 @@
 use super::Session;
 use super::running::Pass;
 use crate::graph::Role;
-use crate::graph::build::Context;
+use crate::graph::declaration::Context;
 use perigrain_base::diag::Result;
 use perigrain_commands::read_dump::Rerun;
 use perigrain_lang::{Args, Command};

@@ -2,9 +2,11 @@
 
 use super::{Session, refuse};
 use crate::graph::Role;
-use crate::graph::build::{Context, declare};
+use crate::graph::build::declare;
+use crate::graph::declaration::Context;
 use crate::graph::regions::place_all;
-use crate::graph::restarts::{claimable, one_process, pattern, save};
+use crate::graph::restarts::writing::{claimable, save};
+use crate::graph::restarts::{one_process, pattern};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::gate;
 use perigrain_lang::{Args, Command, Word};

@@ -4,7 +4,7 @@ use super::limits::Warden;
 use super::planning::depends_on_a_run;
 use super::{Mode, Session, refuse};
 use crate::graph::Role;
-use crate::graph::build::Context;
+use crate::graph::declaration::Context;
 use crate::graph::dumps::once_dump;
 use crate::graph::env::DeckEnv;
 use crate::graph::ledger;
