@@ -4,8 +4,6 @@ use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::shares::Shares;
 use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
-use crate::lanes::isa::Isa;
-use crate::lanes::single::Single;
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
 use crate::lattice::states::States;
 use crate::law::settle::{columns_of, moment};
@@ -24,7 +22,7 @@ const ROWS: usize = 16;
 /// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. Under
 /// bond-based laws LAMMPS gives each end half of ½ c w V s² |xi|, and the virial one factor V. Under state-based ones the energy
 /// density of a particle is ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
-pub fn tally<K: Isa>(
+pub fn tally(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
@@ -53,7 +51,7 @@ pub fn tally<K: Isa>(
                     one(slot, t);
                 }
             }),
-            true => in_lanes::<K>(families, k, view, (advanced, own), &mut rows),
+            true => in_lanes(families, k, view, (advanced, own), &mut rows),
         }
         if let Some((share, shares)) = share.zip(shares).filter(|_| !rows.is_empty()) {
             rows_everywhere(&families.lattices[k], (share, shares.me), &mut rows);
@@ -65,7 +63,7 @@ pub fn tally<K: Isa>(
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
         own(families, view, p as usize, (&list.state, record), scale(p as usize), t);
     }
-    list::energy::tally::<K>(families, t, (advanced, cell, shares));
+    list::energy::tally(families, t, (advanced, cell, shares));
 }
 
 /// Sums of `row(k, sum)` for `k` below `n`, each row by itself.
@@ -151,13 +149,14 @@ fn whole_row(
 }
 
 /// Energy and virial of each row of a body of one volume, several cells at a time.
-fn in_lanes<K: Isa>(
+fn in_lanes(
     families: &mut Families,
     body: usize,
     view: &PeriView,
     (advanced, own): (bool, Option<&[bool]>),
     rows: &mut Vec<Sums>,
 ) {
+    let form = families.form();
     let state = &mut families.lattices[body].state;
     let mut memory = if state.earlier.is_empty() { std::mem::take(&mut state.memory) } else { vec![] };
     let mut earlier = std::mem::take(&mut state.earlier);
@@ -166,6 +165,7 @@ fn in_lanes<K: Isa>(
         let told = if earlier.is_empty() { &mut memory } else { &mut earlier };
         let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
         let states = States {
+            form,
             kind: families.law.kind,
             compat: families.options.compat_lammps,
             moment: Moment { held: state.held, ..moment(&families.law, false) },
@@ -177,7 +177,7 @@ fn in_lanes<K: Isa>(
         let body: &LatticeBody = &families.lattices[body];
         let of_chunk = |chunk: usize, data: &Chunk| {
             // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
-            unsafe { states.sums::<K>(body, chunk, data, advanced) }
+            unsafe { states.sums(body, chunk, data, advanced) }
         };
         let newton = families.options.unit == ForceUnit::Newton;
         whole_rows(body, view, rows, (newton, own), of_chunk);
@@ -220,8 +220,8 @@ struct Bond<'a> {
     omega: f64,
     /// ω w.
     share: f64,
-    stretch: Stretch<Single>,
-    memory: [Single; 2],
+    stretch: Stretch<f64>,
+    memory: [f64; 2],
     state: &'a SiteState,
     stride: usize,
 }
@@ -254,7 +254,7 @@ fn one_by_one(
             let ends = [body.particle[cell] as usize, body.particle[to] as usize];
             let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
             let (c, limit) = families.table.get(a, b).map_or((0.0, 0.0), |k| (k.c, k.s00));
-            stretch.limit = Single(limit);
+            stretch.limit = limit;
             let (omega, share) = Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
             add(
                 families,
@@ -268,7 +268,7 @@ fn one_by_one(
                     share,
                     stretch,
                     memory: std::array::from_fn(|k| {
-                        Single(if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 })
+                        if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 }
                     }),
                     state: &body.state,
                     stride: body.stride,
@@ -309,38 +309,33 @@ fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
     let newton = options.unit == ForceUnit::Newton;
     let now = Moment { held: b.state.held, ..moment(law, false) };
     let (own, half) = shares(law.kind, options.compat_lammps);
-    let columns = |at: usize| -> [Single; COLUMNS] {
+    let columns = |at: usize| -> [f64; COLUMNS] {
         let count = columns_of(law.kind, options.compat_lammps);
-        std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
+        std::array::from_fn(|k| if k < count { b.state.columns[k * b.stride + at] } else { 0.0 })
     };
-    let ends: Ends<Single> = b.at.map(columns);
-    let angles: [Angles<Single>; 2] = std::array::from_fn(|end| {
+    let ends: Ends<f64> = b.at.map(columns);
+    let angles: [Angles<f64>; 2] = std::array::from_fn(|end| {
         let at = b.at[end];
         if !W::DILATED || b.state.is_empty() {
-            // SAFETY: plain arithmetic.
-            return unsafe { Angles::none() };
+            return Angles::none(0.0);
         }
         let theta = b.state.theta[at];
         Angles {
-            now: Single(theta),
-            unrelaxed: Single(b.state.unrelaxed[at] + (theta - b.state.before[at])),
-            // SAFETY: plain arithmetic.
-            relaxing: unsafe { W::relaxing(&ends[end], &now) },
+            now: theta,
+            unrelaxed: b.state.unrelaxed[at] + (theta - b.state.before[at]),
+            relaxing: W::relaxing(&ends[end], &now),
         }
     });
-    let omega = Single(b.omega);
-    // SAFETY: plain arithmetic.
-    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, &now) };
+    let squares = W::squares(&b.stretch, b.omega, &angles, &b.memory, &now);
     for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
         let p = b.ends[end];
-        let shear = if own { ends[end][1].0 } else { 1.0 };
-        let energy = half * shear * b.share * b.length * b.length * square.0 * b.volume[1 - end];
+        let shear = if own { ends[end][1] } else { 1.0 };
+        let energy = half * shear * b.share * b.length * b.length * square * b.volume[1 - end];
         share_out(t, p, energy, newton.then_some(b.volume[end]));
     }
     let mut memory = b.memory;
-    // SAFETY: plain arithmetic.
-    let (near, far) = unsafe { W::pull(&b.stretch, omega, &ends, &mut memory, &now) };
+    let (near, far) = W::pull(&b.stretch, b.omega, &ends, &mut memory, &now);
     // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
-    let pulls = [near.0, far.0].map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
+    let pulls = [near, far].map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
     t.add_virials(b.ends, pulls, b.y);
 }

@@ -16,7 +16,6 @@ mod energy;
 mod evaluate;
 pub mod families;
 pub mod kinematics;
-mod lanes;
 mod lattice;
 mod law;
 mod limit;

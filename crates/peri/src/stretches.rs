@@ -4,7 +4,6 @@ use crate::breaking::{Bonds, banded};
 use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
 use crate::families::{Families, PeriView};
-use crate::lanes::single::Single;
 use crate::law::settle::columns_of;
 use crate::law::weighing::{self, Weighing};
 use crate::law::{Angles, BondLaw, Moment, Stretch, of_law};
@@ -73,7 +72,7 @@ impl Families {
         debug_assert!(columns_of(law.kind, options.compat_lammps) == 0 && law.kind.memory() == 0);
         let Some(coeff) = self.table.get(kinds[0], kinds[1]) else { return [0.0; 2] };
         let mut bond = weighing::banded((r - r0) * (r + r0) / (r0 * r0), r0, options);
-        bond.limit = Single(coeff.s00);
+        bond.limit = coeff.s00;
         let weight = options.volume.weight(r0, coeff.horizon, options.lattice_spacing);
         let constants = (coeff.c, coeff.horizon, law.yields(kinds[0], kinds[1]));
         let (omega, share) = Weighing::of(law).weigh(r0, weight, constants);
@@ -82,20 +81,11 @@ impl Families {
 }
 
 /// The pull of a bond without columns and memory, and its energy.
-fn pull_and_energy<W: BondLaw>(
-    bond: &Stretch<Single>,
-    omega: f64,
-    share: f64,
-    [r0, r]: [f64; 2],
-) -> [f64; 2] {
-    let (none, omega, now) = ([[Single(0.0); COLUMNS]; 2], Single(omega), Moment::default());
-    let mut memory = [Single(0.0); 2];
-    // SAFETY: plain arithmetic.
-    let (pulls, squares) = unsafe {
-        let squares = W::squares(bond, omega, &[Angles::none(), Angles::none()], &memory, &now);
-        (W::pull(bond, omega, &none, &mut memory, &now), squares)
-    };
-    [0.5 * (pulls.0.0 + pulls.1.0) * share * r, 0.25 * (squares.0.0 + squares.1.0) * share * r0 * r0]
+fn pull_and_energy<W: BondLaw>(bond: &Stretch<f64>, omega: f64, share: f64, [r0, r]: [f64; 2]) -> [f64; 2] {
+    let (none, now, mut memory) = ([[0.0; COLUMNS]; 2], Moment::default(), [0.0; 2]);
+    let squares = W::squares(bond, omega, &[Angles::none(0.0); 2], &memory, &now);
+    let pulls = W::pull(bond, omega, &none, &mut memory, &now);
+    [0.5 * (pulls.0 + pulls.1) * share * r, 0.25 * (squares.0 + squares.1) * share * r0 * r0]
 }
 
 /// Hands what sites have found to their particles.

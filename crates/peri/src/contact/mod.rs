@@ -10,7 +10,6 @@ use std::sync::Mutex;
 use crate::energy::Sums;
 use crate::families::shares::Shares;
 use crate::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
-use crate::lanes::isa::Isa;
 use hits::{Hits, Rules};
 use near::Near;
 use perigrain_base::math::vec3::length;
@@ -123,7 +122,7 @@ pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pu
 
 /// All repulsion of one step: near pairs that may be `closer` by now than their gap was, then squeezed bonds; of several ranks each evaluates
 /// pairs of its own particles where `shares` are given. `rows` is scratch.
-pub fn repel<K: Isa>(
+pub fn repel(
     families: &Families,
     (closer, shares): ([f64; 2], Option<&Shares>),
     repulsion: &mut Repulsion,
@@ -138,7 +137,7 @@ pub fn repel<K: Isa>(
         let scene = (repulsion.view, &families.options);
         near.follow(&found.pairs[part], (closer, found.allowed[part]), scene, shares);
         let to = (&mut *repulsion.f, repulsion.tally.as_deref_mut());
-        near.push::<K>(&rules, (closer, shares), to, (hits, rows));
+        near.push(families.form(), &rules, (closer, shares), to, (hits, rows));
     }
-    pressed::squeezed::<K>(families, &rules, (close, pressed), repulsion);
+    pressed::squeezed(families, &rules, (close, pressed), repulsion);
 }

@@ -5,8 +5,8 @@ use crate::contact::{Repulsion, add};
 use crate::families::lattice::LANES;
 use crate::families::list::{CLOSE, GROUP, ListBody};
 use crate::families::{Families, FamilyOptions, PeriView};
-use crate::lanes::isa::Isa;
 use crate::lattice::sweep::SQUEEZED;
+use perigrain_base::math::form::Form;
 use perigrain_base::par::{self, Shared};
 
 /// Chunks of a lattice, or records of a list, in a part that threads share.
@@ -86,16 +86,17 @@ impl Pressed {
 }
 
 /// Adds the pushes of all bonded pairs that touch, in the order of their bonds.
-pub fn squeezed<K: Isa>(
+pub fn squeezed(
     families: &Families,
     rules: &Rules,
     (close, pressed): (&mut Close, &mut Vec<Pressed>),
     repulsion: &mut Repulsion,
 ) {
+    let form = families.form();
     for body in &families.lattices {
         let flagged = body.flagged.iter().enumerate().filter(|(_, flag)| **flag & SQUEEZED != 0);
         let chunks: Vec<usize> = flagged.map(|(chunk, _)| chunk).collect();
-        in_turn::<K>(chunks.len().div_ceil(CHUNKS), (rules, pressed), repulsion, |part, pressed| {
+        in_turn(form, chunks.len().div_ceil(CHUNKS), (rules, pressed), repulsion, |part, pressed| {
             for &chunk in chunks[part * CHUNKS..].iter().take(CHUNKS) {
                 let alive = &body.alive[chunk * body.stencil.len()..][..body.stencil.len()];
                 for lead in body.leads_of(body.slot_of(chunk * LANES)) {
@@ -116,7 +117,7 @@ pub fn squeezed<K: Isa>(
     }
     close.find(list, rules.view, &families.options);
     let close: &Close = close;
-    in_turn::<K>(list.lowest.len().div_ceil(RECORDS), (rules, pressed), repulsion, |part, pressed| {
+    in_turn(form, list.lowest.len().div_ceil(RECORDS), (rules, pressed), repulsion, |part, pressed| {
         for (i, &low) in list.lowest.iter().enumerate().skip(part * RECORDS).take(RECORDS) {
             if low < CLOSE {
                 for b in list.own(i).filter(|b| list.lives(*b)) {
@@ -139,7 +140,8 @@ pub fn squeezed<K: Isa>(
 }
 
 /// Finds the pairs of so many parts, and adds their pushes in the order of parts.
-fn in_turn<K: Isa>(
+fn in_turn(
+    form: Form,
     parts: usize,
     (rules, pressed): (&Rules, &mut Vec<Pressed>),
     repulsion: &mut Repulsion,
@@ -156,7 +158,7 @@ fn in_turn<K: Isa>(
             pressed.ends.clear();
             find(first + k, pressed);
             // SAFETY: the caller has chosen kernels that the processor has.
-            unsafe { K::call(Push(&mut pressed.hits)) };
+            unsafe { form.run(Push(&mut pressed.hits)) };
         });
         some.iter().for_each(|pressed| hand_back(pressed, rules, repulsion));
     }

@@ -20,7 +20,6 @@ use crate::families::law::COLUMNS;
 use crate::families::shares::{BodyShare, Shares};
 use crate::families::tiles::Tiles;
 use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
-use crate::lanes::isa::Isa;
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
 use crate::law::Moment;
 use crate::law::settle::{Settling, Sites, columns_of, moment};
@@ -38,20 +37,21 @@ impl Families {
     }
 
     /// Adds the forces of all bonds of bodies on lattices; where work is shared out to ranks, to the particles of this one.
-    pub(crate) fn sweep_lattices<K: Isa>(
+    pub(crate) fn sweep_lattices(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
         shares: Option<&mut Shares>,
     ) {
+        let form = self.form();
         let Self { lattices, options, law, table, breaking_enabled, counts_losses, .. } = self;
-        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
+        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
         let settling = settling((law, table), options, (advance, tallied, *counts_losses));
         let f = Shared::new(f);
         let mut shares = shares.into_iter().flat_map(|shares| &mut shares.bodies);
         for body in lattices {
-            lattice_body::<K>(body, view, &f, (mode, options), (&settling, shares.next()));
+            lattice_body(body, view, &f, (mode, options), (&settling, shares.next()));
         }
     }
 
@@ -102,7 +102,7 @@ pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Sett
 }
 
 /// The sweeps over one body on a lattice.
-fn lattice_body<K: Isa>(
+fn lattice_body(
     body: &mut LatticeBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
@@ -127,6 +127,7 @@ fn lattice_body<K: Isa>(
     let particle = std::mem::take(&mut body.particle);
     let (memory_of, touched_of) = (Shared::new(&mut memory), Shared::new(&mut touched));
     let states = States {
+        form: mode.form,
         kind,
         compat: settling.compat,
         moment: Moment { held: body.state.held, ..settling.moment },
@@ -148,7 +149,7 @@ fn lattice_body<K: Isa>(
         sums.resize(body.stride, 0.0);
         let shared = Shared::new(&mut sums);
         let sweep = Sweep::new(body, &mut columns, mode, newton, states);
-        states::all::<K>(&sweep, sum, (&tiles, &mut windows), share.as_deref_mut(), &shared);
+        states::all(&sweep, sum, (&tiles, &mut windows), share.as_deref_mut(), &shared);
         if let Some(share) = share {
             let places = |slot: usize| {
                 let cells = body.rows[slot].cells();
@@ -171,7 +172,7 @@ fn lattice_body<K: Isa>(
     }
     (body.particle, body.scatter.stiffness) = (particle, stiffness);
     let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
-    sweep.all::<K>((&tiles, &mut windows), share, f);
+    sweep.all((&tiles, &mut windows), share, f);
     columns.give(body);
     body.tiles = Tiles { windows, ..tiles };
     (body.state.memory, body.state.touched) = (memory, touched);

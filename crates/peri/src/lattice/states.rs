@@ -7,7 +7,6 @@ use crate::families::LawKind;
 use crate::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
-use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
 use crate::lattice::energies::Looking;
 use crate::lattice::forms::{self, run, run_term};
@@ -19,11 +18,14 @@ use crate::law::{Moment, of_law};
 use crate::pass::{Over, pass};
 use crate::shares::agreed;
 use crate::shares::dues::{OfLattice, with_share};
+use perigrain_base::math::form::Form;
 use perigrain_base::par::Shared;
 
 /// What the sites and bonds of a body have under their law, during one evaluation.
 #[derive(Clone, Copy)]
 pub struct States<'a> {
+    /// Which kernels.
+    pub form: Form,
     /// The law.
     pub kind: LawKind,
     /// LAMMPS' forces where they differ.
@@ -61,7 +63,7 @@ impl States<'_> {
     ///
     /// # Safety
     /// As for `chunk::run`; nobody else touches what the chunk's bonds remember.
-    pub unsafe fn pull<K: Isa>(
+    pub unsafe fn pull(
         &self,
         body: &LatticeBody,
         chunk: usize,
@@ -73,7 +75,7 @@ impl States<'_> {
         let masked = !body.intact[chunk];
         // SAFETY: the caller's promise.
         unsafe {
-            of_law!(self.kind, self.compat, self.moment, W => run::<K, W>(data, &cells, degree, masked, track))
+            of_law!(self.kind, self.compat, self.moment, W => run::<W>(self.form, (data, &cells), degree, masked, track))
         }
     }
 
@@ -81,7 +83,7 @@ impl States<'_> {
     ///
     /// # Safety
     /// As for `chunk::run`, forces are not touched.
-    pub unsafe fn sums<K: Isa>(
+    pub unsafe fn sums(
         &self,
         body: &LatticeBody,
         chunk: usize,
@@ -101,7 +103,7 @@ impl States<'_> {
         };
         // SAFETY: the caller's promise.
         unsafe {
-            of_law!(self.kind, self.compat, W => K::call(forms::Sums::<W> {
+            of_law!(self.kind, self.compat, W => self.form.run(forms::Sums::<W> {
                 chunk: data,
                 cells: &cells,
                 look: &look,
@@ -123,7 +125,7 @@ pub enum Sum {
 }
 
 /// Adds the terms of all bonds to `sums`, which has [`PAD`] entries before the first cell.
-pub(crate) fn all<K: Isa>(
+pub(crate) fn all(
     sweep: &Sweep,
     sum: Sum,
     (tiles, windows): (&Tiles, &mut [TileWindow]),
@@ -134,22 +136,22 @@ pub(crate) fn all<K: Isa>(
     with_share(&owing, share, |share| {
         pass(
             Over { graph: &tiles.graph, windows, times: &[], share },
-            |at, window| tile::<K>(sweep, sum, (tiles, at), window),
+            |at, window| tile(sweep, sum, (tiles, at), window),
             |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
         )
     });
 }
 
 /// Adds the terms of the bonds of one tile's cells to its window; returns whether any was not at rest.
-fn tile<K: Isa>(sweep: &Sweep, sum: Sum, tile: (&Tiles, usize), window: &mut TileWindow) -> bool {
+fn tile(sweep: &Sweep, sum: Sum, tile: (&Tiles, usize), window: &mut TileWindow) -> bool {
     match sum {
-        Sum::Dilatation => add_up::<K, Dilatation>(sweep, tile, window),
-        Sum::Norm => add_up::<K, Norm>(sweep, tile, window),
-        Sum::NormLammps => add_up::<K, NormLammps>(sweep, tile, window),
+        Sum::Dilatation => add_up::<Dilatation>(sweep, tile, window),
+        Sum::Norm => add_up::<Norm>(sweep, tile, window),
+        Sum::NormLammps => add_up::<NormLammps>(sweep, tile, window),
     }
 }
 
-fn add_up<K: Isa, T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
+fn add_up<T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
     let body = sweep.body();
     let mut room = Room { body, tiles, tile, components: 1, window, open: false };
     for (slot, first) in room.rows() {
@@ -167,7 +169,7 @@ fn add_up<K: Isa, T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window
             data.tables = &body.state.tables;
             let cells = sweep.states().cells(body, chunk);
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            unsafe { run_term::<K, T>(&data, &cells, degree, !body.intact[chunk]) };
+            unsafe { run_term::<T>(sweep.states().form, (&data, &cells), degree, !body.intact[chunk]) };
         }
     }
     room.open

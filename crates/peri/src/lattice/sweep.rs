@@ -6,7 +6,6 @@
 use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
-use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{self, Chunk, Various};
 use crate::lattice::leads::{ahead, find_leads, row_limit};
 use crate::lattice::owed;
@@ -15,6 +14,7 @@ use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
 use crate::pass::{Over, pass};
 use crate::shares::dues::{OfLattice, with_share};
+use perigrain_base::math::form::Form;
 use perigrain_base::par::Shared;
 
 /// How one force evaluation treats the bonds of a body.
@@ -26,6 +26,8 @@ pub struct Mode {
     pub breaking_enabled: bool,
     /// Leave out what is at rest.
     pub skip: bool,
+    /// Which kernels.
+    pub form: Form,
 }
 
 /// Any coordinate.
@@ -121,7 +123,7 @@ impl<'a> Sweep<'a> {
 
     /// Adds the forces of all bonds to `f`.
     /// Of several ranks each sweeps its share.
-    pub(crate) fn all<K: Isa>(
+    pub(crate) fn all(
         &self,
         (tiles, windows): (&Tiles, &mut [TileWindow]),
         share: Option<&mut BodyShare>,
@@ -131,19 +133,19 @@ impl<'a> Sweep<'a> {
         with_share(&owing, share, |share| {
             pass(
                 Over { graph: &tiles.graph, windows, times: &tiles.graph.times, share },
-                |tile, window| self.tile::<K>((tiles, tile), window),
-                |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
+                |tile, window| self.tile((tiles, tile), window),
+                |tile, windows| owed::forces(self.mode.form, self.body, (tiles, tile), windows, f),
             );
         });
     }
 
     /// Sweeps a tile: the forces of its cells' bonds go into its window. Returns whether any bond was not at rest; else the
     /// window is not touched.
-    fn tile<K: Isa>(&self, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
+    fn tile(&self, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
         let mut room = Room { body: self.body, tiles, tile, components: 3, window, open: false };
         for (slot, first) in room.rows() {
             let plan = self.plan(slot);
-            self.row::<K>(slot, &plan, &mut room, first);
+            self.row(slot, &plan, &mut room, first);
         }
         room.open
     }
@@ -212,7 +214,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps a row's chunks; `first` is the cell with which the window would begin were all its planes like this one.
-    fn row<K: Isa>(&self, slot: usize, plan: &RowPlan, room: &mut Room, first: usize) {
+    fn row(&self, slot: usize, plan: &RowPlan, room: &mut Room, first: usize) {
         let body = self.body;
         let row = &body.rows[slot];
         let entries = body.stencil.len();
@@ -249,7 +251,7 @@ impl<'a> Sweep<'a> {
             let cell = chunk * LANES;
             let chunk_data = self.chunk((slot, cell), entries, room.at(cell, first));
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            let measured = unsafe { self.states.pull::<K>(body, chunk, &chunk_data, degree, track) };
+            let measured = unsafe { self.states.pull(body, chunk, &chunk_data, degree, track) };
             if track {
                 (high, low) = measured;
                 if fragile && high >= floor {

@@ -15,23 +15,23 @@ mod viscous;
 pub mod weighing;
 
 use crate::families::law::{COLUMNS, Held};
-use crate::lanes::Lanes;
+use perigrain_base::math::real::Real;
 pub use softening::{REST, Softening, last_of_area};
 pub use viscous::{Viscous, ViscousApart};
 
 /// A bond's stretch s in the forms that laws need.
 #[derive(Clone, Copy)]
-pub struct Stretch<L> {
+pub struct Stretch<R> {
     /// s.
-    pub s: L,
+    pub s: R,
     /// s/(1 + s).
-    pub share: L,
+    pub share: R,
     /// 1/(1 + s).
-    pub inverse: L,
+    pub inverse: R,
     /// s at the last step that advanced; only for laws that look [`BondLaw::BACK`].
-    pub before: L,
+    pub before: R,
     /// The pair's critical stretch; only for laws that are [`BondLaw::LIMITED`].
-    pub limit: L,
+    pub limit: R,
 }
 
 /// What is the same for all bonds during one evaluation.
@@ -108,7 +108,7 @@ macro_rules! of_law {
 pub(crate) use of_law;
 
 /// What both ends of a bond have in columns.
-pub type Ends<L> = [[L; COLUMNS]; 2];
+pub type Ends<R> = [[R; COLUMNS]; 2];
 
 /// A law of bonds with numbers at both ends.
 pub trait BondLaw: Sync {
@@ -132,86 +132,64 @@ pub trait BondLaw: Sync {
     /// Whether what a bond remembers stays zero until one of its ends [`BondLaw::flows`].
     const LAZY: bool = false;
     /// The pull on the first end and on the second, over ω w V; `memory` is brought up to date.
-    ///
-    /// # Safety
-    /// See [`Lanes`].
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        omega: L,
-        ends: &Ends<L>,
-        memory: &mut [L; 2],
+    fn pull<R: Real>(
+        bond: &Stretch<R>,
+        omega: R,
+        ends: &Ends<R>,
+        memory: &mut [R; 2],
         moment: &Moment,
-    ) -> (L, L);
+    ) -> (R, R);
     /// The squares of both ends' elastic deviatoric stretch that the energy has, over ½ 15G/m ω w |xi|² V of each end;
     /// of bond-based laws over ½ c w |xi| V. `memory` is what the bond remembers: what has flowed, unless a law says otherwise.
-    ///
-    /// # Safety
-    /// See [`Lanes`].
     #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _limit: L,
-        ends: &[Angles<L>; 2],
-        memory: &[L; 2],
+    fn squares<R: Real>(
+        bond: &Stretch<R>,
+        _limit: R,
+        ends: &[Angles<R>; 2],
+        memory: &[R; 2],
         _moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe { deviatoric(bond.s, ends, memory) }
+    ) -> (R, R) {
+        deviatoric(bond.s, ends, memory)
     }
     /// Share of an end's shear modulus that relaxes.
-    ///
-    /// # Safety
-    /// See [`Lanes`].
     #[inline(always)]
-    unsafe fn relaxing<L: Lanes>(_end: &[L; COLUMNS], moment: &Moment) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe { L::splat(moment.lambda) }
+    fn relaxing<R: Real>(end: &[R; COLUMNS], moment: &Moment) -> R {
+        end[0].like(moment.lambda)
     }
-    /// Where an end flows in this evaluation, a mask.
-    ///
-    /// # Safety
-    /// See [`Lanes`].
+    /// Where an end flows in this evaluation.
     #[inline(always)]
-    unsafe fn flows<L: Lanes>(_: &Ends<L>) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe { L::splat(0.0).ge(L::splat(0.0)) }
+    fn flows<R: Real>([own, _]: &Ends<R>) -> R::Mask {
+        let zero = own[0].like(0.0);
+        zero.at_least(zero)
     }
 }
 
 /// The dilatation of a bond's end, and what of it is not yet relaxed.
 #[derive(Clone, Copy)]
-pub struct Angles<L> {
+pub struct Angles<R> {
     /// θ.
-    pub now: L,
+    pub now: R,
     /// Its unrelaxed part; what has come since the last step that advanced is not relaxed at all.
-    pub unrelaxed: L,
+    pub unrelaxed: R,
     /// Share of its shear modulus that relaxes.
-    pub relaxing: L,
+    pub relaxing: R,
 }
 
-impl<L: Lanes> Angles<L> {
+impl<R: Real> Angles<R> {
     /// No dilatation.
-    ///
-    /// # Safety
-    /// See [`Lanes`].
     #[inline(always)]
-    pub unsafe fn none() -> Self {
-        // SAFETY: passed on to the caller.
-        let zero = unsafe { L::splat(0.0) };
+    pub fn none(zero: R) -> Self {
         Self { now: zero, unrelaxed: zero, relaxing: zero }
     }
 }
 
 /// (s − θ/3)² of both ends.
 #[inline(always)]
-unsafe fn deviatoric<L: Lanes>(s: L, ends: &[Angles<L>; 2], without: &[L; 2]) -> (L, L) {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let third = L::splat(1.0 / 3.0);
-        let (a, b) = (ends[0].now.fnma(third, s), ends[1].now.fnma(third, s));
-        let (a, b) = (a.sub(without[0]), b.sub(without[1]));
-        (a.mul(a), b.mul(b))
-    }
+fn deviatoric<R: Real>(s: R, ends: &[Angles<R>; 2], without: &[R; 2]) -> (R, R) {
+    let third = s.like(1.0 / 3.0);
+    let a = ends[0].now.fnma(third, s) - without[0];
+    let b = ends[1].now.fnma(third, s) - without[1];
+    (a * a, b * b)
 }
 
 /// Prototype microelastic: half of c w s V at each end.
@@ -224,20 +202,12 @@ impl BondLaw for Pmb {
     const DILATED: bool = false;
     const STRETCHED: bool = false;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(bond: &Stretch<L>, _: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
+    fn pull<R: Real>(bond: &Stretch<R>, _: R, _: &Ends<R>, _: &mut [R; 2], _: &Moment) -> (R, R) {
         (bond.share, bond.share)
     }
     #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        _: &[Angles<L>; 2],
-        _: &[L; 2],
-        _: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        let square = unsafe { bond.s.mul(bond.s) };
-        (square, square)
+    fn squares<R: Real>(bond: &Stretch<R>, _: R, _: &[Angles<R>; 2], _: &[R; 2], _: &Moment) -> (R, R) {
+        (bond.s * bond.s, bond.s * bond.s)
     }
 }
 
@@ -249,19 +219,11 @@ impl BondLaw for Elastic {
     const MEMORY: usize = 0;
     const STRETCHED: bool = false;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        [own, far]: &Ends<L>,
-        _: &mut [L; 2],
-        _: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let pull = b.sub(a).fma(bond.share, a);
-            (pull, pull)
-        }
+    fn pull<R: Real>(bond: &Stretch<R>, _: R, [own, far]: &Ends<R>, _: &mut [R; 2], _: &Moment) -> (R, R) {
+        // A/(1 + s) + B s/(1 + s) with 1/(1 + s) = 1 − s/(1 + s).
+        let (a, b) = (own[0] + far[0], own[1] + far[1]);
+        let pull = (b - a).fma(bond.share, a);
+        (pull, pull)
     }
 }
 
@@ -274,33 +236,25 @@ impl BondLaw for Plastic {
     const MEMORY: usize = 2;
     const LAZY: bool = true;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        [own, far]: &Ends<L>,
-        memory: &mut [L; 2],
+    fn pull<R: Real>(
+        bond: &Stretch<R>,
+        _: R,
+        ends: &Ends<R>,
+        memory: &mut [R; 2],
         moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let flow = L::splat(moment.flow);
-            let mut pull = own[0].add(far[0]);
-            let mut end = 0;
-            while end < 2 {
-                let this = if end == 0 { own } else { far };
-                let trial = bond.s.sub(this[2]);
-                memory[end] = this[3].mul(flow).fma(trial.sub(memory[end]), memory[end]);
-                pull = this[1].fma(trial.sub(memory[end]), pull);
-                end += 1;
-            }
-            let pull = pull.mul(bond.inverse);
-            (pull, pull)
+    ) -> (R, R) {
+        let mut pull = ends[0][0] + ends[1][0];
+        for ([_, b, third, flowing, ..], flowed) in ends.iter().zip(memory) {
+            let trial = bond.s - *third;
+            *flowed = (*flowing * moment.flow).fma(trial - *flowed, *flowed);
+            pull = b.fma(trial - *flowed, pull);
         }
+        let pull = pull * bond.inverse;
+        (pull, pull)
     }
     #[inline(always)]
-    unsafe fn flows<L: Lanes>([own, far]: &Ends<L>) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe { own[3].max(far[3]).ge(L::splat(f64::MIN_POSITIVE)) }
+    fn flows<R: Real>([own, far]: &Ends<R>) -> R::Mask {
+        own[3].most(far[3]).at_least(own[3].like(f64::MIN_POSITIVE))
     }
 }
 
@@ -315,37 +269,28 @@ impl BondLaw for PlasticLammps {
     const MEMORY: usize = 2;
     const LAZY: bool = true;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        omega: L,
-        [own, far]: &Ends<L>,
-        memory: &mut [L; 2],
+    fn pull<R: Real>(
+        bond: &Stretch<R>,
+        omega: R,
+        ends: &Ends<R>,
+        memory: &mut [R; 2],
         moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let flow = L::splat(moment.flow);
-            let gain = if moment.mended { L::splat(0.5) } else { omega };
-            let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let mut pulls = [a, a];
-            let mut end = 0;
-            while end < 2 {
-                let this = if end == 0 { own } else { far };
-                let part = b.mul(bond.s.sub(this[2]).sub(memory[end])).mul(this[3]);
-                pulls[end] = a.add(part).mul(bond.inverse);
-                let elastic = this[3].ge(L::splat(1.0));
-                let flowed = gain.mul(part).mul(this[4]).add(memory[end]);
-                let flowed = flowed.sub(flowed.keep(elastic));
-                memory[end] = flowed.sub(memory[end]).fma(flow, memory[end]);
-                end += 1;
-            }
-            (pulls[0], pulls[1])
+    ) -> (R, R) {
+        let gain = if moment.mended { omega.like(0.5) } else { omega };
+        let (a, b) = (ends[0][0] + ends[1][0], ends[0][1] + ends[1][1]);
+        let (one, zero, flow) = (omega.like(1.0), omega.like(0.0), omega.like(moment.flow));
+        let mut pulls = [a, a];
+        for (([_, _, third, scale, more, _], flowed), pull) in ends.iter().zip(memory).zip(&mut pulls) {
+            let part = b * (bond.s - *third - *flowed) * *scale;
+            *pull = (a + part) * bond.inverse;
+            let next = R::choose(scale.at_least(one), zero, gain * part * *more + *flowed);
+            *flowed = (next - *flowed).fma(flow, *flowed);
         }
+        (pulls[0], pulls[1])
     }
     #[inline(always)]
-    unsafe fn flows<L: Lanes>([own, far]: &Ends<L>) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe { own[4].max(far[4]).ge(L::splat(f64::MIN_POSITIVE)) }
+    fn flows<R: Real>([own, far]: &Ends<R>) -> R::Mask {
+        own[4].most(far[4]).at_least(own[4].like(f64::MIN_POSITIVE))
     }
 }
 
@@ -358,34 +303,22 @@ impl BondLaw for Yielding {
     const MEMORY: usize = 1;
     const DILATED: bool = false;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        limit: L,
-        _: &Ends<L>,
-        memory: &mut [L; 2],
+    fn pull<R: Real>(
+        bond: &Stretch<R>,
+        limit: R,
+        _: &Ends<R>,
+        [flowed, _]: &mut [R; 2],
         moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let excess = bond.s.sub(memory[0]).sub(limit).min(L::splat(0.0));
-            memory[0] = excess.fma(L::splat(moment.flow), memory[0]);
-            let pull = bond.s.sub(memory[0]).mul(bond.inverse);
-            (pull, pull)
-        }
+    ) -> (R, R) {
+        let excess = (bond.s - *flowed - limit).least(limit.like(0.0));
+        *flowed = excess.fma(limit.like(moment.flow), *flowed);
+        let pull = (bond.s - *flowed) * bond.inverse;
+        (pull, pull)
     }
     #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        _: &[Angles<L>; 2],
-        memory: &[L; 2],
-        _: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let elastic = bond.s.sub(memory[0]);
-            (elastic.mul(elastic), elastic.mul(elastic))
-        }
+    fn squares<R: Real>(bond: &Stretch<R>, _: R, _: &[Angles<R>; 2], memory: &[R; 2], _: &Moment) -> (R, R) {
+        let elastic = bond.s - memory[0];
+        (elastic * elastic, elastic * elastic)
     }
 }
 
@@ -398,46 +331,28 @@ impl BondLaw for Flattened {
     const DILATED: bool = false;
     const ALL_FORMS: bool = false;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(bond: &Stretch<L>, limit: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let pull = bond.s.max(limit).mul(bond.inverse);
-            (pull, pull)
-        }
+    fn pull<R: Real>(bond: &Stretch<R>, limit: R, _: &Ends<R>, _: &mut [R; 2], _: &Moment) -> (R, R) {
+        let pull = bond.s.most(limit) * bond.inverse;
+        (pull, pull)
     }
     #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        limit: L,
-        _: &[Angles<L>; 2],
-        _: &[L; 2],
-        _: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            // s² down to the limit l, then the tangent there: l (2s − l).
-            let held = bond.s.max(limit);
-            let square = held.mul(bond.s.add(bond.s).sub(held));
-            (square, square)
-        }
+    fn squares<R: Real>(bond: &Stretch<R>, limit: R, _: &[Angles<R>; 2], _: &[R; 2], _: &Moment) -> (R, R) {
+        // s² down to the limit l, then the tangent there: l (2s − l).
+        let held = bond.s.most(limit);
+        let square = held * (bond.s + bond.s - held);
+        (square, square)
     }
 }
 
 /// The stretch from z = |y|²/|xi|² − 1, its closed form, `before` as now.
-///
-/// # Safety
-/// See [`Lanes`].
 #[inline(always)]
-pub unsafe fn closed<L: Lanes>(z: L) -> Stretch<L> {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let one = L::splat(1.0);
-        let root = one.add(z).sqrt();
-        let more = one.add(root);
-        let inverse = one.div(root.mul(more));
-        let s = z.mul(root).mul(inverse);
-        Stretch { s, share: z.mul(inverse), inverse: more.mul(inverse), before: s, limit: s }
-    }
+pub fn closed<R: Real>(z: R) -> Stretch<R> {
+    let one = z.like(1.0);
+    let root = (one + z).sqrt();
+    let more = one + root;
+    let inverse = one / (root * more);
+    let s = z * root * inverse;
+    Stretch { s, share: z * inverse, inverse: more * inverse, before: s, limit: s }
 }
 
 #[cfg(test)]

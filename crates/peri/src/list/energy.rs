@@ -6,7 +6,6 @@ use crate::energy::{Sums, collect, shares};
 use crate::families::list::ListBody;
 use crate::families::shares::{BodyShare, Shares};
 use crate::families::{Cell, Families, ForceUnit, PeriTally};
-use crate::lanes::isa::Isa;
 use crate::lattice::chunk::SUMS;
 use crate::law::settle::{columns_of, moment};
 use crate::law::{BondLaw, Moment, of_law};
@@ -14,6 +13,7 @@ use crate::list::kernel::{Block, FULL, LAST, Row, Rules};
 use crate::list::laws::{self, Acting, Hand};
 use crate::list::sweep::in_rows;
 use crate::shares::list::parts_everywhere;
+use perigrain_base::math::form::Form;
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 
@@ -22,6 +22,7 @@ pub(crate) const PART: usize = 16;
 
 /// What energies need besides a record.
 struct Energies<'a> {
+    form: Form,
     list: &'a ListBody,
     rules: &'a Rules,
     acting: &'a Acting<'a>,
@@ -31,7 +32,7 @@ struct Energies<'a> {
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
-pub fn tally<K: Isa>(
+pub fn tally(
     families: &mut Families,
     t: &mut PeriTally,
     (advanced, cell, dealt): (bool, &Cell, Option<&Shares>),
@@ -51,10 +52,10 @@ pub fn tally<K: Isa>(
     let (own, half) = shares(kind, compat);
     let newton = options.unit == ForceUnit::Newton;
     let look = laws::Looking { angles: &angles, states: own, half, newton };
-    let e = Energies { list, rules: &rules, acting: &acting, look: &look, advanced };
+    let e = Energies { form: families.form(), list, rules: &rules, acting: &acting, look: &look, advanced };
     let rows = &mut families.scratch.rows;
     let share = dealt.and_then(|shares| Some((shares.list.as_ref()?, shares.me)));
-    of_law!(kind, compat, W => e.tally::<K, W>(rows, share, t));
+    of_law!(kind, compat, W => e.tally::<W>(rows, share, t));
 }
 
 /// θ of each record and its unrelaxed part, in rows of four.
@@ -65,16 +66,11 @@ fn angles(list: &ListBody) -> Vec<f64> {
 }
 
 impl Energies<'_> {
-    fn tally<K: Isa, W: BondLaw>(
-        &self,
-        rows: &mut Vec<Sums>,
-        share: Option<(&BodyShare, usize)>,
-        t: &mut PeriTally,
-    ) {
+    fn tally<W: BondLaw>(&self, rows: &mut Vec<Sums>, share: Option<(&BodyShare, usize)>, t: &mut PeriTally) {
         let n = self.list.record.len();
         if t.per_atom() {
             let b = &mut Block::new();
-            (0..n).for_each(|i| self.record::<K, W>(i, b, t));
+            (0..n).for_each(|i| self.record::<W>(i, b, t));
             return;
         }
         rows.clear();
@@ -85,7 +81,7 @@ impl Energies<'_> {
             let part = own.start + k;
             let (b, mut sum) = (&mut Block::new(), PeriTally::default());
             for i in part * PART..n.min((part + 1) * PART) {
-                self.record::<K, W>(i, b, &mut sum);
+                self.record::<W>(i, b, &mut sum);
             }
             let v = sum.virial;
             // SAFETY: each part has its own sum.
@@ -98,7 +94,7 @@ impl Energies<'_> {
     }
 
     /// Adds a record's own bonds.
-    fn record<K: Isa, W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
+    fn record<W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
         let list = self.list;
         if list.particle[i] == u32::MAX {
             // Nothing is bonded to where a particle was.
@@ -111,14 +107,14 @@ impl Energies<'_> {
             // SAFETY: the kernels are those that the processor has.
             let more = unsafe {
                 if W::BACK && !self.advanced {
-                    row.shape::<K, LAST>(b);
+                    row.shape::<LAST>(self.form, b);
                 }
-                row.shape::<K, FULL>(b);
+                row.shape::<FULL>(self.form, b);
                 if W::BACK && self.advanced {
                     b.before = b.z;
                 }
                 let hand = Hand::<W> { row: &row, acting: self.acting, block: b, law: PhantomData };
-                K::call(laws::Energies(hand, self.look))
+                self.form.run(laws::Energies(hand, self.look))
             };
             sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
             if !t.per_atom() {

@@ -10,7 +10,6 @@ use crate::families::list::{ListBody, Record};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
 use crate::families::{Cell, FamilyOptions, LawKind, PeriView};
-use crate::lanes::isa::Isa;
 use crate::lattice::keep_earlier;
 use crate::lattice::sweep::Mode;
 use crate::law::settle::{Settling, Sites, columns_of};
@@ -29,7 +28,7 @@ const _: () = assert!(size_of::<Record>() == 64);
 type Act<'a> = dyn Fn(&Sweep, &mut [TileWindow], Option<&mut BodyShare>) + 'a;
 
 /// Adds the forces of all bonds to `f`; of several ranks each adds those of its share.
-pub fn forces<K: Isa>(
+pub fn forces(
     list: &mut ListBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
@@ -109,7 +108,7 @@ pub fn forces<K: Isa>(
     };
     if !kind.bond_based() {
         clear_sums(list);
-        sweep(list, 0, &|s, w, share| s.add_up::<K, Dilatation>(&moving, w, share));
+        sweep(list, 0, &|s, w, share| s.add_up::<Dilatation>(&moving, w, share));
         settling.dilatations(&mut list.state, &sites);
     }
     if kind == LawKind::Shaped {
@@ -118,13 +117,13 @@ pub fn forces<K: Isa>(
     if kind == LawKind::ElasticPlastic {
         clear_sums(list);
         sweep(list, Norm::COLUMNS, &|s, w, share| match settling.compat {
-            true => s.add_up::<K, NormLammps>(active, w, share),
-            false => s.add_up::<K, Norm>(active, w, share),
+            true => s.add_up::<NormLammps>(active, w, share),
+            false => s.add_up::<Norm>(active, w, share),
         });
         settling.flow(&mut list.state, &sites);
     }
     let columns = columns_of(kind, settling.compat);
-    let pull = |s: &Sweep, slab: usize, w: &mut TileWindow| of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w));
+    let pull = |s: &Sweep, slab: usize, w: &mut TileWindow| of_law!(kind, settling.compat, now, W => s.pull::<W>(slab, active, w));
     sweep(list, columns, &|s, w, share| s.pull_all((w, share), |slab, w| pull(s, slab, w), &particle, f));
     (list.particle, list.moving, list.scatter.stiffness) = (particle, moving, stiffness);
     settling.held(&mut list.state);
@@ -204,14 +203,14 @@ impl Sweep<'_> {
     }
 
     /// Adds a term of all bonds to the sums of both ends.
-    fn add_up<K: Isa, T: Term>(
+    fn add_up<T: Term>(
         &self,
         active: &[bool],
         windows: &mut [TileWindow],
         mut share: Option<&mut BodyShare>,
     ) {
         let add = |sum: &mut [f64; 1], more: &[f64; 1]| sum[0] += more[0];
-        let act = |slab: usize, window: &mut TileWindow| self.add_up_slab::<K, T>(slab, active, window);
+        let act = |slab: usize, window: &mut TileWindow| self.add_up_slab::<T>(slab, active, window);
         let over = (windows, false, share.as_deref_mut());
         tiles::sweep(self.body, over, act, ([0.0], add), |records, sums| {
             // SAFETY: each record settles once.
@@ -222,11 +221,11 @@ impl Sweep<'_> {
     }
 
     /// The same of one slab's bonds into its window; false if these rest.
-    fn add_up_slab<K: Isa, T: Term>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
+    fn add_up_slab<T: Term>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
         if self.rests(slab, active) && self.mode.skip {
             return false;
         }
-        let body = self.body;
+        let (body, form) = (self.body, self.mode.form);
         let sums = tiles::open(body, slab, window, [0.0]);
         let b = &mut Block::new();
         for i in body.records(slab) {
@@ -236,8 +235,8 @@ impl Sweep<'_> {
             while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has; bonds lead to records that the window covers.
                 unsafe {
-                    row.shape::<K, FULL>(b);
-                    K::call(AddUp(
+                    row.shape::<FULL>(form, b);
+                    form.run(AddUp(
                         Hand::<T> { row: &row, acting: &acting, block: b, law: PhantomData },
                         sums,
                     ));
@@ -288,8 +287,8 @@ impl Sweep<'_> {
     }
 
     /// Puts the forces of the bonds of one slab's records into the window; false if there are none.
-    fn pull<K: Isa, W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
-        let body = self.body;
+    fn pull<W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
+        let (body, form) = (self.body, self.mode.form);
         let own = body.records(slab);
         // SAFETY: records belong to one slab.
         let lowest = unsafe { self.lowest.get(own.clone()) };
@@ -317,14 +316,17 @@ impl Sweep<'_> {
                 // SAFETY: the kernels are those that the processor has; bonds lead to records that the window covers.
                 let woken = unsafe {
                     if W::BACK {
-                        row.shape::<K, LAST>(b);
+                        row.shape::<LAST>(form, b);
                     }
                     match W::PLAIN {
-                        true => row.shape::<K, PLAIN>(b),
-                        false => row.shape::<K, FULL>(b),
+                        true => row.shape::<PLAIN>(form, b),
+                        false => row.shape::<FULL>(form, b),
                     }
                     judge.measure(&row, b);
-                    K::call(Pull(Hand::<W> { row: &row, acting: &acting, block: b, law: PhantomData }, force))
+                    form.run(Pull(
+                        Hand::<W> { row: &row, acting: &acting, block: b, law: PhantomData },
+                        force,
+                    ))
                 };
                 if woken && W::LAZY {
                     // SAFETY: a record belongs to one slab.
@@ -332,7 +334,7 @@ impl Sweep<'_> {
                 }
                 low = low.min(b.low);
                 *top = top.max(b.high);
-                judge.note::<K>(&row, b, strained);
+                judge.note(form, &row, b, strained);
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;
