@@ -2,12 +2,13 @@
 
 use crate::breaking::{Bonds, find_broken};
 use crate::evaluate::periods;
+use crate::families::bond::Broken;
 use crate::families::shares::BodyShare;
 use crate::families::{Candidate, Cell, Families, Moved, PeriView};
 use crate::list;
 use crate::list::breaking::candidates;
 use crate::list::kernel::Rules;
-use crate::shares::{Agreed, Broken, LIST, broken_everywhere, square};
+use crate::shares::{Agreed, LIST, broken_everywhere, square};
 
 /// What all ranks have agreed upon where work is shared out to them, and this rank's share of the list.
 type Together<'a> = (Agreed, Option<&'a mut BodyShare>);
@@ -53,7 +54,7 @@ impl Families {
             bonds.extend(own.iter().map(|broken| broken.bond));
             body.break_all(&bonds);
             for c in bonds.iter().filter(|_| frees) {
-                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
+                body.free(c.ends[0] as usize, c.bond as usize, &kind, Moved::Now);
             }
             ends.extend(bonds.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
@@ -91,7 +92,7 @@ impl Families {
             find_broken(form, body, &self.options, &mut found, &spared);
             note(k, &found, &body.particle);
         }
-        let rules = Rules::new(cell, &self.options, &self.law);
+        let rules = Rules::new(cell, &self.options, self.law.counting());
         candidates(form, &mut self.list, (&rules, &self.options), list, &mut found);
         self.list.spare(&mut found, &spared);
         note(LIST, &found, &self.list.particle);

@@ -1,20 +1,20 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
-use crate::families::law::{COLUMNS, SiteState};
 use crate::families::shares::Shares;
-use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::families::view::Sums;
+use crate::families::{Cell, Families, ForceUnit, PeriTally, PeriView};
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
 use crate::lattice::states::States;
-use crate::law::settle::{columns_of, moment};
+use crate::law::kernels::Alone;
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
+use crate::law::state::SiteState;
+use crate::law::stretch::Stretch;
 use crate::law::weighing::{Weighing, banded};
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
 use crate::list;
 use crate::shares::rows_everywhere;
 use perigrain_base::par::{self, Shared};
-
-/// Energy and virial of one row of cells or one record.
-pub(super) type Sums = [f64; SUMS];
 
 /// Rows per part when rows are summed.
 const ROWS: usize = 16;
@@ -30,7 +30,7 @@ pub fn tally(
 ) {
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
-    let dilated = !families.law.kind.bond_based();
+    let dilated = !families.law.kind.bond_based;
     let mut rows = std::mem::take(&mut families.scratch.rows);
     for k in 0..families.lattices.len() {
         let body = &families.lattices[k];
@@ -56,7 +56,7 @@ pub fn tally(
         if let Some((share, shares)) = share.zip(shares).filter(|_| !rows.is_empty()) {
             rows_everywhere(&families.lattices[k], (share, shares.me), &mut rows);
         }
-        collect(&rows, t);
+        t.collect(&rows);
     }
     families.scratch.rows = rows;
     let list = &families.list;
@@ -80,16 +80,6 @@ fn apart(n: usize, rows: &mut Vec<Sums>, row: impl Fn(usize, &mut PeriTally) + S
             unsafe { shared.get(k..k + 1)[0] = [own.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
         }
     });
-}
-
-/// Adds up rows in their order.
-pub(super) fn collect(rows: &[Sums], t: &mut PeriTally) {
-    for row in rows {
-        t.energy += row[0];
-        for k in 0..6 {
-            t.virial[k] += row[k + 1];
-        }
-    }
 }
 
 /// Energy and virial of each row (of the `own` ones, where others have the rest) of a body whose constants are per row, several cells at a time. Constants hold the volumes of
@@ -131,14 +121,11 @@ fn whole_row(
     let u = body.u[1].as_ptr();
     let mut lanes = [[0.0; CELLS]; SUMS];
     for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
-        let data = Chunk {
-            // SAFETY: `u` has a place for each cell and PAD more around.
-            u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + chunk * LANES) }),
-            f: [std::ptr::null_mut(); 3],
-            alive: &body.alive[chunk * entries..][..entries],
-            to: body.leads_of(slot),
-            tables: &body.tables,
-            various: None,
+        let u = [0, 1, 2].map(|k| u.wrapping_add(k * body.stride + PAD + chunk * LANES));
+        let alive = &body.alive[chunk * entries..][..entries];
+        // SAFETY: `u` has a place for each cell and PAD more around, and live bonds lead to cells of the body; energies touch no forces.
+        let data = unsafe {
+            Chunk::new((u, [std::ptr::null_mut(); 3]), (alive, body.leads_of(slot), &body.tables), None)
         };
         let part = of_chunk(chunk, &data);
         for (sum, part) in lanes.iter_mut().flatten().zip(part.iter().flatten()) {
@@ -166,19 +153,16 @@ fn in_lanes(
         let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
         let states = States {
             form,
-            kind: families.law.kind,
+            law: families.law.kind.style(),
             compat: families.options.compat_lammps,
-            moment: Moment { held: state.held, ..moment(&families.law, false) },
+            moment: Moment { held: state.held, ..families.law.moment(false) },
             keep: false,
             memory: &memory,
             touched: &touched,
             spread: false,
         };
         let body: &LatticeBody = &families.lattices[body];
-        let of_chunk = |chunk: usize, data: &Chunk| {
-            // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
-            unsafe { states.sums(body, chunk, data, advanced) }
-        };
+        let of_chunk = |chunk: usize, data: &Chunk| states.sums(body, chunk, data, advanced);
         let newton = families.options.unit == ForceUnit::Newton;
         whole_rows(body, view, rows, (newton, own), of_chunk);
     }
@@ -288,54 +272,36 @@ fn share_out(t: &mut PeriTally, p: usize, density: f64, volume: Option<f64>) {
     }
 }
 
-/// Whether the ends of a law's bonds have a stiffness of their own, column 1; and the share of the squares that counts
-/// for each end. LAMMPS counts half of the shear energies.
-pub fn shares(kind: LawKind, compat: bool) -> (bool, f64) {
-    match kind {
-        LawKind::Shaped => (true, 0.5),
-        _ if kind.bond_based() => (false, 0.25),
-        _ => (true, if compat { 0.25 } else { 0.5 }),
-    }
-}
-
 /// Adds one bond's energies and virial.
 fn add(families: &Families, b: &Bond, t: &mut PeriTally) {
-    let kind = families.law.kind;
-    of_law!(kind, families.options.compat_lammps, W => add_of::<W>(families, b, t));
-}
-
-fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
     let (law, options) = (&families.law, &families.options);
-    let newton = options.unit == ForceUnit::Newton;
-    let now = Moment { held: b.state.held, ..moment(law, false) };
-    let (own, half) = shares(law.kind, options.compat_lammps);
+    let (compat, newton) = (options.compat_lammps, options.unit == ForceUnit::Newton);
+    let loops = law.kind.loops(compat);
+    let now = Moment { held: b.state.held, ..law.moment(false) };
+    let (own, half) = law.kind.shares(compat);
     let columns = |at: usize| -> [f64; COLUMNS] {
-        let count = columns_of(law.kind, options.compat_lammps);
+        let count = loops.about().columns;
         std::array::from_fn(|k| if k < count { b.state.columns[k * b.stride + at] } else { 0.0 })
     };
-    let ends: Ends<f64> = b.at.map(columns);
-    let angles: [Angles<f64>; 2] = std::array::from_fn(|end| {
-        let at = b.at[end];
-        if !W::DILATED || b.state.is_empty() {
-            return Angles::none(0.0);
-        }
+    let angles = |at: usize| {
         let theta = b.state.theta[at];
-        Angles {
-            now: theta,
-            unrelaxed: b.state.unrelaxed[at] + (theta - b.state.before[at]),
-            relaxing: W::relaxing(&ends[end], &now),
-        }
-    });
-    let squares = W::squares(&b.stretch, b.omega, &angles, &b.memory, &now);
-    for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
+        [theta, b.state.unrelaxed[at] + (theta - b.state.before[at])]
+    };
+    let alone = Alone {
+        stretch: b.stretch,
+        omega: b.omega,
+        ends: b.at.map(columns),
+        memory: b.memory,
+        angles: (!b.state.is_empty()).then(|| b.at.map(angles)),
+    };
+    let [squares, pulls] = loops.alone(&alone, &now);
+    for (end, square) in squares.into_iter().enumerate() {
         let p = b.ends[end];
-        let shear = if own { ends[end][1] } else { 1.0 };
+        let shear = if own { alone.ends[end][1] } else { 1.0 };
         let energy = half * shear * b.share * b.length * b.length * square * b.volume[1 - end];
         share_out(t, p, energy, newton.then_some(b.volume[end]));
     }
-    let mut memory = b.memory;
-    let (near, far) = W::pull(&b.stretch, b.omega, &ends, &mut memory, &now);
     // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
-    let pulls = [near, far].map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
+    let pulls = pulls.map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
     t.add_virials(b.ends, pulls, b.y);
 }

@@ -6,10 +6,9 @@ use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::shares::Shares;
 use crate::families::{
-    AlmostLattice, Bounds, Cell, Edges, Families, FamilyOptions, Law, LawKind, Layout, NearPairs, PeriTally,
-    PeriView, PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Cell, Edges, Families, FamilyOptions, Law, Layout, NearPairs, PeriTally, PeriView,
+    PmbCoeff, PmbTable, Scratch,
 };
-use crate::lattice;
 use crate::lattice::gather::gather;
 use crate::lattice::sweep::Mode;
 use crate::lattice::tables;
@@ -183,8 +182,8 @@ impl Families {
     fn suits_lattice(&self, view: &PeriView, members: &[u32]) -> bool {
         let of = |p: u32| (view.kind[p as usize], view.volume[p as usize].to_bits());
         let kind = self.law.kind;
-        kind == LawKind::Pmb
-            || !kind.bond_based()
+        kind.plain()
+            || !kind.bond_based
             || members.first().is_none_or(|first| members.iter().all(|p| of(*p) == of(*first)))
     }
 
@@ -275,7 +274,7 @@ impl Families {
     /// which takes the places of those that bonds and near pairs join to them.
     pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
         // The energies of dilatations are added up one site after the other.
-        let rows = !tallied || self.law.kind.bond_based();
+        let rows = !tallied || self.law.kind.bond_based;
         self.shares.is_some() && advance && rows && !self.counts_losses
     }
 
@@ -369,14 +368,14 @@ impl Families {
         let form = self.form();
         let Self { list, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
-        let settling = lattice::settling((law, table), options, (advance, tallied, *counts_losses));
+        let settling = law.settling(table, options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.
             list::measure(list, law, cell);
         }
         let share = shares.and_then(|shares| shares.list.as_mut());
         let f = Shared::new(f);
-        list::sweep::forces(list, view, &f, (mode, options), (&settling, share), cell);
+        list::sweep::forces(list, view, &f, (mode, options), (law, &settling, share), cell);
     }
 
     fn contact(

@@ -2,9 +2,10 @@
 
 use crate::energy::tally;
 use crate::families::lattice::PAD;
-use crate::families::law::SiteState;
-use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::families::{Cell, Families, ForceUnit, PeriTally, PeriView};
 use crate::law::freed::Freed;
+use crate::law::state::SiteState;
+use crate::law::style::Losses;
 
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after. The force of a broken bond
@@ -53,9 +54,10 @@ impl Families {
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
     pub(super) fn count_heat(&mut self, view: &PeriView, cell: &Cell) {
         self.heat += self.heat_of_broken(view);
-        match self.law.kind {
+        match self.law.kind.losses {
             _ if self.options.compat_lammps => {}
-            LawKind::ElasticPlastic | LawKind::Yield => {
+            Losses::None => {}
+            Losses::Flow => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }
@@ -63,7 +65,7 @@ impl Families {
                 self.forget_earlier();
                 self.heat += before - self.bond_energy(view, cell);
             }
-            kind if kind.softens() => {
+            Losses::Damage => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }
@@ -73,7 +75,7 @@ impl Families {
                 self.released += self.bond_energy(view, cell) - before;
                 self.law.lost = false;
             }
-            LawKind::Ves => {
+            Losses::Relaxation => {
                 let own = self.law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
                 if own.tau <= 0.0 {
                     return;
@@ -86,7 +88,7 @@ impl Families {
                 self.law = law;
                 self.relax(power);
             }
-            LawKind::VesApart => {
+            Losses::RelaxationApart => {
                 // The same with 2λ/τ of each end in its modulus.
                 let kept = self.springs_alone(view);
                 let law = self.law.clone();
@@ -96,7 +98,6 @@ impl Families {
                 self.states().zip(kept).for_each(|(state, columns)| state.columns = columns);
                 self.relax(power);
             }
-            _ => {}
         }
     }
 
@@ -164,7 +165,7 @@ impl Families {
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
     fn living_energy(&mut self, view: &PeriView, cell: &Cell) -> f64 {
-        if !self.law.kind.bond_based() {
+        if !self.law.kind.bond_based {
             let mut aside = vec![[0.0; 3]; view.x.len()];
             self.sweep_lattices(view, &mut aside, (false, true), None);
             self.sweep_list(view, &mut aside, (false, true), (cell, None));

@@ -5,17 +5,21 @@ use super::four::Plain;
 use super::four::{Avx2, Avx512, gathers_pay, has_avx2, has_avx512};
 use super::lanes::Lanes;
 
-/// How many of them are evaluated at a time; all forms have the same bits.
+/// How many of them are evaluated at a time; all forms have the same bits, but where formulas say [`fma`](super::real::Real::fma). There are
+/// only forms that this processor has: other crates cannot make one of those that need something of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// Eight, with AVX-512 and its gathering loads.
     #[cfg(target_arch = "x86_64")]
+    #[non_exhaustive]
     Gathers,
     /// Eight, with AVX-512.
     #[cfg(target_arch = "x86_64")]
+    #[non_exhaustive]
     Eight,
     /// Four, with AVX2.
     #[cfg(target_arch = "x86_64")]
+    #[non_exhaustive]
     Four,
     /// Four, on any processor.
     Plain,
@@ -38,6 +42,7 @@ impl Form {
     pub fn in_fours(self) -> Self {
         #[cfg(target_arch = "x86_64")]
         if self != Self::Plain {
+            // Whatever has AVX-512 has AVX2.
             return Self::Four;
         }
         self
@@ -46,7 +51,7 @@ impl Form {
     /// Runs a loop in this form.
     ///
     /// # Safety
-    /// The processor must have what the form needs, and the loop what it asks for.
+    /// The loop must have what it asks for.
     #[inline]
     pub unsafe fn run<W: InLanes>(self, work: W) -> W::Out {
         // SAFETY: passed on.
@@ -96,12 +101,12 @@ pub trait Isa {
     /// Runs a loop in these lanes.
     ///
     /// # Safety
-    /// As [`Form::run`].
+    /// The processor must have what the lanes need, and the loop what it asks for.
     unsafe fn run<W: InLanes>(work: W) -> W::Out;
     /// Runs it with these instructions in four lanes.
     ///
     /// # Safety
-    /// As [`Form::run`].
+    /// As [`Isa::run`].
     unsafe fn run_four<W: InLanes>(work: W) -> W::Out;
 }
 

@@ -441,7 +441,7 @@ mod tests {
             put(F::load(four.as_ptr()));
         }
         [[0, 1, 2, 3], [3, 1, 0, 2], [2, 2, 3, 0]].into_iter().for_each(|at| put(a.at(at)));
-        out.extend((0..16).map(|bits| F::bits(a.with_bits(bits)).into()));
+        out.extend((0..16).map(|bits| u64::from(F::bits(a.with_bits(bits)))));
         out.extend([F::bits(mask), F::any(mask).into(), F::any(none).into()].map(u64::from));
         out
     }

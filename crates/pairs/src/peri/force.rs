@@ -189,7 +189,7 @@ impl Force {
         }
         let mut families = match w.families.take() {
             Some(mut families) => {
-                families.takes(self.style.law.kind, None)?;
+                families.takes(&self.style.law, None)?;
                 families.options = self.options;
                 families.law = self.style.law.clone();
                 families.refresh(&view(w)?, &table);

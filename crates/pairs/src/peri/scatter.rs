@@ -2,7 +2,7 @@
 
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_peri::families::{Families, FamilyOptions, LawKind};
+use perigrain_peri::families::{Families, FamilyOptions};
 use perigrain_world::World;
 use perigrain_world::columns::BOND_FACTORS;
 
@@ -45,10 +45,10 @@ impl Scatter {
             let text = "under `compat lammps/2025` particles have one critical stretch, whatever bond has it";
             return refuse(0, text, "`compat lammps` or none");
         }
-        if own.stiffness && kind != LawKind::Pmb {
+        if own.stiffness && !kind.plain() {
             return refuse(1, &format!("bonds of pair_style {} have no factors", style.name), "peri/pmb");
         }
-        let shaped = w.families.as_ref().is_none_or(|f| f.law.kind == LawKind::Shaped);
+        let shaped = w.families.as_ref().is_none_or(|f| f.law.kind.stiffened);
         if own.stiffness && !shaped {
             let text = "`set … peri/stiffness` comes too late: bonds were made alike at the first run";
             return Err(Diagnostic::error(Code::WRONG_ORDER, None, text)

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::energy::Sums;
+use crate::families::view::Sums;
 use crate::families::{FamilyOptions, ForceUnit, PeriView, PmbTable};
 use perigrain_base::math::form::InLanes;
 use perigrain_base::math::lanes::Lanes;

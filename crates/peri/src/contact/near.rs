@@ -9,9 +9,9 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::contact::hits::{Hits, Push, Rules};
 use crate::contact::meet::Meet;
-use crate::energy::Sums;
 use crate::families::list::GROUP;
 use crate::families::shares::{Shares, ranges};
+use crate::families::view::Sums;
 use crate::families::{Bounds, FamilyOptions, NearPair, PeriTally, PeriView};
 use crate::shares::sums_everywhere;
 use perigrain_base::math::form::Form;

@@ -1,11 +1,11 @@
 //! Bonded particles that are squeezed so far that they repel each other besides: found by their bonds, several pairs evaluated at a time.
 
-use crate::contact::hits::{Hits, Push, Rules};
+use crate::contact::hits::{Push, Rules};
+use crate::contact::memory::{Close, Pressed};
 use crate::contact::{Repulsion, add};
-use crate::families::lattice::LANES;
+use crate::families::lattice::{LANES, SQUEEZED};
 use crate::families::list::{CLOSE, GROUP, ListBody};
 use crate::families::{Families, FamilyOptions, PeriView};
-use crate::lattice::sweep::SQUEEZED;
 use perigrain_base::math::form::Form;
 use perigrain_base::par::{self, Shared};
 
@@ -15,22 +15,7 @@ const RECORDS: usize = 128;
 /// Parts whose pairs are kept at a time.
 const KEPT: usize = 32;
 
-/// What does not change from step to step of the bonds of a list that can come into contact, as [`crate::families::list::ListBody::close`] has them.
-#[derive(Debug, Default)]
-pub struct Close {
-    /// Their particles, the one of lower number first.
-    ends: Vec<[u32; 2]>,
-    /// The distances at which these touch.
-    contact: Vec<f64>,
-}
-
 impl Close {
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.ends.clear();
-        self.contact.clear();
-    }
-
     /// Finds them, unless they are known.
     fn find(&mut self, list: &ListBody, view: &PeriView, options: &FamilyOptions) {
         if self.ends.len() == list.close.len() {
@@ -45,13 +30,6 @@ impl Close {
             self.contact.push(if there { options.contact_range(view, p, q) } else { 0.0 });
         }
     }
-}
-
-/// The pairs of one part, the particle of lower number first.
-#[derive(Debug, Default)]
-pub struct Pressed {
-    hits: Hits,
-    ends: Vec<[u32; 2]>,
 }
 
 impl Pressed {

@@ -79,8 +79,64 @@ impl InLanes for FindStrained<'_, '_> {
     const PICKS: bool = false;
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        // SAFETY: the caller's promise.
-        unsafe { strained::<N, V>(self.0, self.1) }
+        let Self(a, found) = self;
+        // SAFETY: the caller's promise; places lie within the tables.
+        unsafe {
+            let zero = V::all(0.0);
+            let (one, floor) = (zero.like(1.0), zero.like(a.floor));
+            for lead in a.to {
+                let alive = a.alive[lead.e as usize];
+                if alive == 0 {
+                    continue;
+                }
+                let c = &*a.tables.as_ptr().add(lead.table as usize).cast::<Constants>();
+                let inverse = c[constant::INVERSE];
+                let (mut z, mut over) = ([zero; 2], 0);
+                let mut v = 0;
+                while v < CELLS / N {
+                    z[v] = between::<N, V, false>(&a.now, N * v, lead.to, c) * inverse;
+                    over |= V::mask_bits(z[v].at_least(floor)) << (N * v);
+                    v += 1;
+                }
+                if over & alive == 0 {
+                    continue;
+                }
+                let pair = if a.pairs.len() > 1 { lead.table as usize / a.table } else { 0 };
+                let [_, s00, alpha] = a.pairs[pair];
+                let mut limit = [zero; 2];
+                let (mut bits, mut v) = (0, 0);
+                while v < CELLS / N {
+                    let here = N * v;
+                    let q = between::<N, V, false>(&a.before, here, lead.to, c);
+                    let live = q.abs().at_least(zero.like(c[constant::DEAD]));
+                    // s ≤ z/2: the limits that follow are no higher than the true ones, and rounding takes far less than 1e-12.
+                    let own = (q * inverse * 0.5).keep(live).most(zero);
+                    let far = V::read(a.least.offset(here as isize + lead.to as isize));
+                    let known = V::read(a.least.add(here)).most(far);
+                    let strict = zero.like(s00) - zero.like(alpha) * known.least(own);
+                    limit[v] = strict - strict.abs() * 1e-12;
+                    bits |= V::mask_bits((z[v] * 0.5).at_least(limit[v])) << here;
+                    v += 1;
+                }
+                bits &= over & alive;
+                if bits == 0 {
+                    continue;
+                }
+                let (mut stretch, mut exact) = ([0.0; CELLS], 0);
+                let mut v = 0;
+                while v < CELLS / N {
+                    let here = N * v;
+                    let live = z[v].abs().at_least(zero.like(c[constant::DEAD]) * inverse);
+                    let s = (z[v] / (one + (one + z[v]).sqrt())).keep(live);
+                    stretch[here..here + N].copy_from_slice(&s.numbers());
+                    exact |= V::mask_bits(s.at_least(limit[v])) << here;
+                    v += 1;
+                }
+                if bits & exact != 0 {
+                    found.push(Strained { lead: *lead, pair: pair as u16, bits: bits & exact, stretch });
+                }
+            }
+        }
     }
 }
 
@@ -104,8 +160,35 @@ impl InLanes for FindLeast<'_> {
     const PICKS: bool = false;
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) -> Least {
-        // SAFETY: the caller's promise.
-        unsafe { least::<N, V>(self.u, self.sides, self.pair, self.tables) }
+        let Self { u, sides, pair, tables } = self;
+        // SAFETY: the caller's promise; places lie within the tables.
+        unsafe {
+            let mut out = Least { z: [0.0; CELLS], side: [0.0; CELLS] };
+            let zero = V::all(0.0);
+            let infinite = zero.like(f64::INFINITY);
+            let mut here = 0;
+            while here < CELLS {
+                let (mut least, mut whose) = (infinite, zero);
+                for (k, side) in sides.iter().enumerate().filter(|(_, side)| side.pair == pair) {
+                    let c = &*tables.as_ptr().add(side.place as usize).cast::<Constants>();
+                    let q = match side.behind {
+                        false => between::<N, V, false>(&u, here, side.to, c),
+                        true => between::<N, V, true>(&u, here, side.to, c),
+                    };
+                    let live = q.abs().at_least(zero.like(c[constant::DEAD]));
+                    let z = (q * c[constant::INVERSE]).keep(live);
+                    let z = V::choose(zero.mask(side.bits >> here), z, infinite);
+                    let others = whose.keep(z.at_least(least));
+                    least = z.least(least);
+                    // Whose it is: the last of those that are the least.
+                    whose = others.most(zero.like(k as f64).keep(least.at_least(z)));
+                }
+                out.z[here..here + N].copy_from_slice(&least.numbers());
+                out.side[here..here + N].copy_from_slice(&whose.numbers());
+                here += N;
+            }
+            out
+        }
     }
 }
 
@@ -133,102 +216,4 @@ unsafe fn between<const N: usize, V: Lanes<N>, const BEHIND: bool>(
 ) -> V {
     // SAFETY: the caller's promise.
     unsafe { q::<V, BEHIND>(&place(u, here as isize), &place(u, here as isize + to as isize), c) }
-}
-
-#[inline(always)]
-unsafe fn strained<const N: usize, V: Lanes<N>>(a: &Watched, found: &mut Vec<Strained>) {
-    // SAFETY: the caller's promise; places lie within the tables.
-    unsafe {
-        let zero = V::all(0.0);
-        let (one, floor) = (zero.like(1.0), zero.like(a.floor));
-        for lead in a.to {
-            let alive = a.alive[lead.e as usize];
-            if alive == 0 {
-                continue;
-            }
-            let c = &*a.tables.as_ptr().add(lead.table as usize).cast::<Constants>();
-            let inverse = c[constant::INVERSE];
-            let (mut z, mut over) = ([zero; 2], 0);
-            let mut v = 0;
-            while v < CELLS / N {
-                z[v] = between::<N, V, false>(&a.now, N * v, lead.to, c) * inverse;
-                over |= V::mask_bits(z[v].at_least(floor)) << (N * v);
-                v += 1;
-            }
-            if over & alive == 0 {
-                continue;
-            }
-            let pair = if a.pairs.len() > 1 { lead.table as usize / a.table } else { 0 };
-            let [_, s00, alpha] = a.pairs[pair];
-            let mut limit = [zero; 2];
-            let (mut bits, mut v) = (0, 0);
-            while v < CELLS / N {
-                let here = N * v;
-                let q = between::<N, V, false>(&a.before, here, lead.to, c);
-                let live = q.abs().at_least(zero.like(c[constant::DEAD]));
-                // s ≤ z/2: the limits that follow are no higher than the true ones, and rounding takes far less than 1e-12.
-                let own = (q * inverse * 0.5).keep(live).most(zero);
-                let far = V::read(a.least.offset(here as isize + lead.to as isize));
-                let known = V::read(a.least.add(here)).most(far);
-                let strict = zero.like(s00) - zero.like(alpha) * known.least(own);
-                limit[v] = strict - strict.abs() * 1e-12;
-                bits |= V::mask_bits((z[v] * 0.5).at_least(limit[v])) << here;
-                v += 1;
-            }
-            bits &= over & alive;
-            if bits == 0 {
-                continue;
-            }
-            let (mut stretch, mut exact) = ([0.0; CELLS], 0);
-            let mut v = 0;
-            while v < CELLS / N {
-                let here = N * v;
-                let live = z[v].abs().at_least(zero.like(c[constant::DEAD]) * inverse);
-                let s = (z[v] / (one + (one + z[v]).sqrt())).keep(live);
-                stretch[here..here + N].copy_from_slice(&s.numbers());
-                exact |= V::mask_bits(s.at_least(limit[v])) << here;
-                v += 1;
-            }
-            if bits & exact != 0 {
-                found.push(Strained { lead: *lead, pair: pair as u16, bits: bits & exact, stretch });
-            }
-        }
-    }
-}
-
-#[inline(always)]
-unsafe fn least<const N: usize, V: Lanes<N>>(
-    u: [*const f64; 3],
-    sides: &[Side],
-    pair: u16,
-    tables: &[f64],
-) -> Least {
-    // SAFETY: the caller's promise; places lie within the tables.
-    unsafe {
-        let mut out = Least { z: [0.0; CELLS], side: [0.0; CELLS] };
-        let zero = V::all(0.0);
-        let infinite = zero.like(f64::INFINITY);
-        let mut here = 0;
-        while here < CELLS {
-            let (mut least, mut whose) = (infinite, zero);
-            for (k, side) in sides.iter().enumerate().filter(|(_, side)| side.pair == pair) {
-                let c = &*tables.as_ptr().add(side.place as usize).cast::<Constants>();
-                let q = match side.behind {
-                    false => between::<N, V, false>(&u, here, side.to, c),
-                    true => between::<N, V, true>(&u, here, side.to, c),
-                };
-                let live = q.abs().at_least(zero.like(c[constant::DEAD]));
-                let z = (q * c[constant::INVERSE]).keep(live);
-                let z = V::choose(zero.mask(side.bits >> here), z, infinite);
-                let others = whose.keep(z.at_least(least));
-                least = z.least(least);
-                // Whose it is: the last of those that are the least.
-                whose = others.most(zero.like(k as f64).keep(least.at_least(z)));
-            }
-            out.z[here..here + N].copy_from_slice(&least.numbers());
-            out.side[here..here + N].copy_from_slice(&whose.numbers());
-            here += N;
-        }
-        out
-    }
 }

@@ -3,12 +3,11 @@
 use std::borrow::Cow;
 
 use crate::breaking::{Bonds, banded, measure};
-use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, PAD, Slack, Slackest};
+use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, MAY_BREAK, PAD, Slack, Slackest};
 use crate::families::{Candidate, FamilyOptions, Measures};
 use crate::lattice::bond_stretch::{FindLeast, FindStrained, Side, Strained, Watched};
 use crate::lattice::chunk::constant;
 use crate::lattice::leads::ahead;
-use crate::lattice::sweep::MAY_BREAK;
 use crate::law::series::stretch;
 use perigrain_base::math::form::Form;
 use perigrain_base::par::{self, Shared};
@@ -69,8 +68,7 @@ impl LatticeBody {
     /// Displacements of this step (1) or of the one before (0), at a cell.
     fn at_cell(&self, which: usize, cell: usize) -> [*const f64; 3] {
         let u = self.u[which].as_ptr();
-        // SAFETY: the column has a place for each cell and PAD more around.
-        [0, 1, 2].map(|k| unsafe { u.add(k * self.stride + PAD + cell) })
+        [0, 1, 2].map(|k| u.wrapping_add(k * self.stride + PAD + cell))
     }
 
     /// The bonds ahead of a chunk along all stencil vectors, of which some live. `to`: where they lead.
@@ -201,8 +199,7 @@ impl LatticeBody {
             let watched = Watched {
                 now: self.at_cell(1, cell),
                 before: self.at_cell(0, cell),
-                // SAFETY: the column has a place for each cell and PAD more around.
-                least: unsafe { self.slackest.bound.as_ptr().add(PAD + cell) },
+                least: self.slackest.bound.as_ptr().wrapping_add(PAD + cell),
                 to: self.leads_of(slot),
                 alive: &self.alive[chunk * entries..][..entries],
                 tables: &self.tables,

@@ -53,17 +53,32 @@ macro_rules! xyz {
 #[derive(Clone, Copy)]
 pub struct Chunk<'a> {
     /// Displacements.
-    pub u: [*const f64; 3],
+    pub(super) u: [*const f64; 3],
     /// Forces, added to.
-    pub f: [*mut f64; 3],
+    pub(super) f: [*mut f64; 3],
     /// Alive bits of the chunk, one byte per stencil vector.
-    pub alive: &'a [u8],
+    pub(super) alive: &'a [u8],
     /// Where the bonds lead.
-    pub to: &'a [Lead],
+    pub(super) to: &'a [Lead],
     /// Constants.
-    pub tables: &'a [f64],
+    pub(super) tables: &'a [f64],
     /// Per-cell data of bodies with mixed rows or various volumes.
-    pub various: Option<Various<'a>>,
+    pub(super) various: Option<Various<'a>>,
+}
+
+impl<'a> Chunk<'a> {
+    /// A chunk with its displacements `u`, alive bits, leads and constants. Loops over it add to the sums at `f`, but those of energies.
+    ///
+    /// # Safety
+    /// Where a byte of `alive` has bits, its lead must be to cells within seven of cells that exist in `u` and `f`, and to a table of
+    /// constants; all memory between must be readable and, in `f`, writable and not touched by others as long as the chunk is there.
+    pub unsafe fn new(
+        (u, f): ([*const f64; 3], [*mut f64; 3]),
+        (alive, to, tables): (&'a [u8], &'a [Lead], &'a [f64]),
+        various: Option<Various<'a>>,
+    ) -> Self {
+        Self { u, f, alive, to, tables, various }
+    }
 }
 
 /// Per-cell data of bodies with mixed rows or various volumes; pointers at the chunk's first cell.

@@ -5,7 +5,8 @@ use crate::lattice::chunk::{
     CELLS, CLOSED, Chunk, Constants, SUMS, bonds, constant, place, put_sums, with_virial,
 };
 use crate::lattice::kernels::{Cells, read, recall, stretch};
-use crate::law::{Angles, BondLaw, Ends};
+use crate::law::formula::{Angles, BondLaw};
+use crate::law::stretch::Ends;
 use perigrain_base::math::lanes::Lanes;
 
 /// What energies need besides.

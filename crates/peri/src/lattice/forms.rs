@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use crate::lattice::chunk::{CELLS, CLOSED, Chunk, SUMS};
 use crate::lattice::energies::{Looking, sums};
 use crate::lattice::kernels::{Cells, add_up, pull};
-use crate::law::BondLaw;
+use crate::law::formula::BondLaw;
 use crate::law::terms::Term;
 use perigrain_base::math::form::{Form, InLanes, Isa};
 use perigrain_base::math::four::Plain;
@@ -62,15 +62,15 @@ impl<T: Term, const DEGREE: usize, const MASKED: bool, const VARIOUS: bool, cons
 }
 
 /// Energies and virials; see [`sums`].
-pub struct Sums<'a, W> {
+struct Sums<'a, W> {
     /// The chunk.
-    pub chunk: &'a Chunk<'a>,
+    chunk: &'a Chunk<'a>,
     /// What its cells have.
-    pub cells: &'a Cells<'a>,
+    cells: &'a Cells<'a>,
     /// What energies need besides.
-    pub look: &'a Looking<'a>,
+    look: &'a Looking<'a>,
     /// The law.
-    pub law: PhantomData<W>,
+    law: PhantomData<W>,
 }
 
 impl<W: BondLaw> InLanes for Sums<'_, W> {
@@ -88,12 +88,12 @@ macro_rules! for_form {
     ($form:expr, $K:ident => $e:expr) => {
         match $form {
             #[cfg(target_arch = "x86_64")]
-            Form::Gathers | Form::Eight => {
+            Form::Gathers { .. } | Form::Eight { .. } => {
                 type $K = Avx512<false>;
                 $e
             }
             #[cfg(target_arch = "x86_64")]
-            Form::Four => {
+            Form::Four { .. } => {
                 type $K = Avx2;
                 $e
             }
@@ -105,25 +105,22 @@ macro_rules! for_form {
     };
 }
 
-/// Adds forces with the kernel for a form, a degree and the other choices.
-///
-/// # Safety
-/// As for [`pull`].
+/// Adds forces with the kernel for a form of this processor, a degree and the other choices. Without `masked` all bonds of all eight cells
+/// must live, or what comes out is wrong.
 #[inline]
-pub unsafe fn run<W: BondLaw>(
+pub fn run<W: BondLaw>(
     form: Form,
     (a, s): (&Chunk, &Cells),
     degree: usize,
     masked: bool,
     track: bool,
 ) -> (f64, f64) {
-    // SAFETY: the caller's promise.
-    unsafe { for_form!(form, K => forces::<K, W>((a, s), degree, masked, track)) }
+    for_form!(form, K => forces::<K, W>((a, s), degree, masked, track))
 }
 
 /// [`run`] with an instruction set.
 #[inline]
-unsafe fn forces<K: Isa, W: BondLaw>(
+fn forces<K: Isa, W: BondLaw>(
     (a, s): (&Chunk, &Cells),
     degree: usize,
     masked: bool,
@@ -133,7 +130,7 @@ unsafe fn forces<K: Isa, W: BondLaw>(
         (half $($choice:tt)*) => { K::run_four(Pull::<W, $($choice)*, true>(a, s, PhantomData)) };
         ($($choice:tt)*) => { K::run(Pull::<W, $($choice)*, false>(a, s, PhantomData)) };
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: forms are those of the processor; for memory, chunk and cells answer.
     unsafe {
         if a.various.is_some() {
             if const { K::FAST && W::PLAIN } {
@@ -180,24 +177,20 @@ unsafe fn forces<K: Isa, W: BondLaw>(
     }
 }
 
-/// Adds up a term with the kernel for a form and a degree.
-///
-/// # Safety
-/// As for [`add_up`].
+/// Adds up a term with the kernel for a form of this processor and a degree; as [`run`].
 #[inline]
-pub unsafe fn run_term<T: Term>(form: Form, (a, s): (&Chunk, &Cells), degree: usize, masked: bool) {
-    // SAFETY: the caller's promise.
-    unsafe { for_form!(form, K => terms::<K, T>((a, s), degree, masked)) }
+pub fn run_term<T: Term>(form: Form, (a, s): (&Chunk, &Cells), degree: usize, masked: bool) {
+    for_form!(form, K => terms::<K, T>((a, s), degree, masked))
 }
 
 /// [`run_term`] with an instruction set.
 #[inline]
-unsafe fn terms<K: Isa, T: Term>((a, s): (&Chunk, &Cells), degree: usize, masked: bool) {
+fn terms<K: Isa, T: Term>((a, s): (&Chunk, &Cells), degree: usize, masked: bool) {
     macro_rules! add_up {
         (half $($choice:tt)*) => { K::run_four(AddUp::<T, $($choice)*, true>(a, s, PhantomData)) };
         ($($choice:tt)*) => { K::run(AddUp::<T, $($choice)*, false>(a, s, PhantomData)) };
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: forms are those of the processor; for memory, chunk and cells answer.
     unsafe {
         if a.various.is_some() {
             return add_up!(CLOSED, true, true);
@@ -222,4 +215,14 @@ unsafe fn terms<K: Isa, T: Term>((a, s): (&Chunk, &Cells), degree: usize, masked
             _ => add_up!(CLOSED, true, false),
         }
     }
+}
+
+/// Energies and virials of a chunk's bonds, with the kernel for a form of this processor; see [`sums`].
+pub fn run_sums<W: BondLaw>(
+    form: Form,
+    (chunk, cells): (&Chunk, &Cells),
+    look: &Looking,
+) -> [[f64; CELLS]; SUMS] {
+    // SAFETY: as for forces.
+    unsafe { form.run(Sums::<W> { chunk, cells, look, law: PhantomData }) }
 }

@@ -1,13 +1,15 @@
 //! The innermost loops on the lattice, whatever the law: all bonds of eight neighbouring cells.
 
 use crate::families::lattice::Lead;
-use crate::families::law::COLUMNS;
 use crate::lattice::chunk::{
     CELLS, CLOSED, Chunk, Constants, bonds, constant, extremes, give, live, place, series, take, various,
 };
+use crate::law::formula::BondLaw;
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
 use crate::law::polynomials;
+use crate::law::stretch::{Ends, Stretch, closed};
 use crate::law::terms::Term;
-use crate::law::{BondLaw, Ends, Moment, Stretch, closed};
 use perigrain_base::math::lanes::{Lanes, prefetch};
 use perigrain_base::math::real::Real;
 
@@ -20,21 +22,40 @@ pub const TWICE_XI: usize = constant::XI;
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     /// The first column; the others follow a stride apart.
-    pub columns: *const f64,
+    columns: *const f64,
     /// See `columns`.
-    pub stride: usize,
+    stride: usize,
     /// Displacements at the last step that advanced.
-    pub last: [*const f64; 3],
+    pub(super) last: [*const f64; 3],
     /// What the chunk's bonds remember, [`CELLS`] of each number for each stencil vector.
-    pub memory: *mut f64,
+    memory: *mut f64,
     /// Whether that is anything but zeros.
-    pub touched: *mut u8,
+    pub(super) touched: *mut u8,
     /// What is the same for all bonds.
-    pub moment: &'a Moment,
+    pub(super) moment: &'a Moment,
     /// Keep what bonds remember from this evaluation.
-    pub keep: bool,
+    keep: bool,
     /// The second half of the cells is vacant.
-    pub half: bool,
+    pub(super) half: bool,
+}
+
+impl<'a> Cells<'a> {
+    /// What the sites and bonds of a chunk have: the first of `columns` that are a stride apart, displacements at the `last` step that advanced,
+    /// what bonds remember and whether that is anything. `keep` is whether what they remember moves on, `half` whether the second half of
+    /// the cells is vacant.
+    ///
+    /// # Safety
+    /// As many columns as the law reads must be readable where displacements are, and `last` with them; if the law remembers, memory must be
+    /// readable, and writable if they `keep` it, for all bonds of the chunk and not touched by others as long as this is there.
+    pub unsafe fn new(
+        (columns, stride): (*const f64, usize),
+        last: [*const f64; 3],
+        (memory, touched): (*mut f64, *mut u8),
+        moment: &'a Moment,
+        [keep, half]: [bool; 2],
+    ) -> Self {
+        Self { columns, stride, last, memory, touched, moment, keep, half }
+    }
 }
 
 /// How many numbers ahead memory of bonds is fetched: it is read but once in a sweep, and processors do not follow it from
@@ -128,9 +149,7 @@ const fn vectors<const N: usize>(half: bool) -> usize {
 /// Without `MASKED` all bonds of all eight cells must live.
 ///
 /// # Safety
-/// Live bonds must lead to cells within seven of cells that exist in `u` and `f`, all memory between readable and, in `f`,
-/// writable and not touched by others; columns must be readable where displacements are, and `memory` writable for all bonds
-/// of the chunk if the law remembers; the processor must have what `V` needs.
+/// The processor must have what `V` needs; for memory, chunks and cells answer.
 #[inline(always)]
 pub(crate) unsafe fn pull<
     const N: usize,

@@ -3,7 +3,9 @@
 //! Rows, stencil, bits of bonds and lengths of columns are as `setup::lattice` makes them; of bodies from restart files
 //! `families::sound` has looked at each of them.
 
-use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
+use crate::families::lattice::{
+    LANES, LatticeBody, MAY_BREAK, PAD, PAGE, RowMotion, SQUEEZED, STAGGER, staggered,
+};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
 use crate::lattice::chunk::{self, Chunk, Various};
@@ -32,11 +34,6 @@ pub struct Mode {
 
 /// Any coordinate.
 const EVERYWHERE: (i32, i32) = (i32::MIN, i32::MAX);
-
-/// Bits of [`LatticeBody::flagged`].
-pub const MAY_BREAK: u8 = 1;
-/// Bonded pairs close enough for short-range contact.
-pub const SQUEEZED: u8 = 2;
 
 /// One body during one force evaluation, with the columns that its tiles write.
 pub struct Sweep<'a> {
@@ -179,7 +176,7 @@ impl<'a> Sweep<'a> {
         // SAFETY: a row belongs to one tile.
         let growth = unsafe { &mut self.growth.get(slot..slot + 1)[0] };
         let spread = self.states.spread;
-        let motion = (!spread || self.states.kind.bond_based()).then(|| self.motion(slot));
+        let motion = (!spread || self.states.law.bond_based).then(|| self.motion(slot));
         if let Some(motion) = &motion {
             let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
             let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -217,7 +214,6 @@ impl<'a> Sweep<'a> {
     fn row(&self, slot: usize, plan: &RowPlan, room: &mut Room, first: usize) {
         let body = self.body;
         let row = &body.rows[slot];
-        let entries = body.stencil.len();
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
         // SAFETY: a row's chunks belong to it alone, and a row to one tile.
         let (tension, compression, measure, floors, flagged) = unsafe {
@@ -249,9 +245,8 @@ impl<'a> Sweep<'a> {
             let due = fragile || squeezed || bound >= f64::from(measure[k]);
             let track = !rest && (due || !self.mode.advance);
             let cell = chunk * LANES;
-            let chunk_data = self.chunk((slot, cell), entries, room.at(cell, first));
-            // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            let measured = unsafe { self.states.pull(body, chunk, &chunk_data, degree, track) };
+            let chunk_data = self.chunk((slot, cell), &body.tables, room.at(cell, first));
+            let measured = self.states.pull(body, chunk, &chunk_data, degree, track);
             if track {
                 (high, low) = measured;
                 if fragile && high >= floor {
@@ -272,28 +267,27 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// What the loop over a chunk's bonds needs, with the place of its cells in a window.
-    pub(crate) fn chunk(&self, (slot, cell): (usize, usize), entries: usize, f: [*mut f64; 3]) -> Chunk<'_> {
-        let body = self.body;
+    /// What the loop over a chunk's bonds needs, with constants, and the place of its cells in a window.
+    pub(crate) fn chunk<'b>(
+        &'b self,
+        (slot, cell): (usize, usize),
+        tables: &'b [f64],
+        f: [*mut f64; 3],
+    ) -> Chunk<'b> {
+        let (body, entries) = (self.body, self.body.stencil.len());
         let u = body.u[1].as_ptr();
         let various = (!body.cell_kind.is_empty()).then(|| Various {
-            // SAFETY: within the column, which has a place for each cell and PAD more around.
-            kind: unsafe { body.cell_kind.as_ptr().add(PAD + cell) },
-            // SAFETY: as above.
-            volume: unsafe { body.cell_volume.as_ptr().add(PAD + cell) },
+            kind: body.cell_kind.as_ptr().wrapping_add(PAD + cell),
+            volume: body.cell_volume.as_ptr().wrapping_add(PAD + cell),
             pairs: &body.pairs,
             kinds: body.kinds.len(),
             newton: self.newton,
         });
-        Chunk {
-            // SAFETY: within `u`, as above.
-            u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + cell) }),
-            f,
-            alive: &body.alive[cell / LANES * entries..][..entries],
-            to: body.leads_of(slot),
-            tables: &body.tables,
-            various,
-        }
+        let u = [0, 1, 2].map(|k| u.wrapping_add(k * body.stride + PAD + cell));
+        let alive = &body.alive[cell / LANES * entries..][..entries];
+        // SAFETY: columns have a place for each cell and PAD more around; live bonds lead to cells of the body that the window covers, which
+        // has PAD cells around as well.
+        unsafe { Chunk::new((u, f), (alive, body.leads_of(slot), tables), various) }
     }
 }
 

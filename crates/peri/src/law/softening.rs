@@ -14,19 +14,57 @@
 //! D = ∫₀^{s_m} g ds − ½ g(s_m) s_m, each over c w |xi| V. Whole families release πcδ⁵/5 ∫ g ds for each area of a crack
 //! (Silling & Askari 2005, equation 21, where ∫ g ds = ½ s₀²).
 
-use crate::families::law::COLUMNS;
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch};
+use crate::law::formula::{Angles, BondLaw};
+use crate::law::material::Moduli;
+use crate::law::moment::{COLUMNS, Moment};
+use crate::law::stretch::{Ends, Stretch};
+use crate::law::style::{Bound, Curve, Losses, Number, Style};
 use perigrain_base::math::real::Real;
 
-/// What is left of the peak where an exponential bond breaks.
-pub const REST: f64 = 1e-3;
+/// The linear law of decks.
+pub static LINEAR: Style = Style {
+    curve: Some(Curve {
+        // A triangle.
+        beyond: |area, peak| 2.0 * area / peak - peak,
+        twice_area: |peak, last| peak * last,
+        scaled: |(_, last), factor| factor * last,
+    }),
+    ..Style { name: "softening/linear", number: 8, ..softening::<Softening<false>>() }
+};
 
-/// The stretch at which nothing is left of a bond whose curve has this peak and `factor` times the area of one that ends at `last`.
-pub fn last_of_area(exponential: bool, (peak, last): (f64, f64), factor: f64) -> f64 {
-    if !exponential {
-        // A triangle of this height.
-        return factor * last;
+/// The exponential one.
+pub static EXPONENTIAL: Style = Style {
+    curve: Some(Curve {
+        // a (1 − REST) times the peak.
+        beyond: |area, peak| (area / peak - 0.5 * peak) / (1.0 - REST) * -REST.ln(),
+        twice_area: |peak, last| peak * peak + 2.0 * peak * (last - peak) / -REST.ln() * (1.0 - REST),
+        scaled: last_of_area,
+    }),
+    ..Style { name: "softening/exponential", number: 9, ..softening::<Softening<true>>() }
+};
+
+/// What both have.
+const fn softening<W: BondLaw>() -> Style {
+    Style {
+        bond_based: true,
+        losses: Losses::Damage,
+        numbers: &[Number {
+            keyword: "peak",
+            what: ["the stretch at the peak"; 2],
+            bound: Bound::Positive,
+            of: |m| &mut m.peak,
+        }],
+        edge: Some(|m: &Moduli| m.peak),
+        ..Style::of::<W>("", 0)
     }
+}
+
+/// What is left of the peak where an exponential bond breaks.
+const REST: f64 = 1e-3;
+
+/// The stretch at which nothing is left of an exponential bond whose curve has this peak and `factor` times the area of one that ends
+/// at `last`.
+fn last_of_area((peak, last): (f64, f64), factor: f64) -> f64 {
     let (rise, scale) = (0.5 * peak * peak, (last - peak) / -REST.ln());
     let beyond = peak * scale * (1.0 - REST);
     peak + (last - peak) * (factor * (rise + beyond) - rise) / beyond
@@ -180,7 +218,8 @@ mod tests {
                 true => 0.5 * PEAK * PEAK + PEAK * (last - PEAK) / -REST.ln() * (1.0 - REST),
             };
             for factor in [0.6, 1.0, 2.5] {
-                let last = last_of_area(exponential, (PEAK, LIMIT), factor);
+                let style = if exponential { &EXPONENTIAL } else { &LINEAR };
+                let last = (style.curve.as_ref().unwrap().scaled)((PEAK, LIMIT), factor);
                 assert!((area(last) / area(LIMIT) - factor).abs() < 1e-14, "{exponential} {factor}");
             }
         }

@@ -1,7 +1,18 @@
 //! What state-based laws add up over bonds before there are forces: dilatations and norms of trial states.
 
-use crate::law::{Ends, Stretch};
+use crate::law::stretch::{Ends, Stretch};
 use perigrain_base::math::real::Real;
+
+/// The sums of a sweep: which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sum {
+    /// Dilatations.
+    Dilatation,
+    /// Norms of trial states.
+    Norm,
+    /// The same as LAMMPS reckons them.
+    NormLammps,
+}
 
 /// What a sweep adds up at both ends before there are forces.
 pub trait Term: Sync {
@@ -34,7 +45,7 @@ fn trial<R: Real>(bond: &Stretch<R>, [own, far]: &Ends<R>, memory: &[R; 2]) -> (
     (bond.s - own[2] - memory[0], bond.s - far[2] - memory[1])
 }
 
-/// The squared norm of the trial state over (15G/m)²: Σ ω² w |xi|² (s − θ/3 − e_p)² V. Columns as [`crate::law::Plastic`].
+/// The squared norm of the trial state over (15G/m)²: Σ ω² w |xi|² (s − θ/3 − e_p)² V. Columns as `eps` has them.
 pub struct Norm;
 
 impl Term for Norm {

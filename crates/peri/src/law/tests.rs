@@ -1,5 +1,10 @@
 //! The laws of one bond by hand.
 
+use crate::law::eps::{Plastic, PlasticLammps};
+use crate::law::lps::Elastic;
+use crate::law::nonlinear::Flattened;
+use crate::law::plastic::Yielding;
+use crate::law::ves::Viscous;
 use crate::law::*;
 
 fn bond(s: f64) -> Stretch<f64> {

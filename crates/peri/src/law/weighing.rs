@@ -1,7 +1,7 @@
 //! What a bond counts in sums and forces, and its stretch, one bond at a time: for tables and single bonds.
 
 use crate::families::{FamilyOptions, Influence, Law};
-use crate::law::{Stretch, closed};
+use crate::law::stretch::{Stretch, closed};
 
 /// What a bond counts.
 #[derive(Clone, Copy)]
@@ -15,7 +15,7 @@ pub enum Weighing {
 impl Weighing {
     /// That of a law.
     pub fn of(law: &Law) -> Self {
-        match law.kind.bond_based() {
+        match law.kind.bond_based {
             true => Self::Bond(law.shape()),
             false => Self::Influence(law.influence),
         }

@@ -275,8 +275,7 @@ fn least(
             let row = Row { body: list, i, first: list.ring_start(slab), rules };
             let mut next = row.start();
             while row.fill(&mut next, b) {
-                // SAFETY: the kernels are those that the processor has.
-                unsafe { row.shape::<LAST>(form, b) };
+                row.shape::<LAST>(form, b);
                 judge.measure(&row, b);
                 for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
                     for row in [i, *target as usize] {

@@ -6,11 +6,10 @@
 use std::ptr::null_mut;
 
 use crate::families::list::{GROUP, ListBody};
-use crate::families::{BoxStrain, Cell, FamilyOptions, Influence, Law};
-use crate::lattice::constants::STRETCH;
-use crate::law::closed;
+use crate::families::{BoxStrain, Cell, FamilyOptions, Influence};
 use crate::law::polynomials::{self, FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
-use crate::law::series::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
+use crate::law::series::{SERIES, STRETCH, UP_TO_3, UP_TO_5, UP_TO_7};
+use crate::law::stretch::closed;
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, load_rows};
@@ -108,6 +107,17 @@ const NONE: u8 = 0;
 const UPRIGHT: u8 = 1;
 const LEANING: u8 = 2;
 
+/// How bonds count under a law.
+#[derive(Clone, Copy)]
+pub struct Counting {
+    /// For their length.
+    pub influence: Influence,
+    /// They are microelastic and count c times their shape over |xi|.
+    pub microelastic: bool,
+    /// The law asks for critical stretches.
+    pub limited: bool,
+}
+
 /// What is the same for all bonds.
 #[derive(Clone, Copy)]
 pub struct Rules {
@@ -121,18 +131,14 @@ pub struct Rules {
     strain: [BoxStrain; 2],
     /// |z| below which there is no force: the first number plus the second over |xi|.
     dead: [f64; 2],
-    influence: Influence,
-    /// Bonds are microelastic and count c times their shape over |xi|.
-    microelastic: bool,
-    /// Laws ask for critical stretches.
-    limited: bool,
+    counting: Counting,
     /// Measures are wanted beside forces.
     pub measures: bool,
 }
 
 impl Rules {
     /// Those of a scene.
-    pub fn new(cell: &Cell, options: &FamilyOptions, law: &Law) -> Self {
+    pub fn new(cell: &Cell, options: &FamilyOptions, counting: Counting) -> Self {
         let period = cell.birth;
         let band = options.dead_band(1.0);
         let length = period.length.map(|l| if l > 0.0 { l } else { f64::INFINITY });
@@ -149,9 +155,7 @@ impl Rules {
             strain: cell.strain,
             images,
             dead,
-            influence: law.shape(),
-            microelastic: law.kind.bond_based(),
-            limited: law.kind.softens(),
+            counting,
             measures: false,
         }
     }
@@ -192,12 +196,9 @@ impl Row<'_> {
     }
 
     /// Finds what is to know of the bonds in hand; as much as `WHAT` says.
-    ///
-    /// # Safety
-    /// The processor must have what the form needs.
     #[inline]
-    pub unsafe fn shape<const WHAT: u8>(&self, form: Form, b: &mut Block) {
-        // SAFETY: passed on to the caller.
+    pub fn shape<const WHAT: u8>(&self, form: Form, b: &mut Block) {
+        // SAFETY: records, groups and partners are those of the body, in blocks of no more than `MOST` bonds.
         unsafe {
             match self.rules.images {
                 NONE => form.run(Shapes::<NONE, WHAT>(self, b)),
@@ -213,140 +214,6 @@ impl Block {
     #[inline(always)]
     pub fn place(&self, at: usize) -> usize {
         self.place[at / GROUP] as usize + at % GROUP
-    }
-}
-
-#[inline(always)]
-unsafe fn shapes<const N: usize, V: Lanes<N>, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut Block) {
-    // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
-    unsafe {
-        let (body, rules) = (row.body, row.rules);
-        let (record, last) = (body.record.as_ptr(), body.last.as_ptr());
-        let own = &*record.add(row.i);
-        let zero = V::all(0.0);
-        let [x, u] = [own.reference, if WHAT == LAST { *last.add(row.i) } else { own.u }];
-        let pairs = body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
-        let one = zero.like(1.0);
-        let owned = !body.own_weight.is_empty();
-        let dead = [zero.like(rules.dead[0]), zero.like(rules.dead[1])];
-        let (mut high, mut low) = (zero, zero);
-        let mut first = 0;
-        while first < b.count {
-            let group = *b.place.get_unchecked(first / GROUP) as usize / GROUP;
-            let pair = &*pairs.add(usize::from(*body.group_kind.get_unchecked(group)));
-            let bits = *body.alive.get_unchecked(group);
-            let mut v = 0;
-            while v < GROUP {
-                let at = first + v;
-                let place = GROUP * group + v;
-                let partner = body.partner.as_ptr().add(place);
-                let rows = partners!(N, null_mut(), |k| record
-                    .add(*partner.add(k) as usize)
-                    .cast::<f64>()
-                    .cast_mut());
-                let [xj, yj, zj, volume]: [V; 4] = load_rows(&rows, 0);
-                let to = if WHAT == LAST {
-                    let mut u = [[0.0; N]; 3];
-                    for k in 0..N {
-                        let far = &*last.add(*partner.add(k) as usize);
-                        (u[0][k], u[1][k], u[2][k]) = (far[0], far[1], far[2]);
-                    }
-                    [V::of(u[0]), V::of(u[1]), V::of(u[2])]
-                } else {
-                    let [u, v, w, _] = load_rows(&rows, 4);
-                    [u, v, w]
-                };
-                let apart = [xj - x[0], yj - x[1], zj - x[2]];
-                let mut xi = apart;
-                if IMAGES == UPRIGHT {
-                    xi[0] = nearest(xi[0], rules.length[0]);
-                    xi[1] = nearest(xi[1], rules.length[1]);
-                    xi[2] = nearest(xi[2], rules.length[2]);
-                }
-                if IMAGES == LEANING {
-                    xi = nearest_leaning(xi, rules);
-                }
-                let mut eta = [to[0] - u[0], to[1] - u[1], to[2] - u[2]];
-                if IMAGES != NONE && rules.strained {
-                    let away = [apart[0] - xi[0], apart[1] - xi[1], apart[2] - xi[2]];
-                    let strain = &rules.strain[(WHAT == LAST) as usize];
-                    let mut d = 0;
-                    while d < 3 {
-                        let mut k = d;
-                        while k < 3 {
-                            eta[d] = away[k].fnma(zero.like(strain[d][k]), eta[d]);
-                            k += 1;
-                        }
-                        d += 1;
-                    }
-                }
-                let y = [xi[0] + eta[0], xi[1] + eta[1], xi[2] + eta[2]];
-                let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2] * xi[2]));
-                let q = eta[1].fma(y[1] + xi[1], eta[2] * (y[2] + xi[2]));
-                let q = eta[0].fma(y[0] + xi[0], q);
-                let inverse = V::read(body.inverse.as_ptr().add(place));
-                let length = square * inverse;
-                let alive = zero.mask(bits >> v);
-                let z = q * (inverse * inverse);
-                let z = z.keep(z.abs().at_least(inverse.fma(dead[1], dead[0]))).keep(alive);
-                if rules.measures || WHAT == LAST {
-                    let measure = V::choose(alive, z, zero.like(f64::INFINITY));
-                    measure.write(b.measure.as_mut_ptr().add(at));
-                }
-                v += N;
-                if WHAT == LAST {
-                    z.write(b.before.as_mut_ptr().add(at));
-                    continue;
-                }
-                (high, low) = (z.most(high), z.least(low));
-                let weight = match owned {
-                    true => V::read(body.own_weight.as_ptr().add(place)),
-                    false => zero.like(pair.weight[1]).fnma(length, zero.like(pair.weight[0])).least(one),
-                };
-                let shape = match rules.influence {
-                    Influence::Inverse => inverse,
-                    Influence::One => one,
-                    Influence::Gaussian => V::read(body.influence.as_ptr().add(place)),
-                };
-                let (omega, weight) = if rules.microelastic {
-                    (zero.like(pair.yields), zero.like(pair.shape) * shape * weight * inverse)
-                } else {
-                    (shape, shape * weight)
-                };
-                z.write(b.z.as_mut_ptr().add(at));
-                y[0].write(b.y[0].as_mut_ptr().add(at));
-                y[1].write(b.y[1].as_mut_ptr().add(at));
-                y[2].write(b.y[2].as_mut_ptr().add(at));
-                weight.keep(alive).write(b.weight.as_mut_ptr().add(at));
-                volume.write(b.volume.as_mut_ptr().add(at));
-                if WHAT == FULL {
-                    square.write(b.square.as_mut_ptr().add(at));
-                    omega.keep(alive).write(b.omega.as_mut_ptr().add(at));
-                    if rules.limited {
-                        let mut limit = zero.like(pair.s00);
-                        if body.scatter.uneven() {
-                            let ends = |k: usize| [row.i, *partner.add(k) as usize];
-                            limit = limit * V::of(partners!(N, 1.0, |k| body.scatter.strength(ends(k))));
-                        }
-                        limit.keep(alive).write(b.limit.as_mut_ptr().add(at));
-                    }
-                }
-            }
-            let target = b.target.as_mut_ptr().add(first);
-            body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
-            first += GROUP;
-        }
-        (b.high, b.low) = (
-            most(high, 0.0, |a, b| if b > a { b } else { a }),
-            most(low, 0.0, |a, b| if b < a { b } else { a }),
-        );
-        if row.first > 0 {
-            for target in &mut b.target[..b.count] {
-                if (*target as usize) < row.first {
-                    *target += body.record.len() as u32;
-                }
-            }
-        }
     }
 }
 
@@ -483,7 +350,137 @@ impl<const IMAGES: u8, const WHAT: u8> InLanes for Shapes<'_, '_, IMAGES, WHAT> 
     const PICKS: bool = false;
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        // SAFETY: the caller's promise.
-        unsafe { shapes::<N, V, IMAGES, WHAT>(self.0, self.1) }
+        let Self(row, b) = self;
+        // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
+        unsafe {
+            let (body, rules) = (row.body, row.rules);
+            let (record, last) = (body.record.as_ptr(), body.last.as_ptr());
+            let own = &*record.add(row.i);
+            let zero = V::all(0.0);
+            let [x, u] = [own.reference, if WHAT == LAST { *last.add(row.i) } else { own.u }];
+            let pairs =
+                body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
+            let one = zero.like(1.0);
+            let owned = !body.own_weight.is_empty();
+            let dead = [zero.like(rules.dead[0]), zero.like(rules.dead[1])];
+            let (mut high, mut low) = (zero, zero);
+            let mut first = 0;
+            while first < b.count {
+                let group = *b.place.get_unchecked(first / GROUP) as usize / GROUP;
+                let pair = &*pairs.add(usize::from(*body.group_kind.get_unchecked(group)));
+                let bits = *body.alive.get_unchecked(group);
+                let mut v = 0;
+                while v < GROUP {
+                    let at = first + v;
+                    let place = GROUP * group + v;
+                    let partner = body.partner.as_ptr().add(place);
+                    let rows = partners!(N, null_mut(), |k| record
+                        .add(*partner.add(k) as usize)
+                        .cast::<f64>()
+                        .cast_mut());
+                    let [xj, yj, zj, volume]: [V; 4] = load_rows(&rows, 0);
+                    let to = if WHAT == LAST {
+                        let mut u = [[0.0; N]; 3];
+                        for k in 0..N {
+                            let far = &*last.add(*partner.add(k) as usize);
+                            (u[0][k], u[1][k], u[2][k]) = (far[0], far[1], far[2]);
+                        }
+                        [V::of(u[0]), V::of(u[1]), V::of(u[2])]
+                    } else {
+                        let [u, v, w, _] = load_rows(&rows, 4);
+                        [u, v, w]
+                    };
+                    let apart = [xj - x[0], yj - x[1], zj - x[2]];
+                    let mut xi = apart;
+                    if IMAGES == UPRIGHT {
+                        xi[0] = nearest(xi[0], rules.length[0]);
+                        xi[1] = nearest(xi[1], rules.length[1]);
+                        xi[2] = nearest(xi[2], rules.length[2]);
+                    }
+                    if IMAGES == LEANING {
+                        xi = nearest_leaning(xi, rules);
+                    }
+                    let mut eta = [to[0] - u[0], to[1] - u[1], to[2] - u[2]];
+                    if IMAGES != NONE && rules.strained {
+                        let away = [apart[0] - xi[0], apart[1] - xi[1], apart[2] - xi[2]];
+                        let strain = &rules.strain[(WHAT == LAST) as usize];
+                        let mut d = 0;
+                        while d < 3 {
+                            let mut k = d;
+                            while k < 3 {
+                                eta[d] = away[k].fnma(zero.like(strain[d][k]), eta[d]);
+                                k += 1;
+                            }
+                            d += 1;
+                        }
+                    }
+                    let y = [xi[0] + eta[0], xi[1] + eta[1], xi[2] + eta[2]];
+                    let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2] * xi[2]));
+                    let q = eta[1].fma(y[1] + xi[1], eta[2] * (y[2] + xi[2]));
+                    let q = eta[0].fma(y[0] + xi[0], q);
+                    let inverse = V::read(body.inverse.as_ptr().add(place));
+                    let length = square * inverse;
+                    let alive = zero.mask(bits >> v);
+                    let z = q * (inverse * inverse);
+                    let z = z.keep(z.abs().at_least(inverse.fma(dead[1], dead[0]))).keep(alive);
+                    if rules.measures || WHAT == LAST {
+                        let measure = V::choose(alive, z, zero.like(f64::INFINITY));
+                        measure.write(b.measure.as_mut_ptr().add(at));
+                    }
+                    v += N;
+                    if WHAT == LAST {
+                        z.write(b.before.as_mut_ptr().add(at));
+                        continue;
+                    }
+                    (high, low) = (z.most(high), z.least(low));
+                    let weight = match owned {
+                        true => V::read(body.own_weight.as_ptr().add(place)),
+                        false => zero.like(pair.weight[1]).fnma(length, zero.like(pair.weight[0])).least(one),
+                    };
+                    let shape = match rules.counting.influence {
+                        Influence::Inverse => inverse,
+                        Influence::One => one,
+                        Influence::Gaussian => V::read(body.influence.as_ptr().add(place)),
+                    };
+                    let (omega, weight) = if rules.counting.microelastic {
+                        (zero.like(pair.yields), zero.like(pair.shape) * shape * weight * inverse)
+                    } else {
+                        (shape, shape * weight)
+                    };
+                    z.write(b.z.as_mut_ptr().add(at));
+                    y[0].write(b.y[0].as_mut_ptr().add(at));
+                    y[1].write(b.y[1].as_mut_ptr().add(at));
+                    y[2].write(b.y[2].as_mut_ptr().add(at));
+                    weight.keep(alive).write(b.weight.as_mut_ptr().add(at));
+                    volume.write(b.volume.as_mut_ptr().add(at));
+                    if WHAT == FULL {
+                        square.write(b.square.as_mut_ptr().add(at));
+                        omega.keep(alive).write(b.omega.as_mut_ptr().add(at));
+                        if rules.counting.limited {
+                            let mut limit = zero.like(pair.s00);
+                            if body.scatter.uneven() {
+                                let ends = |k: usize| [row.i, *partner.add(k) as usize];
+                                limit = limit * V::of(partners!(N, 1.0, |k| body.scatter.strength(ends(k))));
+                            }
+                            limit.keep(alive).write(b.limit.as_mut_ptr().add(at));
+                        }
+                    }
+                }
+                let target = b.target.as_mut_ptr().add(first);
+                body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
+                first += GROUP;
+            }
+            (b.high, b.low) = (
+                most(high, 0.0, |a, b| if b > a { b } else { a }),
+                most(low, 0.0, |a, b| if b < a { b } else { a }),
+            );
+            if row.first > 0 {
+                for target in &mut b.target[..b.count] {
+                    if (*target as usize) < row.first {
+                        *target += body.record.len() as u32;
+                    }
+                }
+            }
+        }
     }
 }

@@ -1,12 +1,14 @@
 //! Bond laws over the bonds in hand: forces, sums of both ends, energies.
 
-use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
 use crate::lattice::chunk::SUMS;
+use crate::law::formula::{Angles, BondLaw};
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
+use crate::law::stretch::{Ends, Stretch, closed};
 use crate::law::terms::Term;
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
 use crate::list::kernel::{Block, Row, partners, scatter, steps, stretch};
-use perigrain_base::math::form::InLanes;
+use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, load_rows};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::SIX;
@@ -141,46 +143,145 @@ impl<V> Sum<V> {
     }
 }
 
-/// What laws do to the bonds in hand.
-pub struct Hand<'a, 'b, 'c, W> {
-    /// The record.
-    pub row: &'a Row<'b>,
-    /// What laws need besides.
-    pub acting: &'a Acting<'c>,
-    /// The bonds.
-    pub block: &'a mut Block,
-    /// The law.
-    pub law: PhantomData<W>,
+/// Bonds in hand, with what laws need of them.
+pub struct Hand<'a, 'b, 'c> {
+    row: &'a Row<'b>,
+    acting: &'a Acting<'c>,
+    block: &'a mut Block,
+    window: *mut f64,
 }
 
-/// Adds the forces of the bonds in hand times the volumes of both
-/// ends; true if bonds remember something that had nothing to remember before.
-///
-/// Every partner must lie in the window of rows of four at `force`, untouched by others.
-pub struct Pull<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub *mut f64);
+impl<'a, 'b, 'c> Hand<'a, 'b, 'c> {
+    /// The bonds of a record that are in a block.
+    ///
+    /// # Safety
+    /// Every partner must lie in the `window` of rows of four numbers, of one number where terms are added up; of energies nothing is put there.
+    /// Nothing else may touch the window and what these bonds remember as long as this is there.
+    pub unsafe fn new(
+        (row, acting): (&'a Row<'b>, &'a Acting<'c>),
+        block: &'a mut Block,
+        window: *mut f64,
+    ) -> Self {
+        Self { row, acting, block, window }
+    }
+}
+
+/// Adds the forces of the bonds in hand times the volumes of both ends; true if bonds remember something that had nothing to remember before.
+pub fn pull<W: BondLaw>(form: Form, hand: Hand) -> bool {
+    // SAFETY: the bonds in hand answer for memory.
+    unsafe { form.run(Pull::<W>(hand, PhantomData)) }
+}
+
+/// Adds a term of the bonds in hand to the sums of both ends.
+pub fn add_up<T: Term>(form: Form, hand: Hand) {
+    // SAFETY: the bonds in hand answer for memory.
+    unsafe { form.run(AddUp::<T>(hand, PhantomData)) }
+}
+
+/// Energy and virial of the bonds in hand. What comes out of each: the energies of both ends, and the pull along y times both
+/// volumes, which makes the virial (force density times the one volume of it, or the force itself).
+pub fn energies<W: BondLaw>(form: Form, hand: Hand, look: &Looking) -> [f64; SUMS] {
+    // SAFETY: the bonds in hand answer for memory.
+    unsafe { form.run(Energies::<W>(hand, look, PhantomData)) }
+}
+
+/// See [`pull`].
+struct Pull<'a, 'b, 'c, W>(Hand<'a, 'b, 'c>, PhantomData<W>);
 
 impl<W: BondLaw> InLanes for Pull<'_, '_, '_, W> {
     type Out = bool;
     const PICKS: bool = false;
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) -> bool {
-        // SAFETY: the caller's promise.
-        unsafe { pull::<N, V, W>(self.0.row, self.0.acting, self.0.block, self.1) }
+        let Self(Hand { row, acting: a, block: b, window: force }, _) = self;
+        // SAFETY: the processor has what the lanes need; partners are records, and the bonds in hand answer for memory.
+        unsafe {
+            let zero = V::all(0.0);
+            stretch::<N, V, false>(zero, b);
+            if W::STRETCHED {
+                stretch::<N, V, true>(zero, b);
+            }
+            let partner = row.body.partner.as_ptr();
+            let volume = zero.like(row.body.record[row.i].volume);
+            let own = near(zero, a.ends, W::COLUMNS, row.i);
+            let mut sum = [Sum([zero; 2]); 3];
+            let mut woken = false;
+            for at in steps::<N>(b.count) {
+                let place = b.place(at);
+                let s = stretched(zero, b, at, [W::STRETCHED, W::BACK, W::LIMITED]);
+                let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
+                let before: [V; 2] = recall(a, place, W::MEMORY);
+                let mut now = before;
+                let omega = zero.from_column(&b.omega, at);
+                let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
+                if W::MEMORY > 0 && a.keep && (a.known || V::any(W::flows(&ends))) {
+                    woken = true;
+                    let alive = zero.mask(*row.body.alive.get_unchecked(place / GROUP) >> (place % GROUP));
+                    let mut k = 0;
+                    while k < W::MEMORY {
+                        V::choose(alive, now[k], before[k]).write(memory(a, place, W::MEMORY, k));
+                        k += 1;
+                    }
+                }
+                let weight = zero.from_column(&b.weight, at);
+                let factor = weight * (volume * zero.from_column(&b.volume, at));
+                let (near, far) = (near * factor, far * factor);
+                let mut d = 0;
+                while d < 3 {
+                    let y = zero.from_column(&b.y[d], at);
+                    sum[d].add(at, near, y);
+                    (far * y).to_column(&mut b.out[d], at);
+                    d += 1;
+                }
+            }
+            let own = force.wrapping_add(4 * row.i);
+            if a.least {
+                let least = scatter::<N, V, true>(b, force);
+                *own.add(3) = least.min(*own.add(3));
+            } else {
+                scatter::<N, V, false>(b, force);
+            }
+            *own += sum[0].total();
+            *own.add(1) += sum[1].total();
+            *own.add(2) += sum[2].total();
+            woken
+        }
     }
 }
 
-/// Adds a term of the bonds in hand to the sums of both ends.
-///
-/// As for [`Pull`], with one number of each record at the window.
-pub struct AddUp<'a, 'b, 'c, T>(pub Hand<'a, 'b, 'c, T>, pub *mut f64);
+/// See [`add_up`].
+struct AddUp<'a, 'b, 'c, T>(Hand<'a, 'b, 'c>, PhantomData<T>);
 
 impl<T: Term> InLanes for AddUp<'_, '_, '_, T> {
     type Out = ();
     const PICKS: bool = false;
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
-        // SAFETY: the caller's promise.
-        unsafe { add_up::<N, V, T>(self.0.row, self.0.acting, self.0.block, self.1) }
+        let Self(Hand { row, acting: a, block: b, window: sums }, _) = self;
+        // SAFETY: the processor has what the lanes need; partners are records, and the bonds in hand answer for memory.
+        unsafe {
+            let zero = V::all(0.0);
+            stretch::<N, V, true>(zero, b);
+            let partner = row.body.partner.as_ptr();
+            let volume = zero.like(row.body.record[row.i].volume);
+            let own = near(zero, a.ends, T::COLUMNS, row.i);
+            let mut sum = Sum([zero; 2]);
+            for at in steps::<N>(b.count) {
+                let place = b.place(at);
+                let s = zero.from_column(&b.s, at);
+                let s = Stretch { s, share: s, inverse: s, before: s, limit: s };
+                let ends: Ends<V> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
+                let memory = recall(a, place, T::MEMORY);
+                let (near, far) = T::terms(&s, zero.from_column(&b.omega, at), &ends, &memory);
+                let one = zero.from_column(&b.weight, at) * zero.from_column(&b.square, at);
+                sum.add(at, one * zero.from_column(&b.volume, at), near);
+                (one * volume * far).to_column(&mut b.out[0], at);
+            }
+            for (target, out) in b.target[..b.count].iter().zip(&b.out[0]) {
+                *sums.wrapping_add(*target as usize) += out;
+            }
+            *sums.wrapping_add(row.i) += sum.total();
+        }
     }
 }
 
@@ -196,175 +297,78 @@ pub struct Looking<'a> {
     pub newton: bool,
 }
 
-/// Energy and virial of the bonds in hand. What comes out of each: the energies of both ends, and the pull along y times both
-/// volumes, which makes the virial (force density times the one volume of it, or the force itself).
-pub struct Energies<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub &'a Looking<'a>);
+/// See [`energies`].
+struct Energies<'a, 'b, 'c, W>(Hand<'a, 'b, 'c>, &'a Looking<'a>, PhantomData<W>);
 
 impl<W: BondLaw> InLanes for Energies<'_, '_, '_, W> {
     type Out = [f64; SUMS];
     const PICKS: bool = false;
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) -> [f64; SUMS] {
-        // SAFETY: the caller's promise.
-        unsafe { energies::<N, V, W>(self.0.row, self.0.acting, self.1, self.0.block) }
-    }
-}
-
-#[inline(always)]
-unsafe fn pull<const N: usize, V: Lanes<N>, W: BondLaw>(
-    row: &Row,
-    a: &Acting,
-    b: &mut Block,
-    force: *mut f64,
-) -> bool {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let zero = V::all(0.0);
-        stretch::<N, V, false>(zero, b);
-        if W::STRETCHED {
+        let Self(Hand { row, acting: a, block: b, .. }, look, _) = self;
+        // SAFETY: the processor has what the lanes need; partners are records, and the bonds in hand answer for memory.
+        unsafe {
+            let zero = V::all(0.0);
+            stretch::<N, V, false>(zero, b);
             stretch::<N, V, true>(zero, b);
-        }
-        let partner = row.body.partner.as_ptr();
-        let volume = zero.like(row.body.record[row.i].volume);
-        let own = near(zero, a.ends, W::COLUMNS, row.i);
-        let mut sum = [Sum([zero; 2]); 3];
-        let mut woken = false;
-        for at in steps::<N>(b.count) {
-            let place = b.place(at);
-            let s = stretched(zero, b, at, [W::STRETCHED, W::BACK, W::LIMITED]);
-            let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
-            let before: [V; 2] = recall(a, place, W::MEMORY);
-            let mut now = before;
-            let omega = zero.from_column(&b.omega, at);
-            let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
-            if W::MEMORY > 0 && a.keep && (a.known || V::any(W::flows(&ends))) {
-                woken = true;
-                let alive = zero.mask(*row.body.alive.get_unchecked(place / GROUP) >> (place % GROUP));
+            let partner = row.body.partner.as_ptr();
+            let volume = zero.like(row.body.record[row.i].volume);
+            let own = near(zero, a.ends, W::COLUMNS, row.i);
+            let turned = if look.angles.is_empty() { 0 } else { 2 };
+            let own_angles = near(zero, look.angles, turned, row.i);
+            let mut sum = [Sum([zero; 2]); SUMS];
+            for at in steps::<N>(b.count) {
+                let place = b.place(at);
+                let s = stretched(zero, b, at, [true, W::BACK, W::LIMITED]);
+                let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
+                let other = far(look.angles, turned, partner.add(place));
+                let relaxing = [W::relaxing(&ends[0], &a.moment), W::relaxing(&ends[1], &a.moment)];
+                let angles = [
+                    Angles { now: own_angles[0], unrelaxed: own_angles[1], relaxing: relaxing[0] },
+                    Angles { now: other[0], unrelaxed: other[1], relaxing: relaxing[1] },
+                ];
+                let mut memory = recall(a, place, W::MEMORY);
+                let omega = zero.from_column(&b.omega, at);
+                let weight = zero.from_column(&b.weight, at);
+                let partner_volume = zero.from_column(&b.volume, at);
+                let both = volume * partner_volume;
+                let (mut near, mut far) = W::squares(&s, omega, &angles, &memory, &a.moment);
+                if look.states {
+                    (near, far) = (near * ends[0][1], far * ends[1][1]);
+                }
+                let one = weight * zero.from_column(&b.square, at) * look.half;
+                (near, far) = match look.newton {
+                    true => (near * one * both, far * one * both),
+                    false => (near * one * partner_volume, far * one * volume),
+                };
+                near.to_column(&mut b.out[0], at);
+                far.to_column(&mut b.out[1], at);
+                sum[0].add(at, near + far, zero.like(1.0));
+                let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
+                let pull = (near + far) * weight * -0.5 * both;
+                // Of particles each end has what it feels, which differs in LAMMPS' laws.
+                let push = weight * -1.0;
+                (near * push * both).to_column(&mut b.out[2], at);
+                (far * push * both).to_column(&mut b.out[3], at);
+                let y = [
+                    zero.from_column(&b.y[0], at),
+                    zero.from_column(&b.y[1], at),
+                    zero.from_column(&b.y[2], at),
+                ];
+                let p = [pull * y[0], pull * y[1], pull * y[2]];
                 let mut k = 0;
-                while k < W::MEMORY {
-                    V::choose(alive, now[k], before[k]).write(memory(a, place, W::MEMORY, k));
+                while k < SIX.len() {
+                    sum[1 + k].add(at, p[SIX[k].0], y[SIX[k].1]);
                     k += 1;
                 }
             }
-            let weight = zero.from_column(&b.weight, at);
-            let factor = weight * (volume * zero.from_column(&b.volume, at));
-            let (near, far) = (near * factor, far * factor);
-            let mut d = 0;
-            while d < 3 {
-                let y = zero.from_column(&b.y[d], at);
-                sum[d].add(at, near, y);
-                (far * y).to_column(&mut b.out[d], at);
-                d += 1;
-            }
-        }
-        let own = force.wrapping_add(4 * row.i);
-        if a.least {
-            let least = scatter::<N, V, true>(b, force);
-            *own.add(3) = least.min(*own.add(3));
-        } else {
-            scatter::<N, V, false>(b, force);
-        }
-        *own += sum[0].total();
-        *own.add(1) += sum[1].total();
-        *own.add(2) += sum[2].total();
-        woken
-    }
-}
-
-#[inline(always)]
-unsafe fn add_up<const N: usize, V: Lanes<N>, T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let zero = V::all(0.0);
-        stretch::<N, V, true>(zero, b);
-        let partner = row.body.partner.as_ptr();
-        let volume = zero.like(row.body.record[row.i].volume);
-        let own = near(zero, a.ends, T::COLUMNS, row.i);
-        let mut sum = Sum([zero; 2]);
-        for at in steps::<N>(b.count) {
-            let place = b.place(at);
-            let s = zero.from_column(&b.s, at);
-            let s = Stretch { s, share: s, inverse: s, before: s, limit: s };
-            let ends: Ends<V> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
-            let memory = recall(a, place, T::MEMORY);
-            let (near, far) = T::terms(&s, zero.from_column(&b.omega, at), &ends, &memory);
-            let one = zero.from_column(&b.weight, at) * zero.from_column(&b.square, at);
-            sum.add(at, one * zero.from_column(&b.volume, at), near);
-            (one * volume * far).to_column(&mut b.out[0], at);
-        }
-        for (target, out) in b.target[..b.count].iter().zip(&b.out[0]) {
-            *sums.wrapping_add(*target as usize) += out;
-        }
-        *sums.wrapping_add(row.i) += sum.total();
-    }
-}
-
-#[inline(always)]
-unsafe fn energies<const N: usize, V: Lanes<N>, W: BondLaw>(
-    row: &Row,
-    a: &Acting,
-    look: &Looking,
-    b: &mut Block,
-) -> [f64; SUMS] {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let zero = V::all(0.0);
-        stretch::<N, V, false>(zero, b);
-        stretch::<N, V, true>(zero, b);
-        let partner = row.body.partner.as_ptr();
-        let volume = zero.like(row.body.record[row.i].volume);
-        let own = near(zero, a.ends, W::COLUMNS, row.i);
-        let turned = if look.angles.is_empty() { 0 } else { 2 };
-        let own_angles = near(zero, look.angles, turned, row.i);
-        let mut sum = [Sum([zero; 2]); SUMS];
-        for at in steps::<N>(b.count) {
-            let place = b.place(at);
-            let s = stretched(zero, b, at, [true, W::BACK, W::LIMITED]);
-            let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
-            let other = far(look.angles, turned, partner.add(place));
-            let relaxing = [W::relaxing(&ends[0], &a.moment), W::relaxing(&ends[1], &a.moment)];
-            let angles = [
-                Angles { now: own_angles[0], unrelaxed: own_angles[1], relaxing: relaxing[0] },
-                Angles { now: other[0], unrelaxed: other[1], relaxing: relaxing[1] },
-            ];
-            let mut memory = recall(a, place, W::MEMORY);
-            let omega = zero.from_column(&b.omega, at);
-            let weight = zero.from_column(&b.weight, at);
-            let partner_volume = zero.from_column(&b.volume, at);
-            let both = volume * partner_volume;
-            let (mut near, mut far) = W::squares(&s, omega, &angles, &memory, &a.moment);
-            if look.states {
-                (near, far) = (near * ends[0][1], far * ends[1][1]);
-            }
-            let one = weight * zero.from_column(&b.square, at) * look.half;
-            (near, far) = match look.newton {
-                true => (near * one * both, far * one * both),
-                false => (near * one * partner_volume, far * one * volume),
-            };
-            near.to_column(&mut b.out[0], at);
-            far.to_column(&mut b.out[1], at);
-            sum[0].add(at, near + far, zero.like(1.0));
-            let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
-            let pull = (near + far) * weight * -0.5 * both;
-            // Of particles each end has what it feels, which differs in LAMMPS' laws.
-            let push = weight * -1.0;
-            (near * push * both).to_column(&mut b.out[2], at);
-            (far * push * both).to_column(&mut b.out[3], at);
-            let y =
-                [zero.from_column(&b.y[0], at), zero.from_column(&b.y[1], at), zero.from_column(&b.y[2], at)];
-            let p = [pull * y[0], pull * y[1], pull * y[2]];
+            let mut totals = [0.0; SUMS];
             let mut k = 0;
-            while k < SIX.len() {
-                sum[1 + k].add(at, p[SIX[k].0], y[SIX[k].1]);
+            while k < SUMS {
+                totals[k] = sum[k].total();
                 k += 1;
             }
+            totals
         }
-        let mut totals = [0.0; SUMS];
-        let mut k = 0;
-        while k < SUMS {
-            totals[k] = sum[k].total();
-            k += 1;
-        }
-        totals
     }
 }

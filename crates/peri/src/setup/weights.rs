@@ -124,7 +124,7 @@ impl Weighing<'_> {
             return 0.0;
         }
         let length = length(self.xi(ends));
-        let shape = |delta: f64| match self.law.kind.bond_based() {
+        let shape = |delta: f64| match self.law.kind.bond_based {
             true => self.law.shape().shape(length, delta) / delta.powi(4),
             false => self.law.influence.of(length, delta) / self.law.influence.whole(delta),
         };
@@ -208,7 +208,7 @@ impl Weighing<'_> {
             let length = length(xi);
             let q = self.law.weight(length, pair.horizon, plain[b]) * self.body.record[j].volume;
             // Of microelastic bonds a whole family's sum is known; a state-based one is weighed by its own.
-            let q = match self.law.kind.bond_based() {
+            let q = match self.law.kind.bond_based {
                 true => q / (std::f64::consts::PI * pair.horizon.powi(4)),
                 false => q,
             };
@@ -219,7 +219,7 @@ impl Weighing<'_> {
                 (0..=k).for_each(|m| squares[k][m] += q * n[k] * n[m]);
             }
         });
-        let whole = if self.law.kind.bond_based() { 1.0 } else { all };
+        let whole = if self.law.kind.bond_based { 1.0 } else { all };
         if all <= 0.0 {
             return Asked::NOTHING;
         }

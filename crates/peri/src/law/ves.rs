@@ -1,8 +1,45 @@
-//! Bonds with a Maxwell element: a share of the deviatoric stretch relaxes.
+//! `ves`, the viscoelastic solid: bonds with a Maxwell element, a share of whose deviatoric stretch relaxes (Mitchell 2011).
 
-use crate::families::law::{COLUMNS, Held};
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, deviatoric};
+use crate::law::formula::{Angles, BondLaw, deviatoric};
+use crate::law::moment::{COLUMNS, Held, Moment};
+use crate::law::site::{Site, Unrelaxed};
+use crate::law::stretch::{Ends, Stretch};
+use crate::law::style::{Bound, Kernels, Losses, Number, Style};
 use perigrain_base::math::real::Real;
+
+/// The law of decks.
+pub static VES: Style = Style {
+    of_bonds: true,
+    losses: Losses::Relaxation,
+    numbers: NUMBERS,
+    lammps: Kernels::of::<Viscous<true, true>>(),
+    steady: Some([Kernels::of::<Viscous<false>>(), Kernels::of::<Viscous<false, true>>()]),
+    apart: Some("ves/apart"),
+    ..Style::of::<Viscous>("ves", 2)
+};
+
+/// The same where types relax differently: each end of a bond remembers its own stretch.
+pub static VES_APART: Style = Style {
+    losses: Losses::RelaxationApart,
+    numbers: NUMBERS,
+    lammps: Kernels::of::<ViscousApart<true>>(),
+    ..Style::of::<ViscousApart>("ves/apart", 7)
+};
+
+const NUMBERS: &[Number] = &[
+    Number {
+        keyword: "lambda",
+        what: ["the relaxing share lambda", "lambda"],
+        bound: Bound::Share("lambda is the share of G that relaxes: from 0 to 1"),
+        of: |m| &mut m.lambda,
+    },
+    Number {
+        keyword: "tau",
+        what: ["the relaxation time tau", "tau"],
+        bound: Bound::Positive,
+        of: |m| &mut m.tau,
+    },
+];
 
 /// A Maxwell element beside a spring: the element's stretch D is remembered, in the form that [`Held`] tells. Columns:
 /// A = (3Kθ − 5GY)/m with Y = (1 − λ)θ + λ times the unrelaxed dilatation, B = 15G/m. The form that looks `BACK` serves for
@@ -87,6 +124,25 @@ impl<const BACK: bool, const LAMMPS: bool> BondLaw for Viscous<BACK, LAMMPS> {
         let element = element(bond.before, memory[0], &moment.held);
         relaxed_squares(bond, ends, &[element; 2])
     }
+    #[inline]
+    fn slips(s: f64, memory: [f64; 2], held: Held, ends: [Unrelaxed; 2]) -> [f64; 2] {
+        let element = (memory[0] + held.fresh * s) / held.decay;
+        ends.map(|end| slip(s, element, end))
+    }
+    #[inline(always)]
+    fn dilatation(site: &mut Site) -> f64 {
+        relaxed_dilatation(site, site.moment.lambda, (site.moment.decay, site.moment.fresh))
+    }
+    #[inline(always)]
+    fn columns(site: &mut Site) -> [f64; COLUMNS] {
+        let (own, by_m) = (site.own, 1.0 / site.weighted);
+        let (pressure, shear) = (own.bulk * site.theta * by_m, own.shear * by_m);
+        let third = relaxed_third(site, site.moment.lambda, (site.moment.decay, site.moment.fresh));
+        match LAMMPS {
+            true => [pressure, shear, third, 0.0, 0.0, 0.0],
+            false => [pressure - shear * third, shear, 0.0, 0.0, 0.0, 0.0],
+        }
+    }
 }
 
 /// Bonds whose ends relax differently, each with an element of its own whose stretch D is remembered as it is. Columns: 3Kθ/m, B,
@@ -143,4 +199,50 @@ impl<const LAMMPS: bool> BondLaw for ViscousApart<LAMMPS> {
     fn relaxing<R: Real>(end: &[R; COLUMNS], _: &Moment) -> R {
         end[3]
     }
+    #[inline]
+    fn slips(s: f64, memory: [f64; 2], _: Held, ends: [Unrelaxed; 2]) -> [f64; 2] {
+        [slip(s, memory[0], ends[0]), slip(s, memory[1], ends[1])]
+    }
+    #[inline(always)]
+    fn dilatation(site: &mut Site) -> f64 {
+        relaxed_dilatation(site, site.own.lambda, site.own.left)
+    }
+    #[inline(always)]
+    fn columns(site: &mut Site) -> [f64; COLUMNS] {
+        let (own, by_m) = (site.own, 1.0 / site.weighted);
+        let (lambda, (decay, fresh)) = (own.lambda, own.left);
+        let third = relaxed_third(site, lambda, (decay, fresh));
+        [own.bulk * site.theta * by_m, own.shear * by_m, third, lambda, decay, fresh]
+    }
+}
+
+/// Of a Maxwell element what its spring does not bear; the dilatation relaxes with the others.
+fn slip(s: f64, element: f64, end: Unrelaxed) -> f64 {
+    s - element - (end.before - end.left) / 3.0
+}
+
+/// θ of a site of whose shear modulus the share `lambda` relaxes; `left` of its elements' stretch and of the step's own is left after the
+/// step.
+#[inline(always)]
+fn relaxed_dilatation(site: &mut Site, lambda: f64, left: (f64, f64)) -> f64 {
+    let Some(free) = site.free else { return site.dilatation() };
+    let step = free.relax([site.sum_before, site.sum], lambda, left);
+    if site.advance {
+        // What has broken since has changed θ at once, which is not relaxed.
+        site.unrelaxed.left += step.before - site.unrelaxed.before;
+        site.unrelaxed.before = step.before;
+        (site.slip, site.sum_before) = (step.slip, site.sum);
+        site.heat += step.heat;
+    }
+    step.theta
+}
+
+/// Y/3.
+#[inline(always)]
+fn relaxed_third(site: &mut Site, lambda: f64, (decay, fresh): (f64, f64)) -> f64 {
+    let left = decay * site.unrelaxed.left + fresh * (site.theta - site.unrelaxed.before);
+    if site.advance {
+        site.unrelaxed = Unrelaxed { before: site.theta, left };
+    }
+    ((1.0 - lambda) * site.theta + lambda * left) / 3.0
 }
