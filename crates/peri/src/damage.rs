@@ -332,7 +332,7 @@ impl Counted {
                     }
                 }
             }
-            // SAFETY: cells of this slab and of those it reaches, which nobody else writes now.
+            // SAFETY: cells of this slab and of those it reaches, which no other task writes now.
             let counts = unsafe { counts.get(first..last) };
             counts.iter_mut().zip(&aside[PAD..]).for_each(|(count, more)| *count += more);
         });

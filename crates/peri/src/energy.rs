@@ -149,8 +149,8 @@ fn in_lanes(
     let mut earlier = std::mem::take(&mut state.earlier);
     let mut touched = std::mem::take(&mut state.touched);
     {
-        let told = if earlier.is_empty() { &mut memory } else { &mut earlier };
-        let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
+        let kept = if earlier.is_empty() { &mut memory } else { &mut earlier };
+        let (memory, touched) = (Shared::new(kept), Shared::new(&mut touched));
         let states = States {
             form,
             law: families.law.kind.style(),

@@ -241,7 +241,7 @@ impl Families {
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.
-    fn welcome(&mut self, view: &PeriView) {
+    fn particles_joined(&mut self, view: &PeriView) {
         let n = view.x.len();
         if self.place.len() == n {
             return;
@@ -291,7 +291,7 @@ impl Families {
     /// ([`Families::is_shared`]) and nothing is added up by particle; elsewhere everything has to be up to date.
     pub fn begin(&mut self, view: &PeriView, advance: bool, shared: bool) -> Begun {
         let form = self.form();
-        self.welcome(view);
+        self.particles_joined(view);
         let shares = self.shares.take_if(|_| shared);
         self.late = 0.0;
         if self.before != Edges::from(periods(&view.bounds)) {

@@ -1,4 +1,4 @@
-//! What families know of their box, of the spacing around particles and of factors on bonds.
+//! The box of families, the spacing around their particles, and factors on their bonds.
 
 use crate::families::cell::{Cell, strain};
 use crate::families::scatter::Scatter;

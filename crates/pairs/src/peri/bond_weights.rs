@@ -1,4 +1,4 @@
-//! Horizons that count in the spacing around each particle, and families made whole: which styles have them, what the log tells.
+//! Horizons that count in the spacing around each particle, and families made whole: which styles have them, what the log says of them.
 
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -127,8 +127,8 @@ pub fn leave_room(style: &Solid, families: &Families, w: &World) -> Result<()> {
     Ok(())
 }
 
-/// Tells what families have been weighed by, when they are found.
-pub fn tell(style: &Solid, families: &Families, w: &mut World) {
+/// Notes what families have been weighed by, when they are found.
+pub fn note(style: &Solid, families: &Families, w: &mut World) {
     if style.weights.own_horizons {
         horizons(style, families, w);
     }

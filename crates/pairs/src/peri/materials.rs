@@ -56,7 +56,7 @@ impl Materials {
                 for &(i, _) in pairs.iter().filter(|(i, j)| i == j) {
                     self.types.insert(i, stuff.clone());
                 }
-                stuff.told(at).map(Some)
+                stuff.coefficients(at).map(Some)
             }
             "mix" => {
                 args.next();
@@ -102,12 +102,12 @@ impl Materials {
         };
         let (a, b) = (find(i)?, find(j)?);
         let between = a.mixed(b, rule, word)?;
-        between.told(word)
+        between.coefficients(word)
     }
 }
 
 impl Stuff {
-    /// What LAMMPS would have been told: c, horizon, s00, alpha.
+    /// The coefficients that LAMMPS has: c, horizon, s00, alpha.
     fn coeff(&self) -> PmbCoeff {
         let states = !self.law.bond_based;
         let c = match states {
@@ -132,8 +132,8 @@ impl Stuff {
         Ok(PmbCoeff { c, horizon: self.horizon, s00, alpha: 0.0 })
     }
 
-    /// What bonds are told, of whatever law.
-    fn told(&self, at: Span) -> Result<Coeff> {
+    /// The coefficients of bonds, of whatever law.
+    fn coefficients(&self, at: Span) -> Result<Coeff> {
         let coeff = match &self.law.curve {
             Some(curve) => self.softening(curve, at)?,
             None => self.coeff(),
@@ -269,9 +269,9 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         softens(&mut s, id.span, &id.text)?;
     }
     if law.bond_based && s.solid.defies_bonds() {
-        let said = poisson(&id.text, &s, id.span);
-        // Who names the modulus to keep knows that the others are off.
-        cx.note(if chosen { Diagnostic { severity: Severity::Note, ..said } } else { said });
+        let warning = poisson(&id.text, &s, id.span);
+        // Where the deck names the modulus to keep, that the others are off is no surprise.
+        cx.note(if chosen { Diagnostic { severity: Severity::Note, ..warning } } else { warning });
     }
     Ok(s)
 }

@@ -179,20 +179,20 @@ impl Solid {
         }
         let at = args.here();
         let (word, first) = (LawKind::unloading_as(args.peek_text()), LawKind::unloading_as("plastic"));
-        let Some(said) = word.or(first.filter(|_| self.unloading.is_none())) else { return Ok(()) };
-        if self.unloading.is_some_and(|known| known != said) {
+        let Some(chosen) = word.or(first.filter(|_| self.unloading.is_none())) else { return Ok(()) };
+        if self.unloading.is_some_and(|known| known != chosen) {
             let text = "another pair has the other rule of unloading: one rule holds for all";
             return fail(Code::CONFLICT, at, text);
         }
         if word.is_some() {
             args.next();
-            self.unloading = Some(said);
+            self.unloading = Some(chosen);
         }
         // Of a restart file the style is new and the families are not.
-        if cx.world.families.as_ref().is_some_and(|f| f.law.kind != said) {
+        if cx.world.families.as_ref().is_some_and(|f| f.law.kind != chosen) {
             return fail(Code::WRONG_ORDER, at, "the rule of unloading cannot change after the first run");
         }
-        self.law.kind = said;
+        self.law.kind = chosen;
         Ok(())
     }
 
@@ -429,7 +429,7 @@ impl Pair for Solid {
     }
 
     fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
-        // One number for a pair of types is what such a look knows of bonds.
+        // Such a probe has one number for a pair of types.
         let alike = !self.law.surface && self.law.influence == Influence::One && !self.weights.any();
         let plain = self.law.kind.plain() && !self.compress && alike;
         Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })

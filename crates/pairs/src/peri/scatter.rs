@@ -17,16 +17,16 @@ pub struct Scatter {
 
 /// Whether some factor that was said is not 1.
 fn uneven(w: &World, which: usize) -> bool {
-    said(w, which).iter().any(|f| *f != 0.0 && *f != 1.0)
+    factors(w, which).iter().any(|f| *f != 0.0 && *f != 1.0)
 }
 
-fn said(w: &World, which: usize) -> &[f64] {
+fn factors(w: &World, which: usize) -> &[f64] {
     w.columns.get_scalar(*BOND_FACTORS[which]).unwrap_or_default()
 }
 
 /// The largest factor on the stiffness of a type's particles.
 pub fn stiffest(w: &World, kind: u16) -> f64 {
-    let of_kind = w.particles.kind.iter().zip(said(w, 1)).filter(|(k, f)| **k == kind && **f > 0.0);
+    let of_kind = w.particles.kind.iter().zip(factors(w, 1)).filter(|(k, f)| **k == kind && **f > 0.0);
     of_kind.map(|(_, f)| *f).reduce(f64::max).unwrap_or(1.0)
 }
 
@@ -65,23 +65,19 @@ impl Scatter {
 
     /// Gives families the factors, those on strengths with what horizons of particles' own make of them, if anything.
     pub fn give(self, w: &World, families: &mut Families, mut by_horizon: Vec<f64>) {
-        let column = |is: bool, which: usize| if is { said(w, which) } else { &[] };
+        let column = |is: bool, which: usize| if is { factors(w, which) } else { &[] };
         let strength = column(self.strength, 0);
         if by_horizon.is_empty() {
             return families.scatter(strength, column(self.stiffness, 1));
         }
-        by_horizon
-            .iter_mut()
-            .zip(strength)
-            .filter(|(_, said)| **said > 0.0)
-            .for_each(|(own, said)| *own *= said);
+        by_horizon.iter_mut().zip(strength).filter(|(_, set)| **set > 0.0).for_each(|(own, set)| *own *= set);
         families.scatter(&by_horizon, column(self.stiffness, 1));
     }
 
-    /// Tells how far they scatter.
-    pub fn tell(self, w: &mut World) {
+    /// Notes how far they scatter.
+    pub fn note(self, w: &mut World) {
         let one = |which: usize, of: &str| {
-            let all = said(w, which).iter().map(|f| if *f > 0.0 { *f } else { 1.0 });
+            let all = factors(w, which).iter().map(|f| if *f > 0.0 { *f } else { 1.0 });
             let (mut low, mut high, mut sum) = (f64::INFINITY, 0.0f64, 0.0);
             all.clone().for_each(|f| (low, high, sum) = (low.min(f), high.max(f), sum + f));
             let mean = sum / all.len() as f64;

@@ -63,7 +63,7 @@ impl Law {
     }
 
     /// Whether bonds of one kind differ: in how they count for their length, near surfaces, or as factors of particles say. Then each end
-    /// has a stiffness of its own, and the plain microelastic law gives way to one that asks for it.
+    /// has a stiffness of its own, and the plain microelastic law gives way to one that reads it.
     pub fn shape_bonds(&mut self) {
         if self.kind.plain() {
             self.kind = SHAPED;
@@ -97,7 +97,7 @@ impl Law {
     /// The moment of an evaluation: a step if it advances, else a look at what is. The form in which a body's bonds have
     /// remembered is the body's own.
     pub(crate) fn moment(&self, advance: bool) -> Moment {
-        // One law has one relaxation; where types relax differently, columns of sites tell how.
+        // One law has one relaxation; where types relax differently, columns of sites have it.
         let own = self.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
         let (decay, fresh) = left(own.tau, self.dt, advance);
         Moment {

@@ -4,7 +4,7 @@ use crate::families::Scatter;
 use crate::families::tiles::ListTiles;
 use crate::law::state::SiteState;
 
-/// What a bond needs to know of one end; one cache line.
+/// What a bond needs of one end; one cache line.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Record {

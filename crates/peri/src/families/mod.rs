@@ -136,7 +136,7 @@ pub struct Scratch {
     pub cells: Cells,
     /// Near pairs as they are evaluated.
     pub(crate) contact: Memory,
-    /// Cells of each body at the last search within bodies, if somebody has asked since.
+    /// Cells of each body at the last search within bodies, if they have been needed since.
     pub looked: Vec<Cells>,
     /// Energy and virial of rows.
     pub rows: Vec<[f64; 7]>,

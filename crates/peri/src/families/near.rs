@@ -13,7 +13,7 @@ pub struct NearPairs {
     pub skin: f64,
     /// Particles without a family whose type has short-range contact, and where they were.
     pub loose: Vec<(u32, [f64; 3])>,
-    /// Where all particles were when pairs within a body were last searched; empty where nobody asks.
+    /// Where all particles were when pairs within a body were last searched; empty where that is not needed.
     #[serde(default)]
     pub looked: Vec<[f64; 3]>,
 }
@@ -25,6 +25,6 @@ pub struct NearPair {
     pub ends: [u32; 2],
     /// What [`NearPairs::spent`] must reach before they can touch.
     pub after: f32,
-    /// The square of the distance at which they touch, or a little more: only restart files ask, whose layout stays.
+    /// The square of the distance at which they touch, or a little more: only for restart files, whose layout stays.
     pub within: f32,
 }

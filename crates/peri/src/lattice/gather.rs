@@ -85,7 +85,7 @@ fn gather_row(row: Row) -> RowMotion {
                 None => break,
             };
             let first = some[0] as usize;
-            // Rows mostly follow the order of creation: then nobody need be looked up.
+            // Rows mostly follow the order of creation: then no particle need be looked up.
             let follow = (0..LANES).fold(true, |yes, k| yes & (some[k] == some[0].wrapping_add(k as u32)));
             let run = first..first.saturating_add(LANES);
             if follow && let (Some(x), Some(x0)) = (view.x.get(run.clone()), reference.get(run)) {

@@ -1,4 +1,4 @@
-//! What scenes and decks ask of a law: properties, the numbers of its line, and its kernels.
+//! A law as scenes and decks have it: properties, the numbers of its line, and its kernels.
 
 use crate::law::formula::BondLaw;
 use crate::law::kernels::{About, Loops, Of};

@@ -41,7 +41,7 @@ const NUMBERS: &[Number] = &[
     },
 ];
 
-/// A Maxwell element beside a spring: the element's stretch D is remembered, in the form that [`Held`] tells. Columns:
+/// A Maxwell element beside a spring: the element's stretch D is remembered, in the form of [`Held`]. Columns:
 /// A = (3Kθ − 5GY)/m with Y = (1 − λ)θ + λ times the unrelaxed dilatation, B = 15G/m. The form that looks `BACK` serves for
 /// any moment, the other for one that is [`Moment::steady`]. If `LAMMPS` each end takes its own dilatation for that of both, so
 /// that ends pull unequally; columns are then 3Kθ/m, B, Y/3.

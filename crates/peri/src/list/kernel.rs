@@ -114,7 +114,7 @@ pub struct Counting {
     pub influence: Influence,
     /// They are microelastic and count c times their shape over |xi|.
     pub microelastic: bool,
-    /// The law asks for critical stretches.
+    /// The law needs critical stretches.
     pub limited: bool,
 }
 
@@ -195,7 +195,7 @@ impl Row<'_> {
         b.count > 0
     }
 
-    /// Finds what is to know of the bonds in hand; as much as `WHAT` says.
+    /// Finds lengths, stretches and weights of the bonds in hand; as much as `WHAT` says.
     #[inline]
     pub fn shape<const WHAT: u8>(&self, form: Form, b: &mut Block) {
         // SAFETY: records, groups and partners are those of the body, in blocks of no more than `MOST` bonds.

@@ -57,7 +57,7 @@ fn monomials(n: [f64; 3]) -> Moments {
     EXPONENTS.map(|e| (0..3).map(|k| powers[k][e[k] as usize]).product())
 }
 
-/// What an end asks of its bonds: factors `scale` (1 + Σ `by` φ) over the monomials φ of their directions.
+/// What an end needs of its bonds: factors `scale` (1 + Σ `by` φ) over the monomials φ of their directions.
 #[derive(Clone, Copy)]
 struct Asked {
     scale: f64,
@@ -179,7 +179,7 @@ impl Weighing<'_> {
                 *all = factor(start + k);
             }
         });
-        let mut told = Factors { least: f64::INFINITY, ..Factors::default() };
+        let mut factors = Factors { least: f64::INFINITY, ..Factors::default() };
         let mut count = 0.0;
         for (b, own) in own.iter_mut().enumerate().filter(|(b, _)| self.body.lives(*b)) {
             // A sum over a family has no small divisor.
@@ -189,15 +189,15 @@ impl Weighing<'_> {
             };
             *own *= factor;
             count += 1.0;
-            told.cut += f64::from(u8::from(factor != all[b]));
-            told.mean += factor;
-            (told.least, told.most) = (told.least.min(factor), told.most.max(factor));
+            factors.cut += f64::from(u8::from(factor != all[b]));
+            factors.mean += factor;
+            (factors.least, factors.most) = (factors.least.min(factor), factors.most.max(factor));
         }
         if count > 0.0 {
-            told.mean /= count;
-            told.cut /= count;
+            factors.mean /= count;
+            factors.cut /= count;
         }
-        told
+        factors
     }
 
     /// The factors that make a family whole.

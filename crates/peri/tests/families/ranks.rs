@@ -89,7 +89,7 @@ impl Shaken {
         PeriView { x, x0: &self.x0, kind: &self.kind, volume: &self.volume, bounds, excluded: None }
     }
 
-    /// One evaluation, shared out or not, of which the second half finds all places where it asks for them; whether it does.
+    /// One evaluation, shared out or not, of which the second half finds all places where it needs them; whether it does.
     fn step(&self, families: &mut Families, step: usize, shared: bool, seen: &[[f64; 3]]) -> (Left, bool) {
         let (x, n) = (self.places(step), self.x0.len());
         let (mut f, mut by_particle) = (vec![[0.0; 3]; n], vec![0.0; n]);
@@ -178,7 +178,7 @@ fn followed(families: &Families, n: usize) -> Vec<bool> {
     follows
 }
 
-/// Brings what each rank knows of its own tiles up to date on all.
+/// Brings what each rank has of its own tiles up to date on all.
 fn hand_to_all(families: &mut Families) {
     let comm = comm::present();
     let mut own = vec![];

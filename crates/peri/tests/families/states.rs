@@ -40,7 +40,7 @@ pub fn tough(mut s: Scene) -> Scene {
     s
 }
 
-/// A block of any types under velocities that vary smoothly, so that nobody touches.
+/// A block of any types under velocities that vary smoothly, so that no particles touch.
 pub fn shaken(mut s: Scene) -> Scene {
     for i in 0..s.x.len() {
         let x = s.x[i];

@@ -93,10 +93,10 @@ impl Families {
         must(place == self.place, "a particle is not at its place")
     }
 
-    /// Whether these families can go on under a law, and with coefficients by types of bonds where there are any.
+    /// Whether these families can run under a law, and with coefficients by types of bonds where there are any.
     ///
     /// # Errors
-    /// Where bonds do not remember what the law asks for.
+    /// Where bonds do not remember what the law needs.
     pub fn takes(&self, law: &Law, of_bonds: Option<usize>) -> Result<()> {
         let lattice = |b: &super::lattice::LatticeBody| {
             states(&b.state, &law.kind, (b.particle.len() + 2 * PAD, b.alive.len() * LANES))
@@ -112,7 +112,7 @@ impl Families {
         if by_bonds && self.lattices.iter().all(|b| lattice(b).is_ok()) && list().is_ok() {
             return Ok(());
         }
-        let text = "the peridynamic bonds of this scene were made under another style: they do not remember what this one asks for";
+        let text = "the peridynamic bonds of this scene were made under another style: they do not remember what this one needs";
         let help =
             "declare the style that was in force at the first run, or `clear` the scene and make it anew";
         Err(Diagnostic::error(Code::CONFLICT, None, text).help(help).into())
