@@ -58,7 +58,7 @@ const REFUSED_NAMES: &[&str] = &[
 const EXCEPTIONS: &[(&str, &str)] = &[];
 
 /// Folders whose names are checked later.
-const NAMES_LATER: &[&str] = &["crates/peri/", "crates/pairs/src/peri/", "crates/words/"];
+const NAMES_LATER: &[&str] = &["crates/words/"];
 
 /// Offenders that each part of the tree may still have.
 const REMAINING: &[(&str, usize)] = &[
@@ -71,7 +71,6 @@ const REMAINING: &[(&str, usize)] = &[
     ("crates/mesh", 1),
     ("crates/neigh", 2),
     ("crates/pairs", 12),
-    ("crates/peri", 62),
     ("crates/py", 28),
     ("docs", 297),
 ];

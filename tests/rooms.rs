@@ -1,5 +1,7 @@
 //! The house rules that a machine can check: which crate may know which, what each file opens with, how long it gets.
 
+mod circles;
+
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -2,25 +2,25 @@
 
 use crate::breaking::{Bonds, find_broken};
 use crate::evaluate::periods;
+use crate::families::bond::Broken;
 use crate::families::shares::BodyShare;
 use crate::families::{Candidate, Cell, Families, Moved, PeriView};
-use crate::lanes::isa::Isa;
 use crate::list;
 use crate::list::breaking::candidates;
 use crate::list::kernel::Rules;
-use crate::shares::{Agreed, Broken, LIST, broken_everywhere, square};
+use crate::shares::{Agreed, LIST, broken_everywhere, square};
 
 /// What all ranks have agreed upon where work is shared out to them, and this rank's share of the list.
 type Together<'a> = (Agreed, Option<&'a mut BodyShare>);
 
 impl Families {
     /// Breaks bonds and makes this step the previous one.
-    pub(super) fn advance<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: Option<Together>) {
+    pub(super) fn advance(&mut self, view: &PeriView, cell: &Cell, shared: Option<Together>) {
         let top = shared.as_ref().map(|(agreed, _)| agreed.top);
         if self.breaking_enabled {
             match shared {
-                Some(shared) => self.break_bonds::<K>(view, cell, Some(shared)),
-                None => self.break_and_count::<K>(view, cell),
+                Some(shared) => self.break_bonds(view, cell, Some(shared)),
+                None => self.break_and_count(view, cell),
             }
         }
         self.breaking_enabled = true;
@@ -33,12 +33,12 @@ impl Families {
     }
 
     /// Breaks bonds; where work is shared out, all ranks break the same, in the order in which one process finds them.
-    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, cell: &Cell, shared: Option<Together>) {
+    pub(super) fn break_bonds(&mut self, view: &PeriView, cell: &Cell, shared: Option<Together>) {
         let (agreed, share) = shared.unzip();
         let mut broken = std::mem::take(&mut self.scratch.broken);
         broken.clear();
         let some = agreed.map_or_else(|| self.list.is_strained(), |agreed| agreed.strained);
-        self.find_all::<K>(view, cell, (share.flatten(), some), &mut broken);
+        self.find_all(view, cell, (share.flatten(), some), &mut broken);
         if agreed.is_some_and(|agreed| agreed.breaks || agreed.strained) {
             broken = broken_everywhere(broken);
         }
@@ -54,7 +54,7 @@ impl Families {
             bonds.extend(own.iter().map(|broken| broken.bond));
             body.break_all(&bonds);
             for c in bonds.iter().filter(|_| frees) {
-                body.free(c.ends[0] as usize, c.bond as usize, kind, Moved::Now);
+                body.free(c.ends[0] as usize, c.bond as usize, &kind, Moved::Now);
             }
             ends.extend(bonds.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
@@ -74,14 +74,14 @@ impl Families {
     }
 
     /// Finds the bonds that break, body by body, those of the list last; see [`candidates`] for `list`.
-    fn find_all<K: Isa>(
+    fn find_all(
         &mut self,
         view: &PeriView,
         cell: &Cell,
         list: (Option<&mut BodyShare>, bool),
         broken: &mut Vec<Broken>,
     ) {
-        let mut found = std::mem::take(&mut self.scratch.candidates);
+        let (form, mut found) = (self.form(), std::mem::take(&mut self.scratch.candidates));
         let lasting = &self.lasting;
         let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
         let mut note = |body: usize, found: &[Candidate], particle: &[u32]| {
@@ -89,11 +89,11 @@ impl Families {
             broken.extend(found.iter().map(|bond| Broken { body, bond: *bond, square: square(bond) }));
         };
         for (k, body) in self.lattices.iter_mut().enumerate() {
-            find_broken::<K, _>(body, &self.options, &mut found, &spared);
+            find_broken(form, body, &self.options, &mut found, &spared);
             note(k, &found, &body.particle);
         }
-        let rules = Rules::new(cell, &self.options, &self.law);
-        candidates::<K>(&mut self.list, (&rules, &self.options), list, &mut found);
+        let rules = Rules::new(cell, &self.options, self.law.counting());
+        candidates(form, &mut self.list, (&rules, &self.options), list, &mut found);
         self.list.spare(&mut found, &spared);
         note(LIST, &found, &self.list.particle);
         self.scratch.candidates = found;

@@ -10,21 +10,21 @@
 
 use crate::families::list::ListBody;
 use crate::families::{Candidate, Cell, FamilyOptions, Measures};
-use crate::lanes::isa::Isa;
 use crate::law::series::stretch;
+use perigrain_base::math::form::Form;
 
 /// A layout, as breaking sees it. Sites are cells or records.
 pub trait Bonds: Sync + Sized {
     /// How many sites are measured together.
     const GROUP: usize;
     /// Finds bonds stretched beyond what is sure to allow it, their own previous stretch or more, in order.
-    fn candidates<K: Isa>(&self, found: &mut Vec<Candidate>);
+    fn candidates(&self, form: Form, found: &mut Vec<Candidate>);
     /// Calls `f(previous stretch, s00, alpha)` for each living bond of a site.
     fn family(&self, site: u32, options: &FamilyOptions, f: impl FnMut(f64, f64, f64));
     /// Gets ready for [`Bonds::candidates`].
     fn prepare(&mut self) {}
     /// The smallest previous stretch of the families of all sites in `groups`, or LAMMPS' critical stretch.
-    fn measure<K: Isa>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]);
+    fn measure(&mut self, form: Form, groups: &[u32], options: &FamilyOptions, values: &mut [f64]);
     /// Sets whether the bonds that broke in the previous step live.
     fn revive(&mut self, lives: bool);
     /// Breaks bonds and remembers them as those of this step.
@@ -38,7 +38,8 @@ pub trait Bonds: Sync + Sized {
 }
 
 /// Finds what has to break, except bonds of particles that are `spared`.
-pub fn find_broken<K: Isa, B: Bonds>(
+pub fn find_broken<B: Bonds>(
+    form: Form,
     body: &mut B,
     options: &FamilyOptions,
     found: &mut Vec<Candidate>,
@@ -46,17 +47,17 @@ pub fn find_broken<K: Isa, B: Bonds>(
 ) {
     found.clear();
     body.prepare();
-    body.candidates::<K>(found);
+    body.candidates(form, found);
     found.retain(|c| !c.ends.iter().any(|site| spared(body.particle(*site))));
     if !found.is_empty() && (options.one_stretch() || found.iter().any(|c| c.alpha != 0.0)) {
-        judge::<K, B>(body, options, found);
+        judge(form, body, options, found);
     } else {
         found.retain(|c| c.stretch > c.s00);
     }
 }
 
 /// Keeps the candidates that exceed their limit.
-fn judge<K: Isa, B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
+fn judge<B: Bonds>(form: Form, body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
     let mut measures = std::mem::take(body.measures());
     measures.start(body.sites().div_ceil(B::GROUP));
     for site in found.iter().flat_map(|c| c.ends) {
@@ -64,7 +65,7 @@ fn judge<K: Isa, B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Ve
     }
     let (groups, values) = measures.to_fill(B::GROUP);
     body.revive(true);
-    body.measure::<K>(groups, options, values);
+    body.measure(form, groups, options, values);
     body.revive(false);
     found.retain(|c| {
         let [a, b] = c.ends.map(|site| measures.of(site, B::GROUP));

@@ -26,7 +26,7 @@ impl Families {
                     if crosses(i, j) {
                         body.set(cell, e, false);
                         if frees {
-                            body.free(cell, e, kind, Moved::Before);
+                            body.free(cell, e, &kind, Moved::Before);
                         }
                         body.intact[cell / LANES] = false;
                         ends.push([i, j]);

@@ -2,19 +2,9 @@
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::list::{GROUP, ListBody};
-use crate::families::{Cell, Families, Law, LawKind, Moved, NearPair};
+use crate::families::{Cell, Families, Law, Moved, NearPair, Neighbour};
+use crate::law::style::Style;
 use perigrain_base::par::{self, Shared};
-
-/// One partner of a particle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbour {
-    /// The partner's index.
-    pub partner: u32,
-    /// Whether the bond still lives.
-    pub alive: bool,
-    /// What it weighs, where bonds are weighed one at a time.
-    pub weight: Option<f64>,
-}
 
 /// Where a bond stands.
 enum Link<'a> {
@@ -181,7 +171,7 @@ impl Families {
     /// Renumbers particles; `None` marks a removed one, whose bonds end (and count as damage of its partners).
     pub fn remap(&mut self, old_to_new: &[Option<u32>]) {
         let n = old_to_new.iter().flatten().count();
-        let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
+        let (kind, frees) = (self.law.kind.style(), self.law.kind.frees(self.options.compat_lammps));
         let cell = self.cell_before();
         for body in &mut self.lattices {
             for cell in 0..body.particle.len() {
@@ -342,7 +332,7 @@ impl Counted {
                     }
                 }
             }
-            // SAFETY: cells of this slab and of those it reaches, which nobody else writes now.
+            // SAFETY: cells of this slab and of those it reaches, which no other task writes now.
             let counts = unsafe { counts.get(first..last) };
             counts.iter_mut().zip(&aside[PAD..]).for_each(|(count, more)| *count += more);
         });
@@ -362,14 +352,14 @@ fn moved<T: Copy>(column: &[T], old_to_new: &[Option<u32>], n: usize, empty: T) 
 }
 
 /// Sets the extensions of all living bonds of a cell free.
-fn free_all(body: &mut LatticeBody, cell: usize, kind: LawKind) {
+fn free_all(body: &mut LatticeBody, cell: usize, law: &Style) {
     let mut living = Vec::new();
     body.around(cell, |_, owner, e| {
         if body.lives(owner, e) {
             living.push((owner, e));
         }
     });
-    living.into_iter().for_each(|(owner, e)| body.free(owner, e, kind, Moved::Before));
+    living.into_iter().for_each(|(owner, e)| body.free(owner, e, law, Moved::Before));
 }
 
 /// Ends all bonds of a record, and sets their extensions free under a law that does so.

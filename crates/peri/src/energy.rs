@@ -1,22 +1,20 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
-use crate::families::law::{COLUMNS, SiteState};
 use crate::families::shares::Shares;
-use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
-use crate::lanes::isa::Isa;
-use crate::lanes::single::Single;
+use crate::families::view::Sums;
+use crate::families::{Cell, Families, ForceUnit, PeriTally, PeriView};
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
 use crate::lattice::states::States;
-use crate::law::settle::{columns_of, moment};
+use crate::law::kernels::Alone;
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
+use crate::law::state::SiteState;
+use crate::law::stretch::Stretch;
 use crate::law::weighing::{Weighing, banded};
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
 use crate::list;
 use crate::shares::rows_everywhere;
 use perigrain_base::par::{self, Shared};
-
-/// Energy and virial of one row of cells or one record.
-pub(super) type Sums = [f64; SUMS];
 
 /// Rows per part when rows are summed.
 const ROWS: usize = 16;
@@ -24,7 +22,7 @@ const ROWS: usize = 16;
 /// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. Under
 /// bond-based laws LAMMPS gives each end half of ½ c w V s² |xi|, and the virial one factor V. Under state-based ones the energy
 /// density of a particle is ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
-pub fn tally<K: Isa>(
+pub fn tally(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
@@ -32,7 +30,7 @@ pub fn tally<K: Isa>(
 ) {
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
-    let dilated = !families.law.kind.bond_based();
+    let dilated = !families.law.kind.bond_based;
     let mut rows = std::mem::take(&mut families.scratch.rows);
     for k in 0..families.lattices.len() {
         let body = &families.lattices[k];
@@ -53,19 +51,19 @@ pub fn tally<K: Isa>(
                     one(slot, t);
                 }
             }),
-            true => in_lanes::<K>(families, k, view, (advanced, own), &mut rows),
+            true => in_lanes(families, k, view, (advanced, own), &mut rows),
         }
         if let Some((share, shares)) = share.zip(shares).filter(|_| !rows.is_empty()) {
             rows_everywhere(&families.lattices[k], (share, shares.me), &mut rows);
         }
-        collect(&rows, t);
+        t.collect(&rows);
     }
     families.scratch.rows = rows;
     let list = &families.list;
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
         own(families, view, p as usize, (&list.state, record), scale(p as usize), t);
     }
-    list::energy::tally::<K>(families, t, (advanced, cell, shares));
+    list::energy::tally(families, t, (advanced, cell, shares));
 }
 
 /// Sums of `row(k, sum)` for `k` below `n`, each row by itself.
@@ -82,16 +80,6 @@ fn apart(n: usize, rows: &mut Vec<Sums>, row: impl Fn(usize, &mut PeriTally) + S
             unsafe { shared.get(k..k + 1)[0] = [own.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
         }
     });
-}
-
-/// Adds up rows in their order.
-pub(super) fn collect(rows: &[Sums], t: &mut PeriTally) {
-    for row in rows {
-        t.energy += row[0];
-        for k in 0..6 {
-            t.virial[k] += row[k + 1];
-        }
-    }
 }
 
 /// Energy and virial of each row (of the `own` ones, where others have the rest) of a body whose constants are per row, several cells at a time. Constants hold the volumes of
@@ -133,14 +121,11 @@ fn whole_row(
     let u = body.u[1].as_ptr();
     let mut lanes = [[0.0; CELLS]; SUMS];
     for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
-        let data = Chunk {
-            // SAFETY: `u` has a place for each cell and PAD more around.
-            u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + chunk * LANES) }),
-            f: [std::ptr::null_mut(); 3],
-            alive: &body.alive[chunk * entries..][..entries],
-            to: body.leads_of(slot),
-            tables: &body.tables,
-            various: None,
+        let u = [0, 1, 2].map(|k| u.wrapping_add(k * body.stride + PAD + chunk * LANES));
+        let alive = &body.alive[chunk * entries..][..entries];
+        // SAFETY: `u` has a place for each cell and PAD more around, and live bonds lead to cells of the body; energies touch no forces.
+        let data = unsafe {
+            Chunk::new((u, [std::ptr::null_mut(); 3]), (alive, body.leads_of(slot), &body.tables), None)
         };
         let part = of_chunk(chunk, &data);
         for (sum, part) in lanes.iter_mut().flatten().zip(part.iter().flatten()) {
@@ -151,34 +136,33 @@ fn whole_row(
 }
 
 /// Energy and virial of each row of a body of one volume, several cells at a time.
-fn in_lanes<K: Isa>(
+fn in_lanes(
     families: &mut Families,
     body: usize,
     view: &PeriView,
     (advanced, own): (bool, Option<&[bool]>),
     rows: &mut Vec<Sums>,
 ) {
+    let form = families.form();
     let state = &mut families.lattices[body].state;
     let mut memory = if state.earlier.is_empty() { std::mem::take(&mut state.memory) } else { vec![] };
     let mut earlier = std::mem::take(&mut state.earlier);
     let mut touched = std::mem::take(&mut state.touched);
     {
-        let told = if earlier.is_empty() { &mut memory } else { &mut earlier };
-        let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
+        let kept = if earlier.is_empty() { &mut memory } else { &mut earlier };
+        let (memory, touched) = (Shared::new(kept), Shared::new(&mut touched));
         let states = States {
-            kind: families.law.kind,
+            form,
+            law: families.law.kind.style(),
             compat: families.options.compat_lammps,
-            moment: Moment { held: state.held, ..moment(&families.law, false) },
+            moment: Moment { held: state.held, ..families.law.moment(false) },
             keep: false,
             memory: &memory,
             touched: &touched,
             spread: false,
         };
         let body: &LatticeBody = &families.lattices[body];
-        let of_chunk = |chunk: usize, data: &Chunk| {
-            // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
-            unsafe { states.sums::<K>(body, chunk, data, advanced) }
-        };
+        let of_chunk = |chunk: usize, data: &Chunk| states.sums(body, chunk, data, advanced);
         let newton = families.options.unit == ForceUnit::Newton;
         whole_rows(body, view, rows, (newton, own), of_chunk);
     }
@@ -220,8 +204,8 @@ struct Bond<'a> {
     omega: f64,
     /// ω w.
     share: f64,
-    stretch: Stretch<Single>,
-    memory: [Single; 2],
+    stretch: Stretch<f64>,
+    memory: [f64; 2],
     state: &'a SiteState,
     stride: usize,
 }
@@ -254,7 +238,7 @@ fn one_by_one(
             let ends = [body.particle[cell] as usize, body.particle[to] as usize];
             let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
             let (c, limit) = families.table.get(a, b).map_or((0.0, 0.0), |k| (k.c, k.s00));
-            stretch.limit = Single(limit);
+            stretch.limit = limit;
             let (omega, share) = Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
             add(
                 families,
@@ -268,7 +252,7 @@ fn one_by_one(
                     share,
                     stretch,
                     memory: std::array::from_fn(|k| {
-                        Single(if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 })
+                        if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 }
                     }),
                     state: &body.state,
                     stride: body.stride,
@@ -288,59 +272,36 @@ fn share_out(t: &mut PeriTally, p: usize, density: f64, volume: Option<f64>) {
     }
 }
 
-/// Whether the ends of a law's bonds have a stiffness of their own, column 1; and the share of the squares that counts
-/// for each end. LAMMPS counts half of the shear energies.
-pub fn shares(kind: LawKind, compat: bool) -> (bool, f64) {
-    match kind {
-        LawKind::Shaped => (true, 0.5),
-        _ if kind.bond_based() => (false, 0.25),
-        _ => (true, if compat { 0.25 } else { 0.5 }),
-    }
-}
-
 /// Adds one bond's energies and virial.
 fn add(families: &Families, b: &Bond, t: &mut PeriTally) {
-    let kind = families.law.kind;
-    of_law!(kind, families.options.compat_lammps, W => add_of::<W>(families, b, t));
-}
-
-fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
     let (law, options) = (&families.law, &families.options);
-    let newton = options.unit == ForceUnit::Newton;
-    let now = Moment { held: b.state.held, ..moment(law, false) };
-    let (own, half) = shares(law.kind, options.compat_lammps);
-    let columns = |at: usize| -> [Single; COLUMNS] {
-        let count = columns_of(law.kind, options.compat_lammps);
-        std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
+    let (compat, newton) = (options.compat_lammps, options.unit == ForceUnit::Newton);
+    let loops = law.kind.loops(compat);
+    let now = Moment { held: b.state.held, ..law.moment(false) };
+    let (own, half) = law.kind.shares(compat);
+    let columns = |at: usize| -> [f64; COLUMNS] {
+        let count = loops.about().columns;
+        std::array::from_fn(|k| if k < count { b.state.columns[k * b.stride + at] } else { 0.0 })
     };
-    let ends: Ends<Single> = b.at.map(columns);
-    let angles: [Angles<Single>; 2] = std::array::from_fn(|end| {
-        let at = b.at[end];
-        if !W::DILATED || b.state.is_empty() {
-            // SAFETY: plain arithmetic.
-            return unsafe { Angles::none() };
-        }
+    let angles = |at: usize| {
         let theta = b.state.theta[at];
-        Angles {
-            now: Single(theta),
-            unrelaxed: Single(b.state.unrelaxed[at] + (theta - b.state.before[at])),
-            // SAFETY: plain arithmetic.
-            relaxing: unsafe { W::relaxing(&ends[end], &now) },
-        }
-    });
-    let omega = Single(b.omega);
-    // SAFETY: plain arithmetic.
-    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, &now) };
-    for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
+        [theta, b.state.unrelaxed[at] + (theta - b.state.before[at])]
+    };
+    let alone = Alone {
+        stretch: b.stretch,
+        omega: b.omega,
+        ends: b.at.map(columns),
+        memory: b.memory,
+        angles: (!b.state.is_empty()).then(|| b.at.map(angles)),
+    };
+    let [squares, pulls] = loops.alone(&alone, &now);
+    for (end, square) in squares.into_iter().enumerate() {
         let p = b.ends[end];
-        let shear = if own { ends[end][1].0 } else { 1.0 };
-        let energy = half * shear * b.share * b.length * b.length * square.0 * b.volume[1 - end];
+        let shear = if own { alone.ends[end][1] } else { 1.0 };
+        let energy = half * shear * b.share * b.length * b.length * square * b.volume[1 - end];
         share_out(t, p, energy, newton.then_some(b.volume[end]));
     }
-    let mut memory = b.memory;
-    // SAFETY: plain arithmetic.
-    let (near, far) = unsafe { W::pull(&b.stretch, omega, &ends, &mut memory, &now) };
     // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
-    let pulls = [near.0, far.0].map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
+    let pulls = pulls.map(|pull| -pull * b.share * b.volume[0] * b.volume[1]);
     t.add_virials(b.ends, pulls, b.y);
 }

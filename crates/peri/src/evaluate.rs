@@ -6,16 +6,9 @@ use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::shares::Shares;
 use crate::families::{
-    AlmostLattice, Bounds, Cell, Edges, Families, FamilyOptions, Law, LawKind, Layout, NearPairs, PeriTally,
-    PeriView, PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Cell, Edges, Families, FamilyOptions, Law, Layout, NearPairs, PeriTally, PeriView,
+    PmbCoeff, PmbTable, Scratch,
 };
-#[cfg(target_arch = "x86_64")]
-use crate::lanes::Avx2;
-#[cfg(target_arch = "x86_64")]
-use crate::lanes::avx512::{Avx512, has_avx512};
-use crate::lanes::isa::Isa;
-use crate::lanes::{Portable, has_avx2};
-use crate::lattice;
 use crate::lattice::gather::gather;
 use crate::lattice::sweep::Mode;
 use crate::lattice::tables;
@@ -26,6 +19,7 @@ use crate::setup::{detect, lattice as cells, list as records, weights};
 use crate::shares::list::{forget_others, lowest_everywhere};
 use crate::shares::{agree, forget_flags, squeezed_everywhere};
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::form::Form;
 use perigrain_base::par::Shared;
 use perigrain_base::stop;
 
@@ -188,8 +182,8 @@ impl Families {
     fn suits_lattice(&self, view: &PeriView, members: &[u32]) -> bool {
         let of = |p: u32| (view.kind[p as usize], view.volume[p as usize].to_bits());
         let kind = self.law.kind;
-        kind == LawKind::Pmb
-            || !kind.bond_based()
+        kind.plain()
+            || !kind.bond_based
             || members.first().is_none_or(|first| members.iter().all(|p| of(*p) == of(*first)))
     }
 
@@ -247,7 +241,7 @@ impl Families {
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.
-    fn welcome(&mut self, view: &PeriView) {
+    fn particles_joined(&mut self, view: &PeriView) {
         let n = view.x.len();
         if self.place.len() == n {
             return;
@@ -280,45 +274,24 @@ impl Families {
     /// which takes the places of those that bonds and near pairs join to them.
     pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
         // The energies of dilatations are added up one site after the other.
-        let rows = !tallied || self.law.kind.bond_based();
+        let rows = !tallied || self.law.kind.bond_based;
         self.shares.is_some() && advance && rows && !self.counts_losses
+    }
+
+    /// Which kernels serve on this processor.
+    pub(crate) fn form(&self) -> Form {
+        match Form::here() {
+            _ if self.options.portable => Form::Plain,
+            form if self.four_lanes => form.in_fours(),
+            form => form,
+        }
     }
 
     /// The first half of [`Families::force`]: what has moved, and by how much. `shared` says that work is shared out to ranks, where it can be
     /// ([`Families::is_shared`]) and nothing is added up by particle; elsewhere everything has to be up to date.
     pub fn begin(&mut self, view: &PeriView, advance: bool, shared: bool) -> Begun {
-        #[cfg(target_arch = "x86_64")]
-        if !self.options.portable && !self.four_lanes && has_avx512() {
-            return self.begin_with::<Avx512>(view, advance, shared);
-        }
-        #[cfg(target_arch = "x86_64")]
-        if !self.options.portable && has_avx2() {
-            return self.begin_with::<Avx2>(view, advance, shared);
-        }
-        self.begin_with::<Portable>(view, advance, shared)
-    }
-
-    /// The second half. Where it [`Begun::searches`] for pairs the places of all particles have to be known.
-    pub fn finish(
-        &mut self,
-        view: &PeriView,
-        f: &mut [[f64; 3]],
-        begun: Begun,
-        tally: Option<&mut PeriTally>,
-    ) {
-        #[cfg(target_arch = "x86_64")]
-        if !self.options.portable && !self.four_lanes && has_avx512() {
-            return self.finish_with::<Avx512>(view, f, begun, tally);
-        }
-        #[cfg(target_arch = "x86_64")]
-        if !self.options.portable && has_avx2() {
-            return self.finish_with::<Avx2>(view, f, begun, tally);
-        }
-        self.finish_with::<Portable>(view, f, begun, tally);
-    }
-
-    fn begin_with<K: Isa>(&mut self, view: &PeriView, advance: bool, shared: bool) -> Begun {
-        self.welcome(view);
+        let form = self.form();
+        self.particles_joined(view);
         let shares = self.shares.take_if(|_| shared);
         self.late = 0.0;
         if self.before != Edges::from(periods(&view.bounds)) {
@@ -331,8 +304,8 @@ impl Families {
         for (k, body) in self.lattices.iter_mut().enumerate() {
             let short_range = repels && body.contact >= 0.0;
             let follows = shares.as_ref().map(|shares| &shares.bodies[k].follows[..]);
-            // SAFETY: `begin` has chosen kernels that the processor has.
-            unsafe { gather::<K>(body, view, reference, short_range, follows) };
+            // SAFETY: the processor has what the form needs.
+            unsafe { gather(form, body, view, reference, short_range, follows) };
         }
         let short_range = repels && self.list.contact >= 0.0;
         let share = shares.as_ref().and_then(|shares| shares.list.as_ref());
@@ -342,7 +315,8 @@ impl Families {
         Begun { advance, shares, changes, searches }
     }
 
-    fn finish_with<K: Isa>(
+    /// The second half. Where it [`Begun::searches`] for pairs the places of all particles have to be known.
+    pub fn finish(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -355,10 +329,10 @@ impl Families {
             shares.list.iter().for_each(|share| forget_others(&mut self.list, share));
         }
         let cell = &self.cell(view);
-        self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()), shares.as_mut());
-        self.sweep_list::<K>(view, f, (advance, tallied.is_some()), (cell, shares.as_mut()));
+        self.sweep_lattices(view, f, (advance, tallied.is_some()), shares.as_mut());
+        self.sweep_list(view, f, (advance, tallied.is_some()), (cell, shares.as_mut()));
         if advance && self.counts_losses {
-            self.count_heat::<K>(view, cell);
+            self.count_heat(view, cell);
         }
         let agreed = shares.as_ref().map(|_| agree(&self.lattices, &self.list));
         if let Some((shares, agreed)) = shares.as_ref().zip(agreed) {
@@ -369,13 +343,13 @@ impl Families {
                 lowest_everywhere(&mut self.list, share, tallied.is_some());
             }
         }
-        self.contact::<K>(view, f, (changes, advance, shares.as_ref()), tallied.as_deref_mut());
+        self.contact(view, f, (changes, advance, shares.as_ref()), tallied.as_deref_mut());
         if let Some(t) = tallied {
-            tally::<K>(self, view, t, (advance, cell, shares.as_ref()));
+            tally(self, view, t, (advance, cell, shares.as_ref()));
         }
         if advance {
             let shared = agreed.zip(shares.as_mut().map(|shares| shares.list.as_mut()));
-            self.advance::<K>(view, cell, shared);
+            self.advance(view, cell, shared);
         }
         if let Some(shares) = &mut shares {
             shares.sent += shares.dues() as u64;
@@ -384,26 +358,27 @@ impl Families {
     }
 
     /// Adds the forces of all bonds that are kept as a list.
-    pub(super) fn sweep_list<K: Isa>(
+    pub(super) fn sweep_list(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
         (cell, shares): (&Cell, Option<&mut Shares>),
     ) {
+        let form = self.form();
         let Self { list, options, law, table, breaking_enabled, counts_losses, .. } = self;
-        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
-        let settling = lattice::settling((law, table), options, (advance, tallied, *counts_losses));
+        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
+        let settling = law.settling(table, options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.
             list::measure(list, law, cell);
         }
         let share = shares.and_then(|shares| shares.list.as_mut());
         let f = Shared::new(f);
-        list::sweep::forces::<K>(list, view, &f, (mode, options), (&settling, share), cell);
+        list::sweep::forces(list, view, &f, (mode, options), (law, &settling, share), cell);
     }
 
-    fn contact<K: Isa>(
+    fn contact(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -415,7 +390,7 @@ impl Families {
             (std::mem::take(&mut self.scratch.contact), std::mem::take(&mut self.scratch.rows));
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
         if let Some(closer) = closer {
-            repel::<K>(self, (closer, shares), &mut repulsion, (&mut memory, &mut rows));
+            repel(self, (closer, shares), &mut repulsion, (&mut memory, &mut rows));
         }
         push_apart(self, &mut repulsion);
         (self.scratch.contact, self.scratch.rows) = (memory, rows);

@@ -16,9 +16,8 @@ mod energy;
 mod evaluate;
 pub mod families;
 pub mod kinematics;
-mod lanes;
 mod lattice;
-mod law;
+pub mod law;
 mod limit;
 pub mod linked;
 mod list;
@@ -27,10 +26,7 @@ pub mod moduli;
 mod pass;
 mod pulled;
 mod released;
+mod seen;
 pub mod setup;
 pub mod shares;
-/// What bonds that soften leave of their peak where they break, and where that is.
-pub mod softening {
-    pub use super::law::{REST, last_of_area};
-}
 pub mod stretches;

@@ -43,7 +43,7 @@ impl Families {
                 return None;
             }
             let p = self.table.get(view.kind[i], view.kind[i])?;
-            let bulk = match self.law.kind.bond_based() {
+            let bulk = match self.law.kind.bond_based {
                 true => std::f64::consts::PI * p.c * p.horizon.powi(4) / 18.0,
                 false => self.law.of(view.kind[i]).bulk,
             };

@@ -8,7 +8,7 @@ impl Families {
     /// Young's moduli of the particles of a type pulled along x, y and z, by the mean of C_aabb = ½ Σ c w |ξ| n_a² n_b² V_j over them:
     /// strain is even along the pull, across it the mean is free. `None` without bonds in three directions, or where bonds are no springs.
     pub fn pulled(&self, view: &PeriView, kind: u16) -> Option<[f64; 3]> {
-        if !self.law.kind.bond_based() {
+        if !self.law.kind.bond_based {
             return None;
         }
         let (mut c, mut volume) = ([[0.0; 3]; 3], 0.0);

@@ -2,30 +2,30 @@
 
 use crate::energy::tally;
 use crate::families::lattice::PAD;
-use crate::families::law::SiteState;
-use crate::families::{Cell, Families, ForceUnit, LawKind, PeriTally, PeriView};
-use crate::lanes::isa::Isa;
+use crate::families::{Cell, Families, ForceUnit, PeriTally, PeriView};
 use crate::law::freed::Freed;
+use crate::law::state::SiteState;
+use crate::law::style::Losses;
 
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after. The force of a broken bond
     /// has been computed and acts in the first half of the next step still: it takes what the bond would have gained in that time, half
     /// of what it has gained in the last step, to second order.
-    pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
+    pub(super) fn break_and_count(&mut self, view: &PeriView, cell: &Cell) {
         if !self.counts_losses {
-            return self.break_bonds::<K>(view, cell, None);
+            return self.break_bonds(view, cell, None);
         }
         let mut alive: Vec<Vec<u8>> = self.lattices.iter().map(|b| b.alive.clone()).collect();
         let mut listed = self.list.alive.clone();
         let mut freed: Vec<Freed> = self.states().map(|s| s.freed.clone()).collect();
-        self.break_bonds::<K>(view, cell, None);
+        self.break_bonds(view, cell, None);
         if self.scratch.ends.is_empty() {
             return;
         }
         let mut fall = |bonds: &mut Self| {
-            let after = bonds.living_energy::<K>(view, cell);
+            let after = bonds.living_energy(view, cell);
             bonds.exchange(&mut alive, &mut listed, &mut freed);
-            let before = bonds.living_energy::<K>(view, cell);
+            let before = bonds.living_energy(view, cell);
             bonds.exchange(&mut alive, &mut listed, &mut freed);
             before - after
         };
@@ -52,29 +52,30 @@ impl Families {
     /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
     /// energies before and after they flowed; what softening bonds have lost counts with that of broken ones; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
-    pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, cell: &Cell) {
+    pub(super) fn count_heat(&mut self, view: &PeriView, cell: &Cell) {
         self.heat += self.heat_of_broken(view);
-        match self.law.kind {
+        match self.law.kind.losses {
             _ if self.options.compat_lammps => {}
-            LawKind::ElasticPlastic | LawKind::Yield => {
+            Losses::None => {}
+            Losses::Flow => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }
-                let before = self.bond_energy::<K>(view, cell);
+                let before = self.bond_energy(view, cell);
                 self.forget_earlier();
-                self.heat += before - self.bond_energy::<K>(view, cell);
+                self.heat += before - self.bond_energy(view, cell);
             }
-            kind if kind.softens() => {
+            Losses::Damage => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }
                 self.law.lost = true;
-                let before = self.bond_energy::<K>(view, cell);
+                let before = self.bond_energy(view, cell);
                 self.forget_earlier();
-                self.released += self.bond_energy::<K>(view, cell) - before;
+                self.released += self.bond_energy(view, cell) - before;
                 self.law.lost = false;
             }
-            LawKind::Ves => {
+            Losses::Relaxation => {
                 let own = self.law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
                 if own.tau <= 0.0 {
                     return;
@@ -83,21 +84,20 @@ impl Families {
                 let mut springs = self.law.clone();
                 springs.moduli.iter_mut().for_each(|m| (m.bulk, m.lambda) = (0.0, 1.0));
                 let law = std::mem::replace(&mut self.law, springs);
-                let power = 2.0 / own.tau * own.lambda * self.bond_energy::<K>(view, cell);
+                let power = 2.0 / own.tau * own.lambda * self.bond_energy(view, cell);
                 self.law = law;
                 self.relax(power);
             }
-            LawKind::VesApart => {
+            Losses::RelaxationApart => {
                 // The same with 2λ/τ of each end in its modulus.
                 let kept = self.springs_alone(view);
                 let law = self.law.clone();
                 self.law.moduli.iter_mut().for_each(|m| m.bulk = 0.0);
-                let power = self.bond_energy::<K>(view, cell);
+                let power = self.bond_energy(view, cell);
                 self.law = law;
                 self.states().zip(kept).for_each(|(state, columns)| state.columns = columns);
                 self.relax(power);
             }
-            _ => {}
         }
     }
 
@@ -164,21 +164,21 @@ impl Families {
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
-    fn living_energy<K: Isa>(&mut self, view: &PeriView, cell: &Cell) -> f64 {
-        if !self.law.kind.bond_based() {
+    fn living_energy(&mut self, view: &PeriView, cell: &Cell) -> f64 {
+        if !self.law.kind.bond_based {
             let mut aside = vec![[0.0; 3]; view.x.len()];
-            self.sweep_lattices::<K>(view, &mut aside, (false, true), None);
-            self.sweep_list::<K>(view, &mut aside, (false, true), (cell, None));
+            self.sweep_lattices(view, &mut aside, (false, true), None);
+            self.sweep_list(view, &mut aside, (false, true), (cell, None));
         }
-        self.bond_energy::<K>(view, cell)
+        self.bond_energy(view, cell)
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, with the dilatations of that.
-    fn bond_energy<K: Isa>(&mut self, view: &PeriView, cell: &Cell) -> f64 {
+    fn bond_energy(&mut self, view: &PeriView, cell: &Cell) -> f64 {
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
-        tally::<K>(self, view, &mut sum, (true, cell, None));
+        tally(self, view, &mut sum, (true, cell, None));
         let total = sum.energy;
         if dense { atoms.iter().zip(view.volume).map(|(e, v)| e * v).sum() } else { total }
     }

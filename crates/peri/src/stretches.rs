@@ -1,13 +1,12 @@
 //! What single bonds and particles show of their stretches: LAMMPS' critical stretch, first lengths, their pull.
 
 use crate::breaking::{Bonds, banded};
-use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
 use crate::families::{Families, PeriView};
-use crate::lanes::single::Single;
-use crate::law::settle::columns_of;
+use crate::law::kernels::Alone;
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
 use crate::law::weighing::{self, Weighing};
-use crate::law::{Angles, BondLaw, Moment, Stretch, of_law};
 use perigrain_base::math::vec3::{Vec3, sub};
 
 impl Families {
@@ -70,32 +69,18 @@ impl Families {
     /// volumes that count for it. Its law must know it by its stretch alone.
     pub fn bond_alone(&self, kinds: [u16; 2], r0: f64, r: f64) -> [f64; 2] {
         let (law, options) = (&self.law, &self.options);
-        debug_assert!(columns_of(law.kind, options.compat_lammps) == 0 && law.kind.memory() == 0);
+        debug_assert!(law.kind.about(options.compat_lammps).columns == 0 && law.kind.memory() == 0);
         let Some(coeff) = self.table.get(kinds[0], kinds[1]) else { return [0.0; 2] };
         let mut bond = weighing::banded((r - r0) * (r + r0) / (r0 * r0), r0, options);
-        bond.limit = Single(coeff.s00);
+        bond.limit = coeff.s00;
         let weight = options.volume.weight(r0, coeff.horizon, options.lattice_spacing);
         let constants = (coeff.c, coeff.horizon, law.yields(kinds[0], kinds[1]));
         let (omega, share) = Weighing::of(law).weigh(r0, weight, constants);
-        of_law!(law.kind, options.compat_lammps, W => pull_and_energy::<W>(&bond, omega, share, [r0, r]))
+        let alone = Alone { stretch: bond, omega, ends: [[0.0; COLUMNS]; 2], memory: [0.0; 2], angles: None };
+        let [squares, pulls] = law.kind.loops(options.compat_lammps).alone(&alone, &Moment::default());
+        let [energy, pull] = [squares, pulls].map(|both| both[0] + both[1]);
+        [0.5 * pull * share * r, 0.25 * energy * share * r0 * r0]
     }
-}
-
-/// The pull of a bond without columns and memory, and its energy.
-fn pull_and_energy<W: BondLaw>(
-    bond: &Stretch<Single>,
-    omega: f64,
-    share: f64,
-    [r0, r]: [f64; 2],
-) -> [f64; 2] {
-    let (none, omega, now) = ([[Single(0.0); COLUMNS]; 2], Single(omega), Moment::default());
-    let mut memory = [Single(0.0); 2];
-    // SAFETY: plain arithmetic.
-    let (pulls, squares) = unsafe {
-        let squares = W::squares(bond, omega, &[Angles::none(), Angles::none()], &memory, &now);
-        (W::pull(bond, omega, &none, &mut memory, &now), squares)
-    };
-    [0.5 * (pulls.0.0 + pulls.1.0) * share * r, 0.25 * (squares.0.0 + squares.1.0) * share * r0 * r0]
 }
 
 /// Hands what sites have found to their particles.

@@ -17,6 +17,7 @@ pub fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512vl")
         && is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
         && is_x86_feature_detected!("popcnt")
 }
 
@@ -43,7 +44,7 @@ pub fn gathers_pay() -> bool {
 }
 
 /// The sum of what stands at some places of a list.
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,popcnt")]
 unsafe fn sum<const GATHERS: bool>(list: &[Vec3], at: &[u32]) -> f64 {
     // SAFETY: passed on.
     unsafe {
@@ -107,8 +108,24 @@ impl<const GATHERS: bool> Real for Avx512<GATHERS> {
         Self(unsafe { _mm512_min_pd(self.0, other.0) })
     }
     #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
+    fn fnma(self, b: Self, c: Self) -> Self {
+        Self(unsafe { _mm512_fnmadd_pd(self.0, b.0, c.0) })
+    }
+    #[inline(always)]
     fn above(self, other: Self) -> __mmask8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn at_least(self, other: Self) -> __mmask8 {
+        unsafe { _mm512_cmp_pd_mask::<_CMP_GE_OQ>(self.0, other.0) }
+    }
+    #[inline(always)]
+    fn keep(self, mask: __mmask8) -> Self {
+        Self(unsafe { _mm512_maskz_mov_pd(mask, self.0) })
     }
     #[inline(always)]
     fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
@@ -191,6 +208,22 @@ impl<const GATHERS: bool> Lanes<8> for Avx512<GATHERS> {
         let mut out = [0.0; 8];
         unsafe { _mm512_storeu_pd(out.as_mut_ptr(), self.0) };
         out
+    }
+    #[inline(always)]
+    fn mask(self, bits: u8) -> __mmask8 {
+        bits
+    }
+    #[inline(always)]
+    fn mask_bits(mask: __mmask8) -> u8 {
+        mask
+    }
+    #[inline(always)]
+    unsafe fn read(p: *const f64) -> Self {
+        Self(unsafe { _mm512_loadu_pd(p) })
+    }
+    #[inline(always)]
+    unsafe fn write(self, p: *mut f64) {
+        unsafe { _mm512_storeu_pd(p, self.0) }
     }
     #[inline(always)]
     unsafe fn pick(list: *const f64, at: *const u32) -> Self {
@@ -298,6 +331,9 @@ mod tests {
             a.most(b),
             a.least(c),
             V::choose(mask, a, d),
+            a.keep(b.at_least(c)),
+            a.fma(b, c),
+            a.fnma(b, c),
             none,
             a.each(f64::cbrt),
         ]

@@ -5,17 +5,21 @@ use super::four::Plain;
 use super::four::{Avx2, Avx512, gathers_pay, has_avx2, has_avx512};
 use super::lanes::Lanes;
 
-/// How many of them are evaluated at a time; all forms have the same bits.
+/// How many of them are evaluated at a time; all forms have the same bits, but where formulas say [`fma`](super::real::Real::fma). There are
+/// only forms that this processor has: other crates cannot make one of those that need something of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// Eight, with AVX-512 and its gathering loads.
     #[cfg(target_arch = "x86_64")]
+    #[non_exhaustive]
     Gathers,
     /// Eight, with AVX-512.
     #[cfg(target_arch = "x86_64")]
+    #[non_exhaustive]
     Eight,
     /// Four, with AVX2.
     #[cfg(target_arch = "x86_64")]
+    #[non_exhaustive]
     Four,
     /// Four, on any processor.
     Plain,
@@ -33,22 +37,33 @@ impl Form {
         Self::Plain
     }
 
+    /// The same in lanes of four.
+    #[must_use]
+    pub fn in_fours(self) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if self != Self::Plain {
+            // Whatever has AVX-512 has AVX2.
+            return Self::Four;
+        }
+        self
+    }
+
     /// Runs a loop in this form.
     ///
     /// # Safety
-    /// The processor must have what the form needs, and the loop what it asks for.
+    /// The loop must have what it asks for.
     #[inline]
     pub unsafe fn run<W: InLanes>(self, work: W) -> W::Out {
         // SAFETY: passed on.
         unsafe {
             match self {
                 #[cfg(target_arch = "x86_64")]
-                Self::Gathers => gathers(work),
+                Self::Gathers if const { W::PICKS } => Avx512::<true>::run(work),
                 #[cfg(target_arch = "x86_64")]
-                Self::Eight => eight(work),
+                Self::Gathers | Self::Eight => Avx512::<false>::run(work),
                 #[cfg(target_arch = "x86_64")]
-                Self::Four => four(work),
-                Self::Plain => work.run::<4, Plain>(),
+                Self::Four => Avx2::run(work),
+                Self::Plain => Plain::run(work),
             }
         }
     }
@@ -70,6 +85,8 @@ impl Form {
 pub trait InLanes {
     /// What comes out.
     type Out;
+    /// Whether it picks numbers out of lists, so that a form with gathering loads is worth compiling.
+    const PICKS: bool = true;
     /// Runs it.
     ///
     /// # Safety
@@ -77,23 +94,69 @@ pub trait InLanes {
     unsafe fn run<const N: usize, V: Lanes<N>>(self) -> Self::Out;
 }
 
+/// The instruction set of some lanes, where a form is chosen before the loop is.
+pub trait Isa {
+    /// Whether loops for special cases are worth compiling: where processors have AVX2 the portable form is there to compare with.
+    const FAST: bool;
+    /// Runs a loop in these lanes.
+    ///
+    /// # Safety
+    /// The processor must have what the lanes need, and the loop what it asks for.
+    unsafe fn run<W: InLanes>(work: W) -> W::Out;
+    /// Runs it with these instructions in four lanes.
+    ///
+    /// # Safety
+    /// As [`Isa::run`].
+    unsafe fn run_four<W: InLanes>(work: W) -> W::Out;
+}
+
+impl Isa for Plain {
+    const FAST: bool = !cfg!(target_arch = "x86_64");
+    #[inline]
+    unsafe fn run<W: InLanes>(work: W) -> W::Out {
+        // SAFETY: passed on.
+        unsafe { work.run::<4, Self>() }
+    }
+    #[inline]
+    unsafe fn run_four<W: InLanes>(work: W) -> W::Out {
+        // SAFETY: passed on.
+        unsafe { Self::run(work) }
+    }
+}
+
+/// The instruction set of some lanes, by the features that they need.
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-unsafe fn gathers<W: InLanes>(work: W) -> W::Out {
-    // SAFETY: passed on.
-    unsafe { work.run::<8, Avx512<true>>() }
+macro_rules! isa {
+    ($lanes:ty, $n:literal, $features:literal) => {
+        impl Isa for $lanes {
+            const FAST: bool = true;
+            #[inline]
+            unsafe fn run<W: InLanes>(work: W) -> W::Out {
+                #[target_feature(enable = $features)]
+                unsafe fn compiled<W: InLanes>(work: W) -> W::Out {
+                    // SAFETY: passed on.
+                    unsafe { work.run::<$n, $lanes>() }
+                }
+                // SAFETY: the caller's promise includes the features.
+                unsafe { compiled(work) }
+            }
+            #[inline]
+            unsafe fn run_four<W: InLanes>(work: W) -> W::Out {
+                #[target_feature(enable = $features)]
+                unsafe fn compiled<W: InLanes>(work: W) -> W::Out {
+                    // SAFETY: passed on.
+                    unsafe { work.run::<4, Avx2>() }
+                }
+                // SAFETY: the caller's promise includes the features.
+                unsafe { compiled(work) }
+            }
+        }
+    };
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-unsafe fn eight<W: InLanes>(work: W) -> W::Out {
-    // SAFETY: passed on.
-    unsafe { work.run::<8, Avx512<false>>() }
-}
-
+isa!(Avx2, 4, "avx2,fma");
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe fn four<W: InLanes>(work: W) -> W::Out {
-    // SAFETY: passed on.
-    unsafe { work.run::<4, Avx2>() }
-}
+isa!(Avx512<false>, 8, "avx2,fma,avx512f,avx512dq,avx512vl,popcnt");
+#[cfg(target_arch = "x86_64")]
+isa!(Avx512<true>, 8, "avx2,fma,avx512f,avx512dq,avx512vl,popcnt");

@@ -36,8 +36,10 @@ pub trait Four: Real {
     unsafe fn splat(a: f64) -> Self;
     /// Element `l` of row `k` becomes element `k` of row `l`.
     fn transpose(rows: [Self; 4]) -> [Self; 4];
+    /// Yes in lane `k` where bit `k` is set (`self` lends only its kind).
+    fn with_bits(self, bits: u8) -> Self::Mask;
     /// Lane `k` of a mask as bit `k`.
-    fn bits(mask: Self::Mask) -> u32;
+    fn bits(mask: Self::Mask) -> u8;
     /// The lanes with these numbers; all of them have to be below four.
     fn at(self, lanes: [u32; 4]) -> Self;
 }
@@ -122,8 +124,24 @@ impl Real for Plain {
         self.zip(other, Real::least)
     }
     #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn fnma(self, b: Self, c: Self) -> Self {
+        c - self * b
+    }
+    #[inline(always)]
     fn above(self, other: Self) -> [bool; 4] {
         std::array::from_fn(|k| self.0[k] > other.0[k])
+    }
+    #[inline(always)]
+    fn at_least(self, other: Self) -> [bool; 4] {
+        std::array::from_fn(|k| self.0[k] >= other.0[k])
+    }
+    #[inline(always)]
+    fn keep(self, mask: [bool; 4]) -> Self {
+        Self(std::array::from_fn(|k| if mask[k] { self.0[k] } else { 0.0 }))
     }
     #[inline(always)]
     fn both(a: [bool; 4], b: [bool; 4]) -> [bool; 4] {
@@ -179,16 +197,20 @@ impl Four for Plain {
         std::array::from_fn(|l| Self(std::array::from_fn(|k| rows[k].0[l])))
     }
     #[inline(always)]
-    fn bits(mask: [bool; 4]) -> u32 {
-        (0..4).map(|k| u32::from(mask[k]) << k).sum()
+    fn with_bits(self, bits: u8) -> [bool; 4] {
+        std::array::from_fn(|k| bits >> k & 1 == 1)
+    }
+    #[inline(always)]
+    fn bits(mask: [bool; 4]) -> u8 {
+        (0..4).map(|k| u8::from(mask[k]) << k).sum()
     }
 }
 
-/// Whether the processor has AVX2.
+/// Whether the processor has AVX2 and FMA.
 pub fn has_avx2() -> bool {
     #[cfg(target_arch = "x86_64")]
     {
-        is_x86_feature_detected!("avx2")
+        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
     }
     #[cfg(not(target_arch = "x86_64"))]
     {
@@ -211,12 +233,29 @@ mod x86 {
     use crate::math::pair::Sse;
     use crate::math::real::{EXPONENT, lane_by_lane};
 
-    /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2: its
+    /// By bits of a mask: all bits of the lanes that are set.
+    static MASKS: [[u64; 4]; 16] = {
+        let mut masks = [[0; 4]; 16];
+        let mut bits = 0;
+        while bits < 16 {
+            let mut lane = 0;
+            while lane < 4 {
+                if bits >> lane & 1 == 1 {
+                    masks[bits][lane] = u64::MAX;
+                }
+                lane += 1;
+            }
+            bits += 1;
+        }
+        masks
+    };
+
+    /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2 and FMA: its
     /// constructors are unsafe and promise that.
     #[derive(Clone, Copy, Debug)]
     pub struct Avx2(pub(in crate::math) __m256d);
 
-    // SAFETY (all blocks): a value exists, so the processor has AVX2; or the caller promises that.
+    // SAFETY (all blocks): a value exists, so the processor has AVX2 and FMA; or the caller promises that.
 
     operators! { [] Avx2, a b:
         Avx2(unsafe { _mm256_add_pd(a.0, b.0) }),
@@ -262,8 +301,24 @@ mod x86 {
             Self(unsafe { _mm256_min_pd(self.0, other.0) })
         }
         #[inline(always)]
+        fn fma(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        fn fnma(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fnmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
         fn above(self, other: Self) -> __m256d {
             unsafe { _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn at_least(self, other: Self) -> __m256d {
+            unsafe { _mm256_cmp_pd::<_CMP_GE_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn keep(self, mask: __m256d) -> Self {
+            Self(unsafe { _mm256_and_pd(self.0, mask) })
         }
         #[inline(always)]
         fn both(a: __m256d, b: __m256d) -> __m256d {
@@ -331,8 +386,12 @@ mod x86 {
             }
         }
         #[inline(always)]
-        fn bits(mask: __m256d) -> u32 {
-            unsafe { _mm256_movemask_pd(mask) as u32 }
+        fn with_bits(self, bits: u8) -> __m256d {
+            unsafe { _mm256_loadu_pd(MASKS[usize::from(bits & 15)].as_ptr().cast()) }
+        }
+        #[inline(always)]
+        fn bits(mask: __m256d) -> u8 {
+            unsafe { _mm256_movemask_pd(mask) as u8 }
         }
     }
 }
@@ -364,6 +423,9 @@ mod tests {
         }
         let mask = a.above(b);
         put(F::choose(mask, a, b));
+        [mask, a.at_least(b), a.with_bits(0b1010)].into_iter().for_each(|mask| put((a + 1.0).keep(mask)));
+        // Exact, so that it makes no difference how often it is rounded.
+        [a.fma(a.like(2.0), b.like(0.5)), a.fnma(a.like(-4.0), a)].into_iter().for_each(&mut put);
         F::transpose([a, b, a + b, a - b]).into_iter().for_each(&mut put);
         let none = F::both(mask, b.above(a));
         // SAFETY: arrays of four numbers.
@@ -379,6 +441,7 @@ mod tests {
             put(F::load(four.as_ptr()));
         }
         [[0, 1, 2, 3], [3, 1, 0, 2], [2, 2, 3, 0]].into_iter().for_each(|at| put(a.at(at)));
+        out.extend((0..16).map(|bits| u64::from(F::bits(a.with_bits(bits)))));
         out.extend([F::bits(mask), F::any(mask).into(), F::any(none).into()].map(u64::from));
         out
     }

@@ -29,6 +29,38 @@ pub trait Lanes<const N: usize>: Real {
     unsafe fn of(a: [f64; N]) -> Self;
     /// The numbers of the lanes.
     fn numbers(self) -> [f64; N];
+    /// Yes in lane `k` where bit `k` is set (`self` lends only its kind).
+    fn mask(self, bits: u8) -> Self::Mask;
+    /// Lane `k` of a mask as bit `k`.
+    fn mask_bits(mask: Self::Mask) -> u8;
+    /// As many consecutive numbers as there are lanes, aligned or not.
+    ///
+    /// # Safety
+    /// `p` must be readable for that many; the processor must have what the form needs.
+    unsafe fn read(p: *const f64) -> Self;
+    /// Writes the numbers of the lanes one after the other.
+    ///
+    /// # Safety
+    /// `p` must be writable for that many.
+    unsafe fn write(self, p: *mut f64);
+    /// The numbers from place `at` on of a column (`self` lends only its kind).
+    ///
+    /// # Panics
+    /// If the column ends before.
+    #[inline(always)]
+    fn from_column(self, column: &[f64], at: usize) -> Self {
+        // SAFETY: as many numbers as there are lanes; there is a value in lanes, so the processor has what the form needs.
+        unsafe { Self::read(column[at..at + N].as_ptr()) }
+    }
+    /// Puts the numbers of the lanes to a column, from place `at` on.
+    ///
+    /// # Panics
+    /// If the column ends before.
+    #[inline(always)]
+    fn to_column(self, column: &mut [f64], at: usize) {
+        // SAFETY: as many numbers as there are lanes.
+        unsafe { self.write(column[at..at + N].as_mut_ptr()) }
+    }
     /// The numbers at these places of a list.
     ///
     /// # Safety
@@ -55,6 +87,19 @@ pub trait Lanes<const N: usize>: Real {
     /// # Safety
     /// As [`Lanes::put`].
     unsafe fn pack(self, mask: Self::Mask, to: *mut f64);
+}
+
+/// Says that what lies at `p` will be read soon; where nothing does, no harm is done.
+#[inline(always)]
+pub fn prefetch(p: *const f64) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint, which reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = p;
 }
 
 /// Bits of an entry that hold a place in a list; what stands above them tells which shift.
@@ -209,6 +254,24 @@ impl<F: Four> Lanes<4> for F {
         out
     }
     #[inline(always)]
+    fn mask(self, bits: u8) -> F::Mask {
+        self.with_bits(bits)
+    }
+    #[inline(always)]
+    fn mask_bits(mask: F::Mask) -> u8 {
+        F::bits(mask)
+    }
+    #[inline(always)]
+    unsafe fn read(p: *const f64) -> F {
+        // SAFETY: passed on.
+        unsafe { F::load(p) }
+    }
+    #[inline(always)]
+    unsafe fn write(self, p: *mut f64) {
+        // SAFETY: passed on.
+        unsafe { self.store(p) }
+    }
+    #[inline(always)]
     unsafe fn pick(list: *const f64, at: *const u32) -> F {
         // SAFETY: passed on.
         unsafe { F::load(numbers_at::<4>(list, at).as_ptr()) }
@@ -228,14 +291,14 @@ impl<F: Four> Lanes<4> for F {
     #[inline(always)]
     unsafe fn put(mask: F::Mask, first: u32, to: *mut u32) -> usize {
         let bits = F::bits(mask);
-        let [a, b, c, d] = LANES[bits as usize & 15];
+        let [a, b, c, d] = LANES[usize::from(bits & 15)];
         // SAFETY: the caller's promise.
         unsafe { to.cast::<[u32; 4]>().write([first + a, first + b, first + c, first + d]) };
         (COUNTS >> (4 * bits) & 15) as usize
     }
     #[inline(always)]
     unsafe fn pack(self, mask: F::Mask, to: *mut f64) {
-        let of = self.at(LANES[F::bits(mask) as usize & 15]);
+        let of = self.at(LANES[usize::from(F::bits(mask) & 15)]);
         // SAFETY: the caller's promise.
         unsafe { of.store(to) };
     }

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number, or lanes of numbers, on which a formula is evaluated at once; every lane gets the bits that the formula
-/// gives for `f64` alone. Plain numbers may stand on the right of operators.
+/// gives for `f64` alone, but for [`Real::fma`] and [`Real::fnma`]. Plain numbers may stand on the right of operators.
 pub trait Real:
     Copy
     + Debug
@@ -33,10 +33,18 @@ pub trait Real:
     fn most(self, other: Self) -> Self;
     /// The smaller of two; `other` where either is NaN.
     fn least(self, other: Self) -> Self;
+    /// `self b + c`: rounded once in lanes of processors that can, in two roundings elsewhere and for `f64`.
+    fn fma(self, b: Self, c: Self) -> Self;
+    /// `c − self b`, rounded as [`Real::fma`].
+    fn fnma(self, b: Self, c: Self) -> Self;
     /// Where `self > other`.
     fn above(self, other: Self) -> Self::Mask;
+    /// Where `self ≥ other`.
+    fn at_least(self, other: Self) -> Self::Mask;
     /// Where both say yes.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// `self` where the mask says yes, else zero.
+    fn keep(self, mask: Self::Mask) -> Self;
     /// `yes` where the mask says so, else `no`. Both are evaluated.
     fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Whether some lane says yes.
@@ -80,8 +88,24 @@ impl Real for f64 {
         if self < other { self } else { other }
     }
     #[inline(always)]
+    fn fma(self, b: f64, c: f64) -> f64 {
+        self * b + c
+    }
+    #[inline(always)]
+    fn fnma(self, b: f64, c: f64) -> f64 {
+        c - self * b
+    }
+    #[inline(always)]
     fn above(self, other: f64) -> bool {
         self > other
+    }
+    #[inline(always)]
+    fn at_least(self, other: f64) -> bool {
+        self >= other
+    }
+    #[inline(always)]
+    fn keep(self, mask: bool) -> f64 {
+        if mask { self } else { 0.0 }
     }
     #[inline(always)]
     fn both(a: bool, b: bool) -> bool {

@@ -65,8 +65,24 @@ impl<R: Real> Real for Twice<R> {
         Self([self.0[0].least(other.0[0]), self.0[1].least(other.0[1])])
     }
     #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        Self([self.0[0].fma(b.0[0], c.0[0]), self.0[1].fma(b.0[1], c.0[1])])
+    }
+    #[inline(always)]
+    fn fnma(self, b: Self, c: Self) -> Self {
+        Self([self.0[0].fnma(b.0[0], c.0[0]), self.0[1].fnma(b.0[1], c.0[1])])
+    }
+    #[inline(always)]
     fn above(self, other: Self) -> Self::Mask {
         [self.0[0].above(other.0[0]), self.0[1].above(other.0[1])]
+    }
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self::Mask {
+        [self.0[0].at_least(other.0[0]), self.0[1].at_least(other.0[1])]
+    }
+    #[inline(always)]
+    fn keep(self, mask: Self::Mask) -> Self {
+        Self([self.0[0].keep(mask[0]), self.0[1].keep(mask[1])])
     }
     #[inline(always)]
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask {

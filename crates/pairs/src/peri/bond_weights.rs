@@ -1,9 +1,9 @@
-//! Horizons that count in the spacing around each particle, and families made whole: which styles have them, what the log tells.
+//! Horizons that count in the spacing around each particle, and families made whole: which styles have them, what the log says of them.
 
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_peri::families::{Families, FamilyOptions, LawKind, VolumeRule, Weighed};
-use perigrain_peri::softening::{REST, last_of_area};
+use perigrain_peri::families::{Families, FamilyOptions, VolumeRule, Weighed};
+use perigrain_peri::law::style::Curve;
 use perigrain_world::World;
 
 /// So many factors at their bounds mean that families cannot be made whole.
@@ -75,9 +75,8 @@ const LEAST_ROOM: f64 = 1.01;
 /// A particle's factor on critical stretches that follow from fracture energies: √(δ/δ_i), as in a body of that horizon. Of bonds
 /// that soften the curve has δ/δ_i times the area, and its peak stays.
 pub fn strength(style: &Solid, families: &Families, kind: u16, i: usize) -> f64 {
-    if let Some((curve, _)) = curve(style, kind) {
-        let factor = families.spacing_of(i).recip();
-        return last_of_area(style.law.kind == LawKind::Decaying, curve, factor) / curve.1;
+    if let Some(Softening { curve, peak, last, .. }) = softening(style, kind) {
+        return (curve.scaled)((peak, last), families.spacing_of(i).recip()) / last;
     }
     match style.materials.by_energy(kind) {
         true => families.spacing_of(i).recip().sqrt(),
@@ -85,10 +84,18 @@ pub fn strength(style: &Solid, families: &Families, kind: u16, i: usize) -> f64 
     }
 }
 
-/// Peak and end of the curve of a type's bonds, where they soften, and their horizon.
-fn curve(style: &Solid, kind: u16) -> Option<((f64, f64), f64)> {
-    let own = style.table.get(kind, kind).filter(|_| style.law.kind.softens())?;
-    Some(((style.law.of(kind).peak, own.s00), own.horizon))
+/// How bonds of a type soften: their curve with its peak and end, and their horizon.
+struct Softening {
+    curve: Curve,
+    peak: f64,
+    last: f64,
+    horizon: f64,
+}
+
+/// The same where they do.
+fn softening(style: &Solid, kind: u16) -> Option<Softening> {
+    let (curve, own) = (style.law.kind.curve?, style.table.get(kind, kind)?);
+    Some(Softening { curve, peak: style.law.of(kind).peak, last: own.s00, horizon: own.horizon })
 }
 
 /// Refuses families whose longest horizons leave no room for bonds to soften in.
@@ -100,18 +107,14 @@ pub fn leave_room(style: &Solid, families: &Families, w: &World) -> Result<()> {
         return Ok(());
     }
     for kind in 1..=style.table.types() as u16 {
-        let Some(((peak, last), horizon)) = curve(style, kind) else { continue };
+        let Some(Softening { curve, peak, last, horizon }) = softening(style, kind) else { continue };
         let own = (0..w.n()).filter(|i| w.particles.kind[*i] == kind).map(|i| families.spacing_of(i));
         let [_, widest] = extremes(own);
-        let decays = style.law.kind == LawKind::Decaying;
-        if widest == 0.0 || last_of_area(decays, (peak, last), widest.recip()) >= LEAST_ROOM * peak {
+        if widest == 0.0 || (curve.scaled)((peak, last), widest.recip()) >= LEAST_ROOM * peak {
             continue;
         }
         // The area goes as 1/δ, and that of a triangle with no room beside its peak is ½ peak².
-        let area = match decays {
-            false => peak * last,
-            true => peak * peak + 2.0 * peak * (last - peak) / -REST.ln() * (1.0 - REST),
-        };
+        let area = (curve.twice_area)(peak, last);
         let text = format!(
             "bonds of type {kind} with a peak at {peak:.4e} would snap back: with `peri_modify horizon own` horizons reach {:.4e}",
             widest * horizon
@@ -124,8 +127,8 @@ pub fn leave_room(style: &Solid, families: &Families, w: &World) -> Result<()> {
     Ok(())
 }
 
-/// Tells what families have been weighed by, when they are found.
-pub fn tell(style: &Solid, families: &Families, w: &mut World) {
+/// Notes what families have been weighed by, when they are found.
+pub fn note(style: &Solid, families: &Families, w: &mut World) {
     if style.weights.own_horizons {
         horizons(style, families, w);
     }

@@ -20,8 +20,8 @@ pub struct Force {
     name: String,
     /// Bonds that differ from particle to particle.
     scatter: Scatter,
-    /// The coefficients as the deck's lines said them, before micro-moduli were calibrated.
-    said: PmbTable,
+    /// The coefficients of the deck's lines, before micro-moduli were calibrated.
+    declared: PmbTable,
     /// Which changes by fixes have been seen.
     adapted: f64,
     /// Where they are, of c, s00 and alpha of each pair of types.
@@ -32,7 +32,7 @@ pub struct Force {
 
 impl Force {
     /// The op of a style.
-    pub fn new(style: Solid, said: PmbTable, options: FamilyOptions, scatter: Scatter) -> Self {
+    pub fn new(style: Solid, declared: PmbTable, options: FamilyOptions, scatter: Scatter) -> Self {
         let name = format!("pair {}", style.name);
         let key = |types, name: &str| {
             let (style, name) = (style.name.to_string(), name.to_string());
@@ -42,7 +42,7 @@ impl Force {
         let pairs = (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j)));
         let keys = pairs.map(|p| (p, ["c", "s00", "alpha"].map(|name| key(p, name)))).collect();
         let tally = Key::new(style.name);
-        Self { style, options, name, scatter, said, adapted: 0.0, keys, tally }
+        Self { style, options, name, scatter, declared, adapted: 0.0, keys, tally }
     }
 }
 
@@ -165,10 +165,12 @@ impl Force {
             return Ok(table);
         }
         for &((i, j), keys) in &self.keys {
-            let (Some(own), Some(said)) = (self.style.table.get(i, j), self.said.get(i, j)) else { continue };
+            let (Some(own), Some(declared)) = (self.style.table.get(i, j), self.declared.get(i, j)) else {
+                continue;
+            };
             let [c, s00, alpha] = keys.map(|key| w.adapted(key));
             // A calibrated micro-modulus keeps its ratio to what the line says.
-            let ratio = if said.c > 0.0 { own.c / said.c } else { 1.0 };
+            let ratio = if declared.c > 0.0 { own.c / declared.c } else { 1.0 };
             let new = PmbCoeff {
                 c: c.map_or(own.c, |c| c * ratio),
                 s00: s00.unwrap_or(own.s00),
@@ -189,7 +191,7 @@ impl Force {
         }
         let mut families = match w.families.take() {
             Some(mut families) => {
-                families.takes(self.style.law.kind, None)?;
+                families.takes(&self.style.law, None)?;
                 families.options = self.options;
                 families.law = self.style.law.clone();
                 families.refresh(&view(w)?, &table);
@@ -199,11 +201,11 @@ impl Force {
                 let law = self.style.law.clone();
                 let families = Families::build_of(&view(w)?, &table, self.options, law)?;
                 bond_weights::leave_room(&self.style, &families, w)?;
-                self.tell_lone(w, &families);
-                self.tell_doubles(w, &families);
-                tell_almost(w, &families);
-                self.scatter.tell(w);
-                bond_weights::tell(&self.style, &families, w);
+                self.note_lone(w, &families);
+                self.note_doubles(w, &families);
+                note_almost(w, &families);
+                self.scatter.note(w);
+                bond_weights::note(&self.style, &families, w);
                 let notes = pulled::notes(&self.style, &families, &view(w)?);
                 notes.into_iter().for_each(|note| w.parts.notes.push(note));
                 families
@@ -234,7 +236,7 @@ impl Force {
     }
 
     /// Warns of particles of solids that no bond reaches.
-    fn tell_lone(&self, w: &mut World, families: &Families) {
+    fn note_lone(&self, w: &mut World, families: &Families) {
         let p = &w.particles;
         let lone = |i: &usize| self.style.covers(p.kind[*i], p.kind[*i]) && families.family_size[*i] == 0;
         let mut all = (0..p.len()).filter(lone);
@@ -252,7 +254,7 @@ impl Force {
     }
 
     /// Warns of particles of solids that stand at the place of another one: bodies with such are on no lattice.
-    fn tell_doubles(&self, w: &mut World, families: &Families) {
+    fn note_doubles(&self, w: &mut World, families: &Families) {
         let p = &w.particles;
         let mut order: Vec<usize> =
             families.list.particle.iter().filter(|p| **p != u32::MAX).map(|p| *p as usize).collect();
@@ -304,7 +306,7 @@ impl Force {
 }
 
 /// Warns once of bodies that were meant to be on a lattice and are a little off it.
-fn tell_almost(w: &mut World, families: &Families) {
+fn note_almost(w: &mut World, families: &Families) {
     let count: usize = families.almost.iter().map(|body| body.count).sum();
     let Some(worst) = families.almost.iter().max_by(|a, b| a.off.total_cmp(&b.off)) else { return };
     let bodies = match families.almost.len() {

@@ -4,7 +4,7 @@ use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_peri::families::LawKind;
+use perigrain_peri::law;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -50,6 +50,6 @@ impl Style for PeriLps {
 
 impl PairStyle for PeriLps {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        start("peri/lps", LawKind::Lps, cx)
+        start("peri/lps", law::LPS, cx)
     }
 }

@@ -1,18 +1,21 @@
 //! Coefficients of peridynamic bonds from materials: `pair_coeff … material ID …` and `pair_coeff … mix RULE`.
 
+use super::numbers::read;
 use super::softening::last_stretch;
-use super::{Coeff, below_zero, short_range};
+use super::{Coeff, short_range};
 use crate::TypePairs;
 use perigrain_base::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
 use perigrain_lang::Args;
-use perigrain_peri::families::{LawKind, Moduli, PmbCoeff};
+use perigrain_peri::families::{Moduli, PmbCoeff};
+use perigrain_peri::law::Style;
+use perigrain_peri::law::style::Curve;
 use perigrain_peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::material::{Material, Strength};
 use std::collections::BTreeMap;
 
 /// What bonds between particles of one type are made of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Stuff {
     solid: Elastic,
     density: f64,
@@ -21,13 +24,13 @@ struct Stuff {
     tensile: Option<f64>,
     form: Form,
     horizon: f64,
-    law: LawKind,
+    law: &'static Style,
     /// What a state-based law needs besides K and G.
     extra: Moduli,
 }
 
 /// The materials of a peridynamic body's types.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Materials {
     types: BTreeMap<u16, Stuff>,
 }
@@ -40,7 +43,7 @@ impl Materials {
     /// Every mistake in the line.
     pub fn coeff(
         &mut self,
-        law: LawKind,
+        law: &'static Style,
         pairs: &TypePairs,
         args: &mut Args,
         cx: &BuildCx,
@@ -53,7 +56,7 @@ impl Materials {
                 for &(i, _) in pairs.iter().filter(|(i, j)| i == j) {
                     self.types.insert(i, stuff.clone());
                 }
-                stuff.told(at).map(Some)
+                stuff.coefficients(at).map(Some)
             }
             "mix" => {
                 args.next();
@@ -99,14 +102,14 @@ impl Materials {
         };
         let (a, b) = (find(i)?, find(j)?);
         let between = a.mixed(b, rule, word)?;
-        between.told(word)
+        between.coefficients(word)
     }
 }
 
 impl Stuff {
-    /// What LAMMPS would have been told: c, horizon, s00, alpha.
+    /// The coefficients that LAMMPS has: c, horizon, s00, alpha.
     fn coeff(&self) -> PmbCoeff {
-        let states = !self.law.bond_based();
+        let states = !self.law.bond_based;
         let c = match states {
             true => short_range(self.solid.bulk(), self.horizon),
             false => self.form.micro_modulus(self.solid, self.horizon),
@@ -123,16 +126,18 @@ impl Stuff {
     }
 
     /// The same of bonds that soften: c, horizon, and where nothing is left.
-    fn softening(&self, at: Span) -> Result<PmbCoeff> {
+    fn softening(&self, curve: &Curve, at: Span) -> Result<PmbCoeff> {
         let c = self.form.micro_modulus(self.solid, self.horizon);
-        let curve = (self.extra.peak, self.fracture_energy());
-        let s00 = last_stretch(self.law, curve, (c, self.horizon), at)?;
+        let s00 = last_stretch(curve, (self.extra.peak, self.fracture_energy()), (c, self.horizon), at)?;
         Ok(PmbCoeff { c, horizon: self.horizon, s00, alpha: 0.0 })
     }
 
-    /// What bonds are told, of whatever law.
-    fn told(&self, at: Span) -> Result<Coeff> {
-        let coeff = if self.law.softens() { self.softening(at)? } else { self.coeff() };
+    /// The coefficients of bonds, of whatever law.
+    fn coefficients(&self, at: Span) -> Result<Coeff> {
+        let coeff = match &self.law.curve {
+            Some(curve) => self.softening(curve, at)?,
+            None => self.coeff(),
+        };
         Ok((coeff, self.moduli()))
     }
 
@@ -185,7 +190,7 @@ impl Stuff {
             Some(Strength::FractureEnergy(g)) => g,
             _ => {
                 let p = self.coeff();
-                match !self.law.bond_based() {
+                match !self.law.bond_based {
                     true => moduli::fracture_energy_of_states(p.s00, self.solid, p.horizon),
                     false => moduli::fracture_energy(p.s00, p.c, p.horizon),
                 }
@@ -195,19 +200,13 @@ impl Stuff {
 }
 
 /// Keywords after a material's ID that a law has besides `horizon`, `s00` and `alpha`; state-based ones must all be said.
-fn keywords(law: LawKind) -> &'static [&'static str] {
-    match law {
-        LawKind::Pmb | LawKind::Shaped => &["form"],
-        LawKind::Lps => &[],
-        LawKind::Ves | LawKind::VesApart => &["lambda", "tau"],
-        LawKind::ElasticPlastic => &["yield"],
-        LawKind::Yield | LawKind::NonlinearElastic => &["form", "syc"],
-        LawKind::Softening | LawKind::Decaying => &["form", "peak"],
-    }
+fn keywords(law: &Style) -> impl Iterator<Item = &'static str> + use<> {
+    let form = law.bond_based.then_some("form");
+    form.into_iter().chain(law.numbers.iter().map(|number| number.keyword))
 }
 
 /// Reads `ID horizon H [s00 S] [alpha A]` and the law's own words.
-fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
+fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let id = args.expect("the material's ID")?;
     let Some(m) = cx.world.materials.get(&id.text) else {
         let d =
@@ -222,10 +221,10 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let mut horizon = None;
     let mut s = of(m, law);
     let mut chosen = false;
-    let mut missing: Vec<&str> =
-        keywords(law).iter().copied().filter(|k| !matches!(*k, "form" | "peak")).collect();
+    // The peak of bonds that soften may follow from the material.
+    let mut missing: Vec<&str> = keywords(law).filter(|k| *k != "form" && !law.softens()).collect();
     let common: &[&str] = if law.softens() { &["horizon"] } else { &["horizon", "s00", "alpha"] };
-    let known: Vec<&'static str> = [common, keywords(law)].concat();
+    let known: Vec<&'static str> = common.iter().copied().chain(keywords(law)).collect();
     while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "plastic" | "nonlinear")) {
         let key = args.choice("keyword of a material", &known)?;
         missing.retain(|k| *k != key);
@@ -243,22 +242,11 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
                 chosen = true;
             }
             "s00" => s.strength = Some(Strength::Stretch(args.positive("s00")?)),
-            "lambda" => {
-                let at = args.here();
-                s.extra.lambda = args.non_negative("lambda")?;
-                if s.extra.lambda > 1.0 {
-                    return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
-                }
+            "alpha" => s.alpha = args.non_negative("alpha")?,
+            _ => {
+                let number = law.numbers.iter().find(|number| number.keyword == key);
+                number.map_or(Ok(()), |number| read(number, 1, args, &mut s.extra))?;
             }
-            "syc" => {
-                let at = args.here();
-                s.extra.syc = args.number("syc")?;
-                below_zero(s.extra.syc, at)?;
-            }
-            "peak" => s.extra.peak = args.positive("the stretch at the peak")?,
-            "tau" => s.extra.tau = args.positive("tau")?,
-            "yield" => s.extra.yield_stress = args.positive("the yield stress")?,
-            _ => s.alpha = args.non_negative("alpha")?,
         }
         if word.text == "horizon" {
             s.horizon = horizon.unwrap_or_default() * spacing(word.span, cx)?;
@@ -280,10 +268,10 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     if law.softens() {
         softens(&mut s, id.span, &id.text)?;
     }
-    if law.bond_based() && s.solid.defies_bonds() {
-        let said = poisson(&id.text, &s, id.span);
-        // Who names the modulus to keep knows that the others are off.
-        cx.note(if chosen { Diagnostic { severity: Severity::Note, ..said } } else { said });
+    if law.bond_based && s.solid.defies_bonds() {
+        let warning = poisson(&id.text, &s, id.span);
+        // Where the deck names the modulus to keep, that the others are off is no surprise.
+        cx.note(if chosen { Diagnostic { severity: Severity::Note, ..warning } } else { warning });
     }
     Ok(s)
 }
@@ -308,7 +296,7 @@ fn softens(s: &mut Stuff, at: Span, id: &str) -> Result<()> {
 }
 
 /// A material before its horizon is known.
-fn of(m: &Material, law: LawKind) -> Stuff {
+fn of(m: &Material, law: &'static Style) -> Stuff {
     Stuff {
         solid: Elastic { young: m.young, nu: m.nu },
         density: m.density,
@@ -358,7 +346,7 @@ mod tests {
             tensile: None,
             form: Form::Shear,
             horizon: 1.5e-3,
-            law: LawKind::Pmb,
+            law: perigrain_peri::law::PMB.style(),
             extra: Moduli::default(),
         }
     }

@@ -23,14 +23,15 @@ pub use eps::PeriEps;
 use force::Force;
 pub use lps::PeriLps;
 use materials::Materials;
-pub use numbers::{beyond_elastic, lasting, stiffness};
+pub use numbers::{beyond_elastic, lasting, stiffness, written};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_peri::calibration::constants;
 use perigrain_peri::families::{
-    BondWeights, Families, FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff,
-    PmbTable, VolumeRule,
+    BondWeights, Families, FamilyOptions, ForceUnit, Influence, Law, Layout, Moduli, PmbCoeff, PmbTable,
+    VolumeRule,
 };
+use perigrain_peri::law::{LawKind, Style};
 use perigrain_plan::Op;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::probe::Probe;
@@ -91,7 +92,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
         .into());
     }
-    let influence = if kind.bond_based() { Influence::One } else { Influence::default() };
+    let influence = if kind.bond_based { Influence::One } else { Influence::default() };
     let law = Law { kind, influence, moduli: vec![Moduli::default(); cx.world.types], ..Law::default() };
     Ok(Box::new(Solid {
         name,
@@ -115,21 +116,24 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
 type Coeff = (PmbCoeff, Moduli);
 
 /// Reads the coefficients of a law as LAMMPS writes them.
-fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
-    let (mut c, mut moduli) = stiffness(kind, args)?;
+fn numbers(law: &Style, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
+    let (mut c, mut moduli) = stiffness(law, args)?;
     let span = args.here();
-    let (horizon, s00, alpha) = match kind.softens() {
-        true => {
+    let (horizon, s00, alpha) = match &law.curve {
+        Some(curve) => {
             let horizon = args.positive("the horizon")?;
-            moduli.peak = args.positive("the stretch at the peak")?;
+            beyond_elastic(law, args, &mut moduli)?;
             let at = args.here();
             let energy = args.positive("the fracture energy G")?;
-            (horizon, softening::last_stretch(kind, (moduli.peak, energy), (c, horizon), at)?, 0.0)
+            (horizon, softening::last_stretch(curve, (moduli.peak, energy), (c, horizon), at)?, 0.0)
         }
-        false => lasting(args)?,
+        None => {
+            let lasting = lasting(args)?;
+            beyond_elastic(law, args, &mut moduli)?;
+            lasting
+        }
     };
-    beyond_elastic(kind, args, &mut moduli)?;
-    if !kind.bond_based() {
+    if !law.bond_based {
         c = short_range(moduli.bulk, horizon);
     }
     let lc = cx.world.lattice.spacing[0];
@@ -138,14 +142,6 @@ fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
         horizon::warn(horizon / lc, lc, span, cx);
     }
     Ok((PmbCoeff { c, horizon, s00, alpha }, moduli))
-}
-
-/// Bonds flow in compression.
-fn below_zero(syc: f64, at: Span) -> Result<()> {
-    if syc < 0.0 {
-        return Ok(());
-    }
-    fail(Code::BAD_VALUE, at, format!("syc is a stretch in compression, below zero: {syc}"))
 }
 
 /// The micro-modulus whose short-range forces a state-based solid has: 18K/(πδ⁴).
@@ -178,29 +174,25 @@ impl Solid {
 
     /// The rule for yielding bonds on their way back, at the end of a line.
     fn unloading(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if !matches!(self.law.kind, LawKind::Yield | LawKind::NonlinearElastic) {
+        if self.law.kind.unloading.is_none() {
             return Ok(());
         }
         let at = args.here();
-        let said = match args.peek_text() {
-            "plastic" => LawKind::Yield,
-            "nonlinear" => LawKind::NonlinearElastic,
-            _ if self.unloading.is_some() => return Ok(()),
-            _ => LawKind::Yield,
-        };
-        if self.unloading.is_some_and(|known| known != said) {
+        let (word, first) = (LawKind::unloading_as(args.peek_text()), LawKind::unloading_as("plastic"));
+        let Some(chosen) = word.or(first.filter(|_| self.unloading.is_none())) else { return Ok(()) };
+        if self.unloading.is_some_and(|known| known != chosen) {
             let text = "another pair has the other rule of unloading: one rule holds for all";
             return fail(Code::CONFLICT, at, text);
         }
-        if matches!(args.peek_text(), "plastic" | "nonlinear") {
+        if word.is_some() {
             args.next();
-            self.unloading = Some(said);
+            self.unloading = Some(chosen);
         }
         // Of a restart file the style is new and the families are not.
-        if cx.world.families.as_ref().is_some_and(|f| f.law.kind != said) {
+        if cx.world.families.as_ref().is_some_and(|f| f.law.kind != chosen) {
             return fail(Code::WRONG_ORDER, at, "the rule of unloading cannot change after the first run");
         }
-        self.law.kind = said;
+        self.law.kind = chosen;
         Ok(())
     }
 
@@ -225,7 +217,7 @@ impl Solid {
     /// The coefficients with micro-moduli that are right on a simple cubic lattice of this spacing.
     fn calibrated(&self, spacing: f64, span: Span) -> Result<PmbTable> {
         let mut table = self.table.clone();
-        if self.calibrate == Calibrate::No || !self.law.kind.bond_based() {
+        if self.calibrate == Calibrate::No || !self.law.kind.bond_based {
             return Ok(table);
         }
         if self.law.surface || self.weights.any() {
@@ -267,7 +259,7 @@ impl Pair for Solid {
             coefficients: match self.law.kind {
                 // Peak, last stretch and energy belong together.
                 kind if kind.softens() => &[],
-                kind if kind.bond_based() => &["c", "s00", "alpha"],
+                kind if kind.bond_based => &["c", "s00", "alpha"],
                 _ => &["s00", "alpha"],
             },
         }
@@ -277,12 +269,12 @@ impl Pair for Solid {
         self.grow(cx.world.types);
         args.eat(self.name);
         let span = args.here();
-        let (coeff, moduli) = match self.materials.coeff(self.law.kind, pairs, args, cx)? {
+        let (coeff, moduli) = match self.materials.coeff(self.law.kind.style(), pairs, args, cx)? {
             Some(coeff) => coeff,
             None => {
                 self.raw = true;
                 bond_weights::needs_materials(self, span)?;
-                numbers(self.law.kind, args, cx)?
+                numbers(&self.law.kind, args, cx)?
             }
         };
         self.unloading(args, cx)?;
@@ -301,11 +293,7 @@ impl Pair for Solid {
                 self.law.moduli[usize::from(i) - 1] = moduli;
             }
             let types = self.table.types();
-            let edge = match self.law.kind {
-                LawKind::Yield | LawKind::NonlinearElastic => moduli.syc,
-                LawKind::Softening | LawKind::Decaying => moduli.peak,
-                _ => continue,
-            };
+            let Some(edge) = self.law.kind.edge.map(|edge| edge(&moduli)) else { continue };
             self.law.yields.resize(types * types, f64::NEG_INFINITY);
             let (a, b) = (usize::from(i) - 1, usize::from(j) - 1);
             self.law.yields[a * types + b] = edge;
@@ -337,20 +325,19 @@ impl Pair for Solid {
             self.cannot(span, "needs a lattice that is the same in x, y and z")?;
         }
         let options = self.options(w);
-        let before = w.families.as_ref().map(|f| f.law.kind);
         bond_weights::allowed(self, &options, w.settings.two_dimensional, span)?;
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
+        let mut style = self.clone();
+        style.table = self.calibrated(a, span)?;
+        let unlike = self.law.surface || self.law.influence != Influence::One || scatter.stiffness;
+        if unlike {
+            style.law.shape_bonds();
+        }
+        style.law.shared_or_apart(w.families.as_ref().map(|f| &f.law)).map_err(|e| e.at(span))?;
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
-        let mut style = self.clone();
-        style.table = self.calibrated(a, span)?;
-        let unlike = self.law.surface || self.law.influence != Influence::One || scatter.stiffness;
-        if self.law.kind == LawKind::Pmb && unlike {
-            style.law.kind = LawKind::Shaped;
-        }
-        style.law.shared_or_apart(before).map_err(|e| e.at(span))?;
         Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
     }
 
@@ -372,7 +359,7 @@ impl Pair for Solid {
         let types = self.table.types() as u16;
         let stiffest = |i: u16| {
             let all = (1..=types).filter_map(|j| self.table.get(i, j));
-            if self.law.kind.bond_based() {
+            if self.law.kind.bond_based {
                 // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
                 return all.map(|p| std::f64::consts::PI * p.c * p.horizon * p.horizon).reduce(f64::max);
             }
@@ -383,7 +370,7 @@ impl Pair for Solid {
             Some((0.61 * m.bulk + 6.6 * m.shear) / (shortest * shortest))
         };
         let ftm2v = w.settings.units.constants().ftm2v;
-        let surely = |i: u16| match self.law.kind.bond_based() {
+        let surely = |i: u16| match self.law.kind.bond_based {
             true => stiffest(i),
             false => {
                 let horizons = (1..=types).filter_map(|j| self.table.get(i, j)).map(|p| p.horizon);
@@ -406,7 +393,7 @@ impl Pair for Solid {
     }
 
     fn limit(&self, w: &World) -> Option<f64> {
-        if self.law.kind.bond_based() || w.n() == 0 || w.n() > MOST_LOOKED_AT {
+        if self.law.kind.bond_based || w.n() == 0 || w.n() > MOST_LOOKED_AT {
             return None;
         }
         let (view, p) = (view(w).ok()?, &w.particles);
@@ -436,15 +423,15 @@ impl Pair for Solid {
         if w.types > 1 && self.table.iter().any(|c| c.alpha != 0.0) {
             cx.fault(cx.span, "one critical stretch per particle also across mixed types", true);
         }
-        if self.law.kind == LawKind::ElasticPlastic {
+        if self.law.kind.yields() {
             cx.fault(cx.span, "the dilatation in the norm of the yield criterion", true);
         }
     }
 
     fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
-        // One number for a pair of types is what such a look knows of bonds.
+        // Such a probe has one number for a pair of types.
         let alike = !self.law.surface && self.law.influence == Influence::One && !self.weights.any();
-        let plain = self.law.kind == LawKind::Pmb && !self.compress && alike;
+        let plain = self.law.kind.plain() && !self.compress && alike;
         Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })
     }
 }

@@ -1,17 +1,18 @@
 //! Numbers of peridynamic laws as LAMMPS' decks give them, to pairs of types and to types of bonds alike.
 
-use super::below_zero;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
-use perigrain_peri::families::{LawKind, Moduli};
+use perigrain_peri::families::Moduli;
+use perigrain_peri::law::Style;
+use perigrain_peri::law::style::{Bound, Number};
 
 /// Reads how stiff bonds of a law are: the micro-modulus c, or the moduli K and G.
 ///
 /// # Errors
 /// Numbers that are missing or out of range.
-pub fn stiffness(kind: LawKind, args: &mut Args) -> Result<(f64, Moduli)> {
+pub fn stiffness(law: &Style, args: &mut Args) -> Result<(f64, Moduli)> {
     let mut moduli = Moduli::default();
-    if kind.bond_based() {
+    if law.bond_based {
         return Ok((args.non_negative("the micro-modulus c")?, moduli));
     }
     moduli.bulk = args.positive("the bulk modulus K")?;
@@ -29,26 +30,43 @@ pub fn lasting(args: &mut Args) -> Result<(f64, f64, f64)> {
     Ok((horizon, s00, args.non_negative("alpha")?))
 }
 
-/// Reads what a law has besides its stiffness: how bonds relax or flow.
+/// Reads what a law has besides its stiffness: how bonds relax, flow or soften.
 ///
 /// # Errors
 /// As [`stiffness`].
-pub fn beyond_elastic(kind: LawKind, args: &mut Args, moduli: &mut Moduli) -> Result<()> {
-    let at = args.here();
-    match kind {
-        LawKind::Ves => {
-            moduli.lambda = args.non_negative("the relaxing share lambda")?;
-            if moduli.lambda > 1.0 {
-                return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
+pub fn beyond_elastic(law: &Style, args: &mut Args, moduli: &mut Moduli) -> Result<()> {
+    law.numbers.iter().try_for_each(|number| read(number, 0, args, moduli))
+}
+
+/// Reads a number of a law; `line` says which of its names messages use.
+///
+/// # Errors
+/// As [`stiffness`].
+pub fn read(number: &Number, line: usize, args: &mut Args, moduli: &mut Moduli) -> Result<()> {
+    let (at, what) = (args.here(), number.what[line]);
+    let value = match number.bound {
+        Bound::Positive => args.positive(what)?,
+        Bound::Share(wrong) => {
+            let value = args.non_negative(what)?;
+            if value > 1.0 {
+                return fail(Code::BAD_VALUE, at, wrong);
             }
-            moduli.tau = args.positive("the relaxation time tau")?;
+            value
         }
-        LawKind::Yield | LawKind::NonlinearElastic => {
-            moduli.syc = args.number("the stretch syc at which bonds flow")?;
-            below_zero(moduli.syc, at)?;
+        Bound::Negative(wrong) => {
+            let value = args.number(what)?;
+            if value >= 0.0 || value.is_nan() {
+                return fail(Code::BAD_VALUE, at, format!("{wrong}: {value}"));
+            }
+            value
         }
-        LawKind::ElasticPlastic => moduli.yield_stress = args.positive("the yield stress")?,
-        _ => {}
-    }
+    };
+    *(number.of)(moduli) = value;
     Ok(())
+}
+
+/// What a line of numbers says of these moduli beyond K and G.
+pub fn written<'a>(law: &'a Style, moduli: &Moduli) -> impl Iterator<Item = f64> + use<'a> {
+    let mut moduli = *moduli;
+    law.numbers.iter().map(move |number| *(number.of)(&mut moduli))
 }

@@ -3,7 +3,7 @@
 use super::{Calibrate, Solid, bond_weights};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::Args;
-use perigrain_peri::families::{BondWeights, Families, ForceUnit, Influence, LawKind, VolumeRule};
+use perigrain_peri::families::{BondWeights, Families, ForceUnit, Influence, VolumeRule};
 use perigrain_styles::BuildCx;
 
 const KNOWN: [&str; 10] = [
@@ -58,12 +58,12 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
             }
             "surface" => {
                 let how = args.choice("correction of surfaces", &["no", "energy", "tensor"])?;
-                if !style.law.kind.bond_based() && how == "energy" {
+                if !style.law.kind.bond_based && how == "energy" {
                     let text = "peri_modify surface energy concerns peri/pmb: a state-based particle weighs its own family (`surface tensor` corrects it, too)";
                     return fail(Code::CONFLICT, word.span, text);
                 }
                 // Bonds that remember have no columns of sites: each is weighed by itself.
-                let remember = style.law.kind.softens() || flows(style.law.kind);
+                let remember = style.law.kind.edge.is_some();
                 style.law.surface = how == "energy" && !remember;
                 style.weights.whole_energies = how == "energy" && remember;
                 style.weights.whole_families = how == "tensor";
@@ -81,7 +81,7 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
             }
             "calibrate" => {
                 let how = args.choice("what to calibrate", &["no", "bulk", "young"])?;
-                if !style.law.kind.bond_based() && how != "no" {
+                if !style.law.kind.bond_based && how != "no" {
                     let text = "peri_modify calibrate concerns bond-based styles: a state-based solid has its bulk modulus on any lattice";
                     return fail(Code::CONFLICT, word.span, text);
                 }
@@ -106,15 +106,10 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
     Ok(())
 }
 
-/// Whether microelastic bonds flow in compression.
-fn flows(kind: LawKind) -> bool {
-    matches!(kind, LawKind::Yield | LawKind::NonlinearElastic)
-}
-
 /// Refuses options that shape bonds where they cannot: bonds that flow or soften are alike at any length; nothing changes once bonds
 /// have been weighed.
 fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
-    if option == "influence" && (style.law.kind.softens() || flows(style.law.kind)) {
+    if option == "influence" && style.law.kind.edge.is_some() {
         let text = format!("peri_modify {option} does not concern pair_style {}", style.name);
         return fail(Code::CONFLICT, at, text);
     }

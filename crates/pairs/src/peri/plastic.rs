@@ -4,7 +4,7 @@ use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_peri::families::LawKind;
+use perigrain_peri::law;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -36,6 +36,6 @@ impl Style for PeriPmbPlastic {
 
 impl PairStyle for PeriPmbPlastic {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        start("peri/pmb/plastic", LawKind::Yield, cx)
+        start("peri/pmb/plastic", law::PLASTIC, cx)
     }
 }

@@ -4,7 +4,7 @@ use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_peri::families::LawKind;
+use perigrain_peri::law;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -73,6 +73,6 @@ impl Style for PeriPmb {
 
 impl PairStyle for PeriPmb {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        start("peri/pmb", LawKind::Pmb, cx)
+        start("peri/pmb", law::PMB, cx)
     }
 }

@@ -1,4 +1,4 @@
-//! What Young's modulus a body has whose bonds follow from a material's, told before its first run.
+//! Young's modulus of a body whose bonds follow from a material's, noted before its first run.
 
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic};

@@ -10,7 +10,7 @@ pub(super) fn outside(w: &World, i: usize) -> bool {
     w.groups.surfaces().iter().any(|(g, _)| w.particles.mask[i] & g.bit() != 0)
 }
 
-/// Warns where nobody asks whether two particles are of one family.
+/// Warns where nothing depends on whether two particles are of one family.
 pub(super) fn check(style: &Solid, cx: &BuildCx) {
     // A deck that is only checked has no particles to find surfaces among.
     let none = cx.world.groups.surfaces().is_empty() && !cx.checking;

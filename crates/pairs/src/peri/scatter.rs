@@ -2,7 +2,7 @@
 
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_peri::families::{Families, FamilyOptions, LawKind};
+use perigrain_peri::families::{Families, FamilyOptions};
 use perigrain_world::World;
 use perigrain_world::columns::BOND_FACTORS;
 
@@ -17,16 +17,16 @@ pub struct Scatter {
 
 /// Whether some factor that was said is not 1.
 fn uneven(w: &World, which: usize) -> bool {
-    said(w, which).iter().any(|f| *f != 0.0 && *f != 1.0)
+    factors(w, which).iter().any(|f| *f != 0.0 && *f != 1.0)
 }
 
-fn said(w: &World, which: usize) -> &[f64] {
+fn factors(w: &World, which: usize) -> &[f64] {
     w.columns.get_scalar(*BOND_FACTORS[which]).unwrap_or_default()
 }
 
 /// The largest factor on the stiffness of a type's particles.
 pub fn stiffest(w: &World, kind: u16) -> f64 {
-    let of_kind = w.particles.kind.iter().zip(said(w, 1)).filter(|(k, f)| **k == kind && **f > 0.0);
+    let of_kind = w.particles.kind.iter().zip(factors(w, 1)).filter(|(k, f)| **k == kind && **f > 0.0);
     of_kind.map(|(_, f)| *f).reduce(f64::max).unwrap_or(1.0)
 }
 
@@ -45,10 +45,10 @@ impl Scatter {
             let text = "under `compat lammps/2025` particles have one critical stretch, whatever bond has it";
             return refuse(0, text, "`compat lammps` or none");
         }
-        if own.stiffness && kind != LawKind::Pmb {
+        if own.stiffness && !kind.plain() {
             return refuse(1, &format!("bonds of pair_style {} have no factors", style.name), "peri/pmb");
         }
-        let shaped = w.families.as_ref().is_none_or(|f| f.law.kind == LawKind::Shaped);
+        let shaped = w.families.as_ref().is_none_or(|f| f.law.kind.stiffened);
         if own.stiffness && !shaped {
             let text = "`set … peri/stiffness` comes too late: bonds were made alike at the first run";
             return Err(Diagnostic::error(Code::WRONG_ORDER, None, text)
@@ -65,23 +65,19 @@ impl Scatter {
 
     /// Gives families the factors, those on strengths with what horizons of particles' own make of them, if anything.
     pub fn give(self, w: &World, families: &mut Families, mut by_horizon: Vec<f64>) {
-        let column = |is: bool, which: usize| if is { said(w, which) } else { &[] };
+        let column = |is: bool, which: usize| if is { factors(w, which) } else { &[] };
         let strength = column(self.strength, 0);
         if by_horizon.is_empty() {
             return families.scatter(strength, column(self.stiffness, 1));
         }
-        by_horizon
-            .iter_mut()
-            .zip(strength)
-            .filter(|(_, said)| **said > 0.0)
-            .for_each(|(own, said)| *own *= said);
+        by_horizon.iter_mut().zip(strength).filter(|(_, set)| **set > 0.0).for_each(|(own, set)| *own *= set);
         families.scatter(&by_horizon, column(self.stiffness, 1));
     }
 
-    /// Tells how far they scatter.
-    pub fn tell(self, w: &mut World) {
+    /// Notes how far they scatter.
+    pub fn note(self, w: &mut World) {
         let one = |which: usize, of: &str| {
-            let all = said(w, which).iter().map(|f| if *f > 0.0 { *f } else { 1.0 });
+            let all = factors(w, which).iter().map(|f| if *f > 0.0 { *f } else { 1.0 });
             let (mut low, mut high, mut sum) = (f64::INFINITY, 0.0f64, 0.0);
             all.clone().for_each(|f| (low, high, sum) = (low.min(f), high.max(f), sum + f));
             let mean = sum / all.len() as f64;

@@ -4,9 +4,9 @@ use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::Args;
-use perigrain_peri::families::LawKind;
+use perigrain_peri::law;
+use perigrain_peri::law::style::Curve;
 use perigrain_peri::moduli::curve_area;
-use perigrain_peri::softening::REST;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -49,10 +49,10 @@ impl Style for PeriPmbSoftening {
 impl PairStyle for PeriPmbSoftening {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         let kind = match args.is_empty() {
-            true => LawKind::Softening,
+            true => law::LINEAR,
             false => match args.choice("curve", &["linear", "exponential"])? {
-                "linear" => LawKind::Softening,
-                _ => LawKind::Decaying,
+                "linear" => law::LINEAR,
+                _ => law::EXPONENTIAL,
             },
         };
         start(self.name(), kind, cx)
@@ -64,18 +64,13 @@ impl PairStyle for PeriPmbSoftening {
 /// # Errors
 /// Less energy than it takes to the peak.
 pub fn last_stretch(
-    kind: LawKind,
+    curve: &Curve,
     (peak, energy): (f64, f64),
     (c, horizon): (f64, f64),
     at: Span,
 ) -> Result<f64> {
     let area = curve_area(energy, c, horizon);
-    let beyond = match kind {
-        // A triangle.
-        LawKind::Softening => 2.0 * area / peak - peak,
-        // a (1 − REST) times the peak.
-        _ => (area / peak - 0.5 * peak) / (1.0 - REST) * -REST.ln(),
-    };
+    let beyond = (curve.beyond)(area, peak);
     if beyond > 0.0 {
         return Ok(peak + beyond);
     }
@@ -100,12 +95,14 @@ mod tests {
         // Brittle bonds with this critical stretch take the same.
         let energy = fracture_energy(1.2e-3, c, horizon);
         let area = 0.5 * 1.2e-3f64.powi(2);
-        let last = last_stretch(LawKind::Softening, (peak, energy), (c, horizon), Span::default()).unwrap();
+        let [linear, exponential] = [law::LINEAR, law::EXPONENTIAL].map(|law| law.style().curve.unwrap());
+        let last = last_stretch(&linear, (peak, energy), (c, horizon), Span::default()).unwrap();
         assert!((0.5 * peak * last / area - 1.0).abs() < 1e-14);
-        let last = last_stretch(LawKind::Decaying, (peak, energy), (c, horizon), Span::default()).unwrap();
-        let scale = (last - peak) / -REST.ln();
-        assert!((0.5 * peak * peak + peak * scale * (1.0 - REST) - area).abs() < 1e-14 * area);
+        let last = last_stretch(&exponential, (peak, energy), (c, horizon), Span::default()).unwrap();
+        // A thousandth of the peak is left at the end.
+        let scale = (last - peak) / 1000f64.ln();
+        assert!((0.5 * peak * peak + peak * scale * (1.0 - 1e-3) - area).abs() < 1e-14 * area);
         // At the peak of brittle bonds nothing is left to soften with.
-        assert!(last_stretch(LawKind::Softening, (1.2e-3, energy), (c, horizon), Span::default()).is_err());
+        assert!(last_stretch(&linear, (1.2e-3, energy), (c, horizon), Span::default()).is_err());
     }
 }

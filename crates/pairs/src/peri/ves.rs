@@ -4,7 +4,7 @@ use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_peri::families::LawKind;
+use perigrain_peri::law;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -37,6 +37,6 @@ impl Style for PeriVes {
 
 impl PairStyle for PeriVes {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        start("peri/ves", LawKind::Ves, cx)
+        start("peri/ves", law::VES, cx)
     }
 }

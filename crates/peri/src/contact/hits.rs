@@ -2,11 +2,14 @@
 
 use std::ops::Range;
 
-use crate::energy::Sums;
+use crate::families::view::Sums;
 use crate::families::{FamilyOptions, ForceUnit, PeriView, PmbTable};
-use crate::lanes::isa::{Isa, Kernel};
-use crate::lanes::rows::MOST;
+use perigrain_base::math::form::InLanes;
+use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::vec3::SIX;
+
+/// The most lanes.
+const MOST: usize = 8;
 
 /// Pairs that touch, or a few more: columns of which the first `count` numbers are in use.
 #[derive(Debug, Default)]
@@ -81,29 +84,24 @@ impl Hits {
 
 /// Finds how hard pairs push: f = 15 c V (d − r)/delta for r < d = min(0.9 |x0_i − x0_j|, 1.35 dx) (Parks et al. 2008, LAMMPS' peri
 /// styles).
-///
-/// # Safety
-/// As of [`Kernel::run`].
 pub struct Push<'a>(pub &'a mut Hits);
 
-impl Kernel for Push<'_> {
+impl InLanes for Push<'_> {
     type Out = ();
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let hits = self.0;
         hits.room(0);
-        let mut at = 0;
-        while at < hits.count {
-            // SAFETY: columns hold `MOST` numbers beyond those in use.
-            unsafe {
-                let r = L::load(hits.square.as_ptr().add(at)).sqrt();
-                let gap = L::load(hits.contact.as_ptr().add(at)).sub(r);
-                // No direction where two are at the same place.
-                let apart = r.ge(L::splat(f64::MIN_POSITIVE));
-                let pull = L::load(hits.stiff.as_ptr().add(at)).mul(gap).div(r).keep(apart);
-                pull.store(hits.pull.as_mut_ptr().add(at));
-            }
-            at += L::WIDTH;
+        // SAFETY: the caller's promise.
+        let zero = unsafe { V::all(0.0) };
+        for at in (0..hits.count).step_by(N) {
+            let r = zero.from_column(&hits.square, at).sqrt();
+            let gap = zero.from_column(&hits.contact, at) - r;
+            // No direction where two are at the same place.
+            let apart = r.at_least(zero.like(f64::MIN_POSITIVE));
+            let pull = (zero.from_column(&hits.stiff, at) * gap / r).keep(apart);
+            pull.to_column(&mut hits.pull, at);
         }
     }
 }

@@ -1,15 +1,14 @@
 //! Which pairs of a list touch: distances of several partners at a time.
 
 use std::ops::Range;
-use std::ptr::null;
+use std::ptr::null_mut;
 
 use crate::contact::hits::{Hits, Rules};
 use crate::contact::near::{BLOCK, Near};
 use crate::families::Bounds;
-use crate::lanes::Lanes;
-use crate::lanes::isa::{Isa, Kernel};
-use crate::lanes::rows::{MOST, Rows};
 use crate::list::kernel::{nearest, partners};
+use perigrain_base::math::form::InLanes;
+use perigrain_base::math::lanes::{Lanes, load_rows};
 
 /// How images are sought: not at all, along the axes, along edges that lean.
 const NONE: u8 = 0;
@@ -32,24 +31,25 @@ pub struct Meet<'a> {
     pub ends: &'a mut [usize; BLOCK],
 }
 
-impl Kernel for Meet<'_> {
+impl InLanes for Meet<'_> {
     type Out = ();
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let bounds = self.rules.view.bounds;
         // SAFETY: the caller's promise.
         unsafe {
             match bounds.periodic {
-                [false, false, false] => meet::<L, NONE>(self),
-                _ if bounds.tilted() => meet::<L, LEANING>(self),
-                _ => meet::<L, UPRIGHT>(self),
+                [false, false, false] => meet::<N, V, NONE>(self),
+                _ if bounds.tilted() => meet::<N, V, LEANING>(self),
+                _ => meet::<N, V, UPRIGHT>(self),
             }
         }
     }
 }
 
 #[inline(always)]
-unsafe fn meet<L: Rows, const IMAGES: u8>(task: Meet) {
+unsafe fn meet<const N: usize, V: Lanes<N>, const IMAGES: u8>(task: Meet) {
     let Meet { near, members, closer, rules, hits, ends } = task;
     let bounds = rules.view.bounds;
     let edges = bounds.periods().length.map(|l| if l > 0.0 { l } else { f64::INFINITY });
@@ -57,38 +57,36 @@ unsafe fn meet<L: Rows, const IMAGES: u8>(task: Meet) {
         let row = near.row[own];
         if f64::from(near.after[own]) <= closer {
             hits.room(row.all().len());
-            let own_place = &near.place[own];
-            // SAFETY: rows and members are those of the list; there is room for all pairs of the row.
+            let x = &near.place[own];
+            // SAFETY: rows and members are those of the list.
             unsafe {
-                let x = [L::splat(own_place[0]), L::splat(own_place[1]), L::splat(own_place[2])];
-                for first in row.all().step_by(L::WIDTH) {
+                for first in row.all().step_by(N) {
                     let partner = near.partner.as_ptr().add(first);
-                    let rows = partners!(L, null(), |k| near
-                        .place
-                        .as_ptr()
-                        .add(*partner.add(k) as usize)
-                        .cast::<f64>());
-                    let [xj, yj, zj, volume] = L::quads(&rows);
-                    let mut d = [x[0].sub(xj), x[1].sub(yj), x[2].sub(zj)];
+                    let place = near.place.as_ptr().cast_mut();
+                    let rows =
+                        partners!(N, null_mut(), |k| place.add(*partner.add(k) as usize).cast::<f64>());
+                    let [xj, yj, zj, volume]: [V; 4] = load_rows(&rows, 0);
+                    let mut d = [xj.like(x[0]) - xj, xj.like(x[1]) - yj, xj.like(x[2]) - zj];
                     if IMAGES == UPRIGHT {
                         d = [nearest(d[0], edges[0]), nearest(d[1], edges[1]), nearest(d[2], edges[2])];
                     }
                     if IMAGES == LEANING {
                         d = leaning(d, &bounds);
                     }
-                    let square = d[0].fma(d[0], d[1].fma(d[1], d[2].mul(d[2])));
-                    let contact = L::load(near.contact.as_ptr().add(first));
-                    let mut touching = !square.ge(contact.mul(contact)).bits() & all::<L>();
+                    let square = d[0].fma(d[0], d[1].fma(d[1], d[2] * d[2]));
+                    let contact = V::read(near.contact.as_ptr().add(first));
+                    let mut touching = !V::mask_bits(square.at_least(contact * contact)) & all(N);
                     if touching == 0 {
                         continue;
                     }
-                    let mut columns = [[0.0; MOST]; 6];
-                    d[0].store(columns[0].as_mut_ptr());
-                    d[1].store(columns[1].as_mut_ptr());
-                    d[2].store(columns[2].as_mut_ptr());
-                    square.store(columns[3].as_mut_ptr());
-                    contact.store(columns[4].as_mut_ptr());
-                    volume.store(columns[5].as_mut_ptr());
+                    let columns = [
+                        d[0].numbers(),
+                        d[1].numbers(),
+                        d[2].numbers(),
+                        square.numbers(),
+                        contact.numbers(),
+                        volume.numbers(),
+                    ];
                     while touching != 0 {
                         let lane = touching.trailing_zeros() as usize;
                         touching &= touching - 1;
@@ -102,12 +100,9 @@ unsafe fn meet<L: Rows, const IMAGES: u8>(task: Meet) {
     }
 }
 
-/// Takes a pair that touches in hand, of two members, unless it may not.
-///
-/// # Safety
-/// There must be room for it.
+/// Takes a pair that touches in hand, of two members, unless it may not. There must be room for it.
 #[inline(always)]
-unsafe fn note(
+fn note(
     near: &Near,
     rules: &Rules,
     hits: &mut Hits,
@@ -117,38 +112,26 @@ unsafe fn note(
     let [p, q] = [near.particle[own], near.particle[other]];
     let Some(stiff) = rules.stiff(p, q) else { return };
     let (at, volume) = (hits.count, rules.volume(near.place[own][3], far, p < q));
-    // SAFETY: by the caller's promise.
-    unsafe {
-        *hits.d[0].get_unchecked_mut(at) = x;
-        *hits.d[1].get_unchecked_mut(at) = y;
-        *hits.d[2].get_unchecked_mut(at) = z;
-        *hits.square.get_unchecked_mut(at) = square;
-        *hits.contact.get_unchecked_mut(at) = contact;
-        *hits.stiff.get_unchecked_mut(at) = stiff;
-        *hits.volume[0].get_unchecked_mut(at) = volume;
-        *hits.volume[1].get_unchecked_mut(at) = far;
+    let numbers = [x, y, z, square, contact, stiff, volume, far];
+    let Hits { d: [a, b, c], square, contact, stiff, volume: [own, far], .. } = hits;
+    for (column, number) in [a, b, c, square, contact, stiff, own, far].into_iter().zip(numbers) {
+        column[at] = number;
     }
     hits.count = at + 1;
 }
 
-/// The bits of all lanes.
-fn all<L: Lanes>() -> u8 {
-    (u16::MAX >> (16 - L::WIDTH)) as u8
+/// The bits of so many lanes.
+const fn all(lanes: usize) -> u8 {
+    (u16::MAX >> (16 - lanes)) as u8
 }
 
 /// Shortest images in a box that leans, one by one.
 #[inline(always)]
-unsafe fn leaning<L: Lanes>(d: [L; 3], bounds: &Bounds) -> [L; 3] {
-    let mut lanes = [[0.0; MOST]; 3];
-    // SAFETY: arrays of as many lanes as there are at most.
-    unsafe {
-        d[0].store(lanes[0].as_mut_ptr());
-        d[1].store(lanes[1].as_mut_ptr());
-        d[2].store(lanes[2].as_mut_ptr());
-        for k in 0..L::WIDTH {
-            let near = bounds.nearest([lanes[0][k], lanes[1][k], lanes[2][k]]);
-            (0..3).for_each(|axis| lanes[axis][k] = near[axis]);
-        }
-        [L::load(lanes[0].as_ptr()), L::load(lanes[1].as_ptr()), L::load(lanes[2].as_ptr())]
+fn leaning<const N: usize, V: Lanes<N>>(d: [V; 3], bounds: &Bounds) -> [V; 3] {
+    let mut lanes = [d[0].numbers(), d[1].numbers(), d[2].numbers()];
+    for k in 0..N {
+        let near = bounds.nearest([lanes[0][k], lanes[1][k], lanes[2][k]]);
+        (0..3).for_each(|axis| lanes[axis][k] = near[axis]);
     }
+    [d[0].from_column(&lanes[0], 0), d[1].from_column(&lanes[1], 0), d[2].from_column(&lanes[2], 0)]
 }

@@ -2,20 +2,19 @@
 
 pub mod hits;
 mod meet;
+pub mod memory;
 pub mod near;
 pub mod pressed;
 
 use std::sync::Mutex;
 
-use crate::energy::Sums;
 use crate::families::shares::Shares;
+use crate::families::view::Sums;
 use crate::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
-use crate::lanes::isa::Isa;
-use hits::{Hits, Rules};
-use near::Near;
+use hits::Rules;
+use memory::Memory;
 use perigrain_base::math::vec3::length;
 use perigrain_base::par;
-use pressed::{Close, Pressed};
 
 /// Everything a pair's repulsion depends on, and where it goes.
 pub struct Repulsion<'a, 'b, 't> {
@@ -29,37 +28,6 @@ pub struct Repulsion<'a, 'b, 't> {
     pub f: &'b mut [[f64; 3]],
     /// Energy and virial, added to.
     pub tally: Option<&'b mut PeriTally<'t>>,
-}
-
-/// Memory of the search and of what is in hand.
-#[derive(Debug, Default)]
-pub struct Memory {
-    /// Near pairs as rows: those of a body, and those across bodies.
-    pub near: [Near; 2],
-    /// Of each thread.
-    hits: Vec<Mutex<Hits>>,
-    close: Close,
-    pressed: Vec<Pressed>,
-    /// Of [`Rules`].
-    stiff: Vec<f64>,
-}
-
-impl Memory {
-    /// Forgets pairs: those that may touch are others, or touch at other distances.
-    pub fn forget(&mut self) {
-        self.near.iter_mut().for_each(Near::clear);
-        self.close.clear();
-    }
-
-    /// Forgets rows of one rank's particles: others are its own now.
-    pub fn forget_own(&mut self) {
-        self.near.iter_mut().filter(|near| near.narrow).for_each(Near::clear);
-    }
-
-    /// Memory held by rows.
-    pub fn bytes(&self) -> usize {
-        self.near.iter().map(Near::bytes).sum()
-    }
 }
 
 impl Repulsion<'_, '_, '_> {
@@ -95,7 +63,7 @@ pub fn push_apart(families: &Families, repulsion: &mut Repulsion) {
     }
     let view = repulsion.view;
     // State-based solids push with their short-range modulus, which has no shape.
-    let states = !families.law.kind.bond_based();
+    let states = !families.law.kind.bond_based;
     let shape = if states { Influence::One } else { families.law.influence };
     for i in (0..families.damaged.len()).filter(|&i| families.damaged[i]) {
         families.each(i, |n| {
@@ -123,7 +91,7 @@ pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pu
 
 /// All repulsion of one step: near pairs that may be `closer` by now than their gap was, then squeezed bonds; of several ranks each evaluates
 /// pairs of its own particles where `shares` are given. `rows` is scratch.
-pub fn repel<K: Isa>(
+pub fn repel(
     families: &Families,
     (closer, shares): ([f64; 2], Option<&Shares>),
     repulsion: &mut Repulsion,
@@ -138,7 +106,7 @@ pub fn repel<K: Isa>(
         let scene = (repulsion.view, &families.options);
         near.follow(&found.pairs[part], (closer, found.allowed[part]), scene, shares);
         let to = (&mut *repulsion.f, repulsion.tally.as_deref_mut());
-        near.push::<K>(&rules, (closer, shares), to, (hits, rows));
+        near.push(families.form(), &rules, (closer, shares), to, (hits, rows));
     }
-    pressed::squeezed::<K>(families, &rules, (close, pressed), repulsion);
+    pressed::squeezed(families, &rules, (close, pressed), repulsion);
 }

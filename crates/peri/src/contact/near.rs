@@ -9,12 +9,12 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::contact::hits::{Hits, Push, Rules};
 use crate::contact::meet::Meet;
-use crate::energy::Sums;
 use crate::families::list::GROUP;
 use crate::families::shares::{Shares, ranges};
+use crate::families::view::Sums;
 use crate::families::{Bounds, FamilyOptions, NearPair, PeriTally, PeriView};
-use crate::lanes::isa::Isa;
 use crate::shares::sums_everywhere;
+use perigrain_base::math::form::Form;
 use perigrain_base::par::{self, Shared};
 
 /// Particles in hand at once.
@@ -283,8 +283,9 @@ impl Near {
 
     /// Adds the pushes of all pairs that touch to `f`, where particles may be `closer` by now than at the search; of several ranks that share
     /// the work out each looks after its own particles. `rows` is scratch.
-    pub fn push<K: Isa>(
+    pub fn push(
         &mut self,
+        form: Form,
         rules: &Rules,
         (closer, shares): (f64, Option<&Shares>),
         (f, tally): (&mut [[f64; 3]], Option<&mut PeriTally>),
@@ -309,7 +310,7 @@ impl Near {
                     hits.count = 0;
                     // SAFETY: the caller has chosen kernels that the processor has; rows lead to members.
                     unsafe {
-                        K::call(Meet {
+                        form.run(Meet {
                             near: self,
                             members: members.clone(),
                             closer,
@@ -317,7 +318,7 @@ impl Near {
                             hits: &mut hits,
                             ends: &mut ends,
                         });
-                        K::call(Push(&mut hits));
+                        form.run(Push(&mut hits));
                     }
                     self.hand_back(members, (&hits, &ends), (&f, &sums));
                 }

@@ -1,12 +1,12 @@
 //! Bonded particles that are squeezed so far that they repel each other besides: found by their bonds, several pairs evaluated at a time.
 
-use crate::contact::hits::{Hits, Push, Rules};
+use crate::contact::hits::{Push, Rules};
+use crate::contact::memory::{Close, Pressed};
 use crate::contact::{Repulsion, add};
-use crate::families::lattice::LANES;
+use crate::families::lattice::{LANES, SQUEEZED};
 use crate::families::list::{CLOSE, GROUP, ListBody};
 use crate::families::{Families, FamilyOptions, PeriView};
-use crate::lanes::isa::Isa;
-use crate::lattice::sweep::SQUEEZED;
+use perigrain_base::math::form::Form;
 use perigrain_base::par::{self, Shared};
 
 /// Chunks of a lattice, or records of a list, in a part that threads share.
@@ -15,22 +15,7 @@ const RECORDS: usize = 128;
 /// Parts whose pairs are kept at a time.
 const KEPT: usize = 32;
 
-/// What does not change from step to step of the bonds of a list that can come into contact, as [`crate::families::list::ListBody::close`] has them.
-#[derive(Debug, Default)]
-pub struct Close {
-    /// Their particles, the one of lower number first.
-    ends: Vec<[u32; 2]>,
-    /// The distances at which these touch.
-    contact: Vec<f64>,
-}
-
 impl Close {
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.ends.clear();
-        self.contact.clear();
-    }
-
     /// Finds them, unless they are known.
     fn find(&mut self, list: &ListBody, view: &PeriView, options: &FamilyOptions) {
         if self.ends.len() == list.close.len() {
@@ -45,13 +30,6 @@ impl Close {
             self.contact.push(if there { options.contact_range(view, p, q) } else { 0.0 });
         }
     }
-}
-
-/// The pairs of one part, the particle of lower number first.
-#[derive(Debug, Default)]
-pub struct Pressed {
-    hits: Hits,
-    ends: Vec<[u32; 2]>,
 }
 
 impl Pressed {
@@ -86,16 +64,17 @@ impl Pressed {
 }
 
 /// Adds the pushes of all bonded pairs that touch, in the order of their bonds.
-pub fn squeezed<K: Isa>(
+pub fn squeezed(
     families: &Families,
     rules: &Rules,
     (close, pressed): (&mut Close, &mut Vec<Pressed>),
     repulsion: &mut Repulsion,
 ) {
+    let form = families.form();
     for body in &families.lattices {
         let flagged = body.flagged.iter().enumerate().filter(|(_, flag)| **flag & SQUEEZED != 0);
         let chunks: Vec<usize> = flagged.map(|(chunk, _)| chunk).collect();
-        in_turn::<K>(chunks.len().div_ceil(CHUNKS), (rules, pressed), repulsion, |part, pressed| {
+        in_turn(form, chunks.len().div_ceil(CHUNKS), (rules, pressed), repulsion, |part, pressed| {
             for &chunk in chunks[part * CHUNKS..].iter().take(CHUNKS) {
                 let alive = &body.alive[chunk * body.stencil.len()..][..body.stencil.len()];
                 for lead in body.leads_of(body.slot_of(chunk * LANES)) {
@@ -116,7 +95,7 @@ pub fn squeezed<K: Isa>(
     }
     close.find(list, rules.view, &families.options);
     let close: &Close = close;
-    in_turn::<K>(list.lowest.len().div_ceil(RECORDS), (rules, pressed), repulsion, |part, pressed| {
+    in_turn(form, list.lowest.len().div_ceil(RECORDS), (rules, pressed), repulsion, |part, pressed| {
         for (i, &low) in list.lowest.iter().enumerate().skip(part * RECORDS).take(RECORDS) {
             if low < CLOSE {
                 for b in list.own(i).filter(|b| list.lives(*b)) {
@@ -139,7 +118,8 @@ pub fn squeezed<K: Isa>(
 }
 
 /// Finds the pairs of so many parts, and adds their pushes in the order of parts.
-fn in_turn<K: Isa>(
+fn in_turn(
+    form: Form,
     parts: usize,
     (rules, pressed): (&Rules, &mut Vec<Pressed>),
     repulsion: &mut Repulsion,
@@ -156,7 +136,7 @@ fn in_turn<K: Isa>(
             pressed.ends.clear();
             find(first + k, pressed);
             // SAFETY: the caller has chosen kernels that the processor has.
-            unsafe { K::call(Push(&mut pressed.hits)) };
+            unsafe { form.run(Push(&mut pressed.hits)) };
         });
         some.iter().for_each(|pressed| hand_back(pressed, rules, repulsion));
     }

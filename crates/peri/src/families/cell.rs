@@ -3,7 +3,6 @@
 //! A bond across a face that repeats leads to an image, t edges away. At the start that was H₀ t away and now it is H t, so that the
 //! bond is xi + (u_j − u_i) + (H − H₀) t long, with xi the one by the edges at the start.
 
-use super::{Families, PeriView};
 use perigrain_base::math::periods::Periods;
 
 /// The edges of a box, as a scene keeps them.
@@ -56,7 +55,7 @@ impl Cell {
 }
 
 /// (H − H₀) H₀⁻¹; an edge that repeats no more counts as it was.
-fn strain(birth: &Periods, now: &Periods) -> BoxStrain {
+pub(crate) fn strain(birth: &Periods, now: &Periods) -> BoxStrain {
     let mut x = BoxStrain::default();
     if birth == now {
         return x;
@@ -77,21 +76,6 @@ fn strain(birth: &Periods, now: &Periods) -> BoxStrain {
         }
     }
     x
-}
-
-impl Families {
-    /// The box as it is.
-    pub(crate) fn cell(&self, view: &PeriView) -> Cell {
-        let birth = self.birth.periods();
-        let strain = [view.bounds.periods(), self.before.periods()].map(|now| strain(&birth, &now));
-        Cell { birth, strain }
-    }
-
-    /// The box as it was in the last step that advanced.
-    pub(crate) fn cell_before(&self) -> Cell {
-        let birth = self.birth.periods();
-        Cell { birth, strain: [strain(&birth, &self.before.periods()); 2] }
-    }
 }
 
 #[cfg(test)]

@@ -2,11 +2,14 @@
 
 use super::cell::Cell;
 use super::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
-use super::law::{Law, LawKind, SiteState};
+use super::law::Law;
 use super::list::{GROUP, ListBody};
 use crate::lattice::chunk::constant;
 use crate::law::freed::Loss;
 use crate::law::series::stretch;
+use crate::law::site::Unrelaxed;
+use crate::law::state::SiteState;
+use crate::law::style::Style;
 
 /// Which displacements the memory of bonds belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,18 +23,9 @@ pub enum Moved {
 impl SiteState {
     /// By what stretch each end of a bond has flowed or relaxed: `memory` is what the bond remembers, `s` its stretch then, `at` where
     /// its ends are in the columns.
-    fn slips(&self, kind: LawKind, memory: [f64; 2], s: f64, at: [usize; 2]) -> [f64; 2] {
-        // Of a Maxwell element what its spring does not bear; the dilatation relaxes with the others.
-        let relaxed = |element: f64, at: usize| s - element - (self.before[at] - self.unrelaxed[at]) / 3.0;
-        match kind {
-            LawKind::ElasticPlastic => memory,
-            LawKind::Ves => {
-                let element = (memory[0] + self.held.fresh * s) / self.held.decay;
-                at.map(|at| relaxed(element, at))
-            }
-            LawKind::VesApart => [relaxed(memory[0], at[0]), relaxed(memory[1], at[1])],
-            _ => [0.0; 2],
-        }
+    fn slips(&self, law: &Style, memory: [f64; 2], s: f64, at: [usize; 2]) -> [f64; 2] {
+        let ends = at.map(|at| Unrelaxed { before: self.before[at], left: self.unrelaxed[at] });
+        law.loops(false).slips(s, memory, self.held, ends)
     }
 
     /// Notes a bond at both ends, which are `at` these places in the columns: what it weighs there, its ω and its stretch.
@@ -47,7 +41,7 @@ impl SiteState {
 
 impl LatticeBody {
     /// Sets the extension of the bond from a cell along a stencil vector free, under a law that does so.
-    pub(crate) fn free(&mut self, cell: usize, e: usize, kind: LawKind, moved: Moved) {
+    pub(crate) fn free(&mut self, cell: usize, e: usize, law: &Style, moved: Moved) {
         let slot = self.slot_of(cell);
         let Some(to) = self.ahead(slot, cell, e) else { return };
         // State-based constants are the same for all pairs of types.
@@ -55,14 +49,14 @@ impl LatticeBody {
         let (term, omega) = (constants[constant::FACTOR], constants[constant::OMEGA]);
         let volume = |cell: usize| self.cell_volume.get(PAD + cell).copied().unwrap_or(1.0);
         let weights = [term * volume(to), term * volume(cell)];
-        let numbers = kind.memory();
+        let numbers = law.memory();
         let first = (cell / LANES * self.stencil.len() + e) * numbers * LANES + cell % LANES;
         let memory =
             std::array::from_fn(|k| if k < numbers { self.state.memory[first + k * LANES] } else { 0.0 });
         let which = if moved == Moved::Now { 1 } else { 0 };
         let s = if numbers > 0 { stretch(self.z(which, cell, to, e)) } else { 0.0 };
         let at = [PAD + cell, PAD + to];
-        let slips = self.state.slips(kind, memory, s, at);
+        let slips = self.state.slips(law, memory, s, at);
         self.state.free(at, weights, (omega, s), slips);
     }
 }
@@ -71,7 +65,7 @@ impl ListBody {
     /// Sets the extension of the bond at a place free, under a law that does so.
     pub(crate) fn free(&mut self, b: usize, law: &Law, cell: &Cell, moved: Moved) {
         let at = [self.owner[b / GROUP], self.partner[b]].map(|r| r as usize);
-        let (kind, numbers) = (law.kind, law.kind.memory());
+        let numbers = law.kind.memory();
         let (z, length) = self.z(moved == Moved::Before, at[0], at[1], cell);
         let horizon = self.constants(b).horizon;
         let omega = law.influence.of(length, horizon);
@@ -80,7 +74,7 @@ impl ListBody {
         let first = ListBody::memory(b, numbers);
         let memory =
             std::array::from_fn(|k| if k < numbers { self.state.memory[first + k * GROUP] } else { 0.0 });
-        let slips = self.state.slips(kind, memory, stretch(z), at);
+        let slips = self.state.slips(law.kind.style(), memory, stretch(z), at);
         self.state.free(at, weights, (omega, stretch(z)), slips);
     }
 }

@@ -1,4 +1,4 @@
-//! Who belonged to one family at the start, and whether the bond between two still lives: contacts ask.
+//! Which particles belonged to one family at the start, and whether the bond between two still lives: for contacts.
 
 use crate::families::Families;
 use crate::families::list::GROUP;

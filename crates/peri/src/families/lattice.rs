@@ -1,8 +1,8 @@
 //! A peridynamic body on a lattice: cells in rows, rows in planes, one bit per bond.
 
-use crate::families::law::SiteState;
 use crate::families::tiles::Tiles;
 use crate::families::{Measures, Scatter};
+use crate::law::state::SiteState;
 use perigrain_base::math::cell::{Basis, point};
 use std::ops::Range;
 
@@ -11,6 +11,11 @@ pub const LANES: usize = 8;
 
 /// Numbers per stencil vector in a table of constants.
 pub const CONSTANTS: usize = 16;
+
+/// Bits of [`LatticeBody::flagged`]: bonds may break.
+pub const MAY_BREAK: u8 = 1;
+/// Bonded pairs close enough for short-range contact.
+pub const SQUEEZED: u8 = 2;
 
 /// A row of cells; vacant cells at its end fill the last chunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

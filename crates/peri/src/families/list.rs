@@ -1,10 +1,10 @@
 //! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
 
 use crate::families::Scatter;
-use crate::families::law::SiteState;
 use crate::families::tiles::ListTiles;
+use crate::law::state::SiteState;
 
-/// What a bond needs to know of one end; one cache line.
+/// What a bond needs of one end; one cache line.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Record {
@@ -17,6 +17,9 @@ pub struct Record {
     /// What turns the force on the particle into what `f` holds: 1, or 1 over the volume.
     pub share: f64,
 }
+
+/// Records whose energies are added up together.
+pub(crate) const PART: usize = 16;
 
 /// Bonds that share one row of constants, as many as there are lanes at most.
 pub const GROUP: usize = 8;

@@ -1,4 +1,4 @@
-//! Measures of the few families that a step asks for.
+//! Measures of the few families that a step needs.
 
 /// Stands for a group that was not asked for.
 const NONE: u32 = u32::MAX;
@@ -7,7 +7,7 @@ const NONE: u32 = u32::MAX;
 /// group costs memory for its values only while it is asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Measures {
-    /// Where the values of each group are; [`NONE`] where nobody asked.
+    /// Where the values of each group are; [`NONE`] where none are wanted.
     place: Vec<u32>,
     asked: Vec<u32>,
     values: Vec<f64>,
@@ -23,7 +23,7 @@ impl Measures {
         self.place.resize(groups, NONE);
     }
 
-    /// Asks for a group, again or for the first time.
+    /// Requests a group, again or for the first time.
     pub fn ask(&mut self, group: u32) {
         let place = &mut self.place[group as usize];
         if *place == NONE {

@@ -1,7 +1,5 @@
 //! Factors of particles on what their bonds bear and on how stiff they are.
 
-use super::Families;
-
 /// The factors of a body's sites; where a list is empty all are 1.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Scatter {
@@ -15,7 +13,7 @@ pub struct Scatter {
 
 impl Scatter {
     /// Those of the particles at some sites, of columns by particle that are empty where nothing is said.
-    fn new(particle: &[u32], strength: &[f64], stiffness: &[f64]) -> Self {
+    pub(crate) fn new(particle: &[u32], strength: &[f64], stiffness: &[f64]) -> Self {
         let at_sites = |column: &[f64]| match column.is_empty() {
             true => vec![],
             false => particle.iter().map(|&p| factor(column, p as usize)).collect(),
@@ -62,27 +60,5 @@ fn factor(column: &[f64], particle: usize) -> f64 {
     match column.get(particle) {
         Some(&own) if own > 0.0 => own,
         _ => 1.0,
-    }
-}
-
-impl Families {
-    /// Gives particles factors on the critical stretches and on the micro-moduli of their bonds, in columns that are empty where
-    /// there are none. A bond has the smaller strength of its ends and the mean of their stiffnesses, which only
-    /// [`super::LawKind::Shaped`] asks for. To be said anew after [`Families::refresh`].
-    pub fn scatter(&mut self, strength: &[f64], stiffness: &[f64]) {
-        for body in &mut self.lattices {
-            body.scatter = Scatter::new(&body.particle, strength, stiffness);
-        }
-        self.list.scatter = Scatter::new(&self.list.particle, strength, stiffness);
-    }
-
-    /// The factor on how stiff the bonds of a particle are.
-    pub(crate) fn stiffness_of(&self, i: usize) -> f64 {
-        let Some(place) = self.place.get(i).copied().filter(|place| *place != u32::MAX) else { return 1.0 };
-        let body = self.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
-        match self.lattices.get(body) {
-            Some(body) => body.scatter.stiffness((place - body.first_place) as usize),
-            None => self.list.scatter.stiffness((place - self.list.first_place) as usize),
-        }
     }
 }

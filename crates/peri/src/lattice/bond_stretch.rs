@@ -1,9 +1,10 @@
 //! Stretches of a chunk's bonds, eight cells at a time: which bonds may break, and the least of each family.
 
 use crate::families::lattice::Lead;
-use crate::lanes::Lanes;
-use crate::lanes::isa::{Isa, Kernel};
-use crate::lattice::chunk::{CELLS, constant};
+use crate::lattice::chunk::{CELLS, Constants, constant, place};
+use perigrain_base::math::form::InLanes;
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::real::Real;
 
 /// One bond of every cell of a chunk: to the partner ahead, or from the owner behind.
 #[derive(Clone, Copy, Debug)]
@@ -73,12 +74,69 @@ pub struct Least {
 /// Where a byte of `alive` has bits, columns must be readable at the partners of all eight cells.
 pub struct FindStrained<'a, 'b>(pub &'a Watched<'b>, pub &'a mut Vec<Strained>);
 
-impl Kernel for FindStrained<'_, '_> {
+impl InLanes for FindStrained<'_, '_> {
     type Out = ();
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
-        // SAFETY: the caller's promise.
-        unsafe { strained::<L>(self.0, self.1) }
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self(a, found) = self;
+        // SAFETY: the caller's promise; places lie within the tables.
+        unsafe {
+            let zero = V::all(0.0);
+            let (one, floor) = (zero.like(1.0), zero.like(a.floor));
+            for lead in a.to {
+                let alive = a.alive[lead.e as usize];
+                if alive == 0 {
+                    continue;
+                }
+                let c = &*a.tables.as_ptr().add(lead.table as usize).cast::<Constants>();
+                let inverse = c[constant::INVERSE];
+                let (mut z, mut over) = ([zero; 2], 0);
+                let mut v = 0;
+                while v < CELLS / N {
+                    z[v] = between::<N, V, false>(&a.now, N * v, lead.to, c) * inverse;
+                    over |= V::mask_bits(z[v].at_least(floor)) << (N * v);
+                    v += 1;
+                }
+                if over & alive == 0 {
+                    continue;
+                }
+                let pair = if a.pairs.len() > 1 { lead.table as usize / a.table } else { 0 };
+                let [_, s00, alpha] = a.pairs[pair];
+                let mut limit = [zero; 2];
+                let (mut bits, mut v) = (0, 0);
+                while v < CELLS / N {
+                    let here = N * v;
+                    let q = between::<N, V, false>(&a.before, here, lead.to, c);
+                    let live = q.abs().at_least(zero.like(c[constant::DEAD]));
+                    // s ≤ z/2: the limits that follow are no higher than the true ones, and rounding takes far less than 1e-12.
+                    let own = (q * inverse * 0.5).keep(live).most(zero);
+                    let far = V::read(a.least.offset(here as isize + lead.to as isize));
+                    let known = V::read(a.least.add(here)).most(far);
+                    let strict = zero.like(s00) - zero.like(alpha) * known.least(own);
+                    limit[v] = strict - strict.abs() * 1e-12;
+                    bits |= V::mask_bits((z[v] * 0.5).at_least(limit[v])) << here;
+                    v += 1;
+                }
+                bits &= over & alive;
+                if bits == 0 {
+                    continue;
+                }
+                let (mut stretch, mut exact) = ([0.0; CELLS], 0);
+                let mut v = 0;
+                while v < CELLS / N {
+                    let here = N * v;
+                    let live = z[v].abs().at_least(zero.like(c[constant::DEAD]) * inverse);
+                    let s = (z[v] / (one + (one + z[v]).sqrt())).keep(live);
+                    stretch[here..here + N].copy_from_slice(&s.numbers());
+                    exact |= V::mask_bits(s.at_least(limit[v])) << here;
+                    v += 1;
+                }
+                if bits & exact != 0 {
+                    found.push(Strained { lead: *lead, pair: pair as u16, bits: bits & exact, stretch });
+                }
+            }
+        }
     }
 }
 
@@ -97,124 +155,65 @@ pub struct FindLeast<'a> {
     pub tables: &'a [f64],
 }
 
-impl Kernel for FindLeast<'_> {
+impl InLanes for FindLeast<'_> {
     type Out = Least;
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) -> Least {
-        // SAFETY: the caller's promise.
-        unsafe { least::<L>(self.u, self.sides, self.pair, self.tables) }
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) -> Least {
+        let Self { u, sides, pair, tables } = self;
+        // SAFETY: the caller's promise; places lie within the tables.
+        unsafe {
+            let mut out = Least { z: [0.0; CELLS], side: [0.0; CELLS] };
+            let zero = V::all(0.0);
+            let infinite = zero.like(f64::INFINITY);
+            let mut here = 0;
+            while here < CELLS {
+                let (mut least, mut whose) = (infinite, zero);
+                for (k, side) in sides.iter().enumerate().filter(|(_, side)| side.pair == pair) {
+                    let c = &*tables.as_ptr().add(side.place as usize).cast::<Constants>();
+                    let q = match side.behind {
+                        false => between::<N, V, false>(&u, here, side.to, c),
+                        true => between::<N, V, true>(&u, here, side.to, c),
+                    };
+                    let live = q.abs().at_least(zero.like(c[constant::DEAD]));
+                    let z = (q * c[constant::INVERSE]).keep(live);
+                    let z = V::choose(zero.mask(side.bits >> here), z, infinite);
+                    let others = whose.keep(z.at_least(least));
+                    least = z.least(least);
+                    // Whose it is: the last of those that are the least.
+                    whose = others.most(zero.like(k as f64).keep(least.at_least(z)));
+                }
+                out.z[here..here + N].copy_from_slice(&least.numbers());
+                out.side[here..here + N].copy_from_slice(&whose.numbers());
+                here += N;
+            }
+            out
+        }
     }
 }
 
-/// z |xi|² of the bonds from the cells from `here` on to those `to` cells further; `BEHIND`: of the bonds that
-/// those own.
+/// z |xi|² of bonds between displaced ends; `BEHIND`: of those that the far end owns.
 #[inline(always)]
-unsafe fn q<L: Lanes, const BEHIND: bool>(u: [*const f64; 3], here: usize, to: i32, c: *const f64) -> L {
+fn q<R: Real, const BEHIND: bool>(near: &[R; 3], far: &[R; 3], c: &Constants) -> R {
+    let mut q = near[0].like(0.0);
+    let mut k = 0;
+    while k < 3 {
+        let xi = c[constant::XI + k];
+        let eta = if BEHIND { near[k] - far[k] } else { far[k] - near[k] };
+        q = eta.fma(eta + xi + xi, q);
+        k += 1;
+    }
+    q
+}
+
+/// [`q`] of the bonds between the cells from `here` on and those `to` cells further.
+#[inline(always)]
+unsafe fn between<const N: usize, V: Lanes<N>, const BEHIND: bool>(
+    u: &[*const f64; 3],
+    here: usize,
+    to: i32,
+    c: &Constants,
+) -> V {
     // SAFETY: the caller's promise.
-    unsafe {
-        let other = here as isize + to as isize;
-        let mut q = L::splat(0.0);
-        let mut k = 0;
-        while k < 3 {
-            let xi = L::splat(*c.add(constant::XI + k));
-            let (near, far) = (L::load(u[k].add(here)), L::load(u[k].offset(other)));
-            let eta = if BEHIND { near.sub(far) } else { far.sub(near) };
-            q = eta.fma(eta.add(xi).add(xi), q);
-            k += 1;
-        }
-        q
-    }
-}
-
-#[inline(always)]
-unsafe fn strained<L: Lanes>(a: &Watched, found: &mut Vec<Strained>) {
-    // SAFETY: the caller's promise; places lie within the tables.
-    unsafe {
-        let (zero, one, half) = (L::splat(0.0), L::splat(1.0), L::splat(0.5));
-        let floor = L::splat(a.floor);
-        for lead in a.to {
-            let alive = a.alive[lead.e as usize];
-            if alive == 0 {
-                continue;
-            }
-            let c = a.tables.as_ptr().add(lead.table as usize);
-            let inverse = L::splat(*c.add(constant::INVERSE));
-            let (mut z, mut over) = ([zero; 2], 0);
-            let mut v = 0;
-            while v < CELLS / L::WIDTH {
-                z[v] = q::<L, false>(a.now, L::WIDTH * v, lead.to, c).mul(inverse);
-                over |= z[v].ge(floor).bits() << (L::WIDTH * v);
-                v += 1;
-            }
-            if over & alive == 0 {
-                continue;
-            }
-            let pair = if a.pairs.len() > 1 { lead.table as usize / a.table } else { 0 };
-            let [_, s00, alpha] = a.pairs[pair];
-            let mut limit = [zero; 2];
-            let (mut bits, mut v) = (0, 0);
-            while v < CELLS / L::WIDTH {
-                let here = L::WIDTH * v;
-                let q = q::<L, false>(a.before, here, lead.to, c);
-                let live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
-                // s ≤ z/2: the limits that follow are no higher than the true ones, and rounding takes far less than 1e-12.
-                let own = q.mul(inverse).mul(half).keep(live).max(zero);
-                let far = L::load(a.least.offset(here as isize + lead.to as isize));
-                let known = L::load(a.least.add(here)).max(far);
-                let strict = L::splat(s00).sub(L::splat(alpha).mul(known.min(own)));
-                limit[v] = strict.sub(strict.abs().mul(L::splat(1e-12)));
-                bits |= z[v].mul(half).ge(limit[v]).bits() << here;
-                v += 1;
-            }
-            bits &= over & alive;
-            if bits == 0 {
-                continue;
-            }
-            let (mut stretch, mut exact) = ([0.0; CELLS], 0);
-            let mut v = 0;
-            while v < CELLS / L::WIDTH {
-                let here = L::WIDTH * v;
-                let live = z[v].abs().ge(L::splat(*c.add(constant::DEAD)).mul(inverse));
-                let s = z[v].div(one.add(one.add(z[v]).sqrt())).keep(live);
-                s.store(stretch.as_mut_ptr().add(here));
-                exact |= s.ge(limit[v]).bits() << here;
-                v += 1;
-            }
-            if bits & exact != 0 {
-                found.push(Strained { lead: *lead, pair: pair as u16, bits: bits & exact, stretch });
-            }
-        }
-    }
-}
-
-#[inline(always)]
-unsafe fn least<L: Lanes>(u: [*const f64; 3], sides: &[Side], pair: u16, tables: &[f64]) -> Least {
-    // SAFETY: the caller's promise; places lie within the tables.
-    unsafe {
-        let mut out = Least { z: [0.0; CELLS], side: [0.0; CELLS] };
-        let infinite = L::splat(f64::INFINITY);
-        let mut here = 0;
-        while here < CELLS {
-            let (mut least, mut whose) = (infinite, L::splat(0.0));
-            for (k, side) in sides.iter().enumerate().filter(|(_, side)| side.pair == pair) {
-                let c = tables.as_ptr().add(side.place as usize);
-                let q = match side.behind {
-                    false => q::<L, false>(u, here, side.to, c),
-                    true => q::<L, true>(u, here, side.to, c),
-                };
-                let live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
-                let z = q.mul(L::splat(*c.add(constant::INVERSE))).keep(live);
-                let none = infinite.keep(L::mask(!side.bits >> here));
-                let z = z.keep(L::mask(side.bits >> here)).add(none);
-                let others = whose.keep(z.ge(least));
-                least = z.min(least);
-                // Whose it is: the last of those that are the least.
-                whose = others.max(L::splat(k as f64).keep(least.ge(z)));
-            }
-            least.store(out.z.as_mut_ptr().add(here));
-            whose.store(out.side.as_mut_ptr().add(here));
-            here += L::WIDTH;
-        }
-        out
-    }
+    unsafe { q::<V, BEHIND>(&place(u, here as isize), &place(u, here as isize + to as isize), c) }
 }

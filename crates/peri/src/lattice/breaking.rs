@@ -3,14 +3,13 @@
 use std::borrow::Cow;
 
 use crate::breaking::{Bonds, banded, measure};
-use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, PAD, Slack, Slackest};
+use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, MAY_BREAK, PAD, Slack, Slackest};
 use crate::families::{Candidate, FamilyOptions, Measures};
-use crate::lanes::isa::Isa;
 use crate::lattice::bond_stretch::{FindLeast, FindStrained, Side, Strained, Watched};
 use crate::lattice::chunk::constant;
 use crate::lattice::leads::ahead;
-use crate::lattice::sweep::MAY_BREAK;
 use crate::law::series::stretch;
+use perigrain_base::math::form::Form;
 use perigrain_base::par::{self, Shared};
 
 /// Where bonds lead back to from a row's cells, along one stencil vector.
@@ -69,8 +68,7 @@ impl LatticeBody {
     /// Displacements of this step (1) or of the one before (0), at a cell.
     fn at_cell(&self, which: usize, cell: usize) -> [*const f64; 3] {
         let u = self.u[which].as_ptr();
-        // SAFETY: the column has a place for each cell and PAD more around.
-        [0, 1, 2].map(|k| unsafe { u.add(k * self.stride + PAD + cell) })
+        [0, 1, 2].map(|k| u.wrapping_add(k * self.stride + PAD + cell))
     }
 
     /// The bonds ahead of a chunk along all stencil vectors, of which some live. `to`: where they lead.
@@ -147,8 +145,9 @@ impl LatticeBody {
 
     /// Per cell of a chunk the smallest previous stretch, or LAMMPS' critical stretch, and which bond has it where all bonds
     /// have the same limits. `scratch` knows the row, whose first chunk is `first`.
-    fn extremes<K: Isa>(
+    fn extremes(
         &self,
+        form: Form,
         (chunk, first): (usize, usize),
         compat: bool,
         scratch: &mut Scratch,
@@ -170,7 +169,7 @@ impl LatticeBody {
             let [_, s00, alpha] = self.pairs[usize::from(pair)];
             // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
             let u = self.at_cell(0, chunk * LANES);
-            let least = unsafe { K::call(FindLeast { u, sides, pair, tables: &self.tables }) };
+            let least = unsafe { form.run(FindLeast { u, sides, pair, tables: &self.tables }) };
             for (k, (out, z)) in out.iter_mut().zip(least.z).enumerate().filter(|(_, (_, z))| z.is_finite()) {
                 // A larger z is a larger stretch, and alpha is not negative.
                 let value = if compat { out.0.max(s00 - alpha * stretch(z)) } else { out.0.min(stretch(z)) };
@@ -182,8 +181,9 @@ impl LatticeBody {
     }
 
     /// Bonds of a row's flagged chunks that may break: stretched beyond what is sure to allow it.
-    fn strained_in_row<K: Isa>(
+    fn strained_in_row(
         &self,
+        form: Form,
         (slot, pairs): (usize, &[[f64; 3]]),
         strained: &mut Vec<Strained>,
         found: &mut Vec<Candidate>,
@@ -199,8 +199,7 @@ impl LatticeBody {
             let watched = Watched {
                 now: self.at_cell(1, cell),
                 before: self.at_cell(0, cell),
-                // SAFETY: the column has a place for each cell and PAD more around.
-                least: unsafe { self.slackest.bound.as_ptr().add(PAD + cell) },
+                least: self.slackest.bound.as_ptr().wrapping_add(PAD + cell),
                 to: self.leads_of(slot),
                 alive: &self.alive[chunk * entries..][..entries],
                 tables: &self.tables,
@@ -210,7 +209,7 @@ impl LatticeBody {
             };
             strained.clear();
             // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
-            unsafe { K::call(FindStrained(&watched, strained)) };
+            unsafe { form.run(FindStrained(&watched, strained)) };
             for s in &*strained {
                 let [_, s00, alpha] = self.pairs[usize::from(s.pair)];
                 let mut bits = s.bits;
@@ -301,7 +300,7 @@ impl Bonds for LatticeBody {
         self.slackest = Slackest { bond, bound: bounds };
     }
 
-    fn candidates<K: Isa>(&self, found: &mut Vec<Candidate>) {
+    fn candidates(&self, form: Form, found: &mut Vec<Candidate>) {
         if !self.flagged.iter().any(|flag| flag & MAY_BREAK != 0) {
             return;
         }
@@ -312,14 +311,14 @@ impl Bonds for LatticeBody {
             let list = unsafe { &mut shared.get(plane..plane + 1)[0] };
             let mut strained = vec![];
             for slot in self.slot(plane, 0)..self.slot(plane + 1, 0) {
-                self.strained_in_row::<K>((slot, &pairs), &mut strained, list);
+                self.strained_in_row(form, (slot, &pairs), &mut strained, list);
             }
         });
         found.reserve(lists.iter().map(Vec::len).sum());
         lists.into_iter().for_each(|mut list| found.append(&mut list));
     }
 
-    fn measure<K: Isa>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]) {
+    fn measure(&mut self, form: Form, groups: &[u32], options: &FamilyOptions, values: &mut [f64]) {
         let mut slack = std::mem::take(&mut self.slackest.bond);
         // Bonds of several pairs have several limits: which is the least stretched says nothing of the others.
         let alike = self.pairs.len() == 1;
@@ -348,7 +347,7 @@ impl Bonds for LatticeBody {
                     row = start / LANES..(start + len) / LANES;
                     body.owners(slot, &mut scratch.behind);
                 }
-                let measured = body.extremes::<K>((chunk, row.start), options.one_stretch(), &mut scratch);
+                let measured = body.extremes(form, (chunk, row.start), options.one_stretch(), &mut scratch);
                 for (value, measured) in values.iter_mut().zip(&measured) {
                     *value = measured.0;
                 }

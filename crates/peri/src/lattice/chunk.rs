@@ -1,8 +1,12 @@
 //! Bonds of eight neighbouring cells of a lattice: their constants, stretches and forces handed back.
 
 use crate::families::lattice::{CONSTANTS, Lead};
-use crate::lanes::Lanes;
 use crate::law::polynomials;
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::real::Real;
+
+/// The constants of one stencil vector; see [`constant`].
+pub type Constants = [f64; CONSTANTS];
 
 /// Places in a table of constants of one stencil vector.
 pub mod constant {
@@ -49,17 +53,32 @@ macro_rules! xyz {
 #[derive(Clone, Copy)]
 pub struct Chunk<'a> {
     /// Displacements.
-    pub u: [*const f64; 3],
+    pub(super) u: [*const f64; 3],
     /// Forces, added to.
-    pub f: [*mut f64; 3],
+    pub(super) f: [*mut f64; 3],
     /// Alive bits of the chunk, one byte per stencil vector.
-    pub alive: &'a [u8],
+    pub(super) alive: &'a [u8],
     /// Where the bonds lead.
-    pub to: &'a [Lead],
+    pub(super) to: &'a [Lead],
     /// Constants.
-    pub tables: &'a [f64],
+    pub(super) tables: &'a [f64],
     /// Per-cell data of bodies with mixed rows or various volumes.
-    pub various: Option<Various<'a>>,
+    pub(super) various: Option<Various<'a>>,
+}
+
+impl<'a> Chunk<'a> {
+    /// A chunk with its displacements `u`, alive bits, leads and constants. Loops over it add to the sums at `f`, but those of energies.
+    ///
+    /// # Safety
+    /// Where a byte of `alive` has bits, its lead must be to cells within seven of cells that exist in `u` and `f`, and to a table of
+    /// constants; all memory between must be readable and, in `f`, writable and not touched by others as long as the chunk is there.
+    pub unsafe fn new(
+        (u, f): ([*const f64; 3], [*mut f64; 3]),
+        (alive, to, tables): (&'a [u8], &'a [Lead], &'a [f64]),
+        various: Option<Various<'a>>,
+    ) -> Self {
+        Self { u, f, alive, to, tables, various }
+    }
 }
 
 /// Per-cell data of bodies with mixed rows or various volumes; pointers at the chunk's first cell.
@@ -91,86 +110,81 @@ pub const CLOSED: usize = 8;
 /// # Safety
 /// See the loops of [`crate::lattice::kernels`]; so for all helpers below.
 #[inline(always)]
-pub unsafe fn place<L: Lanes>(u: &[*const f64; 3], here: isize) -> [L; 3] {
+pub unsafe fn place<const N: usize, V: Lanes<N>>(u: &[*const f64; 3], here: isize) -> [V; 3] {
     // SAFETY: the caller's promise.
-    unsafe { xyz!(|k| L::load(u[k].offset(here))) }
+    unsafe { xyz!(|k| V::read(u[k].offset(here))) }
 }
 
 /// One bond of each of some neighbouring cells.
 #[derive(Clone, Copy)]
-pub struct Bonds<L> {
+pub struct Bonds<R: Real> {
     /// xi + eta.
-    pub y: [L; 3],
+    pub y: [R; 3],
     /// |y|² − |xi|².
-    pub q: L,
-    /// Mask of those stretched beyond the dead band, and living.
-    pub live: L,
+    pub q: R,
+    /// Those stretched beyond the dead band, and living.
+    pub live: R::Mask,
 }
 
-/// The bonds from cells displaced by `own` along the stencil vector with constants at `c`.
+/// The bonds of a stencil vector from cells displaced by `own` to cells displaced by `far`; if `MASKED`, those with a bit live.
 #[inline(always)]
-pub unsafe fn bonds<L: Lanes, const MASKED: bool>(
-    u: &[*const f64; 3],
-    own: &[L; 3],
-    other: isize,
-    c: *const f64,
+pub fn bonds<const N: usize, V: Lanes<N>, const MASKED: bool>(
+    own: &[V; 3],
+    far: &[V; 3],
+    c: &Constants,
     bits: u8,
-) -> Bonds<L> {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
-        let far = place::<L>(u, other);
-        let eta = xyz!(|k| far[k].sub(own[k]));
-        let y = xyz!(|k| eta[k].add(xi[k]));
-        let twice = xyz!(|k| y[k].add(xi[k]));
-        let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2].mul(twice[2])));
-        let mut live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
-        if MASKED {
-            live = live.keep(L::mask(bits));
-        }
-        Bonds { y, q, live }
-    }
+) -> Bonds<V> {
+    let eta = xyz!(|k| far[k] - own[k]);
+    let y = xyz!(|k| eta[k] + c[constant::XI + k]);
+    let twice = xyz!(|k| y[k] + c[constant::XI + k]);
+    let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2] * twice[2]));
+    Bonds { y, q, live: live::<N, V, MASKED>(q, c, bits) }
+}
+
+/// Bonds with this q stretched beyond the dead band; if `MASKED`, of those with a bit.
+#[inline(always)]
+pub fn live<const N: usize, V: Lanes<N>, const MASKED: bool>(q: V, c: &Constants, bits: u8) -> V::Mask {
+    let stretched = q.abs().at_least(q.like(c[constant::DEAD]));
+    if MASKED { V::both(stretched, q.mask(bits)) } else { stretched }
 }
 
 /// q times the series of a row of constants.
 #[inline(always)]
-pub unsafe fn series<L: Lanes, const DEGREE: usize>(q: L, c: *const f64) -> L {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let mut h = L::splat(*c.add(constant::SERIES + DEGREE));
-        let mut k = DEGREE;
-        while k > 0 {
-            k -= 1;
-            h = h.fma(q, L::splat(*c.add(constant::SERIES + k)));
-        }
-        h.mul(q)
+pub fn series<R: Real, const DEGREE: usize>(q: R, c: &Constants) -> R {
+    let mut h = q.like(c[constant::SERIES + DEGREE]);
+    let mut k = DEGREE;
+    while k > 0 {
+        k -= 1;
+        h = h.fma(q, q.like(c[constant::SERIES + k]));
     }
+    h * q
 }
 
 /// Takes pulls along bonds from the forces at their far ends.
 #[inline(always)]
-pub unsafe fn take<L: Lanes>(f: &[*mut f64; 3], other: isize, pull: L, y: &[L; 3]) {
+pub unsafe fn take<const N: usize, V: Lanes<N>>(f: &[*mut f64; 3], other: isize, pull: V, y: &[V; 3]) {
     // SAFETY: the caller's promise.
     unsafe {
         let target = xyz!(|k| f[k].offset(other));
-        let left = xyz!(|k| pull.fnma(y[k], L::load(target[k])));
-        left[0].store(target[0]);
-        left[1].store(target[1]);
-        left[2].store(target[2]);
+        let left = xyz!(|k| pull.fnma(y[k], V::read(target[k])));
+        left[0].write(target[0]);
+        left[1].write(target[1]);
+        left[2].write(target[2]);
     }
 }
 
 /// Adds sums to the forces of a chunk's own cells.
 #[inline(always)]
-pub unsafe fn give<L: Lanes>(f: &[*mut f64; 3], sum: &[[L; 3]; 2]) {
+pub unsafe fn give<const N: usize, V: Lanes<N>>(f: &[*mut f64; 3], sum: &[[V; 3]; 2]) {
     // SAFETY: the caller's promise.
     unsafe {
         let mut v = 0;
-        while v < CELLS / L::WIDTH {
-            let total = xyz!(|k| L::load(f[k].add(L::WIDTH * v)).add(sum[v][k]));
-            total[0].store(f[0].add(L::WIDTH * v));
-            total[1].store(f[1].add(L::WIDTH * v));
-            total[2].store(f[2].add(L::WIDTH * v));
+        while v < CELLS / N {
+            let target = xyz!(|k| f[k].add(N * v));
+            let total = xyz!(|k| V::read(target[k]) + sum[v][k]);
+            total[0].write(target[0]);
+            total[1].write(target[1]);
+            total[2].write(target[2]);
             v += 1;
         }
     }
@@ -178,80 +192,61 @@ pub unsafe fn give<L: Lanes>(f: &[*mut f64; 3], sum: &[[L; 3]; 2]) {
 
 /// The largest of all lanes of `high`, and of −`low`.
 #[inline(always)]
-pub unsafe fn extremes<L: Lanes>(high: L, low: L) -> (f64, f64) {
-    let mut most = [[0.0f64; CELLS]; 2];
-    // SAFETY: eight numbers, as many as the widest lanes.
-    unsafe {
-        high.store(most[0].as_mut_ptr());
-        low.store(most[1].as_mut_ptr());
-    }
-    (most[0].iter().copied().fold(0.0, f64::max), -most[1].iter().copied().fold(0.0, f64::min))
+pub fn extremes<const N: usize, V: Lanes<N>>(high: V, low: V) -> (f64, f64) {
+    (high.numbers().into_iter().fold(0.0, f64::max), -low.numbers().into_iter().fold(0.0, f64::min))
 }
 
 /// Puts sums to the cells from `here` on.
-///
-/// # Safety
-/// There must be cells for all lanes; the processor must have what the lanes need.
 #[inline(always)]
-pub unsafe fn put_sums<L: Lanes>(sum: &[L; SUMS], out: &mut [[f64; CELLS]; SUMS], here: usize) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let mut k = 0;
-        while k < SUMS {
-            sum[k].store(out[k].as_mut_ptr().add(here));
-            k += 1;
-        }
+pub fn put_sums<const N: usize, V: Lanes<N>>(sum: &[V; SUMS], out: &mut [[f64; CELLS]; SUMS], here: usize) {
+    for (sum, out) in sum.iter().zip(out) {
+        out[here..here + N].copy_from_slice(&sum.numbers());
     }
 }
 
 /// Sums with a bond's energy and the virial of a pull along y.
 #[inline(always)]
-pub unsafe fn with_virial<L: Lanes>(sum: [L; SUMS], energy: L, pull: L, y: &[L; 3]) -> [L; SUMS] {
-    // SAFETY: plain arithmetic; the processor has it by the caller's promise.
-    unsafe {
-        let p = xyz!(|k| pull.mul(y[k]));
-        [
-            sum[0].add(energy),
-            p[0].fma(y[0], sum[1]),
-            p[1].fma(y[1], sum[2]),
-            p[2].fma(y[2], sum[3]),
-            p[0].fma(y[1], sum[4]),
-            p[0].fma(y[2], sum[5]),
-            p[1].fma(y[2], sum[6]),
-        ]
-    }
+pub fn with_virial<R: Real>(sum: [R; SUMS], energy: R, pull: R, y: &[R; 3]) -> [R; SUMS] {
+    let p = xyz!(|k| pull * y[k]);
+    [
+        sum[0] + energy,
+        p[0].fma(y[0], sum[1]),
+        p[1].fma(y[1], sum[2]),
+        p[2].fma(y[2], sum[3]),
+        p[0].fma(y[1], sum[4]),
+        p[0].fma(y[2], sum[5]),
+        p[1].fma(y[2], sum[6]),
+    ]
 }
 
 /// Pulls times volumes, of microelastic bonds times micromoduli too, for bodies with various ones: at the cells from `here` on
 /// and at their partners from `other` on.
 #[inline(always)]
-pub unsafe fn various<L: Lanes, const MODULI: bool>(
+pub unsafe fn various<const N: usize, V: Lanes<N>, const MODULI: bool>(
     a: &Chunk,
-    (near, far): (L, L),
+    (near, far): (V, V),
     here: usize,
     other: isize,
-) -> (L, L) {
+) -> (V, V) {
+    let Some(cells) = a.various else { return (near, far) };
+    let (mut near, mut far) = (near, far);
     // SAFETY: per-cell data cover the cells that displacements cover.
     unsafe {
-        let Some(cells) = a.various else { return (near, far) };
-        let (mut near, mut far) = (near, far);
         if MODULI {
-            let mut c = [0.0; CELLS];
-            let mut lane = 0;
-            while lane < L::WIDTH {
+            let mut c = [0.0; N];
+            for (lane, c) in c.iter_mut().enumerate() {
                 let (i, j) = (*cells.kind.add(here + lane), *cells.kind.offset(other + lane as isize));
-                c[lane] = cells.pairs[usize::from(i) * cells.kinds + usize::from(j)][0];
-                lane += 1;
+                *c = cells.pairs[usize::from(i) * cells.kinds + usize::from(j)][0];
             }
-            let c = L::load(c.as_ptr());
-            (near, far) = (near.mul(c), far.mul(c));
+            let c = V::of(c);
+            (near, far) = (near * c, far * c);
         }
-        let (own, partner) = (L::load(cells.volume.add(here)), L::load(cells.volume.offset(other)));
+        let (own, partner) = (V::read(cells.volume.add(here)), V::read(cells.volume.offset(other)));
         if cells.newton {
-            let both = own.mul(partner);
-            return (near.mul(both), far.mul(both));
+            let both = own * partner;
+            return (near * both, far * both);
         }
-        (near.mul(partner), far.mul(own))
+        (near * partner, far * own)
     }
 }
 

@@ -1,25 +1,13 @@
 //! What the kernels of lattices look up: constants of bonds, weighted volumes of families.
 
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
-use crate::families::law::SiteState;
 use crate::families::list::ListBody;
-use crate::families::{Cell, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
+use crate::families::{Cell, FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
 use crate::lattice::chunk::constant;
 use crate::lattice::kernels::{FROM_TERM, TWICE_XI};
-use crate::law::series::SERIES;
+use crate::law::series::{SERIES, STRETCH};
+use crate::law::state::SiteState;
 use crate::law::weighing::Weighing;
-
-/// √(1 + z) − 1 = Σ `STRETCH[k]` z^(k + 1): the binomial series.
-pub const STRETCH: [f64; 8] = [
-    1.0 / 2.0,
-    -1.0 / 8.0,
-    1.0 / 16.0,
-    -5.0 / 128.0,
-    7.0 / 256.0,
-    -21.0 / 1024.0,
-    33.0 / 2048.0,
-    -429.0 / 32768.0,
-];
 
 /// Fills the tables of constants: under state-based laws the same for all pairs of types, since moduli belong to the
 /// ends; under bond-based ones c/|xi| stands for ω, and the place of ω has the stretch at which bonds flow. `volume` is that of
@@ -31,7 +19,7 @@ pub fn fill(
     law: &Law,
     volume: Option<f64>,
 ) {
-    let plain = law.kind == LawKind::Pmb;
+    let plain = law.kind.plain();
     let unit_moduli = plain && volume.is_none();
     let volume = volume.unwrap_or(1.0);
     let forces = if options.unit == ForceUnit::Newton { volume * volume } else { volume };

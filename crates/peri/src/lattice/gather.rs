@@ -2,15 +2,17 @@
 
 use crate::families::PeriView;
 use crate::families::lattice::{LANES, LatticeBody, PAD, RowMotion, greater, lesser};
-use crate::lanes::isa::{Isa, Kernel};
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::lanes::Lanes;
 use perigrain_base::par::{self, Shared};
 
 /// Gathers displacements from positions into `u[1]`, and what moved since `u[0]`. Where contact is `short_range` even
 /// between undisplaced particles, nothing is at rest. Row slots that are not among those that a rank `follows` are left out.
 ///
 /// # Safety
-/// The processor must have the kernels' instruction set.
-pub unsafe fn gather<K: Isa>(
+/// The processor must have what the form needs.
+pub unsafe fn gather(
+    form: Form,
     body: &mut LatticeBody,
     view: &PeriView,
     reference: &[[f64; 3]],
@@ -36,7 +38,7 @@ pub unsafe fn gather<K: Isa>(
             let motion = &mut unsafe { motion.get(slot..slot + 1) }[0];
             let task = Row { particle: &particle[cells], view, reference, u, last, lo: row.lo };
             // SAFETY: the caller's promise.
-            *motion = unsafe { K::call(task) };
+            *motion = unsafe { form.run(task) };
             if short_range {
                 (motion.lo, motion.hi) = (row.lo, row.lo + row.len as i32 - 1);
             }
@@ -54,10 +56,11 @@ pub struct Row<'a> {
     lo: i32,
 }
 
-impl Kernel for Row<'_> {
+impl InLanes for Row<'_> {
     type Out = RowMotion;
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) -> RowMotion {
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) -> RowMotion {
         gather_row(self)
     }
 }
@@ -82,7 +85,7 @@ fn gather_row(row: Row) -> RowMotion {
                 None => break,
             };
             let first = some[0] as usize;
-            // Rows mostly follow the order of creation: then nobody need be looked up.
+            // Rows mostly follow the order of creation: then no particle need be looked up.
             let follow = (0..LANES).fold(true, |yes, k| yes & (some[k] == some[0].wrapping_add(k as u32)));
             let run = first..first.saturating_add(LANES);
             if follow && let (Some(x), Some(x0)) = (view.x.get(run.clone()), reference.get(run)) {

@@ -1,14 +1,17 @@
 //! The innermost loops on the lattice, whatever the law: all bonds of eight neighbouring cells.
 
 use crate::families::lattice::Lead;
-use crate::families::law::COLUMNS;
-use crate::lanes::Lanes;
 use crate::lattice::chunk::{
-    CELLS, CLOSED, Chunk, bonds, constant, extremes, give, place, series, take, various,
+    CELLS, CLOSED, Chunk, Constants, bonds, constant, extremes, give, live, place, series, take, various,
 };
+use crate::law::formula::BondLaw;
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
 use crate::law::polynomials;
+use crate::law::stretch::{Ends, Stretch, closed};
 use crate::law::terms::Term;
-use crate::law::{BondLaw, Ends, Moment, Stretch, closed};
+use perigrain_base::math::lanes::{Lanes, prefetch};
+use perigrain_base::math::real::Real;
 
 /// In the table of dilatations: one over [`constant::FACTOR`].
 pub const FROM_TERM: usize = constant::LIMIT;
@@ -19,118 +22,116 @@ pub const TWICE_XI: usize = constant::XI;
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     /// The first column; the others follow a stride apart.
-    pub columns: *const f64,
+    columns: *const f64,
     /// See `columns`.
-    pub stride: usize,
+    stride: usize,
     /// Displacements at the last step that advanced.
-    pub last: [*const f64; 3],
+    pub(super) last: [*const f64; 3],
     /// What the chunk's bonds remember, [`CELLS`] of each number for each stencil vector.
-    pub memory: *mut f64,
+    memory: *mut f64,
     /// Whether that is anything but zeros.
-    pub touched: *mut u8,
+    pub(super) touched: *mut u8,
     /// What is the same for all bonds.
-    pub moment: &'a Moment,
+    pub(super) moment: &'a Moment,
     /// Keep what bonds remember from this evaluation.
-    pub keep: bool,
+    keep: bool,
     /// The second half of the cells is vacant.
-    pub half: bool,
+    pub(super) half: bool,
+}
+
+impl<'a> Cells<'a> {
+    /// What the sites and bonds of a chunk have: the first of `columns` that are a stride apart, displacements at the `last` step that advanced,
+    /// what bonds remember and whether that is anything. `keep` is whether what they remember moves on, `half` whether the second half of
+    /// the cells is vacant.
+    ///
+    /// # Safety
+    /// As many columns as the law reads must be readable where displacements are, and `last` with them; if the law remembers, memory must be
+    /// readable, and writable if they `keep` it, for all bonds of the chunk and not touched by others as long as this is there.
+    pub unsafe fn new(
+        (columns, stride): (*const f64, usize),
+        last: [*const f64; 3],
+        (memory, touched): (*mut f64, *mut u8),
+        moment: &'a Moment,
+        [keep, half]: [bool; 2],
+    ) -> Self {
+        Self { columns, stride, last, memory, touched, moment, keep, half }
+    }
 }
 
 /// How many numbers ahead memory of bonds is fetched: it is read but once in a sweep, and processors do not follow it from
 /// page to page by themselves.
 const AHEAD: usize = 16 * CELLS;
 
-/// q of some bonds as [`bonds`] has it, and which count: where nothing else of y is needed, and the constants hold 2 xi.
+/// q of some bonds as [`bonds`] has it: where nothing else of y is needed, and the constants hold 2 xi.
 #[inline(always)]
-unsafe fn lengthened<L: Lanes, const MASKED: bool>(
-    u: &[*const f64; 3],
-    own: &[L; 3],
-    other: isize,
-    c: *const f64,
-    bits: u8,
-) -> (L, L) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let far = place::<L>(u, other);
-        let twice = |k: usize| *c.add(TWICE_XI + k);
-        let eta = [far[0].sub(own[0]), far[1].sub(own[1]), far[2].sub(own[2])];
-        let first = eta[2].mul(eta[2].add(L::splat(twice(2))));
-        let second = eta[1].fma(eta[1].add(L::splat(twice(1))), first);
-        let q = eta[0].fma(eta[0].add(L::splat(twice(0))), second);
-        let mut live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
-        if MASKED {
-            live = live.keep(L::mask(bits));
-        }
-        (q, live)
-    }
+fn lengthened<R: Real>(own: &[R; 3], far: &[R; 3], c: &Constants) -> R {
+    let eta = [far[0] - own[0], far[1] - own[1], far[2] - own[2]];
+    let first = eta[2] * (eta[2] + c[TWICE_XI + 2]);
+    let second = eta[1].fma(eta[1] + c[TWICE_XI + 1], first);
+    eta[0].fma(eta[0] + c[TWICE_XI], second)
 }
 
 /// Stretches of bonds, their `before` the same. Where series give s/(1 + s) times the weight of a bond, so is all that comes out.
 #[inline(always)]
-pub unsafe fn stretch<L: Lanes, const DEGREE: usize>((q, live): (L, L), c: *const f64) -> Stretch<L> {
-    // SAFETY: the caller's promise.
-    unsafe {
-        if DEGREE == CLOSED {
-            let s = closed(q.mul(L::splat(*c.add(constant::INVERSE))));
-            let stretch = s.s.keep(live);
-            return Stretch {
-                s: stretch,
-                share: s.share.keep(live),
-                inverse: s.inverse,
-                before: stretch,
-                limit: stretch,
-            };
-        }
-        if DEGREE > CLOSED {
-            let z = q.mul(L::splat(*c.add(constant::INVERSE)));
-            let share = z.mul(polynomials::share::<L, DEGREE>(z)).keep(live);
-            let s = z.mul(polynomials::stretch::<L, DEGREE>(z)).keep(live);
-            return Stretch { s, share, inverse: L::splat(1.0).sub(share), before: s, limit: s };
-        }
-        let share = series::<L, DEGREE>(q, c).keep(live);
-        // s = p/(1 − p) for p = s/(1 + s): below the first term left out, p^(DEGREE + 2), is 1e-16 of p.
-        let one = L::splat(1.0);
-        let mut s = one;
-        let mut k = 0;
-        while k < DEGREE {
-            s = s.fma(share, one);
-            k += 1;
-        }
-        let s = s.mul(share);
-        Stretch { s, share, inverse: one.sub(share), before: s, limit: s }
+pub fn stretch<R: Real, const DEGREE: usize>((q, live): (R, R::Mask), c: &Constants) -> Stretch<R> {
+    if DEGREE == CLOSED {
+        let of = closed(q * c[constant::INVERSE]);
+        let s = of.s.keep(live);
+        return Stretch { s, share: of.share.keep(live), inverse: of.inverse, before: s, limit: s };
     }
+    let one = q.like(1.0);
+    if DEGREE > CLOSED {
+        let z = q * c[constant::INVERSE];
+        let share = (z * polynomials::share::<R, DEGREE>(z)).keep(live);
+        let s = (z * polynomials::stretch::<R, DEGREE>(z)).keep(live);
+        return Stretch { s, share, inverse: one - share, before: s, limit: s };
+    }
+    let share = series::<R, DEGREE>(q, c).keep(live);
+    // s = p/(1 − p) for p = s/(1 + s): below the first term left out, p^(DEGREE + 2), is 1e-16 of p.
+    let mut s = one;
+    let mut k = 0;
+    while k < DEGREE {
+        s = s.fma(share, one);
+        k += 1;
+    }
+    let s = s * share;
+    Stretch { s, share, inverse: one - share, before: s, limit: s }
 }
 
 /// The columns of some neighbouring cells.
 #[inline(always)]
-pub unsafe fn read<L: Lanes>(s: &Cells, count: usize, at: isize) -> [L; COLUMNS] {
+pub unsafe fn read<const N: usize, V: Lanes<N>>(s: &Cells, count: usize, at: isize) -> [V; COLUMNS] {
     // SAFETY: the caller's promise.
     unsafe {
-        let mut columns = [L::splat(0.0); COLUMNS];
+        let mut columns = [V::all(0.0); COLUMNS];
         let mut k = 0;
         while k < count {
-            columns[k] = L::load(s.columns.add(k * s.stride).offset(at));
+            columns[k] = V::read(s.columns.add(k * s.stride).offset(at));
             k += 1;
         }
         columns
     }
 }
 
-/// Where the numbers of a stencil vector's bonds are.
+/// Where the numbers of a stencil vector's bonds are: within the chunk's memory if the law remembers so many.
 #[inline(always)]
-unsafe fn remembered(s: &Cells, numbers: usize, e: usize, number: usize, here: usize) -> *mut f64 {
-    // SAFETY: within the chunk's memory by the caller's promise.
-    unsafe { s.memory.add((e * numbers + number) * CELLS + here) }
+fn remembered(s: &Cells, numbers: usize, e: usize, number: usize, here: usize) -> *mut f64 {
+    s.memory.wrapping_add((e * numbers + number) * CELLS + here)
 }
 
 #[inline(always)]
-pub unsafe fn recall<L: Lanes>(s: &Cells, numbers: usize, e: usize, here: usize) -> [L; 2] {
+pub unsafe fn recall<const N: usize, V: Lanes<N>>(
+    s: &Cells,
+    numbers: usize,
+    e: usize,
+    here: usize,
+) -> [V; 2] {
     // SAFETY: passed on to the caller.
     unsafe {
-        let mut memory = [L::splat(0.0); 2];
+        let mut memory = [V::all(0.0); 2];
         let mut k = 0;
         while k < numbers {
-            memory[k] = L::load(remembered(s, numbers, e, k, here));
+            memory[k] = V::read(remembered(s, numbers, e, k, here));
             k += 1;
         }
         memory
@@ -138,8 +139,8 @@ pub unsafe fn recall<L: Lanes>(s: &Cells, numbers: usize, e: usize, here: usize)
 }
 
 /// The vectors that a chunk's cells fill.
-const fn vectors<L: Lanes>(half: bool) -> usize {
-    if half { CELLS / 2 / L::WIDTH } else { CELLS / L::WIDTH }
+const fn vectors<const N: usize>(half: bool) -> usize {
+    if half { CELLS / 2 / N } else { CELLS / N }
 }
 
 /// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`. With `HALF` the
@@ -148,12 +149,11 @@ const fn vectors<L: Lanes>(half: bool) -> usize {
 /// Without `MASKED` all bonds of all eight cells must live.
 ///
 /// # Safety
-/// Live bonds must lead to cells within seven of cells that exist in `u` and `f`, all memory between readable and, in `f`,
-/// writable and not touched by others; columns must be readable where displacements are, and `memory` writable for all bonds
-/// of the chunk if the law remembers; the processor must have what `L` needs.
+/// The processor must have what `V` needs; for memory, chunks and cells answer.
 #[inline(always)]
 pub(crate) unsafe fn pull<
-    L: Lanes,
+    const N: usize,
+    V: Lanes<N>,
     W: BondLaw,
     const DEGREE: usize,
     const MASKED: bool,
@@ -166,13 +166,13 @@ pub(crate) unsafe fn pull<
 ) -> (f64, f64) {
     // SAFETY: the caller's promise covers every address formed below.
     unsafe {
-        let zero = L::splat(0.0);
+        let zero = V::all(0.0);
         let (mut high, mut low) = (zero, zero);
         // Two vectors of four cells, or one of eight (the second then stays unused).
-        let half = (CELLS - L::WIDTH) as isize;
-        let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half)];
-        let back = if W::BACK { [place::<L>(&s.last, 0), place::<L>(&s.last, half)] } else { u };
-        let own = [read::<L>(s, W::COLUMNS, 0), read::<L>(s, W::COLUMNS, half)];
+        let half = (CELLS - N) as isize;
+        let u: [[V; 3]; 2] = [place(&a.u, 0), place(&a.u, half)];
+        let back = if W::BACK { [place(&s.last, 0), place(&s.last, half)] } else { u };
+        let own: Ends<V> = [read(s, W::COLUMNS, 0), read(s, W::COLUMNS, half)];
         let known = W::MEMORY > 0 && (!W::LAZY || *s.touched != 0);
         let mut woken = false;
         // A copy of its own: nothing that is stored can change it.
@@ -187,67 +187,67 @@ pub(crate) unsafe fn pull<
             if MASKED && bits == 0 {
                 continue;
             }
-            let c = a.tables.as_ptr().add(table as usize);
+            let c = &*a.tables.as_ptr().add(table as usize).cast::<Constants>();
             let mut v = 0;
-            while v < vectors::<L>(HALF) {
-                let here = L::WIDTH * v;
+            while v < vectors::<N>(HALF) {
+                let here = N * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
-                let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits);
-                let mut now = stretch::<L, DEGREE>((b.q, b.live), c);
+                let b = bonds::<N, V, MASKED>(&u[v], &place(&a.u, other), c, bits);
+                let mut now = stretch::<V, DEGREE>((b.q, b.live), c);
                 if W::BACK {
-                    let last = bonds::<L, MASKED>(&s.last, &back[v], other, c, bits);
-                    now.before = stretch::<L, DEGREE>((last.q, last.live), c).s;
+                    let last = bonds::<N, V, MASKED>(&back[v], &place(&s.last, other), c, bits);
+                    now.before = stretch::<V, DEGREE>((last.q, last.live), c).s;
                 }
                 if W::LIMITED {
-                    now.limit = L::splat(*c.add(constant::LIMIT));
+                    now.limit = zero.like(c[constant::LIMIT]);
                 }
-                let ends: Ends<L> = [own[v], read::<L>(s, W::COLUMNS, other)];
-                let mut memory = if known { recall::<L>(s, W::MEMORY, vector, here) } else { [zero; 2] };
+                let ends: Ends<V> = [own[v], read(s, W::COLUMNS, other)];
+                let mut memory = if known { recall(s, W::MEMORY, vector, here) } else { [zero; 2] };
                 if known {
-                    L::fetch(remembered(s, W::MEMORY, vector, 0, here).wrapping_add(AHEAD));
+                    prefetch(remembered(s, W::MEMORY, vector, 0, here).wrapping_add(AHEAD));
                 }
-                let omega = L::splat(*c.add(constant::OMEGA));
+                let omega = zero.like(c[constant::OMEGA]);
                 let (mut near, mut far) = W::pull(&now, omega, &ends, &mut memory, &moment);
-                if W::MEMORY > 0 && s.keep && (known || W::flows(&ends).bits() != 0) {
+                if W::MEMORY > 0 && s.keep && (known || V::any(W::flows(&ends))) {
                     woken = true;
                     let mut k = 0;
                     while k < W::MEMORY {
-                        memory[k].store(remembered(s, W::MEMORY, vector, k, here));
+                        memory[k].write(remembered(s, W::MEMORY, vector, k, here));
                         k += 1;
                     }
                 }
                 if !W::PLAIN || DEGREE >= CLOSED {
-                    let mut factor = L::splat(*c.add(constant::FACTOR));
+                    let mut factor = zero.like(c[constant::FACTOR]);
                     if MASKED && !W::PLAIN {
-                        factor = factor.keep(L::mask(bits));
+                        factor = factor.keep(factor.mask(bits));
                     }
-                    (near, far) = (near.mul(factor), far.mul(factor));
+                    (near, far) = (near * factor, far * factor);
                 }
                 if VARIOUS {
                     (near, far) = match W::PLAIN {
-                        true => various::<L, true>(a, (near, far), here, other),
-                        false => various::<L, false>(a, (near, far), here, other),
+                        true => various::<N, V, true>(a, (near, far), here, other),
+                        false => various::<N, V, false>(a, (near, far), here, other),
                     };
                 }
                 if TRACK {
-                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE))).keep(b.live);
-                    high = z.max(high);
-                    low = z.min(low);
+                    let z = (b.q * c[constant::INVERSE]).keep(b.live);
+                    high = z.most(high);
+                    low = z.least(low);
                 }
                 let mut k = 0;
                 while k < 3 {
                     sum[v][k] = near.fma(b.y[k], sum[v][k]);
                     k += 1;
                 }
-                take::<L>(&a.f, here as isize + due as isize, far, &b.y);
+                take(&a.f, here as isize + due as isize, far, &b.y);
                 v += 1;
             }
         }
         if W::LAZY && woken {
             *s.touched = 1;
         }
-        give::<L>(&a.f, &sum);
-        if TRACK { extremes::<L>(high, low) } else { (0.0, 0.0) }
+        give(&a.f, &sum);
+        if TRACK { extremes(high, low) } else { (0.0, 0.0) }
     }
 }
 
@@ -257,7 +257,8 @@ pub(crate) unsafe fn pull<
 /// As for [`pull`]; only the first component of `f` is touched.
 #[inline(always)]
 pub(crate) unsafe fn add_up<
-    L: Lanes,
+    const N: usize,
+    V: Lanes<N>,
     T: Term,
     const DEGREE: usize,
     const MASKED: bool,
@@ -269,11 +270,12 @@ pub(crate) unsafe fn add_up<
 ) {
     // SAFETY: the caller's promise covers every address formed below.
     unsafe {
-        let half = (CELLS - L::WIDTH) as isize;
-        let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half)];
-        let own = [read::<L>(s, T::COLUMNS, 0), read::<L>(s, T::COLUMNS, half)];
+        let zero = V::all(0.0);
+        let half = (CELLS - N) as isize;
+        let u: [[V; 3]; 2] = [place(&a.u, 0), place(&a.u, half)];
+        let own: Ends<V> = [read(s, T::COLUMNS, 0), read(s, T::COLUMNS, half)];
         let known = T::MEMORY > 0 && *s.touched != 0;
-        let mut sum = [L::splat(0.0); 2];
+        let mut sum = [zero; 2];
         let mut lead = 0;
         while lead < a.to.len() {
             let Lead { to, due, table, e } = *a.to.get_unchecked(lead);
@@ -283,68 +285,59 @@ pub(crate) unsafe fn add_up<
             if MASKED && bits == 0 {
                 continue;
             }
-            let c = a.tables.as_ptr().add(table as usize);
+            let c = &*a.tables.as_ptr().add(table as usize).cast::<Constants>();
             let mut v = 0;
-            while v < vectors::<L>(HALF) {
-                let here = L::WIDTH * v;
+            while v < vectors::<N>(HALF) {
+                let here = N * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
-                let (q, live) = lengthened::<L, MASKED>(&a.u, &u[v], other, c, bits);
+                let q = lengthened(&u[v], &place(&a.u, other), c);
+                let live = live::<N, V, MASKED>(q, c, bits);
                 let (mut near, mut far) = if DEGREE < CLOSED && T::STRETCH {
                     // The series is the term itself.
-                    let term = series::<L, DEGREE>(q, c).keep(live);
+                    let term = series::<V, DEGREE>(q, c).keep(live);
                     (term, term)
                 } else {
-                    term_of::<L, T, DEGREE, MASKED>(
-                        s,
-                        (q, live),
-                        c,
-                        (&own[v], other, bits),
-                        (vector, here, known),
-                    )
+                    let ends: Ends<V> = [own[v], read(s, T::COLUMNS, other)];
+                    let memory = if known { recall(s, T::MEMORY, vector, here) } else { [zero; 2] };
+                    let (near, far) = term_of::<V, T, DEGREE>((q, live), c, &ends, &memory);
+                    let mut factor = zero.like(c[constant::FACTOR]);
+                    if MASKED {
+                        factor = factor.keep(factor.mask(bits));
+                    }
+                    (near * factor, far * factor)
                 };
                 if VARIOUS && let Some(cells) = a.various {
-                    near = near.mul(L::load(cells.volume.offset(other)));
-                    far = far.mul(L::load(cells.volume.add(here)));
+                    near = near * V::read(cells.volume.offset(other));
+                    far = far * V::read(cells.volume.add(here));
                 }
-                sum[v] = sum[v].add(near);
+                sum[v] = sum[v] + near;
                 let target = a.f[0].offset(here as isize + due as isize);
-                L::load(target).add(far).store(target);
+                (V::read(target) + far).write(target);
                 v += 1;
             }
         }
         let mut v = 0;
-        while v < vectors::<L>(HALF) {
-            let target = a.f[0].add(L::WIDTH * v);
-            L::load(target).add(sum[v]).store(target);
+        while v < vectors::<N>(HALF) {
+            let target = a.f[0].add(N * v);
+            (V::read(target) + sum[v]).write(target);
             v += 1;
         }
     }
 }
 
-/// The terms of some bonds at both ends.
+/// The terms of some bonds at both ends, over ω w |xi|² V.
 #[inline(always)]
-unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
-    s: &Cells,
-    (q, live): (L, L),
-    c: *const f64,
-    (own, other, bits): (&[L; COLUMNS], isize, u8),
-    (vector, here, known): (usize, usize, bool),
-) -> (L, L) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let s_of = if DEGREE >= CLOSED {
-            stretch::<L, DEGREE>((q, live), c)
-        } else {
-            let s = series::<L, DEGREE>(q, c).keep(live).mul(L::splat(*c.add(FROM_TERM)));
-            Stretch { s, share: s, inverse: s, before: s, limit: s }
-        };
-        let ends: Ends<L> = [*own, read::<L>(s, T::COLUMNS, other)];
-        let memory = if known { recall::<L>(s, T::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
-        let (near, far) = T::terms(&s_of, L::splat(*c.add(constant::OMEGA)), &ends, &memory);
-        let mut factor = L::splat(*c.add(constant::FACTOR));
-        if MASKED {
-            factor = factor.keep(L::mask(bits));
-        }
-        (near.mul(factor), far.mul(factor))
-    }
+fn term_of<R: Real, T: Term, const DEGREE: usize>(
+    (q, live): (R, R::Mask),
+    c: &Constants,
+    ends: &Ends<R>,
+    memory: &[R; 2],
+) -> (R, R) {
+    let stretch = if DEGREE >= CLOSED {
+        stretch::<R, DEGREE>((q, live), c)
+    } else {
+        let s = series::<R, DEGREE>(q, c).keep(live) * c[FROM_TERM];
+        Stretch { s, share: s, inverse: s, before: s, limit: s }
+    };
+    T::terms(&stretch, q.like(c[constant::OMEGA]), ends, memory)
 }

@@ -16,17 +16,19 @@ pub mod tables;
 pub(crate) mod tiles;
 
 use crate::families::lattice::{LatticeBody, PAD};
-use crate::families::law::COLUMNS;
 use crate::families::shares::{BodyShare, Shares};
 use crate::families::tiles::Tiles;
-use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
-use crate::lanes::isa::Isa;
+use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, PeriView};
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
-use crate::law::Moment;
-use crate::law::settle::{Settling, Sites, columns_of, moment};
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
+use crate::law::settle::{Settling, Sites, stiffen};
+use crate::law::state::SiteState;
+use crate::law::style::{Losses, Style};
+use crate::law::terms::Sum;
 use crate::shares::dues::share_sums;
 use perigrain_base::par::Shared;
-use states::{States, Sum, find_active};
+use states::{States, find_active};
 
 impl Families {
     /// Weighs all families: at their building.
@@ -38,20 +40,21 @@ impl Families {
     }
 
     /// Adds the forces of all bonds of bodies on lattices; where work is shared out to ranks, to the particles of this one.
-    pub(crate) fn sweep_lattices<K: Isa>(
+    pub(crate) fn sweep_lattices(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
         shares: Option<&mut Shares>,
     ) {
+        let form = self.form();
         let Self { lattices, options, law, table, breaking_enabled, counts_losses, .. } = self;
-        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
-        let settling = settling((law, table), options, (advance, tallied, *counts_losses));
+        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
+        let settling = law.settling(table, options, (advance, tallied, *counts_losses));
         let f = Shared::new(f);
         let mut shares = shares.into_iter().flat_map(|shares| &mut shares.bodies);
         for body in lattices {
-            lattice_body::<K>(body, view, &f, (mode, options), (&settling, shares.next()));
+            lattice_body(body, view, &f, (mode, options), (law, &settling, shares.next()));
         }
     }
 
@@ -65,7 +68,7 @@ impl Families {
         self.of_site(i, |state| &state.plastic)
     }
 
-    fn of_site(&self, i: usize, column: impl Fn(&crate::families::law::SiteState) -> &Vec<f64>) -> f64 {
+    fn of_site(&self, i: usize, column: impl Fn(&SiteState) -> &Vec<f64>) -> f64 {
         let place = self.place.get(i).copied().unwrap_or(u32::MAX);
         if place == u32::MAX {
             return 0.0;
@@ -79,21 +82,10 @@ impl Families {
     }
 }
 
-/// What turns sums into columns in an evaluation that advances or not, is tallied or not, with losses counted or not.
-pub fn settling<'a>(
-    (law, table): (&'a Law, &'a PmbTable),
-    options: &FamilyOptions,
-    (advance, tallied, counts): (bool, bool, bool),
-) -> Settling<'a> {
-    let moment = Moment { mended: options.mended, ..moment(law, advance) };
-    let compat = options.compat_lammps;
-    Settling { law, table, moment, compat, advance, tallied, counted: counts && advance }
-}
-
 /// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed; ours is compared with that one
 /// where heat is counted.
-pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling) {
-    let flows = settling.law.kind.flows();
+pub fn keep_earlier(state: &mut SiteState, law: &Style, settling: &Settling) {
+    let flows = law.flows();
     let asked = if settling.compat { settling.tallied } else { settling.counted };
     match flows && asked {
         true => state.earlier.clone_from(&state.memory),
@@ -101,33 +93,41 @@ pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Sett
     }
 }
 
+/// Notes the form in which viscous bonds remember from now on.
+pub fn hold(state: &mut SiteState, law: &Style, settling: &Settling) {
+    if settling.advance && law.losses == Losses::Relaxation {
+        state.held = settling.moment.hold;
+    }
+}
+
 /// The sweeps over one body on a lattice.
-fn lattice_body<K: Isa>(
+fn lattice_body(
     body: &mut LatticeBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
-    (settling, mut share): (&Settling, Option<&mut BodyShare>),
+    (law, settling, mut share): (&Law, &Settling, Option<&mut BodyShare>),
 ) {
-    let kind = settling.law.kind;
-    let spreads = kind.spreads();
+    let (law, loops) = (law.kind.style(), law.kind.loops(settling.compat));
+    let spreads = law.spreads();
     if spreads {
-        find_active(body, kind.memory() > 0, share.as_deref());
+        find_active(body, law.memory() > 0, share.as_deref());
     }
-    if columns_of(kind, settling.compat) > 0 {
+    if loops.about().columns > 0 {
         body.state.columns.resize(COLUMNS * body.stride, 0.0);
     }
     let mut columns = ChunkColumns::take(body);
     let mut windows = std::mem::take(&mut body.tiles.windows);
     let tiles = std::mem::take(&mut body.tiles);
-    keep_earlier(&mut body.state, settling);
+    keep_earlier(&mut body.state, law, settling);
     let mut memory = std::mem::take(&mut body.state.memory);
     let mut touched = std::mem::take(&mut body.state.touched);
     let newton = options.unit == ForceUnit::Newton;
     let particle = std::mem::take(&mut body.particle);
     let (memory_of, touched_of) = (Shared::new(&mut memory), Shared::new(&mut touched));
     let states = States {
-        kind,
+        form: mode.form,
+        law,
         compat: settling.compat,
         moment: Moment { held: body.state.held, ..settling.moment },
         keep: mode.advance,
@@ -148,7 +148,7 @@ fn lattice_body<K: Isa>(
         sums.resize(body.stride, 0.0);
         let shared = Shared::new(&mut sums);
         let sweep = Sweep::new(body, &mut columns, mode, newton, states);
-        states::all::<K>(&sweep, sum, (&tiles, &mut windows), share.as_deref_mut(), &shared);
+        states::all(&sweep, sum, (&tiles, &mut windows), share.as_deref_mut(), &shared);
         if let Some(share) = share {
             let places = |slot: usize| {
                 let cells = body.rows[slot].cells();
@@ -158,22 +158,22 @@ fn lattice_body<K: Isa>(
         }
         body.state.sums = sums;
     };
-    if !kind.bond_based() {
+    if !law.bond_based {
         add_up(body, Sum::Dilatation, states, share.as_deref_mut());
-        settling.dilatations(&mut body.state, &sites);
+        loops.dilatations(settling, &mut body.state, &sites);
     }
-    if kind == LawKind::Shaped {
-        settling.stiffen(&mut body.state, &sites);
+    if law.stiffened {
+        stiffen(settling, &mut body.state, &sites);
     }
-    if kind == LawKind::ElasticPlastic {
-        add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread, None);
-        settling.flow(&mut body.state, &sites);
+    if let Some(norm) = loops.about().norm {
+        add_up(body, norm, spread, None);
+        loops.flow(settling, &mut body.state, &sites);
     }
     (body.particle, body.scatter.stiffness) = (particle, stiffness);
     let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
-    sweep.all::<K>((&tiles, &mut windows), share, f);
+    sweep.all((&tiles, &mut windows), share, f);
     columns.give(body);
     body.tiles = Tiles { windows, ..tiles };
     (body.state.memory, body.state.touched) = (memory, touched);
-    settling.held(&mut body.state);
+    hold(&mut body.state, law, settling);
 }

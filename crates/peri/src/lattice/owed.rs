@@ -2,9 +2,10 @@
 
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::tiles::Tiles;
-use crate::lanes::isa::{Isa, Kernel};
 use crate::pass::Windows;
 use crate::shares::dues::overlap;
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::lanes::Lanes;
 use perigrain_base::par::Shared;
 
 /// Cells that are added up together: they stay in the fastest memory.
@@ -77,7 +78,8 @@ fn by_planes<const N: usize>(
 }
 
 /// Adds to the forces on a tile's particles what is owed to them.
-pub(crate) fn forces<K: Isa>(
+pub(crate) fn forces(
+    form: Form,
     body: &LatticeBody,
     (tiles, tile): (&Tiles, usize),
     windows: Windows,
@@ -86,8 +88,8 @@ pub(crate) fn forces<K: Isa>(
     by_planes(body, (tiles, tile), &windows, |plane, parts| {
         let rows = &tiles.all[tile].rows;
         let cells = [rows.start, rows.end].map(|row| body.rows[body.slot(plane, row)].start as usize);
-        // SAFETY: the processor has the set, which `Families::force` has chosen; each particle is in one cell of one tile.
-        unsafe { K::call(HandBack { cells, parts, particle: &body.particle, f }) };
+        // SAFETY: the processor has the form, which `Families::force` has chosen; each particle is in one cell of one tile.
+        unsafe { form.run(HandBack { cells, parts, particle: &body.particle, f }) };
     });
 }
 
@@ -112,10 +114,11 @@ struct HandBack<'a, 'b> {
     f: &'a Shared<'a, [f64; 3]>,
 }
 
-impl Kernel for HandBack<'_, '_> {
+impl InLanes for HandBack<'_, '_> {
     type Out = ();
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let mut sum = [[0.0; PIECE]; 3];
         for first in (self.cells[0]..self.cells[1]).step_by(PIECE) {
             let end = (first + PIECE).min(self.cells[1]);

@@ -1,31 +1,30 @@
 //! Sweeps of bond laws over a body on a lattice.
 
-use std::marker::PhantomData;
-
-use crate::energy::shares;
-use crate::families::LawKind;
 use crate::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
-use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{CELLS, Chunk, SUMS};
 use crate::lattice::energies::Looking;
-use crate::lattice::forms::{self, run, run_term};
+use crate::lattice::forms::run_term;
 use crate::lattice::kernels::Cells;
 use crate::lattice::owed;
 use crate::lattice::sweep::{Room, Sweep};
-use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
-use crate::law::{Moment, of_law};
+use crate::law::moment::Moment;
+use crate::law::style::Style;
+use crate::law::terms::{Dilatation, Norm, NormLammps, Sum, Term};
 use crate::pass::{Over, pass};
 use crate::shares::agreed;
 use crate::shares::dues::{OfLattice, with_share};
+use perigrain_base::math::form::Form;
 use perigrain_base::par::Shared;
 
 /// What the sites and bonds of a body have under their law, during one evaluation.
 #[derive(Clone, Copy)]
 pub struct States<'a> {
+    /// Which kernels.
+    pub form: Form,
     /// The law.
-    pub kind: LawKind,
+    pub law: &'static Style,
     /// LAMMPS' forces where they differ.
     pub compat: bool,
     /// What is the same for all bonds.
@@ -42,26 +41,21 @@ pub struct States<'a> {
 
 impl States<'_> {
     fn cells<'b>(&'b self, body: &LatticeBody, chunk: usize) -> Cells<'b> {
-        let place = chunk * body.stencil.len() * self.kind.memory() * LANES;
-        Cells {
-            // Columns have a place for each cell and PAD more around, memory one for each chunk; laws without them read nothing.
-            columns: body.state.columns.as_ptr().wrapping_add(PAD + chunk * LANES),
-            stride: body.stride,
-            memory: self.memory.as_ptr().wrapping_add(place),
-            touched: self.touched.as_ptr().wrapping_add(chunk),
-            // SAFETY: a place for each cell and PAD more around.
-            last: [0, 1, 2].map(|k| unsafe { body.u[0].as_ptr().add(k * body.stride + PAD + chunk * LANES) }),
-            moment: &self.moment,
-            keep: self.keep,
-            half: body.leads.half.get(chunk).copied().unwrap_or(false),
+        let (first, place) = (PAD + chunk * LANES, chunk * body.stencil.len() * self.law.memory() * LANES);
+        let columns = body.state.columns.as_ptr().wrapping_add(first);
+        let last = [0, 1, 2].map(|k| body.u[0].as_ptr().wrapping_add(k * body.stride + first));
+        let memory = self.memory.as_ptr().wrapping_add(place);
+        let touched = self.touched.as_ptr().wrapping_add(chunk);
+        let half = body.leads.half.get(chunk).copied().unwrap_or(false);
+        // SAFETY: columns and displacements have a place for each cell and PAD more around, memory one for each chunk, which is of one tile;
+        // laws without them read nothing.
+        unsafe {
+            Cells::new((columns, body.stride), last, (memory, touched), &self.moment, [self.keep, half])
         }
     }
 
     /// Adds the forces of a chunk's bonds.
-    ///
-    /// # Safety
-    /// As for `chunk::run`; nobody else touches what the chunk's bonds remember.
-    pub unsafe fn pull<K: Isa>(
+    pub fn pull(
         &self,
         body: &LatticeBody,
         chunk: usize,
@@ -69,27 +63,19 @@ impl States<'_> {
         degree: usize,
         track: bool,
     ) -> (f64, f64) {
-        let cells = self.cells(body, chunk);
-        let masked = !body.intact[chunk];
-        // SAFETY: the caller's promise.
-        unsafe {
-            of_law!(self.kind, self.compat, self.moment, W => run::<K, W>(data, &cells, degree, masked, track))
-        }
+        let law = self.law.loops_at(self.compat, &self.moment);
+        law.chunk(self.form, (data, &self.cells(body, chunk)), degree, !body.intact[chunk], track)
     }
 
     /// Energy and virial of a chunk's bonds, cell by cell; in densities but for volumes.
-    ///
-    /// # Safety
-    /// As for `chunk::run`, forces are not touched.
-    pub unsafe fn sums<K: Isa>(
+    pub fn sums(
         &self,
         body: &LatticeBody,
         chunk: usize,
         data: &Chunk,
         advanced: bool,
     ) -> [[f64; CELLS]; SUMS] {
-        let cells = self.cells(body, chunk);
-        let ((states, half), first) = (shares(self.kind, self.compat), PAD + chunk * LANES);
+        let ((states, half), first) = (self.law.shares(self.compat), PAD + chunk * LANES);
         let look = Looking {
             theta: body.state.theta.as_ptr().wrapping_add(first),
             before: body.state.before.as_ptr().wrapping_add(first),
@@ -99,31 +85,12 @@ impl States<'_> {
             states,
             advanced,
         };
-        // SAFETY: the caller's promise.
-        unsafe {
-            of_law!(self.kind, self.compat, W => K::call(forms::Sums::<W> {
-                chunk: data,
-                cells: &cells,
-                look: &look,
-                law: PhantomData,
-            }))
-        }
+        self.law.loops(self.compat).chunk_sums(self.form, (data, &self.cells(body, chunk)), &look)
     }
 }
 
-/// The sums of a sweep: which.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sum {
-    /// Dilatations.
-    Dilatation,
-    /// Norms of trial states.
-    Norm,
-    /// The same as LAMMPS reckons them.
-    NormLammps,
-}
-
 /// Adds the terms of all bonds to `sums`, which has [`PAD`] entries before the first cell.
-pub(crate) fn all<K: Isa>(
+pub(crate) fn all(
     sweep: &Sweep,
     sum: Sum,
     (tiles, windows): (&Tiles, &mut [TileWindow]),
@@ -134,22 +101,22 @@ pub(crate) fn all<K: Isa>(
     with_share(&owing, share, |share| {
         pass(
             Over { graph: &tiles.graph, windows, times: &[], share },
-            |at, window| tile::<K>(sweep, sum, (tiles, at), window),
+            |at, window| tile(sweep, sum, (tiles, at), window),
             |at, windows| owed::sums(sweep.body(), (tiles, at), windows, sums),
         )
     });
 }
 
 /// Adds the terms of the bonds of one tile's cells to its window; returns whether any was not at rest.
-fn tile<K: Isa>(sweep: &Sweep, sum: Sum, tile: (&Tiles, usize), window: &mut TileWindow) -> bool {
+fn tile(sweep: &Sweep, sum: Sum, tile: (&Tiles, usize), window: &mut TileWindow) -> bool {
     match sum {
-        Sum::Dilatation => add_up::<K, Dilatation>(sweep, tile, window),
-        Sum::Norm => add_up::<K, Norm>(sweep, tile, window),
-        Sum::NormLammps => add_up::<K, NormLammps>(sweep, tile, window),
+        Sum::Dilatation => add_up::<Dilatation>(sweep, tile, window),
+        Sum::Norm => add_up::<Norm>(sweep, tile, window),
+        Sum::NormLammps => add_up::<NormLammps>(sweep, tile, window),
     }
 }
 
-fn add_up<K: Isa, T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
+fn add_up<T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
     let body = sweep.body();
     let mut room = Room { body, tiles, tile, components: 1, window, open: false };
     for (slot, first) in room.rows() {
@@ -163,11 +130,10 @@ fn add_up<K: Isa, T: Term>(sweep: &Sweep, (tiles, tile): (&Tiles, usize), window
             }
             let degree = sweep.degree(chunk, &plan);
             let cell = chunk * LANES;
-            let mut data = sweep.chunk((slot, cell), body.stencil.len(), room.at(cell, first));
-            data.tables = &body.state.tables;
+            let tables = &body.state.tables;
+            let data = sweep.chunk((slot, cell), tables, room.at(cell, first));
             let cells = sweep.states().cells(body, chunk);
-            // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            unsafe { run_term::<K, T>(&data, &cells, degree, !body.intact[chunk]) };
+            run_term::<T>(sweep.states().form, (&data, &cells), degree, !body.intact[chunk]);
         }
     }
     room.open

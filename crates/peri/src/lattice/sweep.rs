@@ -3,10 +3,11 @@
 //! Rows, stencil, bits of bonds and lengths of columns are as `setup::lattice` makes them; of bodies from restart files
 //! `families::sound` has looked at each of them.
 
-use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
+use crate::families::lattice::{
+    LANES, LatticeBody, MAY_BREAK, PAD, PAGE, RowMotion, SQUEEZED, STAGGER, staggered,
+};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::{TileWindow, Tiles};
-use crate::lanes::isa::Isa;
 use crate::lattice::chunk::{self, Chunk, Various};
 use crate::lattice::leads::{ahead, find_leads, row_limit};
 use crate::lattice::owed;
@@ -15,6 +16,7 @@ use crate::law::polynomials::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::law::series::{UP_TO_3, UP_TO_5, UP_TO_7};
 use crate::pass::{Over, pass};
 use crate::shares::dues::{OfLattice, with_share};
+use perigrain_base::math::form::Form;
 use perigrain_base::par::Shared;
 
 /// How one force evaluation treats the bonds of a body.
@@ -26,15 +28,12 @@ pub struct Mode {
     pub breaking_enabled: bool,
     /// Leave out what is at rest.
     pub skip: bool,
+    /// Which kernels.
+    pub form: Form,
 }
 
 /// Any coordinate.
 const EVERYWHERE: (i32, i32) = (i32::MIN, i32::MAX);
-
-/// Bits of [`LatticeBody::flagged`].
-pub const MAY_BREAK: u8 = 1;
-/// Bonded pairs close enough for short-range contact.
-pub const SQUEEZED: u8 = 2;
 
 /// One body during one force evaluation, with the columns that its tiles write.
 pub struct Sweep<'a> {
@@ -121,7 +120,7 @@ impl<'a> Sweep<'a> {
 
     /// Adds the forces of all bonds to `f`.
     /// Of several ranks each sweeps its share.
-    pub(crate) fn all<K: Isa>(
+    pub(crate) fn all(
         &self,
         (tiles, windows): (&Tiles, &mut [TileWindow]),
         share: Option<&mut BodyShare>,
@@ -131,19 +130,19 @@ impl<'a> Sweep<'a> {
         with_share(&owing, share, |share| {
             pass(
                 Over { graph: &tiles.graph, windows, times: &tiles.graph.times, share },
-                |tile, window| self.tile::<K>((tiles, tile), window),
-                |tile, windows| owed::forces::<K>(self.body, (tiles, tile), windows, f),
+                |tile, window| self.tile((tiles, tile), window),
+                |tile, windows| owed::forces(self.mode.form, self.body, (tiles, tile), windows, f),
             );
         });
     }
 
     /// Sweeps a tile: the forces of its cells' bonds go into its window. Returns whether any bond was not at rest; else the
     /// window is not touched.
-    fn tile<K: Isa>(&self, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
+    fn tile(&self, (tiles, tile): (&Tiles, usize), window: &mut TileWindow) -> bool {
         let mut room = Room { body: self.body, tiles, tile, components: 3, window, open: false };
         for (slot, first) in room.rows() {
             let plan = self.plan(slot);
-            self.row::<K>(slot, &plan, &mut room, first);
+            self.row(slot, &plan, &mut room, first);
         }
         room.open
     }
@@ -177,7 +176,7 @@ impl<'a> Sweep<'a> {
         // SAFETY: a row belongs to one tile.
         let growth = unsafe { &mut self.growth.get(slot..slot + 1)[0] };
         let spread = self.states.spread;
-        let motion = (!spread || self.states.kind.bond_based()).then(|| self.motion(slot));
+        let motion = (!spread || self.states.law.bond_based).then(|| self.motion(slot));
         if let Some(motion) = &motion {
             let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
             let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -212,10 +211,9 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps a row's chunks; `first` is the cell with which the window would begin were all its planes like this one.
-    fn row<K: Isa>(&self, slot: usize, plan: &RowPlan, room: &mut Room, first: usize) {
+    fn row(&self, slot: usize, plan: &RowPlan, room: &mut Room, first: usize) {
         let body = self.body;
         let row = &body.rows[slot];
-        let entries = body.stencil.len();
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
         // SAFETY: a row's chunks belong to it alone, and a row to one tile.
         let (tension, compression, measure, floors, flagged) = unsafe {
@@ -247,9 +245,8 @@ impl<'a> Sweep<'a> {
             let due = fragile || squeezed || bound >= f64::from(measure[k]);
             let track = !rest && (due || !self.mode.advance);
             let cell = chunk * LANES;
-            let chunk_data = self.chunk((slot, cell), entries, room.at(cell, first));
-            // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            let measured = unsafe { self.states.pull::<K>(body, chunk, &chunk_data, degree, track) };
+            let chunk_data = self.chunk((slot, cell), &body.tables, room.at(cell, first));
+            let measured = self.states.pull(body, chunk, &chunk_data, degree, track);
             if track {
                 (high, low) = measured;
                 if fragile && high >= floor {
@@ -270,28 +267,27 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// What the loop over a chunk's bonds needs, with the place of its cells in a window.
-    pub(crate) fn chunk(&self, (slot, cell): (usize, usize), entries: usize, f: [*mut f64; 3]) -> Chunk<'_> {
-        let body = self.body;
+    /// What the loop over a chunk's bonds needs, with constants, and the place of its cells in a window.
+    pub(crate) fn chunk<'b>(
+        &'b self,
+        (slot, cell): (usize, usize),
+        tables: &'b [f64],
+        f: [*mut f64; 3],
+    ) -> Chunk<'b> {
+        let (body, entries) = (self.body, self.body.stencil.len());
         let u = body.u[1].as_ptr();
         let various = (!body.cell_kind.is_empty()).then(|| Various {
-            // SAFETY: within the column, which has a place for each cell and PAD more around.
-            kind: unsafe { body.cell_kind.as_ptr().add(PAD + cell) },
-            // SAFETY: as above.
-            volume: unsafe { body.cell_volume.as_ptr().add(PAD + cell) },
+            kind: body.cell_kind.as_ptr().wrapping_add(PAD + cell),
+            volume: body.cell_volume.as_ptr().wrapping_add(PAD + cell),
             pairs: &body.pairs,
             kinds: body.kinds.len(),
             newton: self.newton,
         });
-        Chunk {
-            // SAFETY: within `u`, as above.
-            u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + cell) }),
-            f,
-            alive: &body.alive[cell / LANES * entries..][..entries],
-            to: body.leads_of(slot),
-            tables: &body.tables,
-            various,
-        }
+        let u = [0, 1, 2].map(|k| u.wrapping_add(k * body.stride + PAD + cell));
+        let alive = &body.alive[cell / LANES * entries..][..entries];
+        // SAFETY: columns have a place for each cell and PAD more around; live bonds lead to cells of the body that the window covers, which
+        // has PAD cells around as well.
+        unsafe { Chunk::new((u, f), (alive, body.leads_of(slot), tables), various) }
     }
 }
 

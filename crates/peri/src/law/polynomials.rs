@@ -4,7 +4,7 @@
 //! through the zeros of a Chebyshev polynomial of the same degree are exact to 5e-16 over a whole range. Eight bonds' root
 //! and division take some 40 cycles, the longer of these polynomials 8.
 
-use crate::lanes::Lanes;
+use perigrain_base::math::real::Real;
 
 /// The degree of the shorter polynomials.
 pub const FAR: usize = 10;
@@ -16,51 +16,33 @@ pub const FARTHEST: usize = 16;
 pub const UP_TO_FARTHEST: f64 = 0.25;
 
 /// s/(1 + s) over z.
-///
-/// # Safety
-/// See [`Lanes`].
 #[inline(always)]
-pub unsafe fn share<L: Lanes, const DEGREE: usize>(z: L) -> L {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        match DEGREE {
-            FAR => polynomial(z, &SHARE_10),
-            _ => polynomial(z, &SHARE_16),
-        }
+pub fn share<R: Real, const DEGREE: usize>(z: R) -> R {
+    match DEGREE {
+        FAR => polynomial(z, &SHARE_10),
+        _ => polynomial(z, &SHARE_16),
     }
 }
 
 /// s over z.
-///
-/// # Safety
-/// See [`Lanes`].
 #[inline(always)]
-pub unsafe fn stretch<L: Lanes, const DEGREE: usize>(z: L) -> L {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        match DEGREE {
-            FAR => polynomial(z, &STRETCH_10),
-            _ => polynomial(z, &STRETCH_16),
-        }
+pub fn stretch<R: Real, const DEGREE: usize>(z: R) -> R {
+    match DEGREE {
+        FAR => polynomial(z, &STRETCH_10),
+        _ => polynomial(z, &STRETCH_16),
     }
 }
 
 /// Σ `terms[k]` z^k.
-///
-/// # Safety
-/// See [`Lanes`].
 #[inline(always)]
-pub unsafe fn polynomial<L: Lanes, const N: usize>(z: L, terms: &[f64; N]) -> L {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let mut sum = L::splat(terms[N - 1]);
-        let mut k = N - 1;
-        while k > 0 {
-            k -= 1;
-            sum = sum.fma(z, L::splat(terms[k]));
-        }
-        sum
+pub fn polynomial<R: Real, const N: usize>(z: R, terms: &[f64; N]) -> R {
+    let mut sum = z.like(terms[N - 1]);
+    let mut k = N - 1;
+    while k > 0 {
+        k -= 1;
+        sum = sum.fma(z, z.like(terms[k]));
     }
+    sum
 }
 
 const SHARE_10: [f64; 11] = [
@@ -131,17 +113,13 @@ const STRETCH_16: [f64; 17] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Portable;
 
     /// Both polynomials over the closed forms, at many places of a range.
     fn compare<const DEGREE: usize>(edge: f64) {
         for k in -1000..=1000 {
             let z = edge * f64::from(k) / 1000.0;
             let root = (1.0 + z).sqrt();
-            // SAFETY: the portable form runs anywhere.
-            let (share, stretch) = unsafe {
-                (share::<_, DEGREE>(Portable::splat(z)).0[0], stretch::<_, DEGREE>(Portable::splat(z)).0[0])
-            };
+            let (share, stretch) = (share::<_, DEGREE>(z), stretch::<_, DEGREE>(z));
             // Truncation below 5e-16 and a few roundings of 1e-16.
             assert!((share * (root * (1.0 + root)) - 1.0).abs() < 1.5e-15, "{DEGREE} {z}");
             assert!((stretch * (1.0 + root) - 1.0).abs() < 1.5e-15, "{DEGREE} {z}");

@@ -14,19 +14,57 @@
 //! D = ∫₀^{s_m} g ds − ½ g(s_m) s_m, each over c w |xi| V. Whole families release πcδ⁵/5 ∫ g ds for each area of a crack
 //! (Silling & Askari 2005, equation 21, where ∫ g ds = ½ s₀²).
 
-use crate::families::law::COLUMNS;
-use crate::lanes::Lanes;
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch};
+use crate::law::formula::{Angles, BondLaw};
+use crate::law::material::Moduli;
+use crate::law::moment::{COLUMNS, Moment};
+use crate::law::stretch::{Ends, Stretch};
+use crate::law::style::{Bound, Curve, Losses, Number, Style};
+use perigrain_base::math::real::Real;
+
+/// The linear law of decks.
+pub static LINEAR: Style = Style {
+    curve: Some(Curve {
+        // A triangle.
+        beyond: |area, peak| 2.0 * area / peak - peak,
+        twice_area: |peak, last| peak * last,
+        scaled: |(_, last), factor| factor * last,
+    }),
+    ..Style { name: "softening/linear", number: 8, ..softening::<Softening<false>>() }
+};
+
+/// The exponential one.
+pub static EXPONENTIAL: Style = Style {
+    curve: Some(Curve {
+        // a (1 − REST) times the peak.
+        beyond: |area, peak| (area / peak - 0.5 * peak) / (1.0 - REST) * -REST.ln(),
+        twice_area: |peak, last| peak * peak + 2.0 * peak * (last - peak) / -REST.ln() * (1.0 - REST),
+        scaled: last_of_area,
+    }),
+    ..Style { name: "softening/exponential", number: 9, ..softening::<Softening<true>>() }
+};
+
+/// What both have.
+const fn softening<W: BondLaw>() -> Style {
+    Style {
+        bond_based: true,
+        losses: Losses::Damage,
+        numbers: &[Number {
+            keyword: "peak",
+            what: ["the stretch at the peak"; 2],
+            bound: Bound::Positive,
+            of: |m| &mut m.peak,
+        }],
+        edge: Some(|m: &Moduli| m.peak),
+        ..Style::of::<W>("", 0)
+    }
+}
 
 /// What is left of the peak where an exponential bond breaks.
-pub const REST: f64 = 1e-3;
+const REST: f64 = 1e-3;
 
-/// The stretch at which nothing is left of a bond whose curve has this peak and `factor` times the area of one that ends at `last`.
-pub fn last_of_area(exponential: bool, (peak, last): (f64, f64), factor: f64) -> f64 {
-    if !exponential {
-        // A triangle of this height.
-        return factor * last;
-    }
+/// The stretch at which nothing is left of an exponential bond whose curve has this peak and `factor` times the area of one that ends
+/// at `last`.
+fn last_of_area((peak, last): (f64, f64), factor: f64) -> f64 {
     let (rise, scale) = (0.5 * peak * peak, (last - peak) / -REST.ln());
     let beyond = peak * scale * (1.0 - REST);
     peak + (last - peak) * (factor * (rise + beyond) - rise) / beyond
@@ -36,77 +74,62 @@ pub fn last_of_area(exponential: bool, (peak, last): (f64, f64), factor: f64) ->
 pub struct Softening<const EXPONENTIAL: bool>;
 
 /// A bond beyond its peak.
-struct Grown<L> {
+struct Grown<R> {
     /// d.
-    damage: L,
+    damage: R,
     /// The largest stretch so far if that was beyond the peak, else 0; of a linear bond always 0.
-    most: L,
+    most: R,
 }
 
 impl<const EXPONENTIAL: bool> Softening<EXPONENTIAL> {
     /// The damage once a bond has been stretched by s, and the largest stretch.
     #[inline(always)]
-    unsafe fn grown<L: Lanes>(bond: &Stretch<L>, peak: L, memory: &[L; 2]) -> Grown<L> {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            // Nothing is divided by zero where no bond lives and both stretches are; nor by the square of this.
-            let tiny = L::splat(TINY);
-            let one = L::splat(1.0);
-            let room = bond.limit.sub(peak).max(tiny);
-            if !EXPONENTIAL {
-                let s = bond.s.max(peak).max(tiny);
-                let share = peak.mul(bond.limit.sub(s).max(L::splat(0.0))).div(room.mul(s));
-                return Grown { damage: memory[0].max(one.sub(share)), most: memory[1] };
-            }
-            let known = memory[1].max(peak).max(tiny);
-            let grows = bond.s.sub(known).ge(tiny);
-            if grows.bits() == 0 {
-                return Grown { damage: memory[0], most: memory[1] };
-            }
-            let s = bond.s.max(known);
-            // Few bonds grow in a step: exponentials one by one, so that their bits do not depend on the width.
-            let rate = L::splat(REST.ln()).div(room);
-            let (mut exponents, mut left) = ([0.0f64; MOST], [0.0f64; MOST]);
-            s.sub(peak).mul(rate).store(exponents.as_mut_ptr());
-            for (left, exponent) in left.iter_mut().zip(exponents).take(L::WIDTH) {
-                *left = exponent.exp();
-            }
-            let share = peak.mul(L::load(left.as_ptr())).div(s);
-            Grown { damage: memory[0].max(one.sub(share)), most: memory[1].max(bond.s.keep(grows)) }
+    fn grown<R: Real>(bond: &Stretch<R>, peak: R, memory: &[R; 2]) -> Grown<R> {
+        // Nothing is divided by zero where no bond lives and both stretches are; nor by the square of this.
+        let tiny = peak.like(TINY);
+        let one = peak.like(1.0);
+        let room = (bond.limit - peak).most(tiny);
+        if !EXPONENTIAL {
+            let s = bond.s.most(peak).most(tiny);
+            let share = peak * (bond.limit - s).most(peak.like(0.0)) / (room * s);
+            return Grown { damage: memory[0].most(one - share), most: memory[1] };
         }
+        let known = memory[1].most(peak).most(tiny);
+        let grows = (bond.s - known).at_least(tiny);
+        if !R::any(grows) {
+            return Grown { damage: memory[0], most: memory[1] };
+        }
+        let s = bond.s.most(known);
+        // Few bonds grow in a step: exponentials one by one, so that their bits do not depend on the width.
+        let left = ((s - peak) * (peak.like(REST.ln()) / room)).each(f64::exp);
+        let share = peak * left / s;
+        Grown { damage: memory[0].most(one - share), most: memory[1].most(bond.s.keep(grows)) }
     }
 
     /// s times 1 − d in tension: half its product with s is the energy.
     #[inline(always)]
-    unsafe fn tension<L: Lanes>(s: L, damage: L) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe { s.sub(damage.mul(s.max(L::splat(0.0)))) }
+    fn tension<R: Real>(s: R, damage: R) -> R {
+        s - damage * s.most(s.like(0.0))
     }
 
     /// Twice D.
     #[inline(always)]
-    unsafe fn lost<L: Lanes>(limit: L, peak: L, memory: &[L; 2]) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let tiny = L::splat(TINY);
-            let intact = L::splat(1.0).sub(memory[0]);
-            if !EXPONENTIAL {
-                // g = s₀ s_f (1 − d)/((1 − d)(s_f − s₀) + s₀), and a triangle of height s₀ − g over s_f.
-                let below = intact.mul(limit.sub(peak)).add(peak).max(tiny);
-                let force = peak.mul(limit).mul(intact).div(below);
-                return limit.mul(peak.sub(force));
-            }
-            // The envelope's integral up to s_m: ½ s₀² + a (s₀ − g).
-            let most = memory[1].max(peak);
-            let force = intact.mul(most);
-            let scale = limit.sub(peak).mul(L::splat(-2.0 / REST.ln()));
-            peak.mul(peak).add(scale.mul(peak.sub(force))).sub(force.mul(most))
+    fn lost<R: Real>(limit: R, peak: R, memory: &[R; 2]) -> R {
+        let intact = peak.like(1.0) - memory[0];
+        if !EXPONENTIAL {
+            // g = s₀ s_f (1 − d)/((1 − d)(s_f − s₀) + s₀), and a triangle of height s₀ − g over s_f.
+            let below = (intact * (limit - peak) + peak).most(peak.like(TINY));
+            let force = peak * limit * intact / below;
+            return limit * (peak - force);
         }
+        // The envelope's integral up to s_m: ½ s₀² + a (s₀ − g).
+        let most = memory[1].most(peak);
+        let force = intact * most;
+        let scale = (limit - peak) * (-2.0 / REST.ln());
+        peak * peak + scale * (peak - force) - force * most
     }
 }
 
-/// The most lanes.
-const MOST: usize = 8;
 /// Far below any stretch.
 const TINY: f64 = 1e-150;
 
@@ -117,89 +140,64 @@ impl<const EXPONENTIAL: bool> BondLaw for Softening<EXPONENTIAL> {
     const LIMITED: bool = true;
     const ALL_FORMS: bool = false;
     #[inline(always)]
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        peak: L,
-        _: &Ends<L>,
-        memory: &mut [L; 2],
-        _: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let grown = Self::grown(bond, peak, memory);
-            *memory = [grown.damage, grown.most];
-            let pull = Self::tension(bond.s, grown.damage).mul(bond.inverse);
-            (pull, pull)
-        }
+    fn pull<R: Real>(bond: &Stretch<R>, peak: R, _: &Ends<R>, memory: &mut [R; 2], _: &Moment) -> (R, R) {
+        let grown = Self::grown(bond, peak, memory);
+        *memory = [grown.damage, grown.most];
+        let pull = Self::tension(bond.s, grown.damage) * bond.inverse;
+        (pull, pull)
     }
     #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        peak: L,
-        _: &[Angles<L>; 2],
-        memory: &[L; 2],
+    fn squares<R: Real>(
+        bond: &Stretch<R>,
+        peak: R,
+        _: &[Angles<R>; 2],
+        memory: &[R; 2],
         moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            if moment.lost {
-                let lost = Self::lost(bond.limit, peak, memory);
-                return (lost, lost);
-            }
-            let grown = Self::grown(bond, peak, memory);
-            let square = Self::tension(bond.s, grown.damage).mul(bond.s);
-            (square, square)
+    ) -> (R, R) {
+        if moment.lost {
+            let lost = Self::lost(bond.limit, peak, memory);
+            return (lost, lost);
         }
+        let grown = Self::grown(bond, peak, memory);
+        let square = Self::tension(bond.s, grown.damage) * bond.s;
+        (square, square)
     }
     #[inline(always)]
-    unsafe fn relaxing<L: Lanes>(_: &[L; COLUMNS], _: &Moment) -> L {
-        // SAFETY: passed on to the caller.
-        unsafe { L::splat(0.0) }
+    fn relaxing<R: Real>(end: &[R; COLUMNS], _: &Moment) -> R {
+        end[0].like(0.0)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::single::Single;
 
     const PEAK: f64 = 1e-3;
     const LIMIT: f64 = 9e-3;
 
-    fn bond(s: f64) -> Stretch<Single> {
-        let inverse = Single(1.0 / (1.0 + s));
-        Stretch {
-            s: Single(s),
-            share: Single(s / (1.0 + s)),
-            inverse,
-            before: Single(s),
-            limit: Single(LIMIT),
-        }
+    fn bond(s: f64) -> Stretch<f64> {
+        let inverse = 1.0 / (1.0 + s);
+        Stretch { s, share: s / (1.0 + s), inverse, before: s, limit: LIMIT }
     }
 
     /// One bond on its way, for a law of either curve.
-    struct Way<const E: bool>([Single; 2]);
+    struct Way<const E: bool>([f64; 2]);
 
     impl<const E: bool> Way<E> {
         /// g of a stretch that is kept.
         fn to(&mut self, s: f64) -> f64 {
-            let ends = [[Single(0.0); COLUMNS]; 2];
-            // SAFETY: plain arithmetic.
-            let (near, far) = unsafe {
-                Softening::<E>::pull(&bond(s), Single(PEAK), &ends, &mut self.0, &Moment::default())
-            };
-            assert_eq!(near.0, far.0);
-            near.0 * (1.0 + s)
+            let ends = [[0.0; COLUMNS]; 2];
+            let (near, far) = Softening::<E>::pull(&bond(s), PEAK, &ends, &mut self.0, &Moment::default());
+            assert_eq!(near, far);
+            near * (1.0 + s)
         }
         /// Energy held and lost, over c w |xi| V.
         fn energies(&self, s: f64) -> [f64; 2] {
             [false, true].map(|lost| {
-                let none = Angles { now: Single(0.0), unrelaxed: Single(0.0), relaxing: Single(0.0) };
+                let none = Angles { now: 0.0, unrelaxed: 0.0, relaxing: 0.0 };
                 let moment = Moment { lost, ..Moment::default() };
-                // SAFETY: plain arithmetic.
-                let squares =
-                    unsafe { Softening::<E>::squares(&bond(s), Single(PEAK), &[none; 2], &self.0, &moment) };
-                0.5 * squares.0.0
+                let squares = Softening::<E>::squares(&bond(s), PEAK, &[none; 2], &self.0, &moment);
+                0.5 * squares.0
             })
         }
     }
@@ -220,14 +218,15 @@ mod tests {
                 true => 0.5 * PEAK * PEAK + PEAK * (last - PEAK) / -REST.ln() * (1.0 - REST),
             };
             for factor in [0.6, 1.0, 2.5] {
-                let last = last_of_area(exponential, (PEAK, LIMIT), factor);
+                let style = if exponential { &EXPONENTIAL } else { &LINEAR };
+                let last = (style.curve.as_ref().unwrap().scaled)((PEAK, LIMIT), factor);
                 assert!((area(last) / area(LIMIT) - factor).abs() < 1e-14, "{exponential} {factor}");
             }
         }
     }
 
     fn follows_the_envelope<const E: bool>() {
-        let mut way = Way::<E>([Single(0.0); 2]);
+        let mut way = Way::<E>([0.0; 2]);
         for k in 0..=1000 {
             let s = LIMIT * f64::from(k) / 1000.0;
             // Some roundings of 1e-16 of the peak.
@@ -242,7 +241,7 @@ mod tests {
     }
 
     fn goes_back_to_the_origin<const E: bool>() {
-        let mut way = Way::<E>([Single(0.0); 2]);
+        let mut way = Way::<E>([0.0; 2]);
         let most = 3e-3;
         let top = way.to(most);
         for part in [0.9, 0.5, 0.0, 0.7, 1.0] {
@@ -259,7 +258,7 @@ mod tests {
     }
 
     fn energy_is_the_integral_of_the_force<const E: bool>() {
-        let mut way = Way::<E>([Single(0.0); 2]);
+        let mut way = Way::<E>([0.0; 2]);
         let (mut work, mut s, mut g) = (0.0, 0.0, 0.0);
         // Up, back, into compression, up beyond where it was, back, and up until nothing is left.
         for goal in [2e-3, 0.5e-3, -1e-3, 4e-3, 0.0, LIMIT] {
@@ -290,20 +289,13 @@ mod tests {
 
     #[test]
     fn what_is_no_bond_gives_no_nonsense() {
-        let dead = Stretch { limit: Single(0.0), ..bond(0.0) };
-        let ends = [[Single(0.0); COLUMNS]; 2];
+        let dead = Stretch { limit: 0.0, ..bond(0.0) };
+        let ends = [[0.0; COLUMNS]; 2];
         for before in [[0.0; 2], [0.3, 2e-3]] {
-            // SAFETY: plain arithmetic.
-            let (a, b) = unsafe {
-                let mut memory = before.map(Single);
-                let linear =
-                    Softening::<false>::pull(&dead, Single(0.0), &ends, &mut memory, &Moment::default());
-                let mut memory = before.map(Single);
-                let other =
-                    Softening::<true>::pull(&dead, Single(0.0), &ends, &mut memory, &Moment::default());
-                (linear.0.0, other.0.0)
-            };
-            assert!(a == 0.0 && b == 0.0);
+            let moment = Moment::default();
+            let (linear, _) = Softening::<false>::pull(&dead, 0.0, &ends, &mut before.clone(), &moment);
+            let (other, _) = Softening::<true>::pull(&dead, 0.0, &ends, &mut before.clone(), &moment);
+            assert!(linear == 0.0 && other == 0.0);
         }
     }
 }

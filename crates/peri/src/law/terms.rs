@@ -1,7 +1,18 @@
 //! What state-based laws add up over bonds before there are forces: dilatations and norms of trial states.
 
-use crate::lanes::Lanes;
-use crate::law::{Ends, Stretch};
+use crate::law::stretch::{Ends, Stretch};
+use perigrain_base::math::real::Real;
+
+/// The sums of a sweep: which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sum {
+    /// Dilatations.
+    Dilatation,
+    /// Norms of trial states.
+    Norm,
+    /// The same as LAMMPS reckons them.
+    NormLammps,
+}
 
 /// What a sweep adds up at both ends before there are forces.
 pub trait Term: Sync {
@@ -12,10 +23,7 @@ pub trait Term: Sync {
     /// Whether it is the stretch itself, for which there are series.
     const STRETCH: bool;
     /// The terms at both ends, over ω w |xi|² V.
-    ///
-    /// # Safety
-    /// See [`Lanes`].
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, ends: &Ends<L>, memory: &[L; 2]) -> (L, L);
+    fn terms<R: Real>(bond: &Stretch<R>, omega: R, ends: &Ends<R>, memory: &[R; 2]) -> (R, R);
 }
 
 /// The dilatation: Σ ω w |xi|² s V = mθ/3.
@@ -26,19 +34,18 @@ impl Term for Dilatation {
     const MEMORY: usize = 0;
     const STRETCH: bool = true;
     #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, _: L, _: &Ends<L>, _: &[L; 2]) -> (L, L) {
+    fn terms<R: Real>(bond: &Stretch<R>, _: R, _: &Ends<R>, _: &[R; 2]) -> (R, R) {
         (bond.s, bond.s)
     }
 }
 
 /// The trial state s − θ/3 − e_p of both ends; θ/3 is column 2.
 #[inline(always)]
-unsafe fn trial<L: Lanes>(bond: &Stretch<L>, [own, far]: &Ends<L>, memory: &[L; 2]) -> (L, L) {
-    // SAFETY: passed on to the caller.
-    unsafe { (bond.s.sub(own[2]).sub(memory[0]), bond.s.sub(far[2]).sub(memory[1])) }
+fn trial<R: Real>(bond: &Stretch<R>, [own, far]: &Ends<R>, memory: &[R; 2]) -> (R, R) {
+    (bond.s - own[2] - memory[0], bond.s - far[2] - memory[1])
 }
 
-/// The squared norm of the trial state over (15G/m)²: Σ ω² w |xi|² (s − θ/3 − e_p)² V. Columns as [`crate::law::Plastic`].
+/// The squared norm of the trial state over (15G/m)²: Σ ω² w |xi|² (s − θ/3 − e_p)² V. Columns as `eps` has them.
 pub struct Norm;
 
 impl Term for Norm {
@@ -46,12 +53,9 @@ impl Term for Norm {
     const MEMORY: usize = 2;
     const STRETCH: bool = false;
     #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, ends: &Ends<L>, memory: &[L; 2]) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let (a, b) = trial(bond, ends, memory);
-            (a.mul(a).mul(omega), b.mul(b).mul(omega))
-        }
+    fn terms<R: Real>(bond: &Stretch<R>, omega: R, ends: &Ends<R>, memory: &[R; 2]) -> (R, R) {
+        let (a, b) = trial(bond, ends, memory);
+        (a * a * omega, b * b * omega)
     }
 }
 
@@ -64,13 +68,10 @@ impl Term for NormLammps {
     const MEMORY: usize = 2;
     const STRETCH: bool = false;
     #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, ends: &Ends<L>, memory: &[L; 2]) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let both = ends[0][0].add(ends[1][0]);
-            let (a, b) = trial(bond, ends, memory);
-            let (a, b) = (a.mul(both), b.mul(both));
-            (a.mul(a).mul(omega), b.mul(b).mul(omega))
-        }
+    fn terms<R: Real>(bond: &Stretch<R>, omega: R, ends: &Ends<R>, memory: &[R; 2]) -> (R, R) {
+        let both = ends[0][0] + ends[1][0];
+        let (a, b) = trial(bond, ends, memory);
+        let (a, b) = (a * both, b * both);
+        (a * a * omega, b * b * omega)
     }
 }

@@ -1,8 +1,7 @@
 //! What a bond counts in sums and forces, and its stretch, one bond at a time: for tables and single bonds.
 
 use crate::families::{FamilyOptions, Influence, Law};
-use crate::lanes::single::Single;
-use crate::law::{Stretch, closed};
+use crate::law::stretch::{Stretch, closed};
 
 /// What a bond counts.
 #[derive(Clone, Copy)]
@@ -16,7 +15,7 @@ pub enum Weighing {
 impl Weighing {
     /// That of a law.
     pub fn of(law: &Law) -> Self {
-        match law.kind.bond_based() {
+        match law.kind.bond_based {
             true => Self::Bond(law.shape()),
             false => Self::Influence(law.influence),
         }
@@ -35,11 +34,10 @@ impl Weighing {
 }
 
 /// A stretch, none inside the dead band; `before` as now.
-pub fn banded(z: f64, length: f64, options: &FamilyOptions) -> Stretch<Single> {
-    // SAFETY: plain arithmetic.
-    let mut stretch = unsafe { closed(Single(z)) };
+pub fn banded(z: f64, length: f64, options: &FamilyOptions) -> Stretch<f64> {
+    let mut stretch = closed(z);
     if z.abs() < options.dead_band(length) {
-        (stretch.s, stretch.share, stretch.before) = (Single(0.0), Single(0.0), Single(0.0));
+        (stretch.s, stretch.share, stretch.before) = (0.0, 0.0, 0.0);
     }
     stretch
 }

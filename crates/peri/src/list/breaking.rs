@@ -9,12 +9,13 @@ use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
 use crate::families::{Candidate, FamilyOptions};
-use crate::lanes::isa::{Isa, Kernel};
 use crate::lattice::sweep::Mode;
 use crate::law::series::stretch;
 use crate::list::kernel::{Block, LAST, MOST, Row, Rules, partners};
 use crate::list::tiles::{self, ROW};
 use crate::shares::dues::share_sums;
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::lanes::Lanes;
 use perigrain_base::par::Shared;
 
 /// Bonds keep measures when the most stretched of them has come this close to its limit.
@@ -87,7 +88,7 @@ impl Judge {
 
     /// Notes which of the bonds in hand may break.
     #[inline]
-    pub fn note<K: Isa>(&self, row: &Row, b: &Block, strained: &mut Vec<(u32, f64)>) {
+    pub fn note(&self, form: Form, row: &Row, b: &Block, strained: &mut Vec<(u32, f64)>) {
         if !self.breaking_enabled || b.high < self.floor {
             return;
         }
@@ -96,7 +97,7 @@ impl Judge {
         // Several bonds at a time where limits are those of a pair of types, raised by measures.
         let alike = self.known && !self.critical && !body.scatter.uneven();
         // SAFETY: the kernels are those that the processor has; bonds in hand are those of the body.
-        unsafe { K::call(Weak { judge: self, row, b, alike, weak: &mut weak }) };
+        unsafe { form.run(Weak { judge: self, row, b, alike, weak: &mut weak }) };
         for (k, mut bits) in weak.into_iter().enumerate() {
             while bits != 0 {
                 let at = GROUP * k + bits.trailing_zeros() as usize;
@@ -132,39 +133,41 @@ struct Weak<'a, 'b> {
     weak: &'a mut [u8; MOST / GROUP],
 }
 
-impl Kernel for Weak<'_, '_> {
+impl InLanes for Weak<'_, '_> {
     type Out = ();
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let Self { judge, row, b, alike, weak } = self;
         let body = row.body;
         // SAFETY: blocks hold `count` bonds of the body, whole groups; where measures are known, each record has one.
         unsafe {
-            let (floor, z) = (L::splat(judge.floor), b.z.as_ptr());
+            let zero = V::all(0.0);
+            let (floor, z) = (zero.like(judge.floor), b.z.as_ptr());
             for first in (0..b.count).step_by(GROUP) {
                 let mut bits = 0;
-                for v in (0..GROUP).step_by(L::WIDTH) {
-                    bits |= L::load(z.add(first + v)).ge(floor).bits() << v;
+                for v in (0..GROUP).step_by(N) {
+                    bits |= V::mask_bits(V::read(z.add(first + v)).at_least(floor)) << v;
                 }
                 let place = *b.place.get_unchecked(first / GROUP) as usize;
                 bits &= *body.alive.get_unchecked(place / GROUP);
                 let pair = body.constants(place);
                 if bits != 0 && alike {
                     let least = body.limits.least.as_ptr();
-                    let (half, rises) = (L::splat(0.5 * pair.alpha), pair.alpha != 0.0);
+                    let rises = pair.alpha != 0.0;
                     let own = if rises { *least.add(row.i) } else { 0.0 };
                     let mut reach = 0;
-                    for v in (0..GROUP).step_by(L::WIDTH) {
+                    for v in (0..GROUP).step_by(N) {
                         let partner = body.partner.as_ptr().add(place + v);
-                        let mut most = L::splat(own);
+                        let mut most = zero.like(own);
                         if rises {
-                            let far = partners!(L, 0.0, |k| *least.add(*partner.add(k) as usize));
-                            most = L::load(far.as_ptr()).max(most);
+                            most =
+                                V::of(partners!(N, 0.0, |k| *least.add(*partner.add(k) as usize))).most(most);
                         }
-                        let limit = L::splat(pair.s00).sub(half.mul(most));
-                        let limit = limit.sub(L::splat(1e-12).mul(limit.abs()));
-                        let reaches = L::splat(0.5).mul(L::load(z.add(first + v))).ge(limit);
-                        reach |= reaches.bits() << v;
+                        let limit = zero.like(pair.s00) - zero.like(0.5 * pair.alpha) * most;
+                        let limit = limit - limit.abs() * 1e-12;
+                        let reaches = (V::read(z.add(first + v)) * 0.5).at_least(limit);
+                        reach |= V::mask_bits(reaches) << v;
                     }
                     bits &= reach;
                 }
@@ -200,14 +203,15 @@ pub fn add_rows(sum: &mut [f64; ROW], row: &[f64; ROW]) {
 }
 
 /// Finds the bonds that break in this step; of several ranks each finds those of its `share`, where `some` of any may break.
-pub fn candidates<K: Isa>(
+pub fn candidates(
+    form: Form,
     body: &mut ListBody,
     (rules, options): (&Rules, &FamilyOptions),
     (share, some): (Option<&mut BodyShare>, bool),
     found: &mut Vec<Candidate>,
 ) {
     found.clear();
-    let mode = Mode { advance: true, breaking_enabled: true, skip: false };
+    let mode = Mode { advance: true, breaking_enabled: true, skip: false, form };
     let judge = Judge::new(body, mode, options);
     if !some {
         return;
@@ -216,7 +220,7 @@ pub fn candidates<K: Isa>(
         for b in body.broken.clone() {
             body.set(b as usize, true);
         }
-        body.limits.least = least::<K>(body, rules, &judge, share);
+        body.limits.least = least(form, body, rules, &judge, share);
         for b in body.broken.clone() {
             body.set(b as usize, false);
         }
@@ -254,7 +258,8 @@ impl ListBody {
 }
 
 /// The least measures of all families in the last step that advanced; on a rank with a share, of those that its bonds lead to.
-fn least<K: Isa>(
+fn least(
+    form: Form,
     body: &mut ListBody,
     rules: &Rules,
     judge: &Judge,
@@ -270,8 +275,7 @@ fn least<K: Isa>(
             let row = Row { body: list, i, first: list.ring_start(slab), rules };
             let mut next = row.start();
             while row.fill(&mut next, b) {
-                // SAFETY: the kernels are those that the processor has.
-                unsafe { row.shape::<K, LAST>(b) };
+                row.shape::<LAST>(form, b);
                 judge.measure(&row, b);
                 for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
                     for row in [i, *target as usize] {

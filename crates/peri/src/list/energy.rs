@@ -1,27 +1,24 @@
 //! Energy and virial of the list's bonds under any law: asked for at some steps only, so a pass of its own.
 
-use std::marker::PhantomData;
-
-use crate::energy::{Sums, collect, shares};
-use crate::families::list::ListBody;
+use crate::families::list::{ListBody, PART};
 use crate::families::shares::{BodyShare, Shares};
+use crate::families::view::Sums;
 use crate::families::{Cell, Families, ForceUnit, PeriTally};
-use crate::lanes::isa::Isa;
 use crate::lattice::chunk::SUMS;
-use crate::law::settle::{columns_of, moment};
-use crate::law::{BondLaw, Moment, of_law};
+use crate::law::kernels::Loops;
+use crate::law::moment::Moment;
 use crate::list::kernel::{Block, FULL, LAST, Row, Rules};
 use crate::list::laws::{self, Acting, Hand};
 use crate::list::sweep::in_rows;
 use crate::shares::list::parts_everywhere;
+use perigrain_base::math::form::Form;
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 
-/// Records whose energies are added up together.
-pub(crate) const PART: usize = 16;
-
 /// What energies need besides a record.
 struct Energies<'a> {
+    form: Form,
+    law: &'a dyn Loops,
     list: &'a ListBody,
     rules: &'a Rules,
     acting: &'a Acting<'a>,
@@ -31,30 +28,37 @@ struct Energies<'a> {
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
-pub fn tally<K: Isa>(
+pub fn tally(
     families: &mut Families,
     t: &mut PeriTally,
     (advanced, cell, dealt): (bool, &Cell, Option<&Shares>),
 ) {
     let (law, options, n) = (&families.law, &families.options, families.list.record.len());
-    let (kind, compat) = (law.kind, options.compat_lammps);
-    let rules = Rules::new(cell, options, law);
+    let (kind, loops) = (law.kind.style(), law.kind.loops(options.compat_lammps));
+    let rules = Rules::new(cell, options, law.counting());
     let list = &families.list;
-    let columns = columns_of(kind, compat);
-    let ends = in_rows(&list.state, n, columns);
-    let angles = if kind.bond_based() { vec![] } else { angles(list) };
-    let now = Moment { held: list.state.held, ..moment(law, false) };
+    let ends = in_rows(&list.state, n, loops.about().columns);
+    let angles = if kind.bond_based { vec![] } else { angles(list) };
+    let now = Moment { held: list.state.held, ..law.moment(false) };
     // Nothing is written: `keep` is not set.
     let memory = list.state.remembered().as_ptr().cast_mut();
     let acting =
         Acting { ends: &ends, memory, known: kind.memory() > 0, keep: false, least: false, moment: now };
-    let (own, half) = shares(kind, compat);
+    let (own, half) = kind.shares(options.compat_lammps);
     let newton = options.unit == ForceUnit::Newton;
     let look = laws::Looking { angles: &angles, states: own, half, newton };
-    let e = Energies { list, rules: &rules, acting: &acting, look: &look, advanced };
+    let e = Energies {
+        form: families.form(),
+        law: loops,
+        list,
+        rules: &rules,
+        acting: &acting,
+        look: &look,
+        advanced,
+    };
     let rows = &mut families.scratch.rows;
     let share = dealt.and_then(|shares| Some((shares.list.as_ref()?, shares.me)));
-    of_law!(kind, compat, W => e.tally::<K, W>(rows, share, t));
+    e.tally(rows, share, t);
 }
 
 /// θ of each record and its unrelaxed part, in rows of four.
@@ -65,16 +69,11 @@ fn angles(list: &ListBody) -> Vec<f64> {
 }
 
 impl Energies<'_> {
-    fn tally<K: Isa, W: BondLaw>(
-        &self,
-        rows: &mut Vec<Sums>,
-        share: Option<(&BodyShare, usize)>,
-        t: &mut PeriTally,
-    ) {
+    fn tally(&self, rows: &mut Vec<Sums>, share: Option<(&BodyShare, usize)>, t: &mut PeriTally) {
         let n = self.list.record.len();
         if t.per_atom() {
             let b = &mut Block::new();
-            (0..n).for_each(|i| self.record::<K, W>(i, b, t));
+            (0..n).for_each(|i| self.record(i, b, t));
             return;
         }
         rows.clear();
@@ -85,7 +84,7 @@ impl Energies<'_> {
             let part = own.start + k;
             let (b, mut sum) = (&mut Block::new(), PeriTally::default());
             for i in part * PART..n.min((part + 1) * PART) {
-                self.record::<K, W>(i, b, &mut sum);
+                self.record(i, b, &mut sum);
             }
             let v = sum.virial;
             // SAFETY: each part has its own sum.
@@ -94,32 +93,31 @@ impl Energies<'_> {
         if let Some(share) = share {
             parts_everywhere(self.list, share, rows);
         }
-        collect(rows, t);
+        t.collect(rows);
     }
 
     /// Adds a record's own bonds.
-    fn record<K: Isa, W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
+    fn record(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
         let list = self.list;
         if list.particle[i] == u32::MAX {
             // Nothing is bonded to where a particle was.
             return;
         }
+        let back = self.law.about().back;
         let row = Row { body: list, i, first: 0, rules: self.rules };
         let (mut sums, mut own_energy) = ([0.0; SUMS], 0.0);
         let mut next = row.start();
         while row.fill(&mut next, b) {
-            // SAFETY: the kernels are those that the processor has.
-            let more = unsafe {
-                if W::BACK && !self.advanced {
-                    row.shape::<K, LAST>(b);
-                }
-                row.shape::<K, FULL>(b);
-                if W::BACK && self.advanced {
-                    b.before = b.z;
-                }
-                let hand = Hand::<W> { row: &row, acting: self.acting, block: b, law: PhantomData };
-                K::call(laws::Energies(hand, self.look))
-            };
+            if back && !self.advanced {
+                row.shape::<LAST>(self.form, b);
+            }
+            row.shape::<FULL>(self.form, b);
+            if back && self.advanced {
+                b.before = b.z;
+            }
+            // SAFETY: energies touch no window, and nothing is written to what bonds remember.
+            let hand = unsafe { Hand::new((&row, self.acting), b, std::ptr::null_mut()) };
+            let more = self.law.in_hand_sums(self.form, hand, self.look);
             sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
             if !t.per_atom() {
                 continue;

@@ -3,41 +3,27 @@
 //! A record's bonds are taken [`MOST`] at a time, in steps that leave their results in a [`Block`]: the processor then has
 //! many independent bonds to work on, polynomials are chosen once for all of them, and a law is a short loop of its own.
 
-use std::ptr::{null, null_mut};
+use std::ptr::null_mut;
 
 use crate::families::list::{GROUP, ListBody};
-use crate::families::{BoxStrain, Cell, FamilyOptions, Influence, Law};
-use crate::lanes::Lanes;
-use crate::lanes::isa::{Isa, Kernel};
-use crate::lanes::rows::{self, Rows};
-use crate::lattice::constants::STRETCH;
-use crate::law::closed;
+use crate::families::{BoxStrain, Cell, FamilyOptions, Influence};
 use crate::law::polynomials::{self, FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
-use crate::law::series::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
+use crate::law::series::{SERIES, STRETCH, UP_TO_3, UP_TO_5, UP_TO_7};
+use crate::law::stretch::closed;
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::four::Four;
+use perigrain_base::math::lanes::{Lanes, load_rows};
+use perigrain_base::math::real::Real;
 
-/// An expression for each partner that there is a lane for, else `$none`; see `chunk::xyz` for why this is no
-/// closure.
+/// An expression for the partner of each lane; see `chunk::xyz` for why this is no closure.
 macro_rules! partners {
-    ($lanes:ty, $none:expr, |$k:ident| $e:expr) => {
-        [
-            partners!(@ $lanes, $none, 0, $k, $e),
-            partners!(@ $lanes, $none, 1, $k, $e),
-            partners!(@ $lanes, $none, 2, $k, $e),
-            partners!(@ $lanes, $none, 3, $k, $e),
-            partners!(@ $lanes, $none, 4, $k, $e),
-            partners!(@ $lanes, $none, 5, $k, $e),
-            partners!(@ $lanes, $none, 6, $k, $e),
-            partners!(@ $lanes, $none, 7, $k, $e),
-        ]
-    };
-    (@ $lanes:ty, $none:expr, $n:literal, $k:ident, $e:expr) => {
-        if $n < <$lanes>::WIDTH {
-            let $k = $n as usize;
-            $e
-        } else {
-            $none
+    ($lanes:ident, $none:expr, |$k:ident| $e:expr) => {{
+        let mut all = [$none; $lanes];
+        for $k in 0..$lanes {
+            all[$k] = $e;
         }
-    };
+        all
+    }};
 }
 pub(crate) use partners;
 
@@ -121,6 +107,17 @@ const NONE: u8 = 0;
 const UPRIGHT: u8 = 1;
 const LEANING: u8 = 2;
 
+/// How bonds count under a law.
+#[derive(Clone, Copy)]
+pub struct Counting {
+    /// For their length.
+    pub influence: Influence,
+    /// They are microelastic and count c times their shape over |xi|.
+    pub microelastic: bool,
+    /// The law needs critical stretches.
+    pub limited: bool,
+}
+
 /// What is the same for all bonds.
 #[derive(Clone, Copy)]
 pub struct Rules {
@@ -134,18 +131,14 @@ pub struct Rules {
     strain: [BoxStrain; 2],
     /// |z| below which there is no force: the first number plus the second over |xi|.
     dead: [f64; 2],
-    influence: Influence,
-    /// Bonds are microelastic and count c times their shape over |xi|.
-    microelastic: bool,
-    /// Laws ask for critical stretches.
-    limited: bool,
+    counting: Counting,
     /// Measures are wanted beside forces.
     pub measures: bool,
 }
 
 impl Rules {
     /// Those of a scene.
-    pub fn new(cell: &Cell, options: &FamilyOptions, law: &Law) -> Self {
+    pub fn new(cell: &Cell, options: &FamilyOptions, counting: Counting) -> Self {
         let period = cell.birth;
         let band = options.dead_band(1.0);
         let length = period.length.map(|l| if l > 0.0 { l } else { f64::INFINITY });
@@ -162,9 +155,7 @@ impl Rules {
             strain: cell.strain,
             images,
             dead,
-            influence: law.shape(),
-            microelastic: law.kind.bond_based(),
-            limited: law.kind.softens(),
+            counting,
             measures: false,
         }
     }
@@ -204,18 +195,15 @@ impl Row<'_> {
         b.count > 0
     }
 
-    /// Finds what is to know of the bonds in hand; as much as `WHAT` says.
-    ///
-    /// # Safety
-    /// The processor must have what `K` needs.
+    /// Finds lengths, stretches and weights of the bonds in hand; as much as `WHAT` says.
     #[inline]
-    pub unsafe fn shape<K: Isa, const WHAT: u8>(&self, b: &mut Block) {
-        // SAFETY: passed on to the caller.
+    pub fn shape<const WHAT: u8>(&self, form: Form, b: &mut Block) {
+        // SAFETY: records, groups and partners are those of the body, in blocks of no more than `MOST` bonds.
         unsafe {
             match self.rules.images {
-                NONE => K::call(Shapes::<NONE, WHAT>(self, b)),
-                UPRIGHT => K::call(Shapes::<UPRIGHT, WHAT>(self, b)),
-                _ => K::call(Shapes::<LEANING, WHAT>(self, b)),
+                NONE => form.run(Shapes::<NONE, WHAT>(self, b)),
+                UPRIGHT => form.run(Shapes::<UPRIGHT, WHAT>(self, b)),
+                _ => form.run(Shapes::<LEANING, WHAT>(self, b)),
             }
         }
     }
@@ -229,262 +217,270 @@ impl Block {
     }
 }
 
+/// The most of eight numbers, those of lanes and this one where there are fewer lanes, in three steps.
 #[inline(always)]
-unsafe fn shapes<L: Rows, const IMAGES: u8, const WHAT: u8>(row: &Row, b: &mut Block) {
-    // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
-    unsafe {
-        let (body, rules) = (row.body, row.rules);
-        let (record, last) = (body.record.as_ptr(), body.last.as_ptr());
-        let own = &*record.add(row.i);
-        let [x, u] = [own.reference, if WHAT == LAST { *last.add(row.i) } else { own.u }];
-        let [x, u] = [x, u].map(|a| [L::splat(a[0]), L::splat(a[1]), L::splat(a[2])]);
-        let pairs = body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let owned = !body.own_weight.is_empty();
-        let dead = rules.dead.map(|a| L::splat(a));
-        let (mut high, mut low) = (zero, zero);
-        let mut first = 0;
-        while first < b.count {
-            let group = *b.place.get_unchecked(first / GROUP) as usize / GROUP;
-            let pair = &*pairs.add(usize::from(*body.group_kind.get_unchecked(group)));
-            let bits = *body.alive.get_unchecked(group);
-            let mut v = 0;
-            while v < GROUP {
-                let at = first + v;
-                let place = GROUP * group + v;
-                let partner = body.partner.as_ptr().add(place);
-                let rows = partners!(L, null(), |k| record.add(*partner.add(k) as usize).cast::<f64>());
-                let [xj, yj, zj, volume] = L::quads(&rows);
-                let to = if WHAT == LAST {
-                    let u = |d: usize| partners!(L, 0.0, |k| (*last.add(*partner.add(k) as usize))[d]);
-                    let [x, y, z] = [u(0), u(1), u(2)];
-                    [L::load(x.as_ptr()), L::load(y.as_ptr()), L::load(z.as_ptr())]
-                } else {
-                    let rows = partners!(L, null(), |k| rows[k].add(4));
-                    let [u, v, w, _] = L::quads(&rows);
-                    [u, v, w]
-                };
-                let apart = [xj.sub(x[0]), yj.sub(x[1]), zj.sub(x[2])];
-                let mut xi = apart;
-                if IMAGES == UPRIGHT {
-                    xi[0] = nearest(xi[0], rules.length[0]);
-                    xi[1] = nearest(xi[1], rules.length[1]);
-                    xi[2] = nearest(xi[2], rules.length[2]);
-                }
-                if IMAGES == LEANING {
-                    xi = nearest_leaning(xi, rules);
-                }
-                let mut eta = [to[0].sub(u[0]), to[1].sub(u[1]), to[2].sub(u[2])];
-                if IMAGES != NONE && rules.strained {
-                    let away = [apart[0].sub(xi[0]), apart[1].sub(xi[1]), apart[2].sub(xi[2])];
-                    let strain = &rules.strain[(WHAT == LAST) as usize];
-                    let mut d = 0;
-                    while d < 3 {
-                        let mut k = d;
-                        while k < 3 {
-                            eta[d] = away[k].fnma(L::splat(strain[d][k]), eta[d]);
-                            k += 1;
-                        }
-                        d += 1;
-                    }
-                }
-                let y = [xi[0].add(eta[0]), xi[1].add(eta[1]), xi[2].add(eta[2])];
-                let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2].mul(xi[2])));
-                let q = eta[1].fma(y[1].add(xi[1]), eta[2].mul(y[2].add(xi[2])));
-                let q = eta[0].fma(y[0].add(xi[0]), q);
-                let inverse = L::load(body.inverse.as_ptr().add(place));
-                let length = square.mul(inverse);
-                let alive = L::mask(bits >> v);
-                let z = q.mul(inverse.mul(inverse));
-                let z = z.keep(z.abs().ge(inverse.fma(dead[1], dead[0]))).keep(alive);
-                if rules.measures || WHAT == LAST {
-                    let none = L::splat(f64::INFINITY).keep(L::mask(!bits >> v));
-                    z.add(none).store(b.measure.as_mut_ptr().add(at));
-                }
-                v += L::WIDTH;
-                if WHAT == LAST {
-                    z.store(b.before.as_mut_ptr().add(at));
-                    continue;
-                }
-                (high, low) = (z.max(high), z.min(low));
-                let weight = match owned {
-                    true => L::load(body.own_weight.as_ptr().add(place)),
-                    false => L::splat(pair.weight[1]).fnma(length, L::splat(pair.weight[0])).min(one),
-                };
-                let shape = match rules.influence {
-                    Influence::Inverse => inverse,
-                    Influence::One => one,
-                    Influence::Gaussian => L::load(body.influence.as_ptr().add(place)),
-                };
-                let (omega, weight) = if rules.microelastic {
-                    (L::splat(pair.yields), L::splat(pair.shape).mul(shape).mul(weight).mul(inverse))
-                } else {
-                    (shape, shape.mul(weight))
-                };
-                z.store(b.z.as_mut_ptr().add(at));
-                y[0].store(b.y[0].as_mut_ptr().add(at));
-                y[1].store(b.y[1].as_mut_ptr().add(at));
-                y[2].store(b.y[2].as_mut_ptr().add(at));
-                weight.keep(alive).store(b.weight.as_mut_ptr().add(at));
-                volume.store(b.volume.as_mut_ptr().add(at));
-                if WHAT == FULL {
-                    square.store(b.square.as_mut_ptr().add(at));
-                    omega.keep(alive).store(b.omega.as_mut_ptr().add(at));
-                    if rules.limited {
-                        let limit = if body.scatter.uneven() {
-                            let strengths = partners!(L, 1.0, |k| body
-                                .scatter
-                                .strength([row.i, *partner.add(k) as usize]));
-                            L::splat(pair.s00).mul(L::load(strengths.as_ptr()))
-                        } else {
-                            L::splat(pair.s00)
-                        };
-                        limit.keep(alive).store(b.limit.as_mut_ptr().add(at));
-                    }
-                }
-            }
-            let target = b.target.as_mut_ptr().add(first);
-            body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
-            first += GROUP;
-        }
-        let mut ends = [[0.0f64; rows::MOST]; 2];
-        high.store(ends[0].as_mut_ptr());
-        low.store(ends[1].as_mut_ptr());
-        (b.high, b.low) = (
-            most(&ends[0], |a, b| if b > a { b } else { a }),
-            most(&ends[1], |a, b| if b < a { b } else { a }),
-        );
-        if row.first > 0 {
-            for target in &mut b.target[..b.count] {
-                if (*target as usize) < row.first {
-                    *target += body.record.len() as u32;
-                }
-            }
-        }
-    }
-}
-
-/// The most of eight numbers, in three steps.
-#[inline(always)]
-fn most(l: &[f64; rows::MOST], of: impl Fn(f64, f64) -> f64) -> f64 {
+fn most<const N: usize, V: Lanes<N>>(lanes: V, other: f64, of: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut l = [other; GROUP];
+    lanes.to_column(&mut l, 0);
     let four = [of(l[0], l[4]), of(l[1], l[5]), of(l[2], l[6]), of(l[3], l[7])];
     of(of(four[0], four[2]), of(four[1], four[3]))
 }
 
 /// The shortest image of a difference.
 #[inline(always)]
-pub(crate) unsafe fn nearest<L: Lanes>(d: L, period: f64) -> L {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let half = L::splat(0.5 * period);
-        let full = L::splat(period);
-        let d = d.sub(full.keep(d.ge(half)));
-        d.add(full.keep(L::splat(0.0).sub(half).ge(d)))
-    }
+pub(crate) fn nearest<R: Real>(d: R, period: f64) -> R {
+    let (half, full) = (d.like(0.5 * period), d.like(period));
+    let d = d - full.keep(d.at_least(half));
+    d + full.keep((d.like(0.0) - half).at_least(d))
 }
 
 /// The same where edges lean: along z, then y, then x.
 #[inline(always)]
-unsafe fn nearest_leaning<L: Lanes>(mut d: [L; 3], rules: &Rules) -> [L; 3] {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let zero = L::splat(0.0);
-        for k in [2, 1, 0] {
-            let half = L::splat(0.5 * rules.length[k]);
-            let (over, under) = (d[k].ge(half), zero.sub(half).ge(d[k]));
-            for j in 0..=k {
-                let edge = L::splat(rules.edges[k][j]);
-                d[j] = d[j].sub(edge.keep(over)).add(edge.keep(under));
-            }
+fn nearest_leaning<R: Real>(mut d: [R; 3], rules: &Rules) -> [R; 3] {
+    let zero = d[0].like(0.0);
+    for k in [2, 1, 0] {
+        let half = zero.like(0.5 * rules.length[k]);
+        let (over, under) = (d[k].at_least(half), (zero - half).at_least(d[k]));
+        for j in 0..=k {
+            let edge = zero.like(rules.edges[k][j]);
+            d[j] = d[j] - edge.keep(over) + edge.keep(under);
         }
-        d
     }
+    d
+}
+
+/// Places of bonds in hand, as many at a time as there are lanes; all of them within the columns of a [`Block`].
+#[inline(always)]
+pub fn steps<const N: usize>(count: usize) -> impl Iterator<Item = usize> {
+    (0..count).step_by(N).map(|at| at & (MOST - N))
 }
 
 /// Fills in s/(1 + s), or s with `S`, by the cheapest way that is exact for all bonds in hand.
 #[inline(always)]
-pub unsafe fn stretch<L: Lanes, const S: bool>(b: &mut Block) {
-    // SAFETY: columns hold `count` numbers, a multiple of the lanes.
-    unsafe {
-        let (z, count) = (b.z.as_ptr(), b.count);
-        let out = if S { b.s.as_mut_ptr() } else { b.share.as_mut_ptr() };
-        macro_rules! fill {
-            (|$z:ident| $e:expr) => {{
-                let mut at = 0;
-                while at < count {
-                    let $z = L::load(z.add(at));
-                    $e.store(out.add(at));
-                    at += L::WIDTH;
-                }
-            }};
-        }
-        macro_rules! series {
-            ($terms:literal) => {{
-                let terms = if S { &STRETCH } else { &SERIES };
-                fill!(|z| z
-                    .mul(polynomials::polynomial::<L, $terms>(z, terms.first_chunk().unwrap_unchecked())))
-            }};
-        }
-        macro_rules! far {
-            ($degree:expr) => {
-                fill!(|z| z.mul(if S {
-                    polynomials::stretch::<L, $degree>(z)
-                } else {
-                    polynomials::share::<L, $degree>(z)
-                }))
-            };
-        }
-        match b.high.max(-b.low) {
-            size if size < UP_TO_3 => series!(4),
-            size if size < UP_TO_5 => series!(6),
-            size if size < UP_TO_7 => series!(8),
-            size if size < UP_TO_FAR => far!(FAR),
-            size if size < UP_TO_FARTHEST => far!(FARTHEST),
-            _ if S => fill!(|z| closed(z).s),
-            _ => fill!(|z| closed(z).share),
-        }
+pub fn stretch<const N: usize, V: Lanes<N>, const S: bool>(zero: V, b: &mut Block) {
+    let (z, count) = (&b.z, b.count);
+    let out = if S { &mut b.s } else { &mut b.share };
+    macro_rules! fill {
+        (|$z:ident| $e:expr) => {{
+            for at in steps::<N>(count) {
+                let $z = zero.from_column(z, at);
+                $e.to_column(out, at);
+            }
+        }};
     }
+    macro_rules! series {
+        ($terms:literal) => {{
+            const TERMS: [[f64; $terms]; 2] = [first(&SERIES), first(&STRETCH)];
+            fill!(|z| z * polynomials::polynomial::<V, $terms>(z, &TERMS[S as usize]))
+        }};
+    }
+    macro_rules! far {
+        ($degree:expr) => {
+            fill!(|z| z * if S {
+                polynomials::stretch::<V, $degree>(z)
+            } else {
+                polynomials::share::<V, $degree>(z)
+            })
+        };
+    }
+    match b.high.max(-b.low) {
+        size if size < UP_TO_3 => series!(4),
+        size if size < UP_TO_5 => series!(6),
+        size if size < UP_TO_7 => series!(8),
+        size if size < UP_TO_FAR => far!(FAR),
+        size if size < UP_TO_FARTHEST => far!(FARTHEST),
+        _ if S => fill!(|z| closed(z).s),
+        _ => fill!(|z| closed(z).share),
+    }
+}
+
+/// The first terms of a series.
+const fn first<const N: usize>(terms: &[f64; 8]) -> [f64; N] {
+    let mut some = [0.0; N];
+    let mut k = 0;
+    while k < N {
+        some[k] = terms[k];
+        k += 1;
+    }
+    some
 }
 
 /// Subtracts what comes out from the window's rows of four, which begin at `force`; with `LEAST` their fourth numbers are the
 /// least measures. The least measure in hand.
+///
+/// # Safety
+/// Partners must lie in the window; the processor must have what `V` needs.
 #[inline(always)]
-pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) -> f64 {
-    // SAFETY: partners lie in the window by the caller's promise.
+pub unsafe fn scatter<const N: usize, V: Lanes<N>, const LEAST: bool>(b: &Block, force: *mut f64) -> f64 {
+    // SAFETY: the caller's promise; partners of living bonds differ, and others change nothing.
     unsafe {
-        let mut least = L::splat(f64::INFINITY);
-        let mut at = 0;
-        while at < b.count {
-            let target = b.target.as_ptr().add(at);
-            let rows = partners!(L, null_mut(), |k| force.wrapping_add(4 * *target.add(k) as usize));
+        let zero = V::all(0.0);
+        let fourth = V::Row::splat(0.0).with_bits(0b1000);
+        let mut least = zero.like(f64::INFINITY);
+        for at in steps::<N>(b.count) {
             let out = [
-                L::load(b.out[0].as_ptr().add(at)),
-                L::load(b.out[1].as_ptr().add(at)),
-                L::load(b.out[2].as_ptr().add(at)),
-                if LEAST { L::load(b.measure.as_ptr().add(at)) } else { L::splat(0.0) },
+                zero.from_column(&b.out[0], at),
+                zero.from_column(&b.out[1], at),
+                zero.from_column(&b.out[2], at),
+                if LEAST { zero.from_column(&b.measure, at) } else { zero },
             ];
-            L::hand_over::<LEAST>(out, &rows);
-            if LEAST {
-                least = out[3].min(least);
+            let rows = V::to_rows(out);
+            for lane in 0..N {
+                let row = force.wrapping_add(4 * *b.target.get_unchecked(at + lane) as usize);
+                let there = V::Row::load(row);
+                let mut new = there - rows[lane];
+                if LEAST {
+                    new = V::Row::choose(fourth, there.least(rows[lane]), new);
+                }
+                new.store(row);
             }
-            at += L::WIDTH;
+            if LEAST {
+                least = out[3].least(least);
+            }
         }
-        let mut lanes = [f64::INFINITY; rows::MOST];
-        if LEAST {
-            least.store(lanes.as_mut_ptr());
-        }
-        most(&lanes, |a, b| if b < a { b } else { a })
+        most(least, f64::INFINITY, |a, b| if b < a { b } else { a })
     }
 }
 
 /// See [`Row::shape`].
 struct Shapes<'a, 'b, const IMAGES: u8, const WHAT: u8>(&'a Row<'b>, &'a mut Block);
 
-impl<const IMAGES: u8, const WHAT: u8> Kernel for Shapes<'_, '_, IMAGES, WHAT> {
+impl<const IMAGES: u8, const WHAT: u8> InLanes for Shapes<'_, '_, IMAGES, WHAT> {
     type Out = ();
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
-        // SAFETY: the caller's promise.
-        unsafe { shapes::<L, IMAGES, WHAT>(self.0, self.1) }
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self(row, b) = self;
+        // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
+        unsafe {
+            let (body, rules) = (row.body, row.rules);
+            let (record, last) = (body.record.as_ptr(), body.last.as_ptr());
+            let own = &*record.add(row.i);
+            let zero = V::all(0.0);
+            let [x, u] = [own.reference, if WHAT == LAST { *last.add(row.i) } else { own.u }];
+            let pairs =
+                body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
+            let one = zero.like(1.0);
+            let owned = !body.own_weight.is_empty();
+            let dead = [zero.like(rules.dead[0]), zero.like(rules.dead[1])];
+            let (mut high, mut low) = (zero, zero);
+            let mut first = 0;
+            while first < b.count {
+                let group = *b.place.get_unchecked(first / GROUP) as usize / GROUP;
+                let pair = &*pairs.add(usize::from(*body.group_kind.get_unchecked(group)));
+                let bits = *body.alive.get_unchecked(group);
+                let mut v = 0;
+                while v < GROUP {
+                    let at = first + v;
+                    let place = GROUP * group + v;
+                    let partner = body.partner.as_ptr().add(place);
+                    let rows = partners!(N, null_mut(), |k| record
+                        .add(*partner.add(k) as usize)
+                        .cast::<f64>()
+                        .cast_mut());
+                    let [xj, yj, zj, volume]: [V; 4] = load_rows(&rows, 0);
+                    let to = if WHAT == LAST {
+                        let mut u = [[0.0; N]; 3];
+                        for k in 0..N {
+                            let far = &*last.add(*partner.add(k) as usize);
+                            (u[0][k], u[1][k], u[2][k]) = (far[0], far[1], far[2]);
+                        }
+                        [V::of(u[0]), V::of(u[1]), V::of(u[2])]
+                    } else {
+                        let [u, v, w, _] = load_rows(&rows, 4);
+                        [u, v, w]
+                    };
+                    let apart = [xj - x[0], yj - x[1], zj - x[2]];
+                    let mut xi = apart;
+                    if IMAGES == UPRIGHT {
+                        xi[0] = nearest(xi[0], rules.length[0]);
+                        xi[1] = nearest(xi[1], rules.length[1]);
+                        xi[2] = nearest(xi[2], rules.length[2]);
+                    }
+                    if IMAGES == LEANING {
+                        xi = nearest_leaning(xi, rules);
+                    }
+                    let mut eta = [to[0] - u[0], to[1] - u[1], to[2] - u[2]];
+                    if IMAGES != NONE && rules.strained {
+                        let away = [apart[0] - xi[0], apart[1] - xi[1], apart[2] - xi[2]];
+                        let strain = &rules.strain[(WHAT == LAST) as usize];
+                        let mut d = 0;
+                        while d < 3 {
+                            let mut k = d;
+                            while k < 3 {
+                                eta[d] = away[k].fnma(zero.like(strain[d][k]), eta[d]);
+                                k += 1;
+                            }
+                            d += 1;
+                        }
+                    }
+                    let y = [xi[0] + eta[0], xi[1] + eta[1], xi[2] + eta[2]];
+                    let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2] * xi[2]));
+                    let q = eta[1].fma(y[1] + xi[1], eta[2] * (y[2] + xi[2]));
+                    let q = eta[0].fma(y[0] + xi[0], q);
+                    let inverse = V::read(body.inverse.as_ptr().add(place));
+                    let length = square * inverse;
+                    let alive = zero.mask(bits >> v);
+                    let z = q * (inverse * inverse);
+                    let z = z.keep(z.abs().at_least(inverse.fma(dead[1], dead[0]))).keep(alive);
+                    if rules.measures || WHAT == LAST {
+                        let measure = V::choose(alive, z, zero.like(f64::INFINITY));
+                        measure.write(b.measure.as_mut_ptr().add(at));
+                    }
+                    v += N;
+                    if WHAT == LAST {
+                        z.write(b.before.as_mut_ptr().add(at));
+                        continue;
+                    }
+                    (high, low) = (z.most(high), z.least(low));
+                    let weight = match owned {
+                        true => V::read(body.own_weight.as_ptr().add(place)),
+                        false => zero.like(pair.weight[1]).fnma(length, zero.like(pair.weight[0])).least(one),
+                    };
+                    let shape = match rules.counting.influence {
+                        Influence::Inverse => inverse,
+                        Influence::One => one,
+                        Influence::Gaussian => V::read(body.influence.as_ptr().add(place)),
+                    };
+                    let (omega, weight) = if rules.counting.microelastic {
+                        (zero.like(pair.yields), zero.like(pair.shape) * shape * weight * inverse)
+                    } else {
+                        (shape, shape * weight)
+                    };
+                    z.write(b.z.as_mut_ptr().add(at));
+                    y[0].write(b.y[0].as_mut_ptr().add(at));
+                    y[1].write(b.y[1].as_mut_ptr().add(at));
+                    y[2].write(b.y[2].as_mut_ptr().add(at));
+                    weight.keep(alive).write(b.weight.as_mut_ptr().add(at));
+                    volume.write(b.volume.as_mut_ptr().add(at));
+                    if WHAT == FULL {
+                        square.write(b.square.as_mut_ptr().add(at));
+                        omega.keep(alive).write(b.omega.as_mut_ptr().add(at));
+                        if rules.counting.limited {
+                            let mut limit = zero.like(pair.s00);
+                            if body.scatter.uneven() {
+                                let ends = |k: usize| [row.i, *partner.add(k) as usize];
+                                limit = limit * V::of(partners!(N, 1.0, |k| body.scatter.strength(ends(k))));
+                            }
+                            limit.keep(alive).write(b.limit.as_mut_ptr().add(at));
+                        }
+                    }
+                }
+                let target = b.target.as_mut_ptr().add(first);
+                body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
+                first += GROUP;
+            }
+            (b.high, b.low) = (
+                most(high, 0.0, |a, b| if b > a { b } else { a }),
+                most(low, 0.0, |a, b| if b < a { b } else { a }),
+            );
+            if row.first > 0 {
+                for target in &mut b.target[..b.count] {
+                    if (*target as usize) < row.first {
+                        *target += body.record.len() as u32;
+                    }
+                }
+            }
+        }
     }
 }

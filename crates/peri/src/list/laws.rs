@@ -1,17 +1,19 @@
 //! Bond laws over the bonds in hand: forces, sums of both ends, energies.
 
-use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
-use crate::lanes::Lanes;
-use crate::lanes::isa::{Isa, Kernel};
-use crate::lanes::rows::Rows;
 use crate::lattice::chunk::SUMS;
+use crate::law::formula::{Angles, BondLaw};
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
+use crate::law::stretch::{Ends, Stretch, closed};
 use crate::law::terms::Term;
-use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
-use crate::list::kernel::{Block, Row, partners, scatter, stretch};
+use crate::list::kernel::{Block, Row, partners, scatter, steps, stretch};
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::lanes::{Lanes, load_rows};
+use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::SIX;
 use std::marker::PhantomData;
-use std::ptr::null;
+use std::ptr::null_mut;
 
 /// What laws need besides the bonds in hand.
 pub struct Acting<'a> {
@@ -41,16 +43,16 @@ impl Acting<'_> {
 
 /// The first `count` numbers of the ends of some bonds, of which each record has them in a row.
 #[inline(always)]
-unsafe fn far<L: Rows>(ends: &[f64], count: usize, target: *const u32) -> [L; COLUMNS] {
+unsafe fn far<const N: usize, V: Lanes<N>>(ends: &[f64], count: usize, target: *const u32) -> [V; COLUMNS] {
     // SAFETY: partners are records, and rows are filled up to four numbers.
     unsafe {
-        let mut columns = [L::splat(0.0); COLUMNS];
+        let mut columns = [V::all(0.0); COLUMNS];
         let stride = Acting::stride(count);
         let mut first = 0;
         while first < count {
-            let ends = ends.as_ptr().add(first);
-            let rows = partners!(L, null(), |k| ends.add(stride * *target.add(k) as usize));
-            let four = L::quads(&rows);
+            let ends = ends.as_ptr().cast_mut();
+            let rows = partners!(N, null_mut(), |k| ends.add(stride * *target.add(k) as usize));
+            let four: [V; 4] = load_rows(&rows, first);
             let mut k = first;
             while k < count && k < first + 4 {
                 columns[k] = four[k - first];
@@ -64,17 +66,14 @@ unsafe fn far<L: Rows>(ends: &[f64], count: usize, target: *const u32) -> [L; CO
 
 /// The same of the record itself, in all lanes.
 #[inline(always)]
-unsafe fn near<L: Lanes>(ends: &[f64], count: usize, record: usize) -> [L; COLUMNS] {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let mut columns = [L::splat(0.0); COLUMNS];
-        let mut k = 0;
-        while k < count {
-            columns[k] = L::splat(*ends.get_unchecked(Acting::stride(count) * record + k));
-            k += 1;
-        }
-        columns
+fn near<R: Real>(zero: R, ends: &[f64], count: usize, record: usize) -> [R; COLUMNS] {
+    let mut columns = [zero; COLUMNS];
+    let mut k = 0;
+    while k < count {
+        columns[k] = zero.like(ends[Acting::stride(count) * record + k]);
+        k += 1;
     }
+    columns
 }
 
 /// Where number `k` of `numbers` is that the bonds at a place remember.
@@ -84,14 +83,14 @@ fn memory(a: &Acting, place: usize, numbers: usize, k: usize) -> *mut f64 {
 }
 
 #[inline(always)]
-unsafe fn recall<L: Lanes>(a: &Acting, place: usize, numbers: usize) -> [L; 2] {
+unsafe fn recall<const N: usize, V: Lanes<N>>(a: &Acting, place: usize, numbers: usize) -> [V; 2] {
     // SAFETY: places are those of bonds, each with `numbers` numbers.
     unsafe {
-        let mut out = [L::splat(0.0); 2];
+        let mut out = [V::all(0.0); 2];
         if a.known {
             let mut k = 0;
             while k < numbers {
-                out[k] = L::load(memory(a, place, numbers, k));
+                out[k] = V::read(memory(a, place, numbers, k));
                 k += 1;
             }
         }
@@ -101,91 +100,188 @@ unsafe fn recall<L: Lanes>(a: &Acting, place: usize, numbers: usize) -> [L; 2] {
 
 /// The stretch of some of the bonds in hand.
 #[inline(always)]
-unsafe fn stretched<L: Lanes>(b: &Block, at: usize, s: bool, back: bool, limited: bool) -> Stretch<L> {
-    // SAFETY: columns hold numbers at `at` and beyond.
-    unsafe {
-        let share = L::load(b.share.as_ptr().add(at));
-        let s = if s { L::load(b.s.as_ptr().add(at)) } else { share };
-        let before = if back { closed(L::load(b.before.as_ptr().add(at))).s } else { s };
-        let limit = if limited { L::load(b.limit.as_ptr().add(at)) } else { s };
-        Stretch { s, share, inverse: L::splat(1.0).sub(share), before, limit }
-    }
+fn stretched<const N: usize, V: Lanes<N>>(
+    zero: V,
+    b: &Block,
+    at: usize,
+    [s, back, limited]: [bool; 3],
+) -> Stretch<V> {
+    let share = zero.from_column(&b.share, at);
+    let s = if s { zero.from_column(&b.s, at) } else { share };
+    let before = if back { closed(zero.from_column(&b.before, at)).s } else { s };
+    let limit = if limited { zero.from_column(&b.limit, at) } else { s };
+    Stretch { s, share, inverse: zero.like(1.0) - share, before, limit }
 }
 
 /// Sums of eight lanes, in the same order whatever their width.
 #[derive(Clone, Copy)]
-struct Sum<L>([L; 2]);
+struct Sum<V>([V; 2]);
 
-impl<L: Lanes> Sum<L> {
-    #[inline(always)]
-    unsafe fn none() -> Self {
-        // SAFETY: passed on to the caller.
-        Self([unsafe { L::splat(0.0) }; 2])
-    }
-
+impl<V> Sum<V> {
     /// Adds `a b` of the bonds at a place.
     #[inline(always)]
-    unsafe fn add(&mut self, at: usize, a: L, b: L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let half = at % GROUP / L::WIDTH;
-            self.0[half] = a.fma(b, self.0[half]);
-        }
+    fn add<const N: usize>(&mut self, at: usize, a: V, b: V)
+    where
+        V: Lanes<N>,
+    {
+        let half = at % GROUP / N;
+        self.0[half] = a.fma(b, self.0[half]);
     }
 
     #[inline(always)]
-    unsafe fn total(&self) -> f64 {
-        // SAFETY: lanes fill eight places, or four each.
-        unsafe {
-            let mut f = [0.0; GROUP];
-            self.0[0].store(f.as_mut_ptr());
-            if L::WIDTH < GROUP {
-                self.0[1].store(f.as_mut_ptr().add(L::WIDTH));
-            }
-            let four = [f[0] + f[4], f[1] + f[5], f[2] + f[6], f[3] + f[7]];
-            (four[0] + four[1]) + (four[2] + four[3])
+    fn total<const N: usize>(&self) -> f64
+    where
+        V: Lanes<N>,
+    {
+        let mut f = [0.0; GROUP];
+        self.0[0].to_column(&mut f, 0);
+        if N < GROUP {
+            self.0[1].to_column(&mut f, N);
         }
+        let four = [f[0] + f[4], f[1] + f[5], f[2] + f[6], f[3] + f[7]];
+        (four[0] + four[1]) + (four[2] + four[3])
     }
 }
 
-/// What laws do to the bonds in hand.
-pub struct Hand<'a, 'b, 'c, W> {
-    /// The record.
-    pub row: &'a Row<'b>,
-    /// What laws need besides.
-    pub acting: &'a Acting<'c>,
-    /// The bonds.
-    pub block: &'a mut Block,
-    /// The law.
-    pub law: PhantomData<W>,
+/// Bonds in hand, with what laws need of them.
+pub struct Hand<'a, 'b, 'c> {
+    row: &'a Row<'b>,
+    acting: &'a Acting<'c>,
+    block: &'a mut Block,
+    window: *mut f64,
 }
 
-/// Adds the forces of the bonds in hand times the volumes of both
-/// ends; true if bonds remember something that had nothing to remember before.
-///
-/// Every partner must lie in the window of rows of four at `force`, untouched by others.
-pub struct Pull<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub *mut f64);
-
-impl<W: BondLaw> Kernel for Pull<'_, '_, '_, W> {
-    type Out = bool;
-    #[inline(always)]
-    unsafe fn run<L: Isa>(self) -> bool {
-        // SAFETY: the caller's promise.
-        unsafe { pull::<L, W>(self.0.row, self.0.acting, self.0.block, self.1) }
+impl<'a, 'b, 'c> Hand<'a, 'b, 'c> {
+    /// The bonds of a record that are in a block.
+    ///
+    /// # Safety
+    /// Every partner must lie in the `window` of rows of four numbers, of one number where terms are added up; of energies nothing is put there.
+    /// Nothing else may touch the window and what these bonds remember as long as this is there.
+    pub unsafe fn new(
+        (row, acting): (&'a Row<'b>, &'a Acting<'c>),
+        block: &'a mut Block,
+        window: *mut f64,
+    ) -> Self {
+        Self { row, acting, block, window }
     }
+}
+
+/// Adds the forces of the bonds in hand times the volumes of both ends; true if bonds remember something that had nothing to remember before.
+pub fn pull<W: BondLaw>(form: Form, hand: Hand) -> bool {
+    // SAFETY: the bonds in hand answer for memory.
+    unsafe { form.run(Pull::<W>(hand, PhantomData)) }
 }
 
 /// Adds a term of the bonds in hand to the sums of both ends.
-///
-/// As for [`Pull`], with one number of each record at the window.
-pub struct AddUp<'a, 'b, 'c, T>(pub Hand<'a, 'b, 'c, T>, pub *mut f64);
+pub fn add_up<T: Term>(form: Form, hand: Hand) {
+    // SAFETY: the bonds in hand answer for memory.
+    unsafe { form.run(AddUp::<T>(hand, PhantomData)) }
+}
 
-impl<T: Term> Kernel for AddUp<'_, '_, '_, T> {
-    type Out = ();
+/// Energy and virial of the bonds in hand. What comes out of each: the energies of both ends, and the pull along y times both
+/// volumes, which makes the virial (force density times the one volume of it, or the force itself).
+pub fn energies<W: BondLaw>(form: Form, hand: Hand, look: &Looking) -> [f64; SUMS] {
+    // SAFETY: the bonds in hand answer for memory.
+    unsafe { form.run(Energies::<W>(hand, look, PhantomData)) }
+}
+
+/// See [`pull`].
+struct Pull<'a, 'b, 'c, W>(Hand<'a, 'b, 'c>, PhantomData<W>);
+
+impl<W: BondLaw> InLanes for Pull<'_, '_, '_, W> {
+    type Out = bool;
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
-        // SAFETY: the caller's promise.
-        unsafe { add_up::<L, T>(self.0.row, self.0.acting, self.0.block, self.1) }
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) -> bool {
+        let Self(Hand { row, acting: a, block: b, window: force }, _) = self;
+        // SAFETY: the processor has what the lanes need; partners are records, and the bonds in hand answer for memory.
+        unsafe {
+            let zero = V::all(0.0);
+            stretch::<N, V, false>(zero, b);
+            if W::STRETCHED {
+                stretch::<N, V, true>(zero, b);
+            }
+            let partner = row.body.partner.as_ptr();
+            let volume = zero.like(row.body.record[row.i].volume);
+            let own = near(zero, a.ends, W::COLUMNS, row.i);
+            let mut sum = [Sum([zero; 2]); 3];
+            let mut woken = false;
+            for at in steps::<N>(b.count) {
+                let place = b.place(at);
+                let s = stretched(zero, b, at, [W::STRETCHED, W::BACK, W::LIMITED]);
+                let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
+                let before: [V; 2] = recall(a, place, W::MEMORY);
+                let mut now = before;
+                let omega = zero.from_column(&b.omega, at);
+                let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
+                if W::MEMORY > 0 && a.keep && (a.known || V::any(W::flows(&ends))) {
+                    woken = true;
+                    let alive = zero.mask(*row.body.alive.get_unchecked(place / GROUP) >> (place % GROUP));
+                    let mut k = 0;
+                    while k < W::MEMORY {
+                        V::choose(alive, now[k], before[k]).write(memory(a, place, W::MEMORY, k));
+                        k += 1;
+                    }
+                }
+                let weight = zero.from_column(&b.weight, at);
+                let factor = weight * (volume * zero.from_column(&b.volume, at));
+                let (near, far) = (near * factor, far * factor);
+                let mut d = 0;
+                while d < 3 {
+                    let y = zero.from_column(&b.y[d], at);
+                    sum[d].add(at, near, y);
+                    (far * y).to_column(&mut b.out[d], at);
+                    d += 1;
+                }
+            }
+            let own = force.wrapping_add(4 * row.i);
+            if a.least {
+                let least = scatter::<N, V, true>(b, force);
+                *own.add(3) = least.min(*own.add(3));
+            } else {
+                scatter::<N, V, false>(b, force);
+            }
+            *own += sum[0].total();
+            *own.add(1) += sum[1].total();
+            *own.add(2) += sum[2].total();
+            woken
+        }
+    }
+}
+
+/// See [`add_up`].
+struct AddUp<'a, 'b, 'c, T>(Hand<'a, 'b, 'c>, PhantomData<T>);
+
+impl<T: Term> InLanes for AddUp<'_, '_, '_, T> {
+    type Out = ();
+    const PICKS: bool = false;
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self(Hand { row, acting: a, block: b, window: sums }, _) = self;
+        // SAFETY: the processor has what the lanes need; partners are records, and the bonds in hand answer for memory.
+        unsafe {
+            let zero = V::all(0.0);
+            stretch::<N, V, true>(zero, b);
+            let partner = row.body.partner.as_ptr();
+            let volume = zero.like(row.body.record[row.i].volume);
+            let own = near(zero, a.ends, T::COLUMNS, row.i);
+            let mut sum = Sum([zero; 2]);
+            for at in steps::<N>(b.count) {
+                let place = b.place(at);
+                let s = zero.from_column(&b.s, at);
+                let s = Stretch { s, share: s, inverse: s, before: s, limit: s };
+                let ends: Ends<V> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
+                let memory = recall(a, place, T::MEMORY);
+                let (near, far) = T::terms(&s, zero.from_column(&b.omega, at), &ends, &memory);
+                let one = zero.from_column(&b.weight, at) * zero.from_column(&b.square, at);
+                sum.add(at, one * zero.from_column(&b.volume, at), near);
+                (one * volume * far).to_column(&mut b.out[0], at);
+            }
+            for (target, out) in b.target[..b.count].iter().zip(&b.out[0]) {
+                *sums.wrapping_add(*target as usize) += out;
+            }
+            *sums.wrapping_add(row.i) += sum.total();
+        }
     }
 }
 
@@ -201,175 +297,78 @@ pub struct Looking<'a> {
     pub newton: bool,
 }
 
-/// Energy and virial of the bonds in hand. What comes out of each: the energies of both ends, and the pull along y times both
-/// volumes, which makes the virial (force density times the one volume of it, or the force itself).
-pub struct Energies<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub &'a Looking<'a>);
+/// See [`energies`].
+struct Energies<'a, 'b, 'c, W>(Hand<'a, 'b, 'c>, &'a Looking<'a>, PhantomData<W>);
 
-impl<W: BondLaw> Kernel for Energies<'_, '_, '_, W> {
+impl<W: BondLaw> InLanes for Energies<'_, '_, '_, W> {
     type Out = [f64; SUMS];
+    const PICKS: bool = false;
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) -> [f64; SUMS] {
-        // SAFETY: the caller's promise.
-        unsafe { energies::<L, W>(self.0.row, self.0.acting, self.1, self.0.block) }
-    }
-}
-
-#[inline(always)]
-unsafe fn pull<L: Rows, W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool {
-    // SAFETY: the caller's promise.
-    unsafe {
-        stretch::<L, false>(b);
-        if W::STRETCHED {
-            stretch::<L, true>(b);
-        }
-        let partner = row.body.partner.as_ptr();
-        let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
-        let own = near::<L>(a.ends, W::COLUMNS, row.i);
-        let mut sum = [Sum::<L>::none(); 3];
-        let mut woken = false;
-        let mut at = 0;
-        while at < b.count {
-            let place = b.place(at);
-            let s = stretched::<L>(b, at, W::STRETCHED, W::BACK, W::LIMITED);
-            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
-            let before = recall::<L>(a, place, W::MEMORY);
-            let mut now = before;
-            let omega = L::load(b.omega.as_ptr().add(at));
-            let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
-            if W::MEMORY > 0 && a.keep && (a.known || W::flows(&ends).bits() != 0) {
-                woken = true;
-                let bits = *row.body.alive.get_unchecked(place / GROUP) >> (place % GROUP);
-                let (alive, dead) = (L::mask(bits), L::mask(!bits));
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) -> [f64; SUMS] {
+        let Self(Hand { row, acting: a, block: b, .. }, look, _) = self;
+        // SAFETY: the processor has what the lanes need; partners are records, and the bonds in hand answer for memory.
+        unsafe {
+            let zero = V::all(0.0);
+            stretch::<N, V, false>(zero, b);
+            stretch::<N, V, true>(zero, b);
+            let partner = row.body.partner.as_ptr();
+            let volume = zero.like(row.body.record[row.i].volume);
+            let own = near(zero, a.ends, W::COLUMNS, row.i);
+            let turned = if look.angles.is_empty() { 0 } else { 2 };
+            let own_angles = near(zero, look.angles, turned, row.i);
+            let mut sum = [Sum([zero; 2]); SUMS];
+            for at in steps::<N>(b.count) {
+                let place = b.place(at);
+                let s = stretched(zero, b, at, [true, W::BACK, W::LIMITED]);
+                let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
+                let other = far(look.angles, turned, partner.add(place));
+                let relaxing = [W::relaxing(&ends[0], &a.moment), W::relaxing(&ends[1], &a.moment)];
+                let angles = [
+                    Angles { now: own_angles[0], unrelaxed: own_angles[1], relaxing: relaxing[0] },
+                    Angles { now: other[0], unrelaxed: other[1], relaxing: relaxing[1] },
+                ];
+                let mut memory = recall(a, place, W::MEMORY);
+                let omega = zero.from_column(&b.omega, at);
+                let weight = zero.from_column(&b.weight, at);
+                let partner_volume = zero.from_column(&b.volume, at);
+                let both = volume * partner_volume;
+                let (mut near, mut far) = W::squares(&s, omega, &angles, &memory, &a.moment);
+                if look.states {
+                    (near, far) = (near * ends[0][1], far * ends[1][1]);
+                }
+                let one = weight * zero.from_column(&b.square, at) * look.half;
+                (near, far) = match look.newton {
+                    true => (near * one * both, far * one * both),
+                    false => (near * one * partner_volume, far * one * volume),
+                };
+                near.to_column(&mut b.out[0], at);
+                far.to_column(&mut b.out[1], at);
+                sum[0].add(at, near + far, zero.like(1.0));
+                let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
+                let pull = (near + far) * weight * -0.5 * both;
+                // Of particles each end has what it feels, which differs in LAMMPS' laws.
+                let push = weight * -1.0;
+                (near * push * both).to_column(&mut b.out[2], at);
+                (far * push * both).to_column(&mut b.out[3], at);
+                let y = [
+                    zero.from_column(&b.y[0], at),
+                    zero.from_column(&b.y[1], at),
+                    zero.from_column(&b.y[2], at),
+                ];
+                let p = [pull * y[0], pull * y[1], pull * y[2]];
                 let mut k = 0;
-                while k < W::MEMORY {
-                    let now = now[k].keep(alive).add(before[k].keep(dead));
-                    now.store(memory(a, place, W::MEMORY, k));
+                while k < SIX.len() {
+                    sum[1 + k].add(at, p[SIX[k].0], y[SIX[k].1]);
                     k += 1;
                 }
             }
-            let weight = L::load(b.weight.as_ptr().add(at));
-            let factor = weight.mul(volume.mul(L::load(b.volume.as_ptr().add(at))));
-            let (near, far) = (near.mul(factor), far.mul(factor));
-            let mut d = 0;
-            while d < 3 {
-                let y = L::load(b.y[d].as_ptr().add(at));
-                sum[d].add(at, near, y);
-                far.mul(y).store(b.out[d].as_mut_ptr().add(at));
-                d += 1;
-            }
-            at += L::WIDTH;
-        }
-        let own = force.wrapping_add(4 * row.i);
-        if a.least {
-            let least = scatter::<L, true>(b, force);
-            *own.add(3) = least.min(*own.add(3));
-        } else {
-            scatter::<L, false>(b, force);
-        }
-        *own += sum[0].total();
-        *own.add(1) += sum[1].total();
-        *own.add(2) += sum[2].total();
-        woken
-    }
-}
-
-#[inline(always)]
-unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        stretch::<L, true>(b);
-        let partner = row.body.partner.as_ptr();
-        let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
-        let own = near::<L>(a.ends, T::COLUMNS, row.i);
-        let mut sum = Sum::<L>::none();
-        let mut at = 0;
-        while at < b.count {
-            let place = b.place(at);
-            let s = L::load(b.s.as_ptr().add(at));
-            let s = Stretch { s, share: s, inverse: s, before: s, limit: s };
-            let ends: Ends<L> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
-            let memory = recall::<L>(a, place, T::MEMORY);
-            let (near, far) = T::terms(&s, L::load(b.omega.as_ptr().add(at)), &ends, &memory);
-            let one = L::load(b.weight.as_ptr().add(at)).mul(L::load(b.square.as_ptr().add(at)));
-            sum.add(at, one.mul(L::load(b.volume.as_ptr().add(at))), near);
-            one.mul(volume).mul(far).store(b.out[0].as_mut_ptr().add(at));
-            at += L::WIDTH;
-        }
-        for (target, out) in b.target[..b.count].iter().zip(&b.out[0]) {
-            *sums.wrapping_add(*target as usize) += out;
-        }
-        *sums.wrapping_add(row.i) += sum.total();
-    }
-}
-
-#[inline(always)]
-unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, look: &Looking, b: &mut Block) -> [f64; SUMS] {
-    // SAFETY: the caller's promise.
-    unsafe {
-        stretch::<L, false>(b);
-        stretch::<L, true>(b);
-        let partner = row.body.partner.as_ptr();
-        let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
-        let own = near::<L>(a.ends, W::COLUMNS, row.i);
-        let turned = if look.angles.is_empty() { 0 } else { 2 };
-        let own_angles = near::<L>(look.angles, turned, row.i);
-        let mut sum = [Sum::<L>::none(); SUMS];
-        let mut at = 0;
-        while at < b.count {
-            let place = b.place(at);
-            let s = stretched::<L>(b, at, true, W::BACK, W::LIMITED);
-            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
-            let other = far::<L>(look.angles, turned, partner.add(place));
-            let angles = [
-                Angles {
-                    now: own_angles[0],
-                    unrelaxed: own_angles[1],
-                    relaxing: W::relaxing(&ends[0], &a.moment),
-                },
-                Angles { now: other[0], unrelaxed: other[1], relaxing: W::relaxing(&ends[1], &a.moment) },
-            ];
-            let mut memory = recall::<L>(a, place, W::MEMORY);
-            let omega = L::load(b.omega.as_ptr().add(at));
-            let weight = L::load(b.weight.as_ptr().add(at));
-            let partner_volume = L::load(b.volume.as_ptr().add(at));
-            let both = volume.mul(partner_volume);
-            let (mut near, mut far) = W::squares(&s, omega, &angles, &memory, &a.moment);
-            if look.states {
-                (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));
-            }
-            let one = weight.mul(L::load(b.square.as_ptr().add(at))).mul(L::splat(look.half));
-            (near, far) = match look.newton {
-                true => (near.mul(one).mul(both), far.mul(one).mul(both)),
-                false => (near.mul(one).mul(partner_volume), far.mul(one).mul(volume)),
-            };
-            near.store(b.out[0].as_mut_ptr().add(at));
-            far.store(b.out[1].as_mut_ptr().add(at));
-            sum[0].add(at, near.add(far), L::splat(1.0));
-            let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
-            let pull = near.add(far).mul(weight).mul(L::splat(-0.5)).mul(both);
-            // Of particles each end has what it feels, which differs in LAMMPS' laws.
-            let push = weight.mul(L::splat(-1.0));
-            near.mul(push).mul(both).store(b.out[2].as_mut_ptr().add(at));
-            far.mul(push).mul(both).store(b.out[3].as_mut_ptr().add(at));
-            let y = [
-                L::load(b.y[0].as_ptr().add(at)),
-                L::load(b.y[1].as_ptr().add(at)),
-                L::load(b.y[2].as_ptr().add(at)),
-            ];
-            let p = [pull.mul(y[0]), pull.mul(y[1]), pull.mul(y[2])];
+            let mut totals = [0.0; SUMS];
             let mut k = 0;
-            while k < SIX.len() {
-                sum[1 + k].add(at, p[SIX[k].0], y[SIX[k].1]);
+            while k < SUMS {
+                totals[k] = sum[k].total();
                 k += 1;
             }
-            at += L::WIDTH;
+            totals
         }
-        let mut totals = [0.0; SUMS];
-        let mut k = 0;
-        while k < SUMS {
-            totals[k] = sum[k].total();
-            k += 1;
-        }
-        totals
     }
 }

@@ -3,7 +3,7 @@
 pub mod breaking;
 pub mod energy;
 pub mod kernel;
-mod laws;
+pub(crate) mod laws;
 pub mod sweep;
 pub(crate) mod tiles;
 

@@ -3,22 +3,21 @@
 //! Slabs, groups, partners and lengths of columns are as `setup::list` makes them; of lists from restart files `families::sound` has
 //! looked at each of them.
 
-use std::marker::PhantomData;
-
-use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
-use crate::families::{Cell, FamilyOptions, LawKind, PeriView};
-use crate::lanes::isa::Isa;
-use crate::lattice::keep_earlier;
+use crate::families::{Cell, FamilyOptions, Law, PeriView};
 use crate::lattice::sweep::Mode;
-use crate::law::settle::{Settling, Sites, columns_of};
-use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
-use crate::law::{BondLaw, Moment, of_law};
+use crate::lattice::{hold, keep_earlier};
+use crate::law::kernels::Loops;
+use crate::law::moment::COLUMNS;
+use crate::law::moment::Moment;
+use crate::law::settle::{Settling, Sites, stiffen};
+use crate::law::state::SiteState;
+use crate::law::terms::{Dilatation, Norm, NormLammps, Sum, Term};
 use crate::list::breaking::{FORCE_AND_MEASURE, Judge, add_rows};
 use crate::list::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
-use crate::list::laws::{Acting, AddUp, Hand, Pull};
+use crate::list::laws::{Acting, Hand, add_up};
 use crate::list::tiles::{self, lay_slabs};
 use crate::shares::dues::share_sums;
 use perigrain_base::par::{self, Shared};
@@ -29,12 +28,12 @@ const _: () = assert!(size_of::<Record>() == 64);
 type Act<'a> = dyn Fn(&Sweep, &mut [TileWindow], Option<&mut BodyShare>) + 'a;
 
 /// Adds the forces of all bonds to `f`; of several ranks each adds those of its share.
-pub fn forces<K: Isa>(
+pub fn forces(
     list: &mut ListBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
     (mode, options): (Mode, &FamilyOptions),
-    (settling, mut share): (&Settling, Option<&mut BodyShare>),
+    (law, settling, mut share): (&Law, &Settling, Option<&mut BodyShare>),
     cell: &Cell,
 ) {
     let n = list.record.len();
@@ -43,9 +42,9 @@ pub fn forces<K: Isa>(
     }
     lay_slabs(list);
     list.limits.find_highest(&list.slab);
-    let kind = settling.law.kind;
+    let (kind, loops) = (law.kind.style(), law.kind.loops(settling.compat));
     let judge = Judge::new(list, mode, options);
-    let mut rules = Rules::new(cell, options, settling.law);
+    let mut rules = Rules::new(cell, options, law.counting());
     rules.measures = judge.keeps;
     if mode.advance {
         list.limits.strained.resize_with(list.slabs(), Default::default);
@@ -58,7 +57,7 @@ pub fn forces<K: Isa>(
     let now = Moment { held: list.state.held, ..settling.moment };
     if kind.has_states() {
         list.state.columns.resize(COLUMNS * n, 0.0);
-        keep_earlier(&mut list.state, settling);
+        keep_earlier(&mut list.state, kind, settling);
         if kind.memory() > 0 && list.state.touched.len() != n {
             list.state.touched = vec![1; n];
         }
@@ -107,27 +106,29 @@ pub fn forces<K: Isa>(
         list.state.sums.clear();
         list.state.sums.resize(n, 0.0);
     };
-    if !kind.bond_based() {
+    if !kind.bond_based {
         clear_sums(list);
-        sweep(list, 0, &|s, w, share| s.add_up::<K, Dilatation>(&moving, w, share));
-        settling.dilatations(&mut list.state, &sites);
+        sweep(list, 0, &|s, w, share| s.add_up::<Dilatation>(&moving, w, share));
+        loops.dilatations(settling, &mut list.state, &sites);
     }
-    if kind == LawKind::Shaped {
-        settling.stiffen(&mut list.state, &sites);
+    if kind.stiffened {
+        stiffen(settling, &mut list.state, &sites);
     }
-    if kind == LawKind::ElasticPlastic {
+    if let Some(norm) = loops.about().norm {
         clear_sums(list);
-        sweep(list, Norm::COLUMNS, &|s, w, share| match settling.compat {
-            true => s.add_up::<K, NormLammps>(active, w, share),
-            false => s.add_up::<K, Norm>(active, w, share),
+        sweep(list, Norm::COLUMNS, &|s, w, share| match norm {
+            Sum::Dilatation => s.add_up::<Dilatation>(active, w, share),
+            Sum::Norm => s.add_up::<Norm>(active, w, share),
+            Sum::NormLammps => s.add_up::<NormLammps>(active, w, share),
         });
-        settling.flow(&mut list.state, &sites);
+        loops.flow(settling, &mut list.state, &sites);
     }
-    let columns = columns_of(kind, settling.compat);
-    let pull = |s: &Sweep, slab: usize, w: &mut TileWindow| of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w));
-    sweep(list, columns, &|s, w, share| s.pull_all((w, share), |slab, w| pull(s, slab, w), &particle, f));
+    let now_loops = kind.loops_at(settling.compat, &now);
+    sweep(list, loops.about().columns, &|s, w, share| {
+        s.pull_all((w, share), |slab, w| s.pull(now_loops, slab, active, w), &particle, f);
+    });
     (list.particle, list.moving, list.scatter.stiffness) = (particle, moving, stiffness);
-    settling.held(&mut list.state);
+    hold(&mut list.state, kind, settling);
 }
 
 /// The type of all records, if they have but one.
@@ -204,14 +205,14 @@ impl Sweep<'_> {
     }
 
     /// Adds a term of all bonds to the sums of both ends.
-    fn add_up<K: Isa, T: Term>(
+    fn add_up<T: Term>(
         &self,
         active: &[bool],
         windows: &mut [TileWindow],
         mut share: Option<&mut BodyShare>,
     ) {
         let add = |sum: &mut [f64; 1], more: &[f64; 1]| sum[0] += more[0];
-        let act = |slab: usize, window: &mut TileWindow| self.add_up_slab::<K, T>(slab, active, window);
+        let act = |slab: usize, window: &mut TileWindow| self.add_up_slab::<T>(slab, active, window);
         let over = (windows, false, share.as_deref_mut());
         tiles::sweep(self.body, over, act, ([0.0], add), |records, sums| {
             // SAFETY: each record settles once.
@@ -222,11 +223,11 @@ impl Sweep<'_> {
     }
 
     /// The same of one slab's bonds into its window; false if these rest.
-    fn add_up_slab<K: Isa, T: Term>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
+    fn add_up_slab<T: Term>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
         if self.rests(slab, active) && self.mode.skip {
             return false;
         }
-        let body = self.body;
+        let (body, form) = (self.body, self.mode.form);
         let sums = tiles::open(body, slab, window, [0.0]);
         let b = &mut Block::new();
         for i in body.records(slab) {
@@ -234,14 +235,10 @@ impl Sweep<'_> {
             let acting = self.acting(self.known(i, (T::MEMORY, true)));
             let mut next = row.start();
             while row.fill(&mut next, b) {
-                // SAFETY: the kernels are those that the processor has; bonds lead to records that the window covers.
-                unsafe {
-                    row.shape::<K, FULL>(b);
-                    K::call(AddUp(
-                        Hand::<T> { row: &row, acting: &acting, block: b, law: PhantomData },
-                        sums,
-                    ));
-                }
+                row.shape::<FULL>(form, b);
+                // SAFETY: bonds lead to records that the window covers, and a record belongs to one slab.
+                let hand = unsafe { Hand::new((&row, &acting), b, sums) };
+                add_up::<T>(form, hand);
             }
         }
         true
@@ -288,8 +285,8 @@ impl Sweep<'_> {
     }
 
     /// Puts the forces of the bonds of one slab's records into the window; false if there are none.
-    fn pull<K: Isa, W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
-        let body = self.body;
+    fn pull(&self, law: &dyn Loops, slab: usize, active: &[bool], window: &mut TileWindow) -> bool {
+        let (body, form) = (self.body, self.mode.form);
         let own = body.records(slab);
         // SAFETY: records belong to one slab.
         let lowest = unsafe { self.lowest.get(own.clone()) };
@@ -306,33 +303,32 @@ impl Sweep<'_> {
             return false;
         }
         let force = tiles::open(body, slab, window, FORCE_AND_MEASURE);
+        let about = law.about();
         let judge = self.judge.among(body, body.tiles.graph.takers(slab));
         let b = &mut Block::new();
         for (i, lowest) in own.zip(lowest) {
             let row = Row { body, i, first: body.ring_start(slab), rules: self.rules };
-            let acting = self.acting(self.known(i, (W::MEMORY, W::LAZY)));
+            let acting = self.acting(self.known(i, (about.memory, about.lazy)));
             let mut low = 0.0f64;
             let mut next = row.start();
             while row.fill(&mut next, b) {
-                // SAFETY: the kernels are those that the processor has; bonds lead to records that the window covers.
-                let woken = unsafe {
-                    if W::BACK {
-                        row.shape::<K, LAST>(b);
-                    }
-                    match W::PLAIN {
-                        true => row.shape::<K, PLAIN>(b),
-                        false => row.shape::<K, FULL>(b),
-                    }
-                    judge.measure(&row, b);
-                    K::call(Pull(Hand::<W> { row: &row, acting: &acting, block: b, law: PhantomData }, force))
-                };
-                if woken && W::LAZY {
+                if about.back {
+                    row.shape::<LAST>(form, b);
+                }
+                match about.plain {
+                    true => row.shape::<PLAIN>(form, b),
+                    false => row.shape::<FULL>(form, b),
+                }
+                judge.measure(&row, b);
+                // SAFETY: bonds lead to records that the window covers, and a record belongs to one slab.
+                let woken = law.in_hand(form, unsafe { Hand::new((&row, &acting), b, force) });
+                if woken && about.lazy {
                     // SAFETY: a record belongs to one slab.
                     unsafe { self.touched.get(i..i + 1)[0] = 1 };
                 }
                 low = low.min(b.low);
                 *top = top.max(b.high);
-                judge.note::<K>(&row, b, strained);
+                judge.note(form, &row, b, strained);
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;

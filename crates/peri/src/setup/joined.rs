@@ -49,7 +49,7 @@ impl Steps {
     }
 }
 
-/// All particles, as a search for pairs asks for them.
+/// All particles, as a search for pairs needs them.
 pub(super) struct Joined<'a> {
     families: &'a Families,
     sites: Vec<Site>,

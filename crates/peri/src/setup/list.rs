@@ -1,8 +1,7 @@
 //! Laying out bonds as a list: records by slabs, half of the bonds with each.
 
-use crate::families::list::{CLOSE, GROUP, ListBody, Record};
+use crate::families::list::{CLOSE, GROUP, ListBody, PART, Record};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
-use crate::list::energy::PART;
 use crate::setup::detect::{bonds, distance, reach};
 
 /// The list layout of the bonds among `members`, whose spacings may be their own, and the sums of initial partners' volumes and numbers.

@@ -1,4 +1,4 @@
-//! Who belongs to whose peridynamic family, and who comes close without belonging.
+//! Which particles belong to which peridynamic families, and which come close without belonging.
 
 pub mod detect;
 mod joined;

@@ -1,6 +1,6 @@
 //! Pairs without a living bond that may come into short-range contact: found now and then, kept in between.
 //!
-//! Any two particles closer than the reach of families when these were built are bonded. So nobody without a
+//! Any two particles closer than the reach of families when these were built are bonded. So no particle without a
 //! bond can be in contact before two particles have come closer by the reach minus the contact range, and later
 //! searches keep all pairs within the contact range plus a skin. How much closer two particles may have come is
 //! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search. Where that is

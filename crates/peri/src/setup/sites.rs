@@ -14,7 +14,7 @@ const ROUGH: f64 = 0.02;
 const FARTHEST: f64 = 0.1;
 /// Sites are no closer to each other than this: in hexagonal close packing, where a third of them is taken, 0.58.
 const CLOSEST: f64 = 0.4;
-/// Neighbours up to this far tell the lattice and the directions in which rows may run: beyond those in body-centred cubic,
+/// Neighbours up to this far give the lattice and the directions in which rows may run: beyond those in body-centred cubic,
 /// diamond and hexagonal lattices that repeat a layer.
 const NEIGHBOURS: f64 = 1.8;
 /// Particles whose neighbours are looked at.
@@ -145,7 +145,7 @@ fn samples(view: &PeriView, members: &[u32], nearest: f64) -> Samples {
     Samples { start, vectors }
 }
 
-/// The lattice that the samples span, roughly, and how many of its directions they tell.
+/// The lattice that the samples span, roughly, and how many of its directions they give.
 fn spanned(samples: &Samples, nearest: f64) -> Option<(Basis, usize)> {
     let mut span = Span::new(ROUGH * nearest, CLOSEST * nearest);
     if !samples.vectors.iter().all(|v| span.add(*v)) {
@@ -174,7 +174,7 @@ fn fitted(
     let longest = length(sub(hi, lo));
     let (mut basis, mut origin) = (basis, start);
     let mut reach = 4.0 * nearest;
-    // Twice with all: the first time corrects what the smaller part did not tell.
+    // Twice with all: the first time corrects what the smaller part did not give.
     let mut whole = 0;
     while whole < 2 {
         whole += usize::from(reach >= longest);

@@ -22,7 +22,7 @@ fn with(a: &Moved, b: &Moved) -> Moved {
 }
 
 impl Families {
-    /// Remembers where particles are at a search within bodies. In boxes that repeat nobody asks.
+    /// Remembers where particles are at a search within bodies. In boxes that repeat they are not needed.
     pub(super) fn looked_at(&mut self, view: &PeriView) {
         self.near.looked.clear();
         self.scratch.looked.clear();

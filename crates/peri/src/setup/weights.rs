@@ -57,7 +57,7 @@ fn monomials(n: [f64; 3]) -> Moments {
     EXPONENTS.map(|e| (0..3).map(|k| powers[k][e[k] as usize]).product())
 }
 
-/// What an end asks of its bonds: factors `scale` (1 + Σ `by` φ) over the monomials φ of their directions.
+/// What an end needs of its bonds: factors `scale` (1 + Σ `by` φ) over the monomials φ of their directions.
 #[derive(Clone, Copy)]
 struct Asked {
     scale: f64,
@@ -124,7 +124,7 @@ impl Weighing<'_> {
             return 0.0;
         }
         let length = length(self.xi(ends));
-        let shape = |delta: f64| match self.law.kind.bond_based() {
+        let shape = |delta: f64| match self.law.kind.bond_based {
             true => self.law.shape().shape(length, delta) / delta.powi(4),
             false => self.law.influence.of(length, delta) / self.law.influence.whole(delta),
         };
@@ -179,7 +179,7 @@ impl Weighing<'_> {
                 *all = factor(start + k);
             }
         });
-        let mut told = Factors { least: f64::INFINITY, ..Factors::default() };
+        let mut factors = Factors { least: f64::INFINITY, ..Factors::default() };
         let mut count = 0.0;
         for (b, own) in own.iter_mut().enumerate().filter(|(b, _)| self.body.lives(*b)) {
             // A sum over a family has no small divisor.
@@ -189,15 +189,15 @@ impl Weighing<'_> {
             };
             *own *= factor;
             count += 1.0;
-            told.cut += f64::from(u8::from(factor != all[b]));
-            told.mean += factor;
-            (told.least, told.most) = (told.least.min(factor), told.most.max(factor));
+            factors.cut += f64::from(u8::from(factor != all[b]));
+            factors.mean += factor;
+            (factors.least, factors.most) = (factors.least.min(factor), factors.most.max(factor));
         }
         if count > 0.0 {
-            told.mean /= count;
-            told.cut /= count;
+            factors.mean /= count;
+            factors.cut /= count;
         }
-        told
+        factors
     }
 
     /// The factors that make a family whole.
@@ -208,7 +208,7 @@ impl Weighing<'_> {
             let length = length(xi);
             let q = self.law.weight(length, pair.horizon, plain[b]) * self.body.record[j].volume;
             // Of microelastic bonds a whole family's sum is known; a state-based one is weighed by its own.
-            let q = match self.law.kind.bond_based() {
+            let q = match self.law.kind.bond_based {
                 true => q / (std::f64::consts::PI * pair.horizon.powi(4)),
                 false => q,
             };
@@ -219,7 +219,7 @@ impl Weighing<'_> {
                 (0..=k).for_each(|m| squares[k][m] += q * n[k] * n[m]);
             }
         });
-        let whole = if self.law.kind.bond_based() { 1.0 } else { all };
+        let whole = if self.law.kind.bond_based { 1.0 } else { all };
         if all <= 0.0 {
             return Asked::NOTHING;
         }

@@ -1,11 +1,12 @@
 //! What all ranks agree upon in a step: how far bodies have moved, what is squeezed, what breaks.
 
-use crate::families::lattice::{LANES, LatticeBody, RowMotion};
+use std::ops::Range;
+
+use crate::families::bond::{Broken, Candidate};
+use crate::families::lattice::{LANES, LatticeBody, MAY_BREAK, RowMotion, SQUEEZED};
 use crate::families::list::ListBody;
 use crate::families::shares::{BodyShare, Shares};
-use crate::families::{Candidate, PeriView};
-use crate::lattice::sweep::{MAY_BREAK, SQUEEZED};
-use crate::shares::whole::slots_of;
+use crate::families::view::PeriView;
 use perigrain_base::comm;
 use perigrain_base::comm::numbers::{next, put, take};
 
@@ -127,14 +128,6 @@ pub(crate) fn rows_everywhere<const N: usize>(
 /// The list, in the place of the number of a body on a lattice.
 pub(crate) const LIST: usize = u32::MAX as usize;
 
-/// A bond that breaks, with the body on a lattice that has it, or [`LIST`], and the square of its length.
-#[derive(Debug)]
-pub(crate) struct Broken {
-    pub(crate) body: usize,
-    pub(crate) bond: Candidate,
-    pub(crate) square: f64,
-}
-
 /// Bonds of all ranks that break, in the order in which one process finds them: by bodies and chunks.
 pub(crate) fn broken_everywhere(mut own: Vec<Broken>) -> Vec<Broken> {
     let mut bytes = vec![];
@@ -161,4 +154,15 @@ pub(crate) fn broken_everywhere(mut own: Vec<Broken>) -> Vec<Broken> {
 /// The square of a bond's length now.
 pub(crate) fn square(view: &PeriView, [i, j]: [u32; 2]) -> f64 {
     crate::setup::detect::distance(view, i, j).0
+}
+
+/// The row slots of some tiles.
+pub(super) fn slots_of(body: &LatticeBody, tiles: &Range<usize>) -> Vec<usize> {
+    let tiles = body.tiles.all[tiles.clone()].iter();
+    tiles
+        .flat_map(|tile| {
+            let slots = |plane: usize| body.slot(plane, tile.rows.start)..body.slot(plane, tile.rows.end);
+            tile.planes.clone().flat_map(slots)
+        })
+        .collect()
 }

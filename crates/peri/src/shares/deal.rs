@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
+use crate::families::Families;
 use crate::families::lattice::LatticeBody;
 use crate::families::shares::{ALL, BodyShare, Dues, RowLink, Shares, ranges};
 use crate::families::tiles::TileGraph;
-use crate::families::{Families, LawKind};
 use crate::lattice::tiles::lay_tiles;
 use crate::list::tiles::lay_slabs;
 use crate::shares::list::{followed_slabs, share_of_list};
@@ -16,9 +16,7 @@ impl Families {
     pub fn deal(&mut self, me: usize, ranks: usize) -> bool {
         self.shares = None;
         self.scratch.contact.forget_own();
-        let kind = self.law.kind;
-        let forgets = kind.memory() == 0 && (kind.bond_based() || kind == LawKind::Lps);
-        let plain = forgets && !self.options.compress && !self.options.reunite;
+        let plain = self.law.kind.memory() == 0 && !self.options.compress && !self.options.reunite;
         self.lattices.iter_mut().for_each(lay_tiles);
         lay_slabs(&mut self.list);
         let tiles = self.lattices.iter().map(|body| body.tiles.all.len()).sum::<usize>() + self.list.slabs();

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use crate::energy::Sums;
-use crate::families::list::ListBody;
+use crate::families::list::{ListBody, PART};
 use crate::families::shares::{BodyShare, RowLink};
 use crate::families::tiles::TileWindow;
-use crate::list::energy::PART;
+use crate::families::view::Sums;
 use crate::list::tiles::{make_room, overlap};
 use crate::shares::agreed::{pieces_of_all, to_all};
 use crate::shares::deal::dues_of;

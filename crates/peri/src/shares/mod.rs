@@ -8,7 +8,7 @@ mod near;
 mod whole;
 
 pub(crate) use agreed::{
-    Agreed, Broken, LIST, agree, agreed, agreed_motion, broken_everywhere, forget_flags, rows_everywhere,
-    square, squeezed_everywhere,
+    Agreed, LIST, agree, agreed, agreed_motion, broken_everywhere, forget_flags, rows_everywhere, square,
+    squeezed_everywhere,
 };
 pub(crate) use near::{pairs_everywhere, sums_everywhere};

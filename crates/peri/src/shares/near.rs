@@ -1,8 +1,8 @@
 //! Near pairs on ranks: each searches its part of the cells, and pushes its own particles.
 
-use crate::energy::Sums;
 use crate::families::NearPair;
 use crate::families::shares::Shares;
+use crate::families::view::Sums;
 use crate::shares::agreed::to_all;
 use perigrain_base::comm::numbers::{next, put};
 

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use crate::families::Families;
 use crate::families::lattice::{LatticeBody, PAD, RowMotion};
-use crate::families::law::SiteState;
+use crate::law::state::SiteState;
+use crate::shares::agreed::slots_of;
 use perigrain_base::comm::numbers::{Number, put, take};
 
 /// Numbers on their way into a message or out of one.
@@ -55,17 +56,6 @@ impl Families {
             list.piece(&share.tiles[rank], way);
         }
     }
-}
-
-/// The row slots of some tiles.
-pub(super) fn slots_of(body: &LatticeBody, tiles: &Range<usize>) -> Vec<usize> {
-    let tiles = body.tiles.all[tiles.clone()].iter();
-    tiles
-        .flat_map(|tile| {
-            let slots = |plane: usize| body.slot(plane, tile.rows.start)..body.slot(plane, tile.rows.end);
-            tile.planes.clone().flat_map(slots)
-        })
-        .collect()
 }
 
 /// What sweeps and motion leave of one row.

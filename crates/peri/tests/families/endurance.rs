@@ -2,7 +2,7 @@
 
 use perigrain_peri::families::*;
 
-use super::scene::Scene;
+use super::scene::{Scene, named};
 
 const DX: f64 = 1e-3;
 const K: f64 = 14e9;
@@ -29,7 +29,7 @@ impl Bar {
         scene.fill(DX, [[0, LONG - 1], [0, WIDE - 1], [0, WIDE - 1]], 1, 2200.0, |_| true);
         let coeff = PmbCoeff { c: 0.0, horizon: 2.015 * DX, s00: f64::INFINITY, alpha: 0.0 };
         scene.table.set(1, 1, coeff).unwrap();
-        scene.law.kind = LawKind::ElasticPlastic;
+        scene.law.kind = named("eps").into();
         scene.law.moduli = vec![Moduli { bulk: K, shear: G, yield_stress, ..Moduli::default() }];
         let young = 9.0 * K * G / (3.0 * K + G);
         // Three times the strain at which the bar flows.

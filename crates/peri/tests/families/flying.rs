@@ -17,7 +17,7 @@ fn block(layout: Layout) -> Scene {
     s
 }
 
-/// Where a particle is: the body swells to three times its size and shrinks to half of it, and everybody swings on a way of its own.
+/// Where a particle is: the body swells to three times its size and shrinks to half of it, and each particle swings on a way of its own.
 fn place(i: usize, x0: [f64; 3], t: f64) -> [f64; 3] {
     let swell = 1.0 + t.sin() * if t.sin() > 0.0 { 2.0 } else { 0.5 };
     let phase = |k: usize| ((i * (7 + 4 * k)) % 101) as f64 * 0.0622;

@@ -133,7 +133,7 @@ fn agree(a: &Found, b: &Found) -> bool {
 }
 
 #[test]
-fn dust_is_pushed_as_a_plain_loop_says() {
+fn dust_is_pushed_as_by_a_plain_loop() {
     for (unit, compat) in
         [(ForceUnit::Density, false), (ForceUnit::Density, true), (ForceUnit::Newton, false)]
     {

@@ -1,5 +1,6 @@
 //! Families whose work is shared out to ranks, threads here, against those of one process.
 
+use super::scene::named;
 use perigrain_base::comm::{self, Local};
 use perigrain_peri::families::*;
 use std::sync::Arc;
@@ -88,7 +89,7 @@ impl Shaken {
         PeriView { x, x0: &self.x0, kind: &self.kind, volume: &self.volume, bounds, excluded: None }
     }
 
-    /// One evaluation, shared out or not, of which the second half finds all places where it asks for them; whether it does.
+    /// One evaluation, shared out or not, of which the second half finds all places where it needs them; whether it does.
     fn step(&self, families: &mut Families, step: usize, shared: bool, seen: &[[f64; 3]]) -> (Left, bool) {
         let (x, n) = (self.places(step), self.x0.len());
         let (mut f, mut by_particle) = (vec![[0.0; 3]; n], vec![0.0; n]);
@@ -177,7 +178,7 @@ fn followed(families: &Families, n: usize) -> Vec<bool> {
     follows
 }
 
-/// Brings what each rank knows of its own tiles up to date on all.
+/// Brings what each rank has of its own tiles up to date on all.
 fn hand_to_all(families: &mut Families) {
     let comm = comm::present();
     let mut own = vec![];
@@ -192,14 +193,14 @@ fn hand_to_all(families: &mut Families) {
 fn what_ranks_share_out_has_the_bits_of_one_process() {
     let shaken = Shaken::new();
     for (layout, kind, compat_lammps) in [
-        (Layout::Auto, LawKind::Pmb, false),
-        (Layout::Auto, LawKind::Lps, false),
-        (Layout::List, LawKind::Pmb, true),
-        (Layout::List, LawKind::Lps, false),
+        (Layout::Auto, "pmb", false),
+        (Layout::Auto, "lps", false),
+        (Layout::List, "pmb", true),
+        (Layout::List, "lps", false),
     ] {
         let options = FamilyOptions { layout, compat_lammps, ..FamilyOptions::new(1.0) };
         let moduli = Moduli { bulk: 2.0, shear: 1.0, ..Moduli::default() };
-        let law = Law { kind, moduli: vec![moduli; 2], ..Law::default() };
+        let law = Law { kind: named(kind).into(), moduli: vec![moduli; 2], ..Law::default() };
         let families = Families::build_of(&shaken.view(&shaken.x0), &shaken.table, options, law).unwrap();
         assert!(families.lattices.len() == if layout == Layout::Auto { 2 } else { 0 });
         assert!(families.list.slabs() > 0);

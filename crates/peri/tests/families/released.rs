@@ -2,22 +2,20 @@
 
 use perigrain_peri::families::*;
 
-use super::scene::Scene;
+use super::scene::{Scene, named};
 
 const DX: f64 = 1e-3;
-const KINDS: [LawKind; 5] =
-    [LawKind::Pmb, LawKind::Lps, LawKind::Ves, LawKind::ElasticPlastic, LawKind::VesApart];
+const KINDS: [&str; 5] = ["pmb", "lps", "ves", "eps", "ves/apart"];
 
 /// A bar that is torn in the middle; its bonds relax and flow before they break.
-fn torn(kind: LawKind, layout: Layout) -> Scene {
+fn torn(kind: &'static str, layout: Layout) -> Scene {
     let mut s = Scene::new(DX, 4e-8, 1);
     (s.options.layout, s.options.unit) = (layout, ForceUnit::Newton);
     s.fill(DX, [[0, 15], [0, 3], [0, 4]], 1, 2200.0, |_| true);
     s.density.iter_mut().zip(&s.volume).for_each(|(m, v)| *m *= v);
     s.table.set(1, 1, PmbCoeff { c: 1e21, horizon: 3.015 * DX, s00: 0.004, alpha: 0.25 }).unwrap();
-    s.law.kind = kind;
-    let (lambda, tau) =
-        if matches!(kind, LawKind::Ves | LawKind::VesApart) { (0.6, 3e-7) } else { (0.0, 0.0) };
+    s.law.kind = named(kind).into();
+    let (lambda, tau) = if matches!(kind, "ves" | "ves/apart") { (0.6, 3e-7) } else { (0.0, 0.0) };
     s.law.moduli =
         vec![Moduli { bulk: 14e9, shear: 6e9, lambda, tau, yield_stress: 2e7, ..Moduli::default() }];
     for (x, v) in s.x.iter().zip(&mut s.v) {

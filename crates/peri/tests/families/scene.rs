@@ -1,6 +1,12 @@
 //! Scenes of the reference decks set up by hand, and a velocity-Verlet loop to move them.
 
 use perigrain_peri::families::*;
+use perigrain_peri::law::{LAWS, Style};
+
+/// The law of bonds with this name.
+pub fn named(name: &str) -> &'static Style {
+    LAWS.iter().map(|law| law.style()).find(|law| law.name == name).unwrap()
+}
 
 /// Particles, families and a step size.
 #[derive(Clone)]

@@ -2,22 +2,23 @@
 
 use perigrain_base::par;
 use perigrain_peri::families::*;
-use perigrain_peri::softening::REST;
 
-use super::scene::Scene;
+use super::scene::{Scene, named};
 
 const DX: f64 = 1e-3;
-const KINDS: [LawKind; 2] = [LawKind::Softening, LawKind::Decaying];
+/// What is left of the peak where an exponential bond breaks.
+const REST: f64 = 1e-3;
+const KINDS: [&str; 2] = ["softening/linear", "softening/exponential"];
 const C: f64 = 1e21;
 
 /// A brick of one or two types whose halves fly apart.
-fn brick(kind: LawKind, types: u16, layout: Layout) -> Scene {
+fn brick(kind: &'static str, types: u16, layout: Layout) -> Scene {
     let mut s = Scene::new(DX, 4e-8, usize::from(types));
     (s.options.layout, s.options.unit) = (layout, ForceUnit::Newton);
     s.fill(DX, [[0, 9], [0, 4], [0, 4]], 1, 2200.0, |_| true);
     s.density.iter_mut().zip(&s.volume).for_each(|(m, v)| *m *= v);
     let n = usize::from(types);
-    s.law = Law { kind, influence: Influence::One, yields: vec![0.0; n * n], ..s.law };
+    s.law = Law { kind: named(kind).into(), influence: Influence::One, yields: vec![0.0; n * n], ..s.law };
     s.law.moduli = vec![Moduli::default(); n];
     for (a, b) in (1..=types).flat_map(|a| (1..=types).map(move |b| (a, b))) {
         let apart = f64::from(a + b) / 2.0;
@@ -45,25 +46,25 @@ struct Bond {
 }
 
 impl Bond {
-    fn envelope(&self, kind: LawKind, s: f64) -> f64 {
+    fn envelope(&self, kind: &'static str, s: f64) -> f64 {
         match kind {
             _ if s <= self.peak => s,
-            LawKind::Softening => self.peak * (self.last - s).max(0.0) / (self.last - self.peak),
+            "softening/linear" => self.peak * (self.last - s).max(0.0) / (self.last - self.peak),
             _ => self.peak * (REST.ln() * (s - self.peak) / (self.last - self.peak)).exp(),
         }
     }
 
     /// 1 − d.
-    fn intact(&self, kind: LawKind) -> f64 {
+    fn intact(&self, kind: &'static str) -> f64 {
         self.envelope(kind, self.most) / self.most
     }
 
     /// What damage has taken, over c w |xi| V²: the area under the curve without the triangle it goes back along.
-    fn lost(&self, kind: LawKind) -> f64 {
-        let most = if kind == LawKind::Softening { self.most.min(self.last) } else { self.most };
+    fn lost(&self, kind: &'static str) -> f64 {
+        let most = if kind == "softening/linear" { self.most.min(self.last) } else { self.most };
         let force = self.envelope(kind, most);
         let beyond = match kind {
-            LawKind::Softening => 0.5 * (self.peak + force) * (most - self.peak),
+            "softening/linear" => 0.5 * (self.peak + force) * (most - self.peak),
             _ => (self.peak - force) * (self.last - self.peak) / -REST.ln(),
         };
         0.5 * self.peak * self.peak + beyond - 0.5 * force * most
@@ -91,7 +92,7 @@ fn bonds(s: &Scene) -> Vec<Bond> {
 
 /// Forces and what the scene holds and has lost, bond by bond; then bonds break.
 fn plain(s: &Scene, bonds: &mut [Bond], lost: &mut f64) -> (Vec<[f64; 3]>, f64) {
-    let (kind, volume) = (s.law.kind, s.volume[0] * s.volume[0]);
+    let (kind, volume) = (s.law.kind.name, s.volume[0] * s.volume[0]);
     let (mut f, mut held) = (vec![[0.0; 3]; s.x.len()], 0.0);
     for b in bonds.iter_mut().filter(|b| b.alive) {
         let [i, j] = b.ends;

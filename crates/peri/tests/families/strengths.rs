@@ -1,5 +1,6 @@
 //! Strengths and stiffnesses that differ from particle to particle.
 
+use super::scene::named;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::scatter::{Distribution, gaussian};
 use perigrain_peri::families::*;
@@ -54,7 +55,7 @@ fn drawn(of: Distribution, seed: u64) -> Vec<f64> {
 
 #[test]
 fn factors_of_one_change_no_bit() {
-    let (shaped, ones) = (Law { kind: LawKind::Shaped, ..Law::default() }, [1.0; 540]);
+    let (shaped, ones) = (Law { kind: named("shaped").into(), ..Law::default() }, [1.0; 540]);
     for layout in [Layout::Auto, Layout::List] {
         for law in [&Law::default(), &shaped] {
             let plain = shaken((layout, 0.25), law, [&[], &[]], 20);
@@ -89,7 +90,7 @@ fn bonds_break_at_the_strength_of_their_weaker_end() {
 fn lattices_and_lists_agree() {
     let strength = drawn(Distribution::Weibull(4.0), 4711);
     let stiffness = drawn(Distribution::Normal(0.2), 12);
-    let shaped = Law { kind: LawKind::Shaped, ..Law::default() };
+    let shaped = Law { kind: named("shaped").into(), ..Law::default() };
     for law in [&Law::default(), &shaped] {
         let [a, b] = [Layout::Auto, Layout::List]
             .map(|layout| shaken((layout, 0.25), law, [&strength, &stiffness], 20));
@@ -110,7 +111,7 @@ fn stiffness_is_the_mean_of_both_ends() {
     let view = |x| PeriView { x, x0: &x0, kind: &[1; 2], volume: &[1.0; 2], bounds: BOUNDS, excluded: None };
     for layout in [Layout::Auto, Layout::List] {
         let options = FamilyOptions { layout, ..FamilyOptions::new(1.0) };
-        let law = Law { kind: LawKind::Shaped, influence: Influence::One, ..Law::default() };
+        let law = Law { kind: named("shaped").into(), influence: Influence::One, ..Law::default() };
         let mut families = Families::build_of(&view(&x0), &table, options, law).unwrap();
         families.scatter(&[], &[0.5, 1.1]);
         let mut f = [[0.0; 3]; 2];

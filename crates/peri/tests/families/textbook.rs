@@ -88,7 +88,7 @@ impl Textbook {
         let (reach, bounds) = (1.35 * self.options.lattice_spacing, &view.bounds);
         for i in 0..view.x.len() {
             for j in i + 1..view.x.len() {
-                // Who is far along one axis, in the box and in the next one, need not be looked at.
+                // What is far along one axis, in the box and in the next one, need not be looked at.
                 let far = |k: usize| {
                     let apart = (view.x[i][k] - view.x[j][k]).abs();
                     let length = bounds.hi[k] - bounds.lo[k];

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::scene::named;
 use super::threads;
 use perigrain_base::par;
 use perigrain_peri::families::*;
@@ -20,7 +21,12 @@ fn bounds() -> Bounds {
     Bounds { lo: [-50.0; 3], hi: [90.0; 3], periodic: [false; 3], tilt: [0.0; 3] }
 }
 
-fn families((x0, horizon): (&[[f64; 3]], f64), kind: LawKind, layout: Layout, skip_rest: bool) -> Families {
+fn families(
+    (x0, horizon): (&[[f64; 3]], f64),
+    kind: &'static str,
+    layout: Layout,
+    skip_rest: bool,
+) -> Families {
     let mut table = PmbTable::new(1);
     table.set(1, 1, PmbCoeff { c: 1.0, horizon, s00: 0.02, alpha: 0.25 }).unwrap();
     let moduli = Moduli {
@@ -32,7 +38,13 @@ fn families((x0, horizon): (&[[f64; 3]], f64), kind: LawKind, layout: Layout, sk
         syc: -0.003,
         ..Moduli::default()
     };
-    let law = Law { kind, moduli: vec![moduli], yields: vec![-0.003], dt: 1.0, ..Law::default() };
+    let law = Law {
+        kind: named(kind).into(),
+        moduli: vec![moduli],
+        yields: vec![-0.003],
+        dt: 1.0,
+        ..Law::default()
+    };
     let options = FamilyOptions { layout, skip_rest, ..FamilyOptions::new(1.0) };
     let (kinds, volume) = (vec![1; x0.len()], vec![1.0; x0.len()]);
     let view = PeriView { x: x0, x0, kind: &kinds, volume: &volume, bounds: bounds(), excluded: None };
@@ -65,20 +77,12 @@ fn forces(x0: &[[f64; 3]], mut families: Families) -> (Vec<Vec<[f64; 3]>>, u64) 
     (steps, families.live_bonds() as u64)
 }
 
-const LAWS: [LawKind; 7] = [
-    LawKind::Pmb,
-    LawKind::Lps,
-    LawKind::Ves,
-    LawKind::ElasticPlastic,
-    LawKind::Yield,
-    LawKind::NonlinearElastic,
-    LawKind::Shaped,
-];
+const LAWS: [&str; 7] = ["pmb", "lps", "ves", "eps", "plastic", "nonlinear", "shaped"];
 
 #[test]
 fn tiles_have_each_row_once_and_what_its_bonds_reach() {
     for ((size, horizon), at_least) in BRICKS.into_iter().zip([8, 32]) {
-        let families = families((&brick(size), horizon), LawKind::Pmb, Layout::Auto, true);
+        let families = families((&brick(size), horizon), "pmb", Layout::Auto, true);
         look_at_tiles(families, at_least);
     }
 }

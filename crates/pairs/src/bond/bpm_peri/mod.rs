@@ -4,12 +4,13 @@ mod op;
 mod table;
 
 use super::{BondForce, BondStyle, Pull, Stretched, breaking_weights};
-use crate::peri::{beyond_elastic, lasting, stiffness};
+use crate::peri::{beyond_elastic, lasting, stiffness, written};
 use op::Force;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::Args;
-use perigrain_peri::families::{LawKind, Moduli, PmbCoeff};
+use perigrain_peri::families::{Moduli, PmbCoeff};
+use perigrain_peri::law::{LAWS, PMB, Style as BondLaw};
 use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
@@ -94,9 +95,9 @@ fn refused<T>(span: Span, why: &str, instead: &str) -> Result<T> {
 }
 
 /// The options of a line for bonds.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 struct Coeff {
-    kind: LawKind,
+    law: &'static BondLaw,
     bond: PmbCoeff,
     moduli: Moduli,
 }
@@ -109,27 +110,24 @@ struct Declared {
     coeffs: BTreeMap<u16, Coeff>,
 }
 
-/// The names of the laws.
-const LAWS: [(&str, LawKind); 4] =
-    [("pmb", LawKind::Pmb), ("lps", LawKind::Lps), ("ves", LawKind::Ves), ("eps", LawKind::ElasticPlastic)];
-
-fn name_of(kind: LawKind) -> &'static str {
-    LAWS.iter().find(|l| l.1 == kind).map_or("", |l| l.0)
+/// The laws that bonds of a table may have.
+fn laws() -> impl Iterator<Item = &'static BondLaw> {
+    LAWS.iter().map(|law| law.style()).filter(|law| law.of_bonds)
 }
 
 /// The words of a law, in LAMMPS' order for bonds.
 fn coefficients(args: &mut Args) -> Result<Coeff> {
     let span = args.here();
-    let name = args.choice("law of the bonds", &LAWS.map(|l| l.0))?;
-    let kind = LAWS.iter().find(|l| l.0 == name).map_or(LawKind::Pmb, |l| l.1);
-    let (c, mut moduli) = stiffness(kind, args)?;
-    beyond_elastic(kind, args, &mut moduli)?;
+    let name = args.choice("law of the bonds", &laws().map(|law| law.name).collect::<Vec<_>>())?;
+    let law = laws().find(|law| law.name == name).unwrap_or(PMB.style());
+    let (c, mut moduli) = stiffness(law, args)?;
+    beyond_elastic(law, args, &mut moduli)?;
     let (horizon, s00, alpha) = lasting(args)?;
     if !args.is_empty() {
         let text = format!("too many numbers for bonds of law {name}");
         return fail(Code::EXTRA_ARGUMENT, span.to(args.here()), text);
     }
-    Ok(Coeff { kind, bond: PmbCoeff { c, horizon, s00, alpha }, moduli })
+    Ok(Coeff { law, bond: PmbCoeff { c, horizon, s00, alpha }, moduli })
 }
 
 impl BondForce for Declared {
@@ -143,9 +141,9 @@ impl BondForce for Declared {
         if let Some(&most) = kinds.iter().find(|k| **k > 255) {
             return fail(Code::NOT_SUPPORTED, cx.span, format!("bond type {most}: bpm/peri knows 255"));
         }
-        let other = self.coeffs.iter().find(|(k, c)| !kinds.contains(k) && c.kind != coeff.kind);
+        let other = self.coeffs.iter().find(|(k, c)| !kinds.contains(k) && c.law.name != coeff.law.name);
         if let Some((k, c)) = other {
-            let (own, one) = (name_of(coeff.kind), name_of(c.kind));
+            let (own, one) = (coeff.law.name, c.law.name);
             let text = format!("{own} beside {one} of bond type {k}: the bonds of a scene have one law here");
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text)
                 .help("coefficients may differ from type to type, the law may not")
@@ -185,16 +183,12 @@ impl BondForce for Declared {
     }
 
     fn written(&self, kind: u16) -> Option<String> {
-        let Coeff { kind, bond, moduli } = self.coeffs.get(&kind)?;
-        let own = match kind {
-            LawKind::Pmb => vec![bond.c],
-            LawKind::Ves => vec![moduli.bulk, moduli.shear, moduli.lambda, moduli.tau],
-            LawKind::ElasticPlastic => vec![moduli.bulk, moduli.shear, moduli.yield_stress],
-            _ => vec![moduli.bulk, moduli.shear],
-        };
-        let all = own.into_iter().chain([bond.horizon, bond.s00, bond.alpha]);
+        let Coeff { law, bond, moduli } = self.coeffs.get(&kind)?;
+        let stiff = if law.bond_based { vec![bond.c] } else { vec![moduli.bulk, moduli.shear] };
+        let own = stiff.into_iter().chain(written(law, moduli));
+        let all = own.chain([bond.horizon, bond.s00, bond.alpha]);
         let words: Vec<String> = all.map(|a| general(a, 16)).collect();
-        Some(format!("{} {}", name_of(*kind), words.join(" ")))
+        Some(format!("{} {}", law.name, words.join(" ")))
     }
 }
 

@@ -60,14 +60,14 @@ impl Force {
     /// Families at the first run; later, what the deck has changed since.
     fn prepare(&self, w: &mut World, t: &Tick) -> Result<()> {
         let Links { links, table, of_bonds, mut law } = links(w, &self.law, self.span)?;
-        law.shared_or_apart(w.families.as_ref().map(|f| f.law.kind)).map_err(|e| e.at(self.span))?;
+        law.shared_or_apart(w.families.as_ref().map(|f| &f.law)).map_err(|e| e.at(self.span))?;
         let mut options = FamilyOptions::new(w.lattice.spacing[0]);
         options.unit = if self.law.newton { ForceUnit::Newton } else { ForceUnit::Density };
         (options.skip_rest, options.portable) = (!w.settings.no_skipping, w.settings.portable);
         options.no_repulsion = true;
         let mut families = match w.families.take() {
             Some(mut families) => {
-                families.takes(law.kind, Some(of_bonds.len())).map_err(|e| e.at(self.span))?;
+                families.takes(&law, Some(of_bonds.len())).map_err(|e| e.at(self.span))?;
                 let mut known: Vec<([u32; 2], u8)> = links;
                 known.iter_mut().for_each(|l| l.0.sort_unstable());
                 known.sort_unstable();

@@ -2,7 +2,8 @@
 
 use super::{Coeff, Declared};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_peri::families::{Influence, Law, LawKind, Moduli, PmbCoeff, PmbTable};
+use perigrain_peri::families::{Influence, Law, Moduli, PmbCoeff, PmbTable};
+use perigrain_peri::law::PMB;
 use perigrain_styles::pull::find;
 use perigrain_world::World;
 
@@ -24,7 +25,7 @@ pub struct Links {
 /// Lost ends, particles that coincide, moduli that differ around a particle, volumes that are not there.
 pub fn links(w: &World, law: &Declared, span: Span) -> Result<Links> {
     let found = find(w, |b| law.coeffs.contains_key(&(b.kind as u16)), span)?;
-    let kind = law.coeffs.values().next().map_or(LawKind::Pmb, |c| c.kind);
+    let style = law.coeffs.values().next().map_or(PMB.style(), |c| c.law);
     let mut table = PmbTable::new(w.types);
     let mut moduli = vec![None; w.types];
     let mut links = Vec::with_capacity(found.len());
@@ -42,17 +43,17 @@ pub fn links(w: &World, law: &Declared, span: Span) -> Result<Links> {
     let none = PmbCoeff { c: 0.0, horizon: 1.0, s00: f64::INFINITY, alpha: 0.0 };
     let types = w.bonds.types as u16;
     let of_bonds = (1..=types).map(|k| law.coeffs.get(&k).map_or(none, |c| c.bond)).collect();
-    let influence = if kind == LawKind::Pmb { Influence::One } else { Influence::default() };
+    let influence = if style.bond_based { Influence::One } else { Influence::default() };
     let moduli = moduli.into_iter().map(|m| m.map_or(Moduli::default(), |m: (Moduli, u16)| m.0)).collect();
-    Ok(Links { links, table, of_bonds, law: Law { kind, influence, moduli, ..Law::default() } })
+    Ok(Links { links, table, of_bonds, law: Law { kind: style.into(), influence, moduli, ..Law::default() } })
 }
 
 /// What two types have with one more type of bonds between them.
 fn widest(before: Option<&PmbCoeff>, coeff: &Coeff) -> PmbCoeff {
-    let Coeff { bond, moduli, kind } = *coeff;
-    let c = match kind {
-        LawKind::Pmb => bond.c,
-        _ => 18.0 * moduli.bulk / (std::f64::consts::PI * bond.horizon.powi(4)),
+    let Coeff { bond, moduli, law } = *coeff;
+    let c = match law.bond_based {
+        true => bond.c,
+        false => 18.0 * moduli.bulk / (std::f64::consts::PI * bond.horizon.powi(4)),
     };
     let own = PmbCoeff { c, ..bond };
     before.map_or(own, |b| PmbCoeff {

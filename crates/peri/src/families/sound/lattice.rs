@@ -19,7 +19,7 @@ impl LatticeBody {
         self.sites_are_sound(reference)?;
         self.bonds_are_sound()?;
         let (cells, chunks) = (self.particle.len(), self.intact.len());
-        states(&self.state, law.kind, (cells + 2 * PAD, self.alive.len() * LANES))?;
+        states(&self.state, &law.kind, (cells + 2 * PAD, self.alive.len() * LANES))?;
         states_are_numbers(&self.state)?;
         numbers("displacements", self.u.iter().flatten())?;
         numbers("constants", self.tables.iter().chain(self.pairs.as_flattened()))?;
@@ -48,7 +48,7 @@ impl LatticeBody {
             must(row.len < 1 << 30 && row.lo.unsigned_abs() < 1 << 30, "a row is longer than it can be")?;
             next = next.checked_add(row.len).ok_or("its rows are longer than they can be")?;
         }
-        // Places in tables and cells are told by numbers of 31 bits.
+        // Places in tables and cells are numbers of 31 bits.
         must(next <= i32::MAX as u32, "it has more cells than can be numbered")?;
         equal("the number of its cells is", self.particle.len(), next as usize)
     }

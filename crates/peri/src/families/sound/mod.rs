@@ -7,9 +7,11 @@
 mod lattice;
 mod list;
 
+use crate::families::Families;
 use crate::families::lattice::{LANES, PAD};
-use crate::families::law::SiteState;
-use crate::families::{Families, LawKind};
+use crate::families::law::Law;
+use crate::law::state::SiteState;
+use crate::law::style::Style;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, length, sub};
 
@@ -91,15 +93,15 @@ impl Families {
         must(place == self.place, "a particle is not at its place")
     }
 
-    /// Whether these families can go on under a law, and with coefficients by types of bonds where there are any.
+    /// Whether these families can run under a law, and with coefficients by types of bonds where there are any.
     ///
     /// # Errors
-    /// Where bonds do not remember what the law asks for.
-    pub fn takes(&self, law: LawKind, of_bonds: Option<usize>) -> Result<()> {
+    /// Where bonds do not remember what the law needs.
+    pub fn takes(&self, law: &Law, of_bonds: Option<usize>) -> Result<()> {
         let lattice = |b: &super::lattice::LatticeBody| {
-            states(&b.state, law, (b.particle.len() + 2 * PAD, b.alive.len() * LANES))
+            states(&b.state, &law.kind, (b.particle.len() + 2 * PAD, b.alive.len() * LANES))
         };
-        let list = || states(&self.list.state, law, (self.list.record.len(), self.list.partner.len()));
+        let list = || states(&self.list.state, &law.kind, (self.list.record.len(), self.list.partner.len()));
         let by_bonds = match of_bonds {
             _ if self.list.record.is_empty() => true,
             None => true,
@@ -110,7 +112,7 @@ impl Families {
         if by_bonds && self.lattices.iter().all(|b| lattice(b).is_ok()) && list().is_ok() {
             return Ok(());
         }
-        let text = "the peridynamic bonds of this scene were made under another style: they do not remember what this one asks for";
+        let text = "the peridynamic bonds of this scene were made under another style: they do not remember what this one needs";
         let help =
             "declare the style that was in force at the first run, or `clear` the scene and make it anew";
         Err(Diagnostic::error(Code::CONFLICT, None, text).help(help).into())
@@ -140,7 +142,7 @@ fn states_are_numbers(state: &SiteState) -> Fault {
 }
 
 /// Whether columns of sites and memory of bonds are as long as a law needs: `sites` entries, and numbers for `bonds` bonds.
-fn states(state: &SiteState, law: LawKind, (sites, bonds): (usize, usize)) -> Fault {
+fn states(state: &SiteState, law: &Style, (sites, bonds): (usize, usize)) -> Fault {
     let (sites, numbers) = if law.has_states() { (sites, bonds * law.memory()) } else { (0, 0) };
     for (what, column) in [
         ("weighted volumes", &state.weighted),
