@@ -1,12 +1,12 @@
 //! fix addforce: a force added to each particle.
 
-use super::{Facts, Fix, FixStyle, Minimizing, region_keyword};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, Param, RefKind, ValueRef};
+use super::{AtomVariable, Facts, Fix, FixStyle, Minimizing, RegionId};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
-use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, PerAtom, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, MASK, REGIONS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
@@ -20,65 +20,56 @@ impl Style for AddForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group addforce fx fy fz [every N] [region ID] [energy v_name]",
+            syntax: "",
             summary: "Adds a force to each particle of the group.",
-            text: "Each of fx fy fz is a number or `v_name` of an equal- or atom-style variable, evaluated each step; in \
-                   force units, for peridynamic particles in LAMMPS' convention force densities. `every N`: only at \
-                   multiples of N. `region ID`: only inside. Acts in the setup of a run too. Scalar (extensive): the \
-                   potential energy, −Σ f·x with unwrapped positions, or Σ of the atom-style variable after `energy`, \
-                   which is refused for constant forces as in LAMMPS; `fix_modify ID energy yes` adds it to the \
-                   potential energy. `fix_modify ID virial yes` adds Σ f x (unwrapped) to the virial of pressures. Vector of 3 (extensive): the total force before the change.",
+            text: "Acts in the setup of a run too. `fix_modify ID virial yes` adds Σ f x (unwrapped) to the virial of \
+                   pressures.\n\n\
+                   Scalar (extensive): the potential energy, −Σ f·x with unwrapped positions, or Σ of the variable \
+                   behind `energy`; `fix_modify ID energy yes` adds it to the potential energy. Vector of 3 \
+                   (extensive): the total force before the change.",
             example: "fix push grains addforce 0.0 0.0 -1.0e-3",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The force on a particle [force], for peridynamic particles in LAMMPS' convention a force density: numbers, or `v_name` of
+    /// equal- or atom-style variables, evaluated each step.
+    #[word(name = "fx fy fz", what = "{}")]
+    force: [PerAtom; 3],
+    /// Only at multiples of N.
+    #[word(keyword, name = "N", what = "the number of steps between two pushes", from = 1, default = 1)]
+    every: i64,
+    /// Only particles inside it at that moment.
+    #[word(keyword, name = "ID")]
+    region: Option<RegionId>,
+    /// An atom-style variable with the energy of each particle; refused for constant forces, as in LAMMPS.
+    #[word(keyword, name = "v_name", what = "`energy`")]
+    energy: Option<At<AtomVariable>>,
 }
 
 impl FixStyle for AddForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let force = [variable_param(args, "fx")?, variable_param(args, "fy")?, variable_param(args, "fz")?];
-        force.iter().try_for_each(|p| cx.param(p, true))?;
-        let mut fix = Declared {
-            id: cx.id.to_string(),
-            group: cx.group,
-            force,
-            every: 1,
-            region: None,
-            energy: None,
-            virial: false,
-        };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "every" => fix.every = args.integer_from(1, "the number of steps between two pushes")?,
-                "region" => fix.region = Some(region_keyword(args, cx)?),
-                "energy" => fix.energy = Some(energy(args, cx, &fix.force)?),
-                _ => return Err(args.unknown(word, &["every", "region", "energy"])),
-            }
+        let line: Line = read(args, cx)?;
+        let force = line.force.map(|p| p.0);
+        if let Some(energy) =
+            line.energy.as_ref().filter(|_| force.iter().all(|p| matches!(p, Param::Number(_))))
+        {
+            return Err(Diagnostic::error(
+                Code::CONFLICT,
+                energy.span,
+                "the energy of a constant force is known already",
+            )
+            .help("leave `energy …` out: the scalar is then −Σ f·x")
+            .into());
         }
-        Ok(Box::new(fix))
-    }
-}
-
-fn energy(args: &mut Args, cx: &BuildCx, force: &[Param; 3]) -> Result<ValueRef> {
-    let word = args.expect("the variable after `energy`")?;
-    if force.iter().all(|p| matches!(p, Param::Number(_))) {
-        return Err(Diagnostic::error(
-            Code::CONFLICT,
-            word.span,
-            "the energy of a constant force is known already",
-        )
-        .help("leave `energy …` out: the scalar is then −Σ f·x")
-        .into());
-    }
-    match ValueRef::parse(&word.text, word.span)? {
-        Some(r) if r.kind == RefKind::Variable => {
-            cx.value(&r, true)?;
-            Ok(r)
-        }
-        _ => fail(
-            Code::WRONG_KIND,
-            word.span,
-            format!("`energy` takes v_name of an atom-style variable, not `{}`", word.text),
-        ),
+        let (region, energy) = (line.region.map(|r| r.0), line.energy.map(|e| e.value.0));
+        let (id, group, every) = (cx.id.to_string(), cx.group, line.every);
+        Ok(Box::new(Declared { id, group, force, every, region, energy, virial: false }))
     }
 }
 

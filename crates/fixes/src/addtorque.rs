@@ -6,11 +6,11 @@ use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
-use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{
     Chosen, Masses, centre, change_forces, check_masses, publish, sum, unwrapped,
 };
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -24,25 +24,33 @@ impl Style for AddTorque {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group addtorque Tx Ty Tz",
+            syntax: "",
             summary: "Adds forces that turn the group about its centre of mass as one body.",
-            text: "Each of Tx Ty Tz is a number or `v_name` of an equal-style variable, evaluated each step. With the \
-                   angular velocity ω and the moments of inertia I of the group about its centre of mass, α = I⁻¹ (T − ω × I ω) and \
-                   each particle at distance r from the centre gets the force m (α × r + ω × (ω × r)): the forces' torque \
-                   is T, and free particles would move as a rigid body. It adds no torque to single spheres. Scalar \
-                   (extensive): −Σ f·x of the added forces with unwrapped positions; `fix_modify ID energy yes` adds it to \
-                   the potential energy. Vector of 3 (extensive): the group's torque before the change.",
+            text: "With the angular velocity ω and the moments of inertia I of the group about its centre of mass, α = \
+                   I⁻¹ (T − ω × I ω) and each particle at distance r from the centre gets the force m (α × r + ω × (ω × \
+                   r)): the forces' torque is T, and free particles would move as a rigid body. It adds no torque to \
+                   single spheres.\n\n\
+                   Scalar (extensive): −Σ f·x of the added forces with unwrapped positions; `fix_modify ID energy yes` \
+                   adds it to the potential energy. Vector of 3 (extensive): the group's torque before the change.",
             example: "fix spin plate addtorque 0 0 1.0e-6",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The torque on the group [torque]: numbers, or `v_name` of equal-style variables, evaluated each step.
+    #[word(name = "Tx Ty Tz", what = "{}")]
+    torque: [Param; 3],
 }
 
 impl FixStyle for AddTorque {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let torque = [variable_param(args, "Tx")?, variable_param(args, "Ty")?, variable_param(args, "Tz")?];
-        torque.iter().try_for_each(|p| cx.param(p, false))?;
-        args.finish()?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, torque }))
+        let line: Line = read(args, cx)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, torque: line.torque }))
     }
 }
 

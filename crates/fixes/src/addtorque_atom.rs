@@ -1,12 +1,12 @@
 //! fix addtorque/atom: a torque added to each sphere.
 
-use super::{Facts, Fix, FixStyle, Minimizing, needs_torques, region_keyword};
+use super::{Facts, Fix, FixStyle, Minimizing, RegionId, needs_torques};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
-use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, change_torques, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, PerAtom, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, REGIONS, SLOTS, TORQUE, X};
 use perigrain_world::{GroupId, World};
@@ -20,30 +20,37 @@ impl Style for AddTorqueAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group addtorque/atom tx ty tz [every N] [region ID]",
+            syntax: "",
             summary: "Adds a torque to each sphere of the group.",
-            text: "Each of tx ty tz is a number or `v_name` of an equal- or atom-style variable, evaluated each step; in \
-                   torque units. `every N`: only at multiples of N. `region ID`: only inside. Acts in the setup of a run too. Vector of 3 (extensive): \
-                   the total torque before the change. `fix addtorque` turns a group as one body instead.",
+            text: "Acts in the setup of a run too. Vector of 3 (extensive): the total torque before the change. `fix \
+                   addtorque` turns a group as one body instead.",
             example: "fix spin ball addtorque/atom 0.0 0.0 1.0e-9",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The torque on a sphere [torque]: numbers, or `v_name` of equal- or atom-style variables, evaluated each step.
+    #[word(name = "tx ty tz", what = "{}")]
+    torque: [PerAtom; 3],
+    /// Only at multiples of N.
+    #[word(keyword, name = "N", what = "the number of steps between two pushes", from = 1, default = 1)]
+    every: i64,
+    /// Only spheres inside it at that moment.
+    #[word(keyword, name = "ID")]
+    region: Option<RegionId>,
 }
 
 impl FixStyle for AddTorqueAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_torques(self.name(), cx)?;
-        let torque = [variable_param(args, "tx")?, variable_param(args, "ty")?, variable_param(args, "tz")?];
-        torque.iter().try_for_each(|p| cx.param(p, true))?;
-        let mut fix = Declared { id: cx.id.to_string(), group: cx.group, torque, every: 1, region: None };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "every" => fix.every = args.integer_from(1, "the number of steps between two pushes")?,
-                "region" => fix.region = Some(region_keyword(args, cx)?),
-                _ => return Err(args.unknown(word, &["every", "region"])),
-            }
-        }
-        Ok(Box::new(fix))
+        let Line { torque, every, region } = read(args, cx)?;
+        let (torque, region) = (torque.map(|p| p.0), region.map(|r| r.0));
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, torque, every, region }))
     }
 }
 

@@ -100,13 +100,17 @@ pub struct Output {
     title3: Option<String>,
 }
 
+/// The file behind the later one of `file` and `append`, and whether it is `append`.
+pub fn later<'a>(file: Option<&'a At<PathBuf>>, append: Option<&'a At<PathBuf>>) -> Option<(&'a Path, bool)> {
+    let append = append.filter(|a| file.is_none_or(|f| a.span.start > f.span.start));
+    let (file, append) = append.map(|a| (a, true)).or(file.map(|f| (f, false)))?;
+    Some((&file.value, append))
+}
+
 impl Output {
     /// The file, and whether averages stand behind what it holds: of `file` and `append` the later one counts.
     fn target(&self) -> Option<(&Path, bool)> {
-        let append =
-            self.append.as_ref().filter(|a| self.file.as_ref().is_none_or(|f| a.span.start > f.span.start));
-        let (file, append) = append.map(|a| (a, true)).or(self.file.as_ref().map(|f| (f, false)))?;
-        Some((&file.value, append))
+        later(self.file.as_ref(), self.append.as_ref())
     }
 
     /// The file's path.

@@ -1,12 +1,13 @@
 //! fix aveforce: every particle of a group feels the mean force of the group.
 
 use super::components::Components;
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing, RegionId};
 use perigrain_base::diag::Result;
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Nullable, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, MASK, SLOTS, X};
@@ -20,20 +21,33 @@ impl Style for AveForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group aveforce fx fy fz [region ID]",
+            syntax: "",
             summary: "Gives all particles of the group the mean of their forces, plus a given force.",
-            text: "f ← ⟨f⟩ + (fx, fy, fz): masses do not count. Each of fx fy fz is a number, `NULL` (this component stays) or \
-                   `v_name` of an equal-style variable, evaluated each step. With `region` only particles inside it at \
-                   that moment. Forces of fixes declared later are not seen. Acts in the setup of a run too. Vector of 3 \
-                   (extensive): the total force before the change.",
+            text: "f ← ⟨f⟩ + (fx, fy, fz): masses do not count. Forces of fixes declared later are not seen. Acts in \
+                   the setup of a run too. Vector of 3 (extensive): the total force before the change.",
             example: "fix stiff foot aveforce NULL NULL 0.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// What is added to the mean [force]: numbers, or `v_name` of equal-style variables, evaluated each step; a component that is
+    /// `NULL` stays.
+    #[word(name = "fx fy fz", what = "{}")]
+    components: [Nullable<Param>; 3],
+    /// Only particles inside it at that moment.
+    #[word(keyword, name = "ID")]
+    region: Option<RegionId>,
 }
 
 impl FixStyle for AveForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let components = Components::read(args, cx, false)?;
+        let line: Line = read(args, cx)?;
+        let components = Components::new(line.components, line.region, cx.group);
         Ok(Box::new(Declared { id: cx.id.to_string(), components }))
     }
 }

@@ -1,16 +1,16 @@
 //! fix bond/break: deletes bonds that have become too long.
 
-use super::{Fix, FixStyle};
+use super::{BondType, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::bond::BondForce;
-use perigrain_styles::common::{bond_type, fraction, marsaglia_seed};
 use perigrain_styles::matter::publish;
 use perigrain_styles::pull::{Stretched, apart, find, periods};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Fraction, MarsagliaSeed, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::bonds::ascending;
 use perigrain_world::field::{BONDS, BOX, LISTS, MASK, MEMO, SLOTS, TAG, V, X};
@@ -25,15 +25,17 @@ impl Style for BondBreak {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group bond/break N T R [prob P SEED]",
+            syntax: "",
             summary: "Takes bonds of a type away that are longer than a limit.",
-            text: "At multiples of N, after particles have moved and before forces act, each particle of the group looks for the longest of its \
-                   bonds of type T to others of the group that is longer than R (distance units); a bond that is the longest of both its ends \
-                   is gone, so that no particle loses more than one at a time. With `prob P SEED` only where a random number is below P: \
-                   that of the end with the lower ID; the numbers are LAMMPS' where particles are created in the order of their IDs. Of bonds of one length the first counts, by the lower ID. \
-                   Pair forces act between the ends at once. `compute energy/ledger` counts the energy of such bonds among those that broke. \
-                   Bond styles `bpm/*` break bonds by themselves; this breaks them all the same. It makes no difference to bonds that `delete_bonds` has turned off. \
-                   Vector of 2 (intensive): how many it took away when it last looked, and in all; a second run, or one from a restart file, counts on.",
+            text: "At multiples of N, after particles have moved and before forces act, each particle of the group \
+                   looks for the longest of its bonds of the type to others of the group that is longer than R; a bond \
+                   that is the longest of both its ends is gone, so that no particle loses more than one at a time. Of \
+                   bonds of one length the first counts, by the lower ID.\n\n\
+                   Pair forces act between the ends at once. `compute energy/ledger` counts the energy of such bonds \
+                   among those that broke. Bond styles `bpm/*` break bonds by themselves; this breaks them all the \
+                   same. It makes no difference to bonds that `delete_bonds` has turned off.\n\n\
+                   Vector of 2 (intensive): how many it took away when it last looked, and in all; a second run, or one \
+                   from a restart file, counts on.",
             example: "units lj\natom_style bond\nregion b block 0 6 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 5.0 1.0\nvelocity all create 1.0 4928\nfix 1 all nve\n\
@@ -41,6 +43,26 @@ impl Style for BondBreak {
                       thermo_style custom step bonds f_cut[2]\nrun 100",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Looks at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    /// The type of the bonds.
+    #[word(name = "T")]
+    kind: BondType,
+    /// The length R beyond which bonds break [length].
+    #[word(name = "R", non_negative)]
+    limit: f64,
+    /// Only where a random number of the stream of this seed is below P: that of the end with the lower ID. The numbers are LAMMPS'
+    /// where particles are created in the order of their IDs.
+    #[word(keyword, name = "P SEED")]
+    prob: Option<(Fraction, MarsagliaSeed)>,
 }
 
 impl FixStyle for BondBreak {
@@ -50,16 +72,8 @@ impl FixStyle for BondBreak {
             let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let every = args.integer_from(1, "the number of steps N")?;
-        let kind = bond_type(args, cx.world.bonds.types)?;
-        let limit = args.non_negative("the length R beyond which bonds break")?;
-        let mut chance = None;
-        while let Some(word) = args.next() {
-            if word.text != "prob" {
-                return Err(args.unknown(word, &["prob"]));
-            }
-            chance = Some((fraction(args)?, marsaglia_seed(args)?));
-        }
+        let Line { every, kind: BondType(kind), limit, prob } = read(args, cx)?;
+        let chance = prob.map(|(p, seed)| (p.0, seed.0));
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, kind, limit, chance }))
     }
 }

@@ -2,15 +2,15 @@
 
 mod choice;
 
-use super::{Fix, FixStyle};
+use super::{BondType, Fix, FixStyle};
 use choice::{Count, chosen};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::{bond_type, fraction, marsaglia_seed};
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Fraction, Kind, MarsagliaSeed, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, COLUMNS, KIND, LISTS, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
 use perigrain_world::{Bond, GroupId, Key, Numbers, World};
@@ -24,23 +24,24 @@ impl Style for BondCreate {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group bond/create N itype jtype R bondtype [iparam MAX newtype] [jparam MAX newtype] [prob P SEED] \
-                     [molecule off|inter|intra]",
+            syntax: "",
             summary: "Makes bonds between particles that have come close.",
-            text: "At multiples of N, after particles have moved and before forces act, each particle of type itype of the group looks for the nearest one of type \
-                   jtype of the group within R (distance units) that it may be bonded to, and the other way round; two that have chosen each other get a \
-                   bond of that type, so that no particle gets more than one at a time. Of equal distances that to the pair with the lower IDs counts. \
-                   Pairs that are bonded already are left out, and those that `neigh_modify exclude` or two weights 0 of `special_bonds` keep out of neighbour lists \
-                   (with the default weights those two or three bonds apart).\n\n\
-                   `iparam`, `jparam`: a particle of type itype, jtype that has MAX bonds of the type gets no more (0: no limit, the default), \
-                   and when it has reached MAX it becomes one of type newtype. Where both types are one both are the same. `prob`: only where a random number is below P, that of the end with the \
-                   lower ID; the numbers are LAMMPS' where particles are created in the order of their IDs and not sorted (`atom_modify sort 0 0`). \
-                   `molecule inter`, `intra`: only between, only within molecules.\n\n\
-                   Pair forces between the ends cease at once, as `special_bonds` says, and bond forces begin in the same step. Bonds of `bpm/*` styles are at rest as they are made: length and axis \
-                   are those of this step. A style whose rest length is a coefficient (`harmonic`) sets the energy free that it has at that distance. LAMMPS also needs a pair \
-                   style that reaches as far as R; perigrain does not. Angles and dihedrals (`atype`, `dtype`, `itype`) are refused. LAMMPS counts bonds \
-                   when the first run begins and adds those it makes, so that one that has broken counts on: so it is under `-compat lammps` alone.\n\n\
-                   Vector of 2 (intensive): how many it made when it last looked, and in all; a second run, or one from a restart file, counts on.",
+            text: "At multiples of N, after particles have moved and before forces act, each particle of type itype of \
+                   the group looks for the nearest one of type jtype of the group within R that it may be bonded to, \
+                   and the other way round; two that have chosen each other get a bond, so that no particle gets more \
+                   than one at a time. Of equal distances that to the pair with the lower IDs counts. Pairs that are \
+                   bonded already are left out, and those that `neigh_modify exclude` or two weights 0 of \
+                   `special_bonds` keep out of neighbour lists (with the default weights those two or three bonds \
+                   apart).\n\n\
+                   Pair forces between the ends cease at once, as `special_bonds` says, and bond forces begin in the \
+                   same step. Bonds of `bpm/*` styles are at rest as they are made: length and axis are those of this \
+                   step. A style whose rest length is a coefficient (`harmonic`) sets the energy free that it has at \
+                   that distance.\n\n\
+                   LAMMPS also needs a pair style that reaches as far as R; perigrain does not. Angles and dihedrals \
+                   (`atype`, `dtype`, `itype`) are refused. LAMMPS counts bonds when the first run begins and adds \
+                   those it makes, so that one that has broken counts on: so it is under `-compat lammps` alone.\n\n\
+                   Vector of 2 (intensive): how many it made when it last looked, and in all; a second run, or one from \
+                   a restart file, counts on.",
             example: "units lj\natom_style bond\nregion b block 0 6 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       bond_style harmonic\nbond_coeff 1 5.0 1.0\nvelocity all create 1.0 4928\nfix 1 all nve\n\
@@ -48,9 +49,42 @@ impl Style for BondCreate {
                       thermo_style custom step bonds f_glue[2]\nrun 100",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-const KEYWORDS: [&str; 8] = ["iparam", "jparam", "prob", "molecule", "atype", "dtype", "itype", "aconstrain"];
+#[derive(Words)]
+struct Line {
+    /// Looks at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    /// The types of the two ends.
+    #[word(name = "itype jtype")]
+    types: [ParticleType; 2],
+    /// The distance R within which bonds are made [length].
+    #[word(name = "R", non_negative)]
+    range: f64,
+    /// The type of the bonds.
+    #[word(name = "bondtype")]
+    kind: BondType,
+    /// A particle of type itype that has MAX bonds of the type gets no more (0: no limit), and when it has reached MAX it becomes
+    /// one of type newtype. Where both types are one, `iparam` and `jparam` must be the same.
+    #[word(keyword, name = "MAX newtype", what = "the largest number of bonds")]
+    iparam: Option<(usize, ParticleType)>,
+    /// The same for particles of type jtype.
+    #[word(keyword, name = "MAX newtype", what = "the largest number of bonds")]
+    jparam: Option<(usize, ParticleType)>,
+    /// Only where a random number of the stream of this seed is below P: that of the end with the lower ID. The numbers are LAMMPS'
+    /// where particles are created in the order of their IDs and not sorted (`atom_modify sort 0 0`).
+    #[word(keyword, name = "P SEED")]
+    prob: Option<(Fraction, MarsagliaSeed)>,
+    #[word(keyword, shown = "off")]
+    molecule: Option<At<Molecules>>,
+}
+
+/// Keywords of LAMMPS for angles and dihedrals.
+const ANGLES: [&str; 4] = ["atype", "dtype", "itype", "aconstrain"];
 
 impl FixStyle for BondCreate {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
@@ -59,39 +93,23 @@ impl FixStyle for BondCreate {
             let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let every = args.integer_from(1, "the number of steps N")?;
-        let types = [particle_type(args, cx)?, particle_type(args, cx)?];
-        let range = args.non_negative("the distance R within which bonds are made")?;
-        let kind = bond_type(args, cx.world.bonds.types)?;
-        let limits = types.map(|becomes| Limit { most: 0, becomes });
-        let rule = Rule { group: cx.group, types, range, kind, limits, molecules: Molecules::Off };
-        let key = |what: &str| Key::new(&format!("bond/create/{}{what}", cx.id));
-        let mut fix = Declared {
-            id: cx.id.to_string(),
-            key: key(""),
-            counts: key("/counts"),
-            every,
-            rule,
-            chance: None,
-            span: cx.span,
-        };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "iparam" => fix.rule.limits[0] = limit(args, cx)?,
-                "jparam" => fix.rule.limits[1] = limit(args, cx)?,
-                "prob" => fix.chance = Some((fraction(args)?, marsaglia_seed(args)?)),
-                "molecule" => fix.rule.molecules = molecules(args, cx)?,
-                "atype" | "dtype" | "itype" | "aconstrain" => {
-                    let text = format!("`{}` makes angles or dihedrals, which this fix does not", word.text);
-                    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
-                    return Err(d
-                        .help("leave it out: they would exert nothing; bonds of `bpm/rotational` and `bpm/beam` bend")
-                        .into());
-                }
-                _ => return Err(args.unknown(word, &KEYWORDS)),
+        if let Some(word) = args.clone().rest().iter().find(|w| ANGLES.contains(&w.text.as_str())) {
+            let text = format!("`{}` makes angles or dihedrals, which this fix does not", word.text);
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+            return Err(d
+                .help("leave it out: they would exert nothing; bonds of `bpm/rotational` and `bpm/beam` bend")
+                .into());
+        }
+        let line: Line = read(args, cx)?;
+        let (types, kind) = (line.types.map(|t| t.0), line.kind.0);
+        let mut limits = types.map(|becomes| Limit { most: 0, becomes });
+        for (limit, given) in limits.iter_mut().zip([line.iparam, line.jparam]) {
+            if let Some((most, becomes)) = given {
+                *limit = Limit { most, becomes: becomes.0 };
             }
         }
-        if types[0] == types[1] && fix.rule.limits[0] != fix.rule.limits[1] {
+        let molecules = molecules(line.molecule, cx)?;
+        if types[0] == types[1] && limits[0] != limits[1] {
             let d = Diagnostic::error(
                 Code::CONFLICT,
                 cx.span,
@@ -99,40 +117,46 @@ impl FixStyle for BondCreate {
             );
             return Err(d.help("give both the same numbers").into());
         }
-        Ok(Box::new(fix))
+        let key = |what: &str| Key::new(&format!("bond/create/{}{what}", cx.id));
+        Ok(Box::new(Declared {
+            id: cx.id.to_string(),
+            key: key(""),
+            counts: key("/counts"),
+            every: line.every,
+            rule: Rule { group: cx.group, types, range: line.range, kind, limits, molecules },
+            chance: line.prob.map(|(p, seed)| (p.0, seed.0)),
+            span: cx.span,
+        }))
     }
 }
 
-fn particle_type(args: &mut Args, cx: &BuildCx) -> Result<u16> {
-    let span = args.here();
-    let k = args.integer_from(1, "a type of particles")?;
-    match u16::try_from(k) {
-        Ok(kind) if usize::from(kind) <= cx.world.types => Ok(kind),
-        _ => fail(
-            Code::BAD_VALUE,
-            span,
-            format!("there are {} types of particles, no type {k}", cx.world.types),
-        ),
+/// A type of particles.
+struct ParticleType(u16);
+
+impl Value for ParticleType {
+    const KIND: Kind = Kind::Types;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let k = args.integer_from(1, "a type of particles")?;
+        match u16::try_from(k) {
+            Ok(kind) if usize::from(kind) <= cx.world.types => Ok(Self(kind)),
+            _ => fail(
+                Code::BAD_VALUE,
+                span,
+                format!("there are {} types of particles, no type {k}", cx.world.types),
+            ),
+        }
     }
 }
 
-fn limit(args: &mut Args, cx: &BuildCx) -> Result<Limit> {
-    let most = args.integer_from(0, "the largest number of bonds")?;
-    Ok(Limit { most: usize::try_from(most).unwrap_or(usize::MAX), becomes: particle_type(args, cx)? })
-}
-
-fn molecules(args: &mut Args, cx: &BuildCx) -> Result<Molecules> {
-    let span = args.here();
-    let which = match args.choice("value of molecule", &["off", "inter", "intra"])? {
-        "off" => return Ok(Molecules::Off),
-        "inter" => Molecules::Between,
-        _ => Molecules::Within,
-    };
-    if !cx.world.particles.style.molecules {
-        let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene belong to no molecules");
+fn molecules(named: Option<At<Molecules>>, cx: &BuildCx) -> Result<Molecules> {
+    let Some(named) = named else { return Ok(Molecules::Off) };
+    if named.value != Molecules::Off && !cx.world.particles.style.molecules {
+        let text = "the particles of this scene belong to no molecules";
+        let d = Diagnostic::error(Code::CONFLICT, named.span, text);
         return Err(d.help("`atom_style bond` or `fix … property/atom mol` has them").into());
     }
-    Ok(which)
+    Ok(named.value)
 }
 
 /// Maximum number of bonds per particle, and the type a particle gets when it reaches it.
@@ -144,10 +168,16 @@ struct Limit {
 }
 
 /// Whether molecule IDs matter.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "value of molecule")]
 enum Molecules {
+    /// Molecules do not matter.
     Off,
+    /// Only between molecules.
+    #[word("inter")]
     Between,
+    /// Only within molecules.
+    #[word("intra")]
     Within,
 }
 

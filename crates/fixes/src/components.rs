@@ -1,12 +1,12 @@
 //! Three force components as fixes read them: numbers, variables or `NULL`, with an optional region.
 
-use super::region_keyword;
+use super::RegionId;
 use perigrain_base::diag::Result;
-use perigrain_lang::{Args, Param};
+use perigrain_lang::Param;
 use perigrain_plan::{Stage, When};
-use perigrain_styles::common::param_or_null;
 use perigrain_styles::matter::Chosen;
-use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_styles::words::Nullable;
+use perigrain_styles::{Reading, SealCx};
 use perigrain_world::GroupId;
 
 /// `fx fy fz [region ID]`; `NULL` leaves a component unchanged.
@@ -18,24 +18,9 @@ pub struct Components {
 }
 
 impl Components {
-    /// Reads the words to the end of the line; with `per_atom`, atom-style variables are allowed.
-    ///
-    /// # Errors
-    /// Every mistake in them.
-    pub fn read(args: &mut Args, cx: &BuildCx, per_atom: bool) -> Result<Self> {
-        let mut force = [const { None }; 3];
-        for (force, what) in force.iter_mut().zip(["fx", "fy", "fz"]) {
-            *force = param_or_null(args, what)?;
-            force.iter().try_for_each(|p| cx.param(p, per_atom))?;
-        }
-        let mut region = None;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "region" => region = Some(region_keyword(args, cx)?),
-                _ => return Err(args.unknown(word, &["region"])),
-            }
-        }
-        Ok(Self { group: cx.group, force, region })
+    /// From the words of a line.
+    pub fn new<P: Into<Param>>(force: [Nullable<P>; 3], region: Option<RegionId>, group: GroupId) -> Self {
+        Self { group, force: force.map(|p| p.0.map(Into::into)), region: region.map(|r| r.0) }
     }
 
     /// The particles it acts on, and where the component values are found during a run.

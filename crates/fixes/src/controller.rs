@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{CONTROLS, MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, World};
@@ -19,48 +20,73 @@ impl Style for Controller {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group controller N alpha Kp Ki Kd value setpoint name",
+            syntax: "",
             summary: "Steers an internal-style variable so that a value comes to a wanted one.",
-            text: "Every N steps, with the error e = value − setpoint and τ = N Δt, the variable c changes by \
-                   −α (Kp τ e + Ki τ² Σe + Kd Δe): proportional, integral and derivative term. The value is `c_ID`, `c_ID[k]`, \
-                   `f_ID`, `f_ID[k]` or `v_name`; `name`, without `v_`, is a variable of style `internal`, whose value in the \
-                   deck is the first. At the first update the difference is 0. Something must read the variable for it to \
-                   have an effect: `fix indent`, `fix setforce`, a region … Vector of 3 (extensive): the latest changes by the three \
-                   terms. The group means nothing.",
+            text: "Every N steps, with the error e = value − setpoint and τ = N Δt, the variable c changes by −α (Kp τ \
+                   e + Ki τ² Σe + Kd Δe): proportional, integral and derivative term. At the first update the \
+                   difference is 0. Something must read the variable for it to have an effect: `fix indent`, `fix \
+                   setforce`, a region … Vector of 3 (extensive): the latest changes by the three terms. The group \
+                   means nothing.",
             example: "variable push internal 0.0\nvariable vnow equal vcm(plate,x)\n\
                       fix steer all controller 1 1.0e6 1.0 0.0 0.0 v_vnow 0.1 push",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Acts at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    /// The coupling alpha.
+    alpha: f64,
+    /// The gains of the three terms.
+    #[word(name = "Kp Ki Kd", what = "the gain {}")]
+    gains: [f64; 3],
+    /// The value to be controlled: `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` or `v_name`.
+    #[word(with = measured, kind = Kind::Value)]
+    value: ValueRef,
+    /// The wanted value.
+    setpoint: f64,
+    /// The name of an internal-style variable, without `v_`; its value in the deck is the first.
+    #[word(name = "name", with = control, kind = Kind::Variable)]
+    control: ValueRef,
+}
+
+fn measured(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("the value to be controlled")?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) => {
+            cx.value(&r, false)?;
+            Ok(r)
+        }
+        _ => {
+            let text = format!("`{}` is no value: c_ID, c_ID[k], f_ID, f_ID[k] or v_name", word.text);
+            fail(Code::WRONG_KIND, word.span, text)
+        }
+    }
+}
+
+fn control(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("the name of an internal-style variable")?;
+    let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
+    cx.value(&r, false)?;
+    if !cx.shape(&r).is_some_and(|s| s.settable) {
+        let text = format!("variable `{}` must be of style internal", word.text);
+        let d = Diagnostic::error(Code::WRONG_KIND, word.span, text);
+        return Err(d.help(format!("write `variable {} internal 0.0`", word.text)).into());
+    }
+    Ok(r)
 }
 
 impl FixStyle for Controller {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps N")?;
-        let alpha = args.number("the coupling alpha")?;
-        let mut gains = [0.0; 3];
-        for (gain, what) in gains.iter_mut().zip(["Kp", "Ki", "Kd"]) {
-            *gain = args.number(&format!("the gain {what}"))?;
-        }
-        let word = args.expect("the value to be controlled")?;
-        let value = match ValueRef::parse(&word.text, word.span)? {
-            Some(r) if !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) => r,
-            _ => {
-                let text = format!("`{}` is no value: c_ID, c_ID[k], f_ID, f_ID[k] or v_name", word.text);
-                return fail(Code::WRONG_KIND, word.span, text);
-            }
-        };
-        cx.value(&value, false)?;
+        let Line { every, alpha, gains, value, setpoint, control } = read(args, cx)?;
         super::compatible(&value, &cx.shape(&value).unwrap_or_default(), every, "N")?;
-        let setpoint = args.number("the wanted value")?;
-        let word = args.expect("the name of an internal-style variable")?;
-        let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
-        cx.value(&r, false)?;
-        if !cx.shape(&r).is_some_and(|s| s.settable) {
-            let text = format!("variable `{}` must be of style internal", word.text);
-            let d = Diagnostic::error(Code::WRONG_KIND, word.span, text);
-            return Err(d.help(format!("write `variable {} internal 0.0`", word.text)).into());
-        }
-        Ok(Box::new(Declared { id: cx.id.to_string(), every, alpha, gains, value, setpoint, control: r }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), every, alpha, gains, value, setpoint, control }))
     }
 }
 

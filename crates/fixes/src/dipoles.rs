@@ -4,15 +4,20 @@ use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale};
 use perigrain_base::par;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::Words;
 use perigrain_world::field::{MASK, MU, OMEGA};
 use perigrain_world::{GroupId, World};
 
 /// Integration scheme of the moments.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Words)]
+#[word(what = "way to turn dipoles")]
 pub enum Update {
-    /// μ + Δt ω × μ, rescaled to the old length.
+    /// Dipole moments follow the spin, μ += Δt ω × μ, at their length.
+    #[word("dipole")]
     Plain,
-    /// Successive rotations about the axes of the body.
+    /// Dipole moments are turned by rotations about x y z y x of the body, half of Δt each (Dullweber, Leimkuhler, McLachlan,
+    /// J. Chem. Phys. 107, 1997), which is of second order.
+    #[word("dipole/dlm")]
     Rotations,
 }
 

@@ -4,9 +4,10 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
-use perigrain_styles::common::{number_or_null, orthogonal};
+use perigrain_styles::common::orthogonal;
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Nullable, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
 use perigrain_world::{GroupId, World};
@@ -20,22 +21,35 @@ impl Style for Drag {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group drag x y z fmag delta",
+            syntax: "",
             summary: "Pulls each particle of the group towards a point with a force of constant strength.",
-            text: "A particle farther than `delta` from (x, y, z) feels the force `fmag` towards it; a negative `fmag` pushes \
-                   away. A coordinate that is `NULL` does not count: with `NULL NULL z` the target is a plane. Distances \
-                   are those to the nearest periodic image. Acts in the setup of a run too. Vector of 3 (extensive): the \
-                   total force that was added.",
+            text: "Distances are those to the nearest periodic image. Acts in the setup of a run too. Vector of 3 \
+                   (extensive): the total force that was added.",
             example: "fix home grains drag 0.0 0.0 NULL 1.0e-3 0.002",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The target [length]; a coordinate that is `NULL` does not count: with `NULL NULL z` the target is a plane.
+    #[word(name = "x y z", what = "{}")]
+    target: [Nullable<f64>; 3],
+    /// The force fmag [force] towards the target; away from it where it is negative.
+    #[word(name = "fmag", what = "the force fmag")]
+    strength: f64,
+    /// The distance delta [length]: nearer particles feel nothing.
+    #[word(non_negative, what = "the distance delta")]
+    delta: f64,
 }
 
 impl FixStyle for Drag {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let target = [number_or_null(args, "x")?, number_or_null(args, "y")?, number_or_null(args, "z")?];
-        let strength = args.number("the force fmag")?;
-        let delta = args.non_negative("the distance delta")?;
+        let Line { target, strength, delta } = read(args, cx)?;
+        let target = target.map(|at| at.0);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, target, strength, delta }))
     }
 }

@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::critical::{self, Estimate};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, swing};
 use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, TYPE_MASS, V, VOLUME, X};
 use perigrain_world::{GroupId, RunStyle, World};
@@ -19,19 +20,40 @@ impl Style for DtCritical {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID all dt/critical N safety [pd cfl|silling|exact] [bonds local|exact|none] [max T]",
+            syntax: "",
             summary: "Sets the time step to a part of what peridynamic solids, contacts and bonds stand.",
-            text: "In the setup of a run and every N steps the step becomes `safety` times the shortest of the limits of \
-                   compute dt/critical (`pd exact` and `bonds local` unless set otherwise), at most T. As bonds break and contacts come and go \
-                   the limits change, and the step follows. Under `run_style staggered` bonded particles count as grains: the long step becomes the grains' \
-                   limit, shortened to what `m N` short steps of the solids fill; with `faster grains` the step becomes the \
-                   grains', shortened to the N-th part of the solids'. Where no limit is known, as for grains that do not \
-                   touch, the step is T, or stays. Scalar (intensive): the last step at which it changed.\n\n\
-                   Contacts that begin between two looks are stiffer than was known: give T, or a small N. `pd exact` costs \
-                   some 50 to 200 force evaluations per look.",
+            text: "In the setup of a run and every N steps the step becomes `safety` times the shortest of the limits \
+                   of compute dt/critical. As bonds break and contacts come and go the limits change, and the step \
+                   follows. Where no limit is known, as for grains that do not touch, the step is that of `max`, or \
+                   stays. Scalar (intensive): the last step at which it changed.\n\n\
+                   Under `run_style staggered` bonded particles count as grains: the long step becomes the grains' \
+                   limit, shortened to what `m N` short steps of the solids fill; with `faster grains` the step becomes \
+                   the grains', shortened to the N-th part of the solids'.\n\n\
+                   Contacts that begin between two looks are stiffer than was known: give `max`, or a small N. `pd \
+                   exact` costs some 50 to 200 force evaluations per look.",
             example: "fix ct all dt/critical 100 0.8 pd exact max 2.0e-7",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of steps between two looks [steps].
+    #[word(name = "N", from = 1)]
+    every: i64,
+    /// The part of the limit, below 1.
+    #[word(positive)]
+    safety: At<f64>,
+    #[word(keyword, default = Estimate::Exact)]
+    pd: Estimate,
+    #[word(keyword, default = swing::Estimate::Local)]
+    bonds: swing::Estimate,
+    /// The longest step [time].
+    #[word(keyword, name = "T", positive)]
+    max: Option<f64>,
 }
 
 impl FixStyle for DtCritical {
@@ -39,26 +61,12 @@ impl FixStyle for DtCritical {
         if cx.group != GroupId::ALL {
             return fail(Code::BAD_VALUE, cx.span, "fix dt/critical must use the group `all`");
         }
-        let every = args.integer_from(1, "the number of steps between two looks")?;
-        let span = args.here();
-        let safety = args.positive("the part of the limit")?;
-        if safety >= 1.0 {
-            return fail(
-                Code::BAD_VALUE,
-                span,
-                format!("a part of the limit is below 1: {safety} lets waves grow"),
-            );
+        let Line { every, safety, pd, bonds, max } = read(args, cx)?;
+        if safety.value >= 1.0 {
+            let text = format!("a part of the limit is below 1: {} lets waves grow", safety.value);
+            return fail(Code::BAD_VALUE, safety.span, text);
         }
-        let bonds = swing::Estimate::Local;
-        let mut rule = Rule { how: Estimate::Exact, bonds, safety, longest: None };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "pd" => rule.how = Estimate::read(args)?,
-                "bonds" => rule.bonds = swing::Estimate::read(args)?,
-                "max" => rule.longest = Some(args.positive("the longest step")?),
-                _ => return Err(args.unknown(word, &["pd", "bonds", "max"])),
-            }
-        }
+        let rule = Rule { how: pd, bonds, safety: safety.value, longest: max };
         Ok(Box::new(Declared { follower: Follower::new("dt/critical", cx.id, every), rule }))
     }
 }

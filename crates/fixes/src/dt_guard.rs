@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Rule};
 use perigrain_styles::ledger;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, World};
 
@@ -18,24 +19,45 @@ impl Style for DtGuard {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID all dt/guard N tolerance [shrink F] [min T] [recover K]",
+            syntax: "",
             summary: "Takes back blocks of steps in which energy was made, and continues in shorter steps.",
-            text: "A run is made in blocks of N steps, and every step at which a fix or output acts ends one. At its end, before \
-                   anything is put out, the residual of compute energy/ledger is compared with that at the block's beginning: if \
-                   it has changed by more than `tolerance` times the energy that was held then plus what went in and out since, \
-                   or particles are lost or have no finite place, the scene is put back as it was at the beginning, the \
-                   step is multiplied by F (0.5), and the log says so in one line. After K good blocks in a row (`recover`; \
-                   never unless given) the step becomes longer by 1/F, up to the longest that the deck has set. Below T \
-                   (1e-6 of the first step) the run ends with an error.\n\n\
-                   Contacts with granular walls count like those between particles, but what they hold is no part of the energy that is \
-                   held: it counts as what goes in and out. \
-                   What is put out belongs to good blocks only. A run makes its number of steps, so that it covers less time \
-                   when steps became shorter (`fix halt` with the variable `time` ends at a time). The tolerance must leave room \
-                   for the errors of dashpots, friction and breaking bonds, which are of first order in the step: some per \
-                   cent. A block costs a copy of the scene.",
+            text: "Every step at which a fix or output acts ends a block, too. At its end, before anything is put out, \
+                   the residual of compute energy/ledger is compared with that at the block's beginning: if it has \
+                   changed by more than the tolerance allows, or particles are lost or have no finite place, the scene \
+                   is put back as it was at the beginning, the step is multiplied by the factor of `shrink`, and the \
+                   log says so in one line.\n\n\
+                   Contacts with granular walls count like those between particles, but what they hold is no part of \
+                   the energy that is held: it counts as what goes in and out. What is put out belongs to good blocks \
+                   only. A run makes its number of steps, so that it covers less time when steps became shorter (`fix \
+                   halt` with the variable `time` ends at a time).\n\n\
+                   The tolerance must leave room for the errors of dashpots, friction and breaking bonds, which are of \
+                   first order in the step: some per cent. A block costs a copy of the scene.",
             example: "fix g all dt/guard 20 0.05 shrink 0.5 recover 10",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of steps in a block [steps].
+    #[word(name = "N", from = 1)]
+    every: i64,
+    /// The part of the energy that may be off: of the energy held at the block's beginning plus what went in and out since.
+    #[word(positive)]
+    tolerance: f64,
+    /// What steps are multiplied with after a bad block, below 1.
+    #[word(keyword, name = "F", what = "what steps are multiplied with", positive, shown = "0.5")]
+    shrink: Option<At<f64>>,
+    /// The shortest step [time]: below it the run ends with an error.
+    #[word(keyword, name = "T", positive, shown = "1e-6 of the first step")]
+    min: Option<f64>,
+    /// The number of good blocks in a row after which the step becomes longer by 1/F, up to the longest that the deck has set;
+    /// never without it.
+    #[word(keyword, name = "K", what = "the number of good blocks", from = 1)]
+    recover: Option<i64>,
 }
 
 impl FixStyle for DtGuard {
@@ -43,24 +65,16 @@ impl FixStyle for DtGuard {
         if cx.group != GroupId::ALL {
             return fail(Code::BAD_VALUE, cx.span, "fix dt/guard must use the group `all`");
         }
-        let every = args.integer_from(1, "the number of steps in a block")?;
-        let tolerance = args.positive("the part of the energy that may be off")?;
-        let mut rule = Rule { every, tolerance, shrink: 0.5, shortest: 1e-6 * cx.world.clock.dt, recover: 0 };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "shrink" => {
-                    let span = args.here();
-                    rule.shrink = args.positive("what steps are multiplied with")?;
-                    if rule.shrink >= 1.0 {
-                        let text = format!("shrink makes steps shorter: {} is not below 1", rule.shrink);
-                        return fail(Code::BAD_VALUE, span, text);
-                    }
-                }
-                "min" => rule.shortest = args.positive("the shortest step")?,
-                "recover" => rule.recover = args.integer_from(1, "the number of good blocks")?,
-                _ => return Err(args.unknown(word, &["shrink", "min", "recover"])),
+        let Line { every, tolerance, shrink, min, recover } = read(args, cx)?;
+        let shrink = match shrink {
+            Some(At { value, span, .. }) if value >= 1.0 => {
+                let text = format!("shrink makes steps shorter: {value} is not below 1");
+                return fail(Code::BAD_VALUE, span, text);
             }
-        }
+            other => other.map_or(0.5, |by| by.value),
+        };
+        let shortest = min.unwrap_or(1e-6 * cx.world.clock.dt);
+        let rule = Rule { every, tolerance, shrink, shortest, recover: recover.unwrap_or(0) };
         Ok(Box::new(Declared { rule }))
     }
 }

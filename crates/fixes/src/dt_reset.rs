@@ -6,8 +6,8 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::matter::{Masses, check_masses};
+use perigrain_styles::words::{At, Form, Kind, Nullable, Units, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, MASS, V};
 use perigrain_world::{GroupId, RunStyle, World};
@@ -21,50 +21,68 @@ impl Style for DtReset {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group dt/reset N Tmin Tmax Xmax [emax E] [units lattice|box]",
+            syntax: "",
             summary: "Chooses the time step so that no particle moves further than Xmax in one step.",
             text: "In the setup of a run and every N steps, for each particle: Δt = min(Xmax/|v|, √(2 Xmax m/|f|)), \
-                   made smaller by Xmax/|v Δt + ½ f/m Δt²| where that is less than 1; with `emax` also \
-                   Δt ≤ E/(|f| |v|). The smallest over the group, bounded by Tmin and Tmax (a number or `NULL`), is the \
-                   new step. Elapsed time is the sum of the steps as they were. Xmax in lattice spacings (of x) \
-                   unless `units box`. Scalar (intensive): the last step at which Δt changed. Where nothing moves and \
-                   Tmax is `NULL`, Δt stays as it is (LAMMPS makes it 1e20).\n\n\
-                   Under `run_style staggered m N` the step is the long one. Particles of solids make N short ones in it, and \
-                   their limit is meant for these: it counts N times. `m auto` chooses the short step by what bonds stand, \
-                   so that there it counts once.",
+                   made smaller by Xmax/|v Δt + ½ f/m Δt²| where that is less than 1. The smallest over the group, \
+                   bounded by Tmin and Tmax, is the new step. Elapsed time is the sum of the steps as they were. Scalar \
+                   (intensive): the last step at which Δt changed. Where nothing moves and Tmax is `NULL`, Δt stays as \
+                   it is (LAMMPS makes it 1e20).\n\n\
+                   Under `run_style staggered m N` the step is the long one. Particles of solids make N short ones in \
+                   it, and their limit is meant for these: it counts N times. `m auto` chooses the short step by what \
+                   bonds stand, so that there it counts once.",
             example: "fix step all dt/reset 10 1.0e-10 1.0e-8 1.0e-6 units box",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of steps between two looks [steps].
+    #[word(name = "N", from = 1)]
+    every: i64,
+    /// The shortest step [time]; `NULL`: no bound.
+    #[word(name = "Tmin", what = "Tmin")]
+    shortest: Nullable<Step>,
+    /// The longest step [time]; `NULL`: no bound.
+    #[word(name = "Tmax", what = "Tmax")]
+    longest: At<Nullable<Step>>,
+    /// The way Xmax that no particle exceeds in a step [length]; lattice spacings are those of x.
+    #[word(name = "Xmax", what = "Xmax", positive)]
+    reach: f64,
+    /// The largest change of kinetic energy in a step [energy]: also Δt ≤ E/(|f| |v|).
+    #[word(keyword, name = "E", positive)]
+    emax: Option<f64>,
+    #[word(keyword)]
+    units: Units,
+}
+
+/// A time step.
+struct Step(f64);
+
+impl Value for Step {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.non_negative(what).map(Self)
     }
 }
 
 impl FixStyle for DtReset {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps between two looks")?;
-        let shortest = bound(args, "Tmin")?;
-        let span = args.here();
-        let longest = bound(args, "Tmax")?;
+        let Line { every, shortest, longest, reach, emax: energy, units } = read(args, cx)?;
+        let (span, shortest, longest) = (longest.span, shortest.0.map(|t| t.0), longest.value.0.map(|t| t.0));
         if let (Some(a), Some(b)) = (shortest, longest)
             && a >= b
         {
             return fail(Code::BAD_VALUE, span, format!("Tmin must be less than Tmax: {a} is not below {b}"));
         }
-        let reach = args.positive("Xmax")?;
-        let (mut lattice, mut energy) = (true, None);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "units" => lattice = units_lattice(args)?,
-                "emax" => energy = Some(args.positive("the largest change of kinetic energy")?),
-                _ => return Err(args.unknown(word, &["emax", "units"])),
-            }
-        }
-        let reach = reach * scales(cx.world, lattice)[0];
+        let reach = reach * units.scales(cx.world)[0];
         let rule = Rule { group: cx.group, shortest, longest, reach, energy };
         Ok(Box::new(Declared { follower: Follower::new("dt/reset", cx.id, every), rule }))
     }
-}
-
-fn bound(args: &mut Args, what: &str) -> Result<Option<f64>> {
-    if args.eat("NULL") { Ok(None) } else { args.non_negative(what).map(Some) }
 }
 
 /// How the step follows from velocities and forces.

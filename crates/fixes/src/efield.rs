@@ -1,13 +1,14 @@
 //! fix efield: an electric field that acts on charges and dipole moments.
 
-use super::{Facts, Fix, FixStyle, Minimizing, region_keyword};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use super::{AtomVariable, Facts, Fix, FixStyle, Minimizing, RegionId};
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{add, cross, dot, scale};
-use perigrain_lang::{Args, Param, RefKind, ValueRef};
+use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, change_forces, change_torques, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, CHARGE, F, Fields, IMAGE, MASK, MU, REGIONS, SLOTS, TORQUE, X};
 use perigrain_world::{AtomStyle, World};
@@ -21,18 +22,45 @@ impl Style for Efield {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group efield ex ey ez [region ID] [energy v_name | potential v_name]",
+            syntax: "",
             summary: "Pulls charges and turns dipole moments by an electric field.",
-            text: "Each of ex ey ez is a number or `v_name` of an equal-style variable, for charges alone also of an atom-style one, evaluated each step; in units \
-                   of the electric field. Charges feel q E; dipole moments of spheres (`atom_style hybrid sphere dipole`) the torque μ × E, which turns them where \
-                   `fix nve/sphere … update dipole` moves the spheres. Only inside of a `region`, where one is named. Acts in the setup of a run too. Scalar (extensive): the energy \
-                   −Σ q E·x (unwrapped) − Σ μ·E of a constant field. With variables it is Σ of the atom-style variable behind `energy`, of `potential` times the \
-                   charge, or without either, as LAMMPS has it, 0. `fix_modify ID energy yes` adds it to the potential energy. Vector of 3 (extensive): the total force on charges. \
-                   Particles feel the field alone: there are no forces between charges or dipoles here.",
+            text: "Charges feel q E; dipole moments of spheres (`atom_style hybrid sphere dipole`) the torque μ × E, \
+                   which turns them where `fix nve/sphere … update dipole` moves the spheres. Acts in the setup of a \
+                   run too. Particles feel the field alone: there are no forces between charges or dipoles here.\n\n\
+                   Scalar (extensive): the energy −Σ q E·x (unwrapped) − Σ μ·E of a constant field. With variables it \
+                   is what `energy` or `potential` gives, or without either, as LAMMPS has it, 0. `fix_modify ID energy \
+                   yes` adds it to the potential energy. Vector of 3 (extensive): the total force on charges.",
             example: "units lj\natom_style hybrid sphere dipole\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1.0\n\
                       set group all diameter 1.0 density 1.0\nset group all dipole 0.0 0.0 0.5\nfix 1 all nve/sphere update dipole\nfix field all efield 1.0 0.0 0.0\nrun 10",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The field [electric field]: numbers, or `v_name` of equal-style variables, for charges alone also of atom-style ones,
+    /// evaluated each step.
+    #[word(name = "ex ey ez", what = "{}", with = components, kind = Kind::Param)]
+    field: [Param; 3],
+    /// Only particles inside it.
+    #[word(keyword, name = "ID")]
+    region: Option<RegionId>,
+    /// An atom-style variable with the energy of each particle, where the field has variables.
+    #[word(keyword, name = "v_name", what = "`energy`", placed)]
+    energy: Option<At<AtomVariable>>,
+    /// An atom-style variable with the potential at each charge, where the field has variables; it counts before `energy`.
+    #[word(keyword, name = "v_name", what = "`potential`", placed)]
+    potential: Option<At<AtomVariable>>,
+}
+
+/// Reads the components of the field.
+fn components(args: &mut Args, cx: &BuildCx) -> Result<[Param; 3]> {
+    let field = [variable_param(args, "ex")?, variable_param(args, "ey")?, variable_param(args, "ez")?];
+    field.iter().try_for_each(|p| cx.param(p, !turns(cx.world.particles.style)))?;
+    Ok(field)
 }
 
 impl FixStyle for Efield {
@@ -45,55 +73,32 @@ impl FixStyle for Efield {
                 .help("put `atom_style charge` or `atom_style hybrid sphere dipole` at the top of the deck")
                 .into());
         }
-        let field = [variable_param(args, "ex")?, variable_param(args, "ey")?, variable_param(args, "ez")?];
-        field.iter().try_for_each(|p| cx.param(p, !turns(style)))?;
-        let mut fix =
-            Declared { id: cx.id.to_string(), group: cx.group, field, region: None, energy: Energy::Own };
-        let variable = !fix.is_constant();
-        if variable {
-            fix.energy = Energy::None;
+        let Line { field, region, energy, potential } = read(args, cx)?;
+        let constant = field.iter().all(|p| matches!(p, Param::Number(_)));
+        let given = [("energy", &energy), ("potential", &potential)];
+        if let Some((word, Some(said))) = given.into_iter().find(|(_, said)| constant && said.is_some()) {
+            let d = Diagnostic::error(
+                Code::CONFLICT,
+                said.span,
+                format!("the {word} of a constant field is known already"),
+            );
+            return Err(d.help("leave the word and its value out").into());
         }
-        while let Some(word) = args.next() {
-            let potential = word.text == "potential";
-            match word.text.as_str() {
-                "region" => fix.region = Some(region_keyword(args, cx)?),
-                "energy" | "potential" if !variable => {
-                    let text = format!("the {} of a constant field is known already", word.text);
-                    let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-                    return Err(d.help("leave the word and its value out").into());
-                }
-                "energy" | "potential" => {
-                    let of = atom_variable(args, cx, &word.text)?;
-                    // As in LAMMPS the potential overrides the energy.
-                    if potential || !matches!(fix.energy, Energy::Given { potential: true, .. }) {
-                        fix.energy = Energy::Given { of, potential };
-                    }
-                }
-                _ => return Err(args.unknown(word, &["region", "energy", "potential"])),
-            }
-        }
-        Ok(Box::new(fix))
+        // As in LAMMPS the potential overrides the energy.
+        let energy = match (potential, energy) {
+            (Some(of), _) => Energy::Said { of: of.value.0, potential: true },
+            (None, Some(of)) => Energy::Said { of: of.value.0, potential: false },
+            _ if constant => Energy::Own,
+            _ => Energy::None,
+        };
+        let (id, group, region) = (cx.id.to_string(), cx.group, region.map(|r| r.0));
+        Ok(Box::new(Declared { id, group, field, region, energy }))
     }
 }
 
 /// Whether the field exerts torques.
 fn turns(style: AtomStyle) -> bool {
     style.dipole && style.sphere
-}
-
-fn atom_variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
-    let word = args.expect(&format!("the variable after `{what}`"))?;
-    match ValueRef::parse(&word.text, word.span)? {
-        Some(r) if r.kind == RefKind::Variable => {
-            cx.value(&r, true)?;
-            Ok(r)
-        }
-        _ => fail(
-            Code::WRONG_KIND,
-            word.span,
-            format!("`{what}` takes v_name of an atom-style variable, not `{}`", word.text),
-        ),
-    }
 }
 
 /// Source of the energy.
@@ -114,12 +119,6 @@ struct Declared {
     field: [Param; 3],
     region: Option<String>,
     energy: Energy,
-}
-
-impl Declared {
-    fn is_constant(&self) -> bool {
-        self.field.iter().all(|p| matches!(p, Param::Number(_)))
-    }
 }
 
 impl Fix for Declared {

@@ -6,6 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
 use perigrain_world::outside::{Each, HostCall, HostValues};
@@ -82,36 +83,60 @@ impl Style for External {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group external (pf/callback Ncall Napply | pf/array Napply)",
+            syntax: "",
             summary: "Adds forces that a program which hosts the run gives, such as a script in Python.",
-            text: "`pf/callback`: at every step that Ncall divides, in the setup of a run too, the function that the program has \
-                   set (`lmp.set_fix_external_callback(ID, function, caller)`) is called with the step, how many particles there \
-                   are, their ids, places and forces; the forces it leaves are added to the particles of the group at every step that Napply \
-                   divides. `pf/array`: the program writes the forces between commands \
-                   (`lmp.numpy.fix_external_get_force(ID)`). Forces stay with their particles until they are written anew; \
-                   those of new particles are 0. In minimizations the function is called at every evaluation and must say the energy of its forces. \
-                   Scalar (extensive): the energy the program says (`fix_external_set_energy_global`), part of the potential \
-                   energy unless `fix_modify ID energy no`. Energies and virials that it says of each particle \
-                   (`fix_external_set_energy_peratom`, `fix_external_set_virial_peratom`) count in `compute pe/atom` and \
-                   `stress/atom`, in no sum; they stay with their particles as forces do (LAMMPS forgets them with every step). The virial it says (`fix_external_set_virial_global`) counts in \
-                   pressures, unless `fix_modify ID virial no`. `fix_modify ID vector N`: the fix offers N values of the program (intensive), which \
-                   `fix_external_set_vector` sets. Forces and functions do not come back from a restart file. In a terminal no program hosts the run: \
-                   `pf/array` adds nothing there, and `pf/callback` is refused where it would be called.",
+            text: "Forces stay with their particles until they are written anew; those of new particles are 0. In \
+                   minimizations the function is called at every evaluation and must say the energy of its forces. \
+                   Forces and functions do not come back from a restart file. In a terminal no program hosts the run: \
+                   `pf/array` adds nothing there, and `pf/callback` is refused where it would be called.\n\n\
+                   Scalar (extensive): the energy the program says (`fix_external_set_energy_global`), part of the \
+                   potential energy unless `fix_modify ID energy no`. The virial it says \
+                   (`fix_external_set_virial_global`) counts in pressures, unless `fix_modify ID virial no`. \
+                   `fix_modify ID vector N`: the fix offers N values of the program (intensive), which \
+                   `fix_external_set_vector` sets.\n\n\
+                   Energies and virials that it says of each particle (`fix_external_set_energy_peratom`, \
+                   `fix_external_set_virial_peratom`) count in `compute pe/atom` and `stress/atom`, in no sum; they \
+                   stay with their particles as forces do (LAMMPS forgets them with every step).",
             example: "fix probe grains external pf/array 1",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "mode")]
+    mode: Mode,
+    /// The forces are added to the particles of the group at every step that Napply divides [steps].
+    #[word(name = "Napply", what = "how many steps lie between two additions of the forces", from = 1)]
+    apply: i64,
+}
+
+/// Where the forces come from.
+#[derive(Words)]
+#[word(what = "mode")]
+enum Mode {
+    /// At every step that Ncall divides, in the setup of a run too, the function that the program has set
+    /// (`lmp.set_fix_external_callback(ID, function, caller)`) is called with the step, how many particles there are, their ids,
+    /// places and forces; it leaves the forces.
+    #[word("pf/callback")]
+    Callback(
+        #[word(name = "Ncall", what = "how many steps lie between two calls of the function", from = 1)] i64,
+    ),
+    /// The program writes the forces between commands (`lmp.numpy.fix_external_get_force(ID)`).
+    #[word("pf/array")]
+    Array,
 }
 
 impl FixStyle for External {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let mode = args.choice("mode", &["pf/callback", "pf/array"])?;
+        let Line { mode, apply } = read(args, cx)?;
         let call = match mode {
-            "pf/callback" => {
-                Some(args.integer_from(1, "how many steps lie between two calls of the function")?)
-            }
-            _ => None,
+            Mode::Callback(every) => Some(every),
+            Mode::Array => None,
         };
-        let apply = args.integer_from(1, "how many steps lie between two additions of the forces")?;
         let key = Key::new(&name(cx.id));
         let (id, kept) = (cx.id.to_string(), Kept::new(cx.id));
         Ok(Box::new(Declared { id, group: cx.group, key, kept, call, apply, virial: true, length: 0 }))

@@ -1,9 +1,10 @@
 //! `fix extremes`: the smallest and largest value that quantities have had so far.
 
 use super::{Fix, FixStyle};
-use perigrain_base::diag::{Result, fail};
+use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, SlotId, World};
@@ -18,36 +19,40 @@ impl Style for ExtremesStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group extremes N value …",
+            syntax: "",
             summary: "Remembers the smallest and the largest value of quantities, looked at every N steps.",
-            text: "Each value is a single number: `v_name`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`. `f_ID[2k-1]` is the \
-                smallest and `f_ID[2k]` the largest value the k-th quantity has had since the fix was declared, at the \
-                start of a run and at steps that are multiples of N; several runs count as one. The group is without \
-                meaning. Not in LAMMPS.",
+            text: "`f_ID[2k-1]` is the smallest and `f_ID[2k]` the largest value the k-th quantity has had since the \
+                   fix was declared; several runs count as one. The group is without meaning. Not in LAMMPS.",
             example: "fix peak all extremes 1 v_force",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Looks at the start of a run and at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps between two looks", from = 1)]
+    every: i64,
+    /// Single numbers: `v_name`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`.
+    #[word(name = "value", with = quantity, kind = Kind::Value, least = 1)]
+    values: Vec<Param>,
+}
+
+fn quantity(args: &mut Args, cx: &BuildCx) -> Result<Param> {
+    let (span, value) = (args.here(), args.param("a value such as v_name or c_ID")?);
+    if matches!(value, Param::Number(_)) {
+        return fail(Code::WRONG_KIND, span, "a number has no extremes: name a value");
+    }
+    cx.param(&value, false)?;
+    Ok(value)
 }
 
 impl FixStyle for ExtremesStyle {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps between two looks")?;
-        let mut values = vec![];
-        while let Some(word) = args.peek() {
-            let p = args.param("a value")?;
-            if matches!(p, Param::Number(_)) {
-                return fail(
-                    perigrain_base::diag::Code::WRONG_KIND,
-                    word.span,
-                    "a number has no extremes: name a value",
-                );
-            }
-            cx.param(&p, false)?;
-            values.push(p);
-        }
-        if values.is_empty() {
-            args.expect("a value such as v_name or c_ID")?;
-        }
+        let Line { every, values } = read(args, cx)?;
         Ok(Box::new(Extremes { id: cx.id.to_string(), every, values }))
     }
 }

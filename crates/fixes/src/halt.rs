@@ -7,6 +7,7 @@ use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{CLOCK, SLOTS};
 use perigrain_world::{Halt, World};
@@ -21,15 +22,84 @@ impl Style for HaltFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group halt N attribute operator value [error hard|soft|continue] [message yes|no] [path name] [universe yes|no]",
+            syntax: "",
             summary: "Ends the run when a quantity passes a value; looked at every N steps.",
-            text: "Attributes: `v_name` of an equal-style variable, `tlimit` (seconds since the steps of this run began), \
-                   `diskfree` (free megabytes where `path` lies, by default in the working folder), `bondmax` (longest bond \
-                   of a bond_style, 0 where there is none). Operators: `< <= > >= == !=` and `|^` (exactly one of the two is \
-                   0). `error soft` (default, as in LAMMPS 22Jul2025): the run ends, later `run` lines are passed over and \
-                   all other lines work; `continue`: later runs run too; `hard`: the deck ends with an error. `message no` \
-                   keeps quiet about it. The step at which the run ends gets no extra thermo row. The group means nothing.",
+            text: "The step at which the run ends gets no extra thermo row. The group means nothing.",
             example: "fix enough all halt 1 v_speed > 1000.0 error continue",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Looks at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    /// What is compared: `v_name` of an equal-style variable, `tlimit` (seconds since the steps of this run began), `diskfree`
+    /// (free megabytes where `path` lies) or `bondmax` (longest bond of a bond_style, 0 where there is none).
+    attribute: Attribute,
+    operator: Operator,
+    /// The value to compare with.
+    value: f64,
+    #[word(keyword, default = How::Soft)]
+    error: How,
+    /// Whether a line says that the run has ended.
+    #[word(keyword, what = "message", default = true)]
+    message: bool,
+    /// The path to check, for `diskfree`; without it the working folder.
+    #[word(keyword, name = "name")]
+    path: Option<At<PathBuf>>,
+    /// One process is the whole universe: without effect.
+    #[word(keyword = "universe", what = "universe")]
+    _universe: bool,
+}
+
+/// What happens to the deck.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "value of error")]
+enum How {
+    /// The deck ends with an error.
+    Hard,
+    /// The run ends, later `run` lines are passed over and all other lines work (as in LAMMPS 22Jul2025).
+    Soft,
+    /// The run ends, and later runs run.
+    Continue,
+}
+
+/// How values are compared.
+#[derive(Clone, Copy, Words)]
+#[word(what = "comparison")]
+enum Operator {
+    #[word("<")]
+    Below,
+    #[word("<=")]
+    AtMost,
+    #[word(">")]
+    Above,
+    #[word(">=")]
+    AtLeast,
+    #[word("==")]
+    Equal,
+    #[word("!=")]
+    Other,
+    /// Exactly one of the two is 0.
+    #[word("|^")]
+    OneOf,
+}
+
+impl Operator {
+    fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Below => a < b,
+            Self::AtMost => a <= b,
+            Self::Above => a > b,
+            Self::AtLeast => a >= b,
+            Self::Equal => a == b,
+            Self::Other => a != b,
+            Self::OneOf => (a == 0.0) != (b == 0.0),
         }
     }
 }
@@ -43,58 +113,34 @@ enum Attribute {
     Variable(ValueRef),
 }
 
-/// Compares `left` and `right`.
-type Compare = fn(f64, f64) -> bool;
-
-/// The operators and their comparisons.
-const OPERATORS: [(&str, Compare); 7] = [
-    ("<", |a, b| a < b),
-    ("<=", |a, b| a <= b),
-    (">", |a, b| a > b),
-    (">=", |a, b| a >= b),
-    ("==", |a, b| a == b),
-    ("!=", |a, b| a != b),
-    ("|^", |a, b| (a == 0.0) != (b == 0.0)),
-];
+impl Value for Attribute {
+    const KIND: Kind = Kind::Reference;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("the quantity to check")?;
+        Ok(match (word.text.as_str(), ValueRef::parse(&word.text, word.span)?) {
+            ("bondmax", _) => Self::Bonds,
+            ("tlimit", _) => Self::Seconds,
+            ("diskfree", _) => Self::Disk(PathBuf::from(".")),
+            (_, Some(r)) if r.kind == RefKind::Variable => {
+                cx.value(&r, false)?;
+                Self::Variable(r)
+            }
+            _ => return Err(args.unknown(word, &["bondmax", "tlimit", "diskfree", "v_name"])),
+        })
+    }
+}
 
 impl FixStyle for HaltFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps N")?;
-        let word = args.expect("the quantity to check")?;
-        let mut attribute = match (word.text.as_str(), ValueRef::parse(&word.text, word.span)?) {
-            ("bondmax", _) => Attribute::Bonds,
-            ("tlimit", _) => Attribute::Seconds,
-            ("diskfree", _) => Attribute::Disk(PathBuf::from(".")),
-            (_, Some(r)) if r.kind == RefKind::Variable => {
-                cx.value(&r, false)?;
-                Attribute::Variable(r)
-            }
-            _ => return Err(args.unknown(word, &["bondmax", "tlimit", "diskfree", "v_name"])),
-        };
-        let operator = args.choice("comparison", &["<", "<=", ">", ">=", "==", "!=", "|^"])?;
-        let compare = OPERATORS.iter().find(|(name, _)| *name == operator).map_or(OPERATORS[0].1, |o| o.1);
-        let value = args.number("the value to compare with")?;
-        let (mut how, mut message, mut path_span) = ("soft", true, None);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "error" => how = args.choice("value of error", &["hard", "soft", "continue"])?,
-                "message" => message = args.flag("message")?,
-                // One process is the whole universe.
-                "universe" => drop(args.flag("universe")?),
-                "path" => {
-                    let name = args.expect("the path to check")?;
-                    path_span = Some(name.span);
-                    if let Attribute::Disk(path) = &mut attribute {
-                        *path = PathBuf::from(&name.text);
-                    }
-                }
-                _ => return Err(args.unknown(word, &["error", "message", "path", "universe"])),
+        let Line { every, mut attribute, operator, value, error, message, path, .. } = read(args, cx)?;
+        if let Attribute::Disk(own) = &mut attribute {
+            let span = path.as_ref().map_or(cx.span, |path| path.span);
+            path.into_iter().for_each(|path| *own = path.value);
+            if !cx.checking {
+                free_megabytes(own).map_err(|e| e.at(span))?;
             }
         }
-        if let (Attribute::Disk(path), false) = (&attribute, cx.checking) {
-            free_megabytes(path).map_err(|e| e.at(path_span.unwrap_or(cx.span)))?;
-        }
-        Ok(Box::new(Declared { id: cx.id.to_string(), every, attribute, compare, value, how, message }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), every, attribute, operator, value, error, message }))
     }
 }
 
@@ -103,9 +149,9 @@ struct Declared {
     id: String,
     every: i64,
     attribute: Attribute,
-    compare: Compare,
+    operator: Operator,
     value: f64,
-    how: &'static str,
+    error: How,
     message: bool,
 }
 
@@ -151,17 +197,17 @@ impl Fix for Declared {
         };
         let (me, log, access) = (self.clone(), cx.log(), Needs::new().read(SLOTS).write(CLOCK));
         let op = StepOp::new(format!("fix {} halt", self.id), Stage::EndOfStep, access, move |w, t| {
-            let value = me.present_value(w, reading)?;
-            if !(me.compare)(value, me.value) {
+            let value = me.now(w, reading)?;
+            if !me.operator.holds(value, me.value) {
                 return Ok(());
             }
             let shown = shortest(value);
             let text =
                 format!("Fix halt condition for fix-id {} met on step {} with value {shown}", me.id, t.step);
-            if me.how == "hard" {
+            if me.error == How::Hard {
                 return Err(Diagnostic::error(Code::HALTED, None, text).into());
             }
-            w.clock.halt = if me.how == "soft" { Halt::All } else { Halt::Run };
+            w.clock.halt = if me.error == How::Soft { Halt::All } else { Halt::Run };
             if me.message { log.line(&text) } else { Ok(()) }
         });
         Ok(vec![op.when(when).boxed()])

@@ -7,6 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
@@ -21,27 +22,57 @@ impl Style for HeatFlow {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group heat/flow constant cp | type cp1 … cpN",
+            syntax: "",
             summary: "Changes the temperature of particles by the heat that flows into them.",
-            text: "T += Δt q/(m c_p) at the end of each step, with the heat flow q of contacts in energy/time units and \
-                   the specific heat c_p in energy/(mass temperature) units, one for all or one for each type. Needs \
-                   `fix ID all property/atom temperature heatflow`.",
+            text: "T += Δt q/(m c_p) at the end of each step, with the heat flow q of contacts in energy/time units. \
+                   Needs `fix ID all property/atom temperature heatflow`.",
             example: "fix warm all property/atom temperature heatflow\nset group ball temperature 300\n\
                       fix flow ball heat/flow constant 840",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "style")]
+    capacity: Capacity,
+}
+
+/// The specific heat of the particles.
+#[derive(Words)]
+#[word(what = "style")]
+enum Capacity {
+    /// One specific heat for all [energy/(mass temperature)].
+    Constant(
+        /// The specific heat.
+        #[word(name = "cp", positive)]
+        f64,
+    ),
+    /// One specific heat for each type [energy/(mass temperature)].
+    Type(#[word(name = "cp1…cpN")] Each),
+}
+
+/// A number for each type.
+struct Each(Vec<f64>);
+
+impl Value for Each {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let each = (1..=cx.world.types).map(|k| args.positive(&format!("the specific heat of type {k}")));
+        each.collect::<Result<_>>().map(Self)
     }
 }
 
 impl FixStyle for HeatFlow {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let types = cx.world.types;
-        let capacity = match args.choice("style", &["constant", "type"])? {
-            "constant" => vec![args.positive("the specific heat")?; types],
-            _ => (1..=types)
-                .map(|k| args.positive(&format!("the specific heat of type {k}")))
-                .collect::<Result<_>>()?,
+        let line: Line = read(args, cx)?;
+        let capacity = match line.capacity {
+            Capacity::Constant(cp) => vec![cp; cx.world.types],
+            Capacity::Type(Each(each)) => each,
         };
-        args.finish()?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, capacity }))
     }
 }

@@ -6,9 +6,9 @@ use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Alternative, At, Form, Kind, PerAtom, Types, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
     COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, RANK, SLOTS, TORQUE, TYPE_MASS, V,
@@ -24,46 +24,117 @@ impl Style for Langevin {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group langevin Tstart Tstop damp seed [omega yes|no] [scale type ratio]… [tally yes|no] \
-                     [zero yes|no]",
+            syntax: "",
             summary: "Friction and random forces of a bath of some temperature.",
-            text: "f ← f − m/damp v + √(24 k_B T m/(damp Δt)) (u − ½), with u uniform between 0 and 1 for each particle and \
-                   direction. T goes from Tstart to Tstop during a run (`run … start stop`); Tstart may be `v_name` of an \
-                   equal- or atom-style variable, evaluated each step, and Tstop is then without meaning. damp [time] may be scaled \
-                   by type: `scale 2 3.0` makes it three times as long for type 2. `omega yes` does the same to the spins of \
-                   spheres: the torque is −(10/3) I/damp ω + √(80 k_B T I/(damp Δt)) (u − ½), I being the moment of inertia. `zero yes` takes the mean of the random forces \
-                   away from each. Something else must move the particles (`fix nve/sphere`), and damping contacts are a second bath of temperature 0. \
+            text: "f ← f − m/damp v + √(24 k_B T m/(damp Δt)) (u − ½), with u uniform between 0 and 1 for each particle \
+                   and direction. T goes from Tstart to Tstop during a run (`run … start stop`). Something else must \
+                   move the particles (`fix nve/sphere`), and damping contacts are a second bath of temperature 0. Not \
+                   in minimizations.\n\n\
                    Scalar (extensive): with `tally yes` the energy taken from the motion of translation so far, else 0; \
-                   it is the thermo keyword `ecouple`, and `econserve` holds it. \
-                   Not in minimizations.\n\n\
-                   Random numbers are those of LAMMPS on one process: particles draw in the order of their creation (LAMMPS sorts them \
-                   now and then: `atom_modify sort 0 0`). The stream continues from run to run, also through a restart file, and a run cut in \
-                   two is one run; LAMMPS draws once more and begins to tally anew when a run begins (`-compat lammps`), and restart files do not \
-                   hold its streams. Refused: `angmom` (no ellipsoids here), `gjf` (LAMMPS has a fix of its own for it), and \
-                   `fix_modify ID temp` with a temperature that takes a flow away.",
+                   it is the thermo keyword `ecouple`, and `econserve` holds it.\n\n\
+                   Random numbers are those of LAMMPS on one process: particles draw in the order of their creation \
+                   (LAMMPS sorts them now and then: `atom_modify sort 0 0`). The stream continues from run to run, also \
+                   through a restart file, and a run cut in two is one run; LAMMPS draws once more and begins to tally \
+                   anew when a run begins (`-compat lammps`), and restart files do not hold its streams.\n\n\
+                   `fix_modify ID temp` with a temperature that takes a flow away is refused.",
             example: "fix bath grains langevin 300.0 300.0 1.0e-3 48279 omega yes",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-const KEYWORDS: &[&str] = &["angmom", "gjf", "omega", "scale", "tally", "zero"];
+#[derive(Words)]
+struct Line {
+    /// The temperature Tstart [temperature]: a number, or `v_name` of an equal- or atom-style variable, evaluated each step.
+    #[word(name = "Tstart", what = "the temperature Tstart")]
+    start: At<PerAtom>,
+    /// The temperature Tstop [temperature]; without meaning where Tstart is a variable.
+    #[word(name = "Tstop", what = "the temperature Tstop", non_negative)]
+    stop: f64,
+    /// The time of damping [time].
+    #[word(positive)]
+    damp: f64,
+    /// The seed.
+    #[word(from = 1)]
+    seed: At<i64>,
+    /// The same for the spins of spheres: the torque is −(10/3) I/damp ω + √(80 k_B T I/(damp Δt)) (u − ½), I being the moment of
+    /// inertia.
+    #[word(keyword, what = "omega", shown = "no")]
+    omega: Option<At<bool>>,
+    /// The time of damping is damp·ratio for a type or range of types.
+    #[word(keyword, name = "type ratio", what = "the ratio of times of damping")]
+    scale: Vec<(Types, Ratio)>,
+    /// Whether the energy taken is counted.
+    #[word(keyword, what = "tally", default = false)]
+    tally: bool,
+    /// Whether the mean of the random forces is taken away from each.
+    #[word(keyword, what = "zero", default = false)]
+    zero: bool,
+    /// There are no ellipsoids here: write `omega yes`.
+    #[word(keyword, placed)]
+    angmom: Option<At<No>>,
+    /// LAMMPS gives it up for a fix of its own.
+    #[word(keyword, placed)]
+    gjf: Option<At<No>>,
+}
+
+/// `no`, or whatever else stands behind what is not here.
+#[derive(PartialEq)]
+struct No(bool);
+
+impl Value for No {
+    const KIND: Kind = Kind::Choice(&[Alternative { word: "no", about: "", parts: &[] }]);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let no = args.eat("no");
+        if !no && !args.at_keyword() {
+            args.next();
+        }
+        Ok(Self(no))
+    }
+}
+
+/// A factor greater than zero.
+struct Ratio(f64);
+
+impl Value for Ratio {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive(what).map(Self)
+    }
+}
 
 impl FixStyle for Langevin {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let start = temperature(args, cx)?;
-        let stop = args.non_negative("the temperature Tstop")?;
-        let damp = args.positive("the time of damping")?;
-        let span = args.here();
-        let seed = args.integer_from(1, "the seed")?;
-        let Some(seed) = u32::try_from(seed).ok().filter(|s| *s <= Marsaglia::MAX_SEED) else {
-            return fail(Code::BAD_VALUE, span, format!("seeds go from 1 to {}", Marsaglia::MAX_SEED));
+        let line: Line = read(args, cx)?;
+        if let Some(angmom) = line.angmom.filter(|angmom| !angmom.value.0) {
+            let text = "`angmom` is for ellipsoids: write `omega yes`";
+            return fail(Code::NOT_SUPPORTED, angmom.span, text);
+        }
+        if let Some(gjf) = line.gjf.filter(|gjf| !gjf.value.0) {
+            let text = "`gjf` of fix langevin, which LAMMPS gives up for a fix of its own";
+            return fail(Code::NOT_SUPPORTED, gjf.span, text);
+        }
+        let start = temperature(line.start)?;
+        let Some(seed) = u32::try_from(line.seed.value).ok().filter(|s| *s <= Marsaglia::MAX_SEED) else {
+            let text = format!("seeds go from 1 to {}", Marsaglia::MAX_SEED);
+            return fail(Code::BAD_VALUE, line.seed.span, text);
         };
-        let ratios = vec![1.0; cx.world.types];
+        let mut ratios = vec![1.0; cx.world.types];
+        for (Types(lo, hi), ratio) in line.scale {
+            (lo..=hi).for_each(|k| ratios[usize::from(k) - 1] = ratio.0);
+        }
+        let omega = omega(line.omega, cx)?;
+        let (stop, damp, tally, zero) = (line.stop, line.damp, line.tally, line.zero);
+        if zero && tally {
+            let text = "the energy that `tally` counts lacks what `zero` takes away";
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, cx.span, text));
+        }
         let (id, group) = (cx.id.to_string(), cx.group);
         let key: Numbers = Key::new(&format!("langevin/{id}"));
         let (coupled, columns) = (key.with(COUPLED.text()), [key.of(), key.with("/torque")]);
-        let (omega, tally, zero) = (false, false, false);
-        let mut fix = Declared {
+        Ok(Box::new(Declared {
             id,
             key,
             coupled,
@@ -77,59 +148,28 @@ impl FixStyle for Langevin {
             omega,
             tally,
             zero,
-        };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "omega" => fix.omega = self::omega(args, cx)?,
-                "tally" => fix.tally = args.flag("tally")?,
-                "zero" => fix.zero = args.flag("zero")?,
-                "scale" => {
-                    let (lo, hi) = args.type_range(cx.world.types)?;
-                    let ratio = args.positive("the ratio of times of damping")?;
-                    (lo..=hi).for_each(|k| fix.ratios[usize::from(k) - 1] = ratio);
-                }
-                "angmom" | "gjf" if args.peek_text() == "no" => drop(args.next()),
-                "angmom" => {
-                    return fail(
-                        Code::NOT_SUPPORTED,
-                        word.span,
-                        "`angmom` is for ellipsoids: write `omega yes`",
-                    );
-                }
-                "gjf" => {
-                    let text = "`gjf` of fix langevin, which LAMMPS gives up for a fix of its own";
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
-                _ => return Err(args.unknown(word, KEYWORDS)),
-            }
-        }
-        if fix.zero && fix.tally {
-            let text = "the energy that `tally` counts lacks what `zero` takes away";
-            cx.note(Diagnostic::warning(Code::SUSPICIOUS, cx.span, text));
-        }
-        Ok(Box::new(fix))
+        }))
     }
 }
 
-/// Parses Tstart: a number or a variable.
-fn temperature(args: &mut Args, cx: &BuildCx) -> Result<Param> {
-    let span = args.here();
-    let start = variable_param(args, "the temperature Tstart")?;
-    cx.param(&start, true)?;
-    match start {
-        Param::Number(t) if t < 0.0 => fail(Code::BAD_VALUE, span, "a temperature must not be negative"),
+/// Refuses temperatures below zero.
+fn temperature(start: At<PerAtom>) -> Result<Param> {
+    match start.value.0 {
+        Param::Number(t) if t < 0.0 => {
+            fail(Code::BAD_VALUE, start.span, "a temperature must not be negative")
+        }
         start => Ok(start),
     }
 }
 
-fn omega(args: &mut Args, cx: &BuildCx) -> Result<bool> {
-    let span = args.here();
-    let yes = args.flag("omega")?;
-    if yes && !cx.world.particles.style.sphere {
-        let d = Diagnostic::error(Code::WRONG_ORDER, span, "only spheres spin");
+/// Whether the spins feel the bath; refuses that for particles without spin.
+fn omega(named: Option<At<bool>>, cx: &BuildCx) -> Result<bool> {
+    let Some(omega) = named.filter(|omega| omega.value) else { return Ok(false) };
+    if !cx.world.particles.style.sphere {
+        let d = Diagnostic::error(Code::WRONG_ORDER, omega.span, "only spheres spin");
         return Err(d.help("put `atom_style sphere` at the top of the deck, or leave `omega` out").into());
     }
-    Ok(yes)
+    Ok(true)
 }
 
 #[derive(Clone)]

@@ -77,9 +77,11 @@ mod wall_reflect;
 mod wall_region;
 mod window;
 
-use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_lang::{Args, ValueRef};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_styles::common::bond_type;
 pub use perigrain_styles::fix::{Facts, Fix, FixStyle, Minimizing, Moves, no_option};
+use perigrain_styles::words::{Kind, Value};
 use perigrain_styles::{BuildCx, Shape};
 use perigrain_world::World;
 use perigrain_world::field::{Fields, MU, QUAT};
@@ -189,10 +191,46 @@ fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
         .into())
 }
 
-/// Reads the region after the keyword `region`.
-fn region_keyword(args: &mut Args, cx: &BuildCx) -> Result<String> {
-    let word = args.expect("the region's ID")?;
-    cx.region(word).map(|_| word.text.clone())
+/// The ID of a region.
+#[derive(Clone)]
+struct RegionId(String);
+
+impl Value for RegionId {
+    const KIND: Kind = Kind::Region;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("the region's ID")?;
+        cx.region(word).map(|_| Self(word.text.clone()))
+    }
+}
+
+/// A bond type.
+struct BondType(u16);
+
+impl Value for BondType {
+    const KIND: Kind = Kind::Types;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        bond_type(args, cx.world.bonds.types).map(Self)
+    }
+}
+
+/// An atom-style variable with its `v_`.
+struct AtomVariable(ValueRef);
+
+impl Value for AtomVariable {
+    const KIND: Kind = Kind::Reference;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect(&format!("the variable after {what}"))?;
+        match ValueRef::parse(&word.text, word.span)? {
+            Some(r) if r.kind == RefKind::Variable => {
+                cx.value(&r, true)?;
+                Ok(Self(r))
+            }
+            _ => {
+                let text = format!("{what} takes v_name of an atom-style variable, not `{}`", word.text);
+                fail(Code::WRONG_KIND, word.span, text)
+            }
+        }
+    }
 }
 
 /// Refuses a fix whose values are not updated at all the steps needed: multiples of `every`.

@@ -7,6 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, MASK};
 use perigrain_world::{GroupId, World};
@@ -20,18 +21,30 @@ impl Style for LineForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group lineforce x y z",
+            syntax: "",
             summary: "Leaves of each force only the part along the direction (x, y, z).",
-            text: "f ← (f·n) n with n = (x, y, z) of length 1. A particle that starts at rest, or with a velocity along the \
-                   line, stays on its line. Forces of fixes declared later are not seen. Acts in the setup of a run too.",
+            text: "f ← (f·n) n with n = (x, y, z) of length 1. A particle that starts at rest, or with a velocity along \
+                   the line, stays on its line. Forces of fixes declared later are not seen. Acts in the setup of a run \
+                   too.",
             example: "fix rail foot lineforce 0.0 1.0 1.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+/// The words of fix lineforce and fix planeforce.
+#[derive(Words)]
+pub struct Line {
+    /// The direction, of any length but 0.
+    #[word(name = "x y z", what = "{}", with = direction, kind = Kind::Number)]
+    pub along: [f64; 3],
 }
 
 impl FixStyle for LineForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let along = direction(args)?;
+        let Line { along } = read(args, cx)?;
         Ok(Box::new(Held { id: cx.id.to_string(), group: cx.group, name: self.name(), along, plane: false }))
     }
 }
@@ -40,7 +53,7 @@ impl FixStyle for LineForce {
 ///
 /// # Errors
 /// Words that are not numbers, and the direction 0 0 0.
-pub fn direction(args: &mut Args) -> Result<Vec3> {
+pub fn direction(args: &mut Args, _: &BuildCx) -> Result<Vec3> {
     let span = args.here();
     let unknown = args.peek().is_some_and(|w| w.unknown);
     let n = [args.number("x")?, args.number("y")?, args.number("z")?];

@@ -9,6 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -22,43 +23,51 @@ impl Style for Momentum {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group momentum N [linear x y z] [angular] [rescale]",
+            syntax: "",
             summary: "Takes the drift of a group, its rotation, or both away every N steps.",
-            text: "`linear x y z` (each 0 or 1): the velocity of the centre of mass along these directions. `angular`: the \
-                   rotation about the centre of mass, as if the group were rigid. `rescale`: velocities are scaled so that \
-                   the group's kinetic energy of translation stays what it was. At least one of the first two. Under \
-                   `-compat lammps` the group's mass is that of the run's beginning, also once particles have been lost \
-                   or have come: some of the drift stays.",
+            text: "At least one of `linear` and `angular` must be there. Under `-compat lammps` the group's mass is \
+                   that of the run's beginning, also once particles have been lost or have come: some of the drift \
+                   stays.",
             example: "fix calm plate momentum 10 linear 1 1 0 angular",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Acts at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    /// The velocity of the centre of mass is taken away along the directions with a 1.
+    #[word(keyword, name = "x y z", shown = "0 0 0")]
+    linear: [Taken; 3],
+    /// The rotation about the centre of mass is taken away, as if the group were rigid.
+    #[word(flag)]
+    angular: bool,
+    /// Velocities are scaled so that the group's kinetic energy of translation stays what it was.
+    #[word(flag)]
+    rescale: bool,
+}
+
+/// Whether something is taken away.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "switch of linear")]
+enum Taken {
+    #[default]
+    #[word("0")]
+    No,
+    #[word("1")]
+    Yes,
 }
 
 impl FixStyle for Momentum {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps N")?;
-        let mut fix = Declared {
-            id: cx.id.to_string(),
-            group: cx.group,
-            every,
-            linear: [false; 3],
-            angular: false,
-            rescale: false,
-        };
-        let none = args.is_empty();
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "linear" => {
-                    for axis in &mut fix.linear {
-                        *axis = args.choice("switch of linear", &["0", "1"])? == "1";
-                    }
-                }
-                "angular" => fix.angular = true,
-                "rescale" => fix.rescale = true,
-                _ => return Err(args.unknown(word, &["linear", "angular", "rescale"])),
-            }
-        }
-        if none || (!fix.linear.contains(&true) && !fix.angular) {
+        let Line { every, linear, angular, rescale } = read(args, cx)?;
+        let linear = linear.map(|taken| taken == Taken::Yes);
+        if !linear.contains(&true) && !angular {
             return Err(Diagnostic::error(
                 Code::MISSING_ARGUMENT,
                 args.here(),
@@ -67,7 +76,7 @@ impl FixStyle for Momentum {
             .help("use `linear 1 1 1`, `angular` or both")
             .into());
         }
-        Ok(Box::new(fix))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, linear, angular, rescale }))
     }
 }
 

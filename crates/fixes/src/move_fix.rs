@@ -67,7 +67,7 @@ impl FixStyle for Move {
             _ => {
                 let velocity = if kind == "transrot" { three(args, "V")? } else { [0.0; 3] };
                 let point = three(args, "P")?;
-                let axis = direction(args)?;
+                let axis = direction(args, cx)?;
                 let omega = 2.0 * PI / args.positive("the period")?;
                 Path::Turn { point, axis, omega, velocity }
             }

@@ -1,9 +1,10 @@
 //! fix nve/bpm/sphere: velocity Verlet of spheres with orientations.
 
-use super::nve_sphere::{ORIENTED, declared};
+use super::nve_sphere::{Line, ORIENTED, declared};
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -15,15 +16,18 @@ impl Style for NveBpmSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group nve/bpm/sphere [update dipole|dipole/dlm] [disc]",
+            syntax: "",
             summary: "Moves and turns the group's spheres by velocity Verlet, with their orientations.",
-            text: "As `fix nve/sphere`; after the first half kick orientations follow the spins, q̇ = ½ ω q over Δt with the ω of the middle \
-                   of the step, extrapolated from one step and two halves (Richardson) and kept at unit length. Bonds that bend and twist \
-                   (`bond_style bpm/rotational`) need them. `disc`, for flat scenes, takes I = 1/2 m R² instead of 2/5 m R². \
-                   `update dipole` and `dipole/dlm` (`atom_style hybrid bpm/sphere dipole`) let dipole moments follow the spin as `fix nve/sphere` does.",
+            text: "As `fix nve/sphere`; after the first half kick orientations follow the spins, q̇ = ½ ω q over Δt \
+                   with the ω of the middle of the step, extrapolated from one step and two halves (Richardson) and \
+                   kept at unit length. Bonds that bend and twist (`bond_style bpm/rotational`) need them. `update` \
+                   needs particles with dipoles (`atom_style hybrid bpm/sphere dipole`).",
             example: "units lj\natom_style bpm/sphere\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 2 2 2\n\
                       set group all omega 0 0 0.5\nfix 1 all nve/bpm/sphere\nrun 10",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,6 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -22,19 +23,28 @@ impl Style for NveLimit {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group nve/limit xmax",
+            syntax: "",
             summary: "Moves the particles of the group by velocity Verlet, none farther than xmax in a step.",
-            text: "After each half kick a velocity above xmax/Δt is shortened to that. Meant for scenes that start with heavy \
-                   overlaps; energy is not kept. Scalar (extensive): how often a velocity has been shortened since the \
-                   fix was declared.",
+            text: "Meant for scenes that start with heavy overlaps; energy is not kept. Scalar (extensive): how often a \
+                   velocity has been shortened since the fix was declared.",
             example: "fix 1 all nve/limit 1.0e-5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The longest way xmax of a particle in a step [length]: after each half kick a velocity above xmax/Δt is shortened to that.
+    #[word(name = "xmax", positive, what = "the longest way xmax")]
+    most: f64,
 }
 
 impl FixStyle for NveLimit {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let most = args.positive("the longest way xmax")?;
+        let Line { most } = read(args, cx)?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, most }))
     }
 }

@@ -3,10 +3,11 @@
 use super::dipoles::{self, Update};
 use super::kick::{self as kicks, Turning};
 use super::{Facts, Fix, FixStyle, Moves};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, KIND, MASK, MASS, OMEGA, QUAT, RADIUS, TORQUE, TRAVEL, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -28,15 +29,28 @@ impl Style for NveSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group nve/sphere [update dipole|dipole/dlm] [disc]",
+            syntax: "",
             summary: "Moves and turns the group's spheres by velocity Verlet.",
-            text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). `disc`, \
-                   for flat scenes, takes I = 1/2 m R². Orientations stay as they are: spheres with bonds that bend and twist need `fix nve/bpm/sphere`. Every particle of the group needs a radius.\n\n\
-                   `update dipole` (`atom_style hybrid sphere dipole`): dipole moments follow the spin, μ += Δt ω × μ, at their length; `dipole/dlm` turns them by rotations about \
-                   x y z y x of the body, half of Δt each (Dullweber, Leimkuhler, McLachlan, J. Chem. Phys. 107, 1997), which is of second order.",
+            text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). \
+                   Orientations stay as they are: spheres with bonds that bend and twist need `fix nve/bpm/sphere`. \
+                   Every particle of the group needs a radius. `update` needs particles with dipoles (`atom_style \
+                   hybrid sphere dipole`).",
             example: "fix 1 all nve/sphere",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+/// The words of fix nve/sphere and fix nve/bpm/sphere.
+#[derive(Words)]
+pub(crate) struct Line {
+    #[word(keyword, placed)]
+    update: Option<At<Update>>,
+    /// I = 1/2 m R² instead of 2/5 m R², for flat scenes.
+    #[word(flag, placed)]
+    disc: Option<Span>,
 }
 
 impl FixStyle for NveSphere {
@@ -52,31 +66,19 @@ impl FixStyle for NveSphere {
 
 /// Reads the words of either style; [`ORIENTED`] integrates orientations too.
 pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-    let (oriented, mut inertia, mut update) = (name == ORIENTED, INERTIA, None);
-    while let Some(word) = args.next() {
-        match word.text.as_str() {
-            "update" => {
-                let what = args.expect("dipole or dipole/dlm")?;
-                update = match what.text.as_str() {
-                    "dipole" => Some(Update::Plain),
-                    "dipole/dlm" => Some(Update::Rotations),
-                    _ => return Err(args.unknown(what, &["dipole", "dipole/dlm"])),
-                };
-                if !cx.world.particles.style.dipole {
-                    let text = "`update dipole` needs particles with a dipole, and these have none";
-                    let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
-                    let spheres = if oriented { "bpm/sphere" } else { "sphere" };
-                    return Err(d.help(format!("`atom_style hybrid {spheres} dipole` has both")).into());
-                }
-            }
-            "disc" if cx.world.settings.two_dimensional => inertia = DISC,
-            "disc" => {
-                let text = "`disc` belongs to flat scenes (`dimension 2`)";
-                return fail(Code::CONFLICT, word.span, text);
-            }
-            _ => return Err(args.unknown(word, &["update", "disc"])),
-        }
+    let (Line { update, disc }, oriented) = (read(args, cx)?, name == ORIENTED);
+    if let Some(update) = &update
+        && !cx.world.particles.style.dipole
+    {
+        let text = "`update dipole` needs particles with a dipole, and these have none";
+        let d = Diagnostic::error(Code::CONFLICT, update.span, text);
+        let spheres = if oriented { "bpm/sphere" } else { "sphere" };
+        return Err(d.help(format!("`atom_style hybrid {spheres} dipole` has both")).into());
     }
+    if let Some(span) = disc.filter(|_| !cx.world.settings.two_dimensional) {
+        return fail(Code::CONFLICT, span, "`disc` belongs to flat scenes (`dimension 2`)");
+    }
+    let (inertia, update) = (if disc.is_some() { DISC } else { INERTIA }, update.map(|u| u.value));
     let turning = Turning { inertia, oriented };
     Ok(Box::new(Declared { name, id: cx.id.to_string(), group: cx.group, turning, update }))
 }

@@ -1,9 +1,10 @@
 //! fix planeforce: removes the force component normal to a plane.
 
-use super::lineforce::{Held, direction};
+use super::lineforce::{Held, Line};
 use super::{Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -15,19 +16,22 @@ impl Style for PlaneForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group planeforce x y z",
+            syntax: "",
             summary: "Takes the part of each force along the direction (x, y, z) away.",
-            text: "f ← f − (f·n) n with n = (x, y, z) of length 1, the normal of the plane. A particle that starts at rest, \
-                   or with a velocity in the plane, stays in its plane. Forces of fixes declared later are not seen. Acts \
-                   in the setup of a run too.",
+            text: "f ← f − (f·n) n with n = (x, y, z) of length 1, the normal of the plane. A particle that starts at \
+                   rest, or with a velocity in the plane, stays in its plane. Forces of fixes declared later are not \
+                   seen. Acts in the setup of a run too.",
             example: "fix flat foot planeforce 0.0 0.0 1.0",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
 impl FixStyle for PlaneForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let along = direction(args)?;
+        let Line { along } = read(args, cx)?;
         Ok(Box::new(Held { id: cx.id.to_string(), group: cx.group, name: self.name(), along, plane: true }))
     }
 }

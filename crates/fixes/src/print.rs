@@ -1,11 +1,13 @@
 //! fix print: prints a line of text with current values every N steps.
 
+use super::ave_time::later;
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_output::Sheet;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, FORMULAS, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, TORQUE};
@@ -20,16 +22,39 @@ impl Style for Print {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group print N \"text\" [file name] [append name] [screen yes|no] [title \"text\"]",
+            syntax: "",
             summary: "Prints a text with the values of variables and formulas in it every N steps.",
-            text: "`$x`, `${name}` and `$(formula:%8.3f)` in the text are replaced anew each time: write it in double quotes, \
-                   in which they wait. N is a number of steps, or `v_name` of an equal-style variable that names the next \
-                   step each time it has come (`logfreq`, `stride` …). `file` or `append`: the text also goes to that file, \
-                   whose first line is `title` (`# Fix print output for fix ID`); `screen no` keeps it from screen and log. \
-                   Prints at the start of a run too if that step is a multiple of N. The group means nothing.",
+            text: "Prints at the start of a run too if that step is a multiple of N. The group means nothing.",
             example: "fix say all print 1 \"step $(step): ke $(ke:%.4g)\" file said.txt screen no",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Prints at multiples of N, or at the steps that `v_name` of an equal-style variable names: each time the next one
+    /// (`logfreq`, `stride` …).
+    #[word(name = "N")]
+    pace: Pace,
+    /// The text to print, in double quotes, in which `$x`, `${name}` and `$(formula:%8.3f)` wait: they are replaced anew each
+    /// time.
+    #[word(name = "\"text\"")]
+    text: At<String>,
+    /// The text also goes to this file.
+    #[word(keyword, name = "name", what = "the file's name")]
+    file: Option<At<PathBuf>>,
+    /// The text also goes to this file, behind what it holds.
+    #[word(keyword, name = "name", what = "the file's name")]
+    append: Option<At<PathBuf>>,
+    /// Whether screen and log get the text.
+    #[word(keyword, what = "screen", default = true)]
+    screen: bool,
+    /// The first line of the file.
+    #[word(keyword, name = "\"text\"", what = "the title", shown = "# Fix print output for fix ID")]
+    title: Option<String>,
 }
 
 /// When to print.
@@ -41,12 +66,9 @@ pub enum Pace {
     Named(ValueRef),
 }
 
-impl Pace {
-    /// Parses a number not below `least`, or a variable.
-    ///
-    /// # Errors
-    /// Other words.
-    pub fn read(args: &mut Args, cx: &BuildCx, least: i64, what: &str) -> Result<Self> {
+impl Value for Pace {
+    const KIND: Kind = Kind::Param;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         if let Some(word) = args.peek()
             && let Some(r) = ValueRef::parse(&word.text, word.span)?
             && r.kind == RefKind::Variable
@@ -55,9 +77,11 @@ impl Pace {
             cx.value(&r, false)?;
             return Ok(Pace::Named(r));
         }
-        Ok(Pace::Every(args.integer_from(least, what)?))
+        Ok(Pace::Every(args.integer_from(1, "the number of steps N")?))
     }
+}
 
+impl Pace {
     /// The steps of the coming run.
     ///
     /// # Errors
@@ -72,29 +96,11 @@ impl Pace {
 
 impl FixStyle for Print {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let pace = Pace::read(args, cx, 1, "the number of steps N")?;
-        let word = args.expect("the text to print")?;
-        let mut fix = Declared {
-            id: cx.id.to_string(),
-            pace,
-            text: word.text.clone(),
-            place: word.span,
-            file: None,
-            screen: true,
-            title: format!("# Fix print output for fix {}", cx.id),
-        };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "file" | "append" => {
-                    let name = PathBuf::from(&args.expect("the file's name")?.text);
-                    fix.file = Some((name, word.text == "append"));
-                }
-                "screen" => fix.screen = args.flag("screen")?,
-                "title" => fix.title = args.expect("the title")?.text.clone(),
-                _ => return Err(args.unknown(word, &["file", "append", "screen", "title"])),
-            }
-        }
-        Ok(Box::new(fix))
+        let Line { pace, text, file, append, screen, title } = read(args, cx)?;
+        let id = cx.id.to_string();
+        let file = later(file.as_ref(), append.as_ref()).map(|(path, append)| (path.to_path_buf(), append));
+        let title = title.unwrap_or_else(|| format!("# Fix print output for fix {id}"));
+        Ok(Box::new(Declared { id, pace, text: text.value, place: text.span, file, screen, title }))
     }
 }
 

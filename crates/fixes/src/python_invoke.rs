@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::outside::{Host, Invoked};
@@ -19,38 +20,63 @@ impl Style for PythonInvoke {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group python/invoke N (post_force | end_of_step) function",
+            syntax: "",
             summary: "Calls a function in Python at every step that N divides, where Python hosts the run.",
-            text: "The function is one of the program's `__main__`, defined by the script or by the command `python`. \
-                   `post_force`: after forces have been computed, as `function(ptr, vflag)`, where vflag is 1 in steps whose pressure is read, 4 more where \
-                   virials of particles are read; in the order of fixes, so that a `setforce` behind it has the last word. `end_of_step`: after the step, as \
-                   `function(ptr)`. Neither is called in the setup of a run, as in LAMMPS, nor in minimizations. The group decides nothing.\n\n\
-                   `lammps(ptr=ptr)` gives the scene as it is in that moment: columns of particles (`extract_atom`, `numpy.extract_atom`, `gather…`, `scatter…`), the box, settings \
-                   (`extract_global`), ids; what is written into columns counts when the function returns. Commands, computes, fixes and variables are refused there (LAMMPS: \
-                   undefined), and so is all of it after the function has returned. An exception ends the run in that step and is raised by the command that ran; \
-                   nothing is written then. In a terminal there is no Python: the fix is refused.",
+            text: "It is called neither in the setup of a run, as in LAMMPS, nor in minimizations. The \
+                   group decides nothing.\n\n\
+                   `lammps(ptr=ptr)` gives the scene as it is in that moment: columns of particles (`extract_atom`, \
+                   `numpy.extract_atom`, `gather…`, `scatter…`), the box, settings (`extract_global`), ids; what is \
+                   written into columns counts when the function returns. Commands, computes, fixes and variables are \
+                   refused there (LAMMPS: undefined), and so is all of it after the function has returned. An exception \
+                   ends the run in that step and is raised by the command that ran; nothing is written then. In a \
+                   terminal there is no Python: the fix is refused.",
             example: "fix watch all python/invoke 10 end_of_step watch",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Called at multiples of N [steps].
+    #[word(name = "N", what = "how many steps lie between two calls of the function", from = 1)]
+    every: i64,
+    #[word(name = "when")]
+    moment: Moment,
+    /// The function's name: one of the program's `__main__`, defined by the script or by the command `python`.
+    function: At<String>,
+}
+
+/// When in a step the function is called.
+#[derive(PartialEq, Words)]
+#[word(what = "when it is called")]
+enum Moment {
+    /// After forces have been computed, as `function(ptr, vflag)`, where vflag is 1 in steps whose pressure is read, 4 more where
+    /// virials of particles are read; in the order of fixes, so that a `setforce` behind it has the last word.
+    #[word("post_force")]
+    Forces,
+    /// After the step, as `function(ptr)`.
+    #[word("end_of_step")]
+    End,
 }
 
 impl FixStyle for PythonInvoke {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "how many steps lie between two calls of the function")?;
-        let forces = args.choice("when it is called", &["post_force", "end_of_step"])? == "post_force";
-        let function = args.expect("the function's name")?;
-        args.finish()?;
+        let Line { every, moment, function } = read(args, cx)?;
         let Some(host) = cx.world.parts.host.clone() else {
             let text = "perigrain has no Python inside: `fix python/invoke` works where Python hosts the run";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, cx.span, text);
             return Err(d.help("work the deck off from Python, with `perigrain.lammps().file(…)`").into());
         };
-        if !cx.checking && !host.has(&function.text) {
-            let text = format!("the program has no function `{}`", function.text);
+        if !cx.checking && !host.has(&function.value) {
+            let text = format!("the program has no function `{}`", function.value);
             let d = Diagnostic::error(Code::UNKNOWN_NAME, function.span, text);
             return Err(d.help("define it before, in the script or with `python source here`").into());
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), every, forces, function: function.text.clone(), host }))
+        let forces = moment == Moment::Forces;
+        Ok(Box::new(Declared { id: cx.id.to_string(), every, forces, function: function.value, host }))
     }
 }
 

@@ -1,12 +1,13 @@
 //! fix setforce: sets forces to given values.
 
 use super::components::Components;
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing, RegionId};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Nullable, PerAtom, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, MASK, REGIONS, SLOTS, X};
@@ -20,21 +21,33 @@ impl Style for SetForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group setforce fx fy fz [region ID]",
+            syntax: "",
             summary: "Replaces components of the force on each particle of the group.",
-            text: "Each of fx fy fz is a number, `NULL` (this component stays) or `v_name` of an equal- or atom-style \
-                   variable, evaluated each step; in force units, for peridynamic particles in LAMMPS' convention force \
-                   densities. Only forces computed before count: those of pair styles and of fixes declared earlier. \
-                   With `region` only particles inside it at that moment. Acts in the setup of a run too. Vector of 3 \
-                   (extensive): the total force before the change.",
+            text: "Only forces computed before count: those of pair styles and of fixes declared earlier. Acts in the \
+                   setup of a run too. Vector of 3 (extensive): the total force before the change.",
             example: "fix clamp foot setforce 0.0 0.0 0.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The force of a particle [force], for peridynamic particles in LAMMPS' convention a force density: numbers, or `v_name` of
+    /// equal- or atom-style variables, evaluated each step; a component that is `NULL` stays.
+    #[word(name = "fx fy fz", what = "{}")]
+    components: [Nullable<PerAtom>; 3],
+    /// Only particles inside it at that moment.
+    #[word(keyword, name = "ID")]
+    region: Option<RegionId>,
 }
 
 impl FixStyle for SetForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let components = Components::read(args, cx, true)?;
+        let line: Line = read(args, cx)?;
+        let components = Components::new(line.components, line.region, cx.group);
         Ok(Box::new(Declared { id: cx.id.to_string(), components }))
     }
 }

@@ -1,12 +1,13 @@
 //! fix settorque/atom: sets torques to given values.
 
 use super::components::Components;
-use super::{Facts, Fix, FixStyle, Minimizing, needs_torques};
+use super::{Facts, Fix, FixStyle, Minimizing, RegionId, needs_torques};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{change_torques, publish_levels};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Nullable, PerAtom, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::World;
 use perigrain_world::field::{MASK, REGIONS, SLOTS, TORQUE, X};
@@ -20,22 +21,35 @@ impl Style for SetTorqueAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group settorque/atom tx ty tz [region ID]",
+            syntax: "",
             summary: "Replaces components of the torque on each sphere of the group.",
-            text: "Each of tx ty tz is a number, `NULL` (this component stays) or `v_name` of an equal- or atom-style \
-                   variable, evaluated each step; in torque units. Only torques computed before count: those of pair styles and of fixes \
-                   declared earlier. `0 0 0` for spheres that do not spin keeps them from spinning (`fix freeze` holds places as well). \
-                   With `region` only spheres inside it at that moment. Acts in the setup of a run too. Vector of 3 \
-                   (extensive): the total torque before the change.",
+            text: "Only torques computed before count: those of pair styles and of fixes declared earlier. `0 0 0` for \
+                   spheres that do not spin keeps them from spinning (`fix freeze` holds places as well). Acts in the \
+                   setup of a run too. Vector of 3 (extensive): the total torque before the change.",
             example: "fix still ball settorque/atom 0.0 NULL 0.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The torque of a sphere [torque]: numbers, or `v_name` of equal- or atom-style variables, evaluated each step; a component
+    /// that is `NULL` stays.
+    #[word(name = "tx ty tz", what = "{}")]
+    components: [Nullable<PerAtom>; 3],
+    /// Only spheres inside it at that moment.
+    #[word(keyword, name = "ID")]
+    region: Option<RegionId>,
 }
 
 impl FixStyle for SetTorqueAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_torques(self.name(), cx)?;
-        let components = Components::read(args, cx, true)?;
+        let line: Line = read(args, cx)?;
+        let components = Components::new(line.components, line.region, cx.group);
         Ok(Box::new(Declared { id: cx.id.to_string(), components }))
     }
 }

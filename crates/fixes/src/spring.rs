@@ -5,9 +5,9 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
-use perigrain_styles::common::number_or_null;
 use perigrain_styles::matter::{Chosen, Masses, Whole, change_forces, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Nullable, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, World};
@@ -21,41 +21,59 @@ impl Style for Spring {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group spring tether K x y z R0 | couple group2 K x y z R0",
+            syntax: "",
             summary: "Pulls the centre of mass of a group to a point, or two groups together.",
-            text: "`tether`: with r from the centre of mass to (x, y, z), the group feels the force K (|r| − R0) along r. \
-                   `couple`: r is the vector from this group's centre to that of group2, less (x, y, z); the two groups \
-                   feel opposite forces. A coordinate that is `NULL` does not count. The force is shared out by mass, so \
-                   that the group is not turned or strained; centres are taken unwrapped. Acts in the setup of a run too. \
-                   Scalar (extensive): the energy K (|r| − R0)²/2, which `fix_modify ID energy yes` adds to the potential \
-                   energy. Vector of 4 (extensive): the force on the group and its strength, negative where the spring is \
-                   shorter than R0. Under `-compat lammps` masses are those of the run's beginning, also once particles \
-                   have been lost or have come.",
+            text: "A coordinate that is `NULL` does not count. The force is shared out by mass, so that the group is \
+                   not turned or strained; centres are taken unwrapped. Acts in the setup of a run too. Under `-compat \
+                   lammps` masses are those of the run's beginning, also once particles have been lost or have come.\n\n\
+                   Scalar (extensive): the energy K (|r| − R0)²/2, which `fix_modify ID energy yes` adds to the \
+                   potential energy. Vector of 4 (extensive): the force on the group and its strength, negative where \
+                   the spring is shorter than R0.",
             example: "fix pull ball spring tether 50.0 0.0 0.0 NULL 0.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "kind")]
+    kind: Tie,
+    /// The stiffness K [force/length].
+    #[word(name = "K", what = "the stiffness K")]
+    stiffness: f64,
+    /// The point, or the distance of the two centres at which the spring has no length [length].
+    #[word(name = "x y z", what = "{}")]
+    at: [Nullable<f64>; 3],
+    /// The length R0 at rest [length].
+    #[word(name = "R0", non_negative)]
+    rest: f64,
+}
+
+/// What the spring ties the group to.
+#[derive(Words)]
+#[word(what = "kind of spring")]
+enum Tie {
+    /// To a point: with r from the centre of mass to (x, y, z), the group feels the force K (|r| − R0) along r.
+    Tether,
+    /// To another group: r is the vector from this group's centre to that of group2, less (x, y, z); the two groups feel
+    /// opposite forces.
+    Couple(#[word(name = "group2")] At<GroupId>),
 }
 
 impl FixStyle for Spring {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let other = match args.choice("kind of spring", &["tether", "couple"])? {
-            "couple" => {
-                let word = args.expect("the other group")?;
-                let other = cx.group(word)?;
-                if other == cx.group {
-                    return fail(
-                        Code::CONFLICT,
-                        word.span,
-                        "a spring couples two groups, not one with itself",
-                    );
-                }
-                Some(other)
+        let Line { kind, stiffness, at, rest } = read(args, cx)?;
+        let other = match kind {
+            Tie::Tether => None,
+            Tie::Couple(other) if other.value == cx.group => {
+                return fail(Code::CONFLICT, other.span, "a spring couples two groups, not one with itself");
             }
-            _ => None,
+            Tie::Couple(other) => Some(other.value),
         };
-        let stiffness = args.number("the stiffness K")?;
-        let at = [number_or_null(args, "x")?, number_or_null(args, "y")?, number_or_null(args, "z")?];
-        let rest = args.non_negative("the length R0 at rest")?;
+        let at = at.map(|c| c.0);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, other, stiffness, at, rest }))
     }
 }

@@ -4,9 +4,9 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
-use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, change_forces, keep_places, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, PerAtom, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, MASK, SLOTS, X};
 use perigrain_world::{GroupId, Key, Vectors, World};
@@ -20,33 +20,62 @@ impl Style for SpringSelf {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group spring/self K [xyz|xy|xz|yz|x|y|z]",
+            syntax: "",
             summary: "Ties each particle of the group to the place where it was when the fix was declared.",
-            text: "f ← f − K (x − x0) in the directions named (default: all), with unwrapped positions. K is a number or \
-                   `v_name` of an equal- or atom-style variable, evaluated each step. Particles that join the group later are \
-                   tied where they are then. Acts in the setup of a run too. Scalar (extensive): the energy Σ K (x − x0)²/2, \
-                   which `fix_modify ID energy yes` adds to the potential energy.",
+            text: "f ← f − K (x − x0), with unwrapped positions. Particles that join the group later are tied where \
+                   they are then. Acts in the setup of a run too. Scalar (extensive): the energy Σ K (x − x0)²/2, which \
+                   `fix_modify ID energy yes` adds to the potential energy.",
             example: "fix hold foot spring/self 10.0 xy",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The stiffness K [force/length]: a number above 0, or `v_name` of an equal- or atom-style variable, evaluated each step.
+    #[word(name = "K", what = "the stiffness K")]
+    stiffness: At<PerAtom>,
+    /// The directions in which particles are tied; without them all three.
+    #[word(name = "directions")]
+    along: Option<Along>,
+}
+
+/// The directions in which particles are tied.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "direction")]
+enum Along {
+    Xyz,
+    Xy,
+    Xz,
+    Yz,
+    X,
+    Y,
+    Z,
+}
+
+impl Along {
+    fn directions(self) -> [bool; 3] {
+        [
+            !matches!(self, Along::Yz | Along::Y | Along::Z),
+            !matches!(self, Along::Xz | Along::X | Along::Z),
+            !matches!(self, Along::Xy | Along::X | Along::Y),
+        ]
     }
 }
 
 impl FixStyle for SpringSelf {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let at = args.here();
-        let stiffness = variable_param(args, "the stiffness K")?;
+        let Line { stiffness: At { value: PerAtom(stiffness), span, .. }, along } = read(args, cx)?;
         if let Param::Number(k) = stiffness
             && k <= 0.0
         {
             let text = format!("the stiffness K must be greater than zero, not {k}");
-            return fail(Code::BAD_VALUE, at, text);
+            return fail(Code::BAD_VALUE, span, text);
         }
-        cx.param(&stiffness, true)?;
-        let along = match args.is_empty() {
-            true => "xyz",
-            false => args.choice("direction", &["xyz", "xy", "xz", "yz", "x", "y", "z"])?,
-        };
-        let along = ["x", "y", "z"].map(|d| along.contains(d));
+        let along = along.unwrap_or(Along::Xyz).directions();
         let key = Key::new(&format!("spring/self/{}", cx.id));
         Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group, stiffness, along }))
     }

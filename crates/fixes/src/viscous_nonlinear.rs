@@ -7,6 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, MASK, RADIUS, V};
 use perigrain_world::{GroupId, World};
@@ -21,16 +22,34 @@ impl Style for ViscousNonlinear {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group viscous/nonlinear rho mu [velocity Vx Vy Vz]",
+            syntax: "",
             summary: "Slows spheres down by the drag of a fluid around them.",
-            text: "A fluid of density rho [mass/volume] and dynamic viscosity mu [pressure·time] that rests, or flows at (Vx, Vy, \
-                   Vz), pulls at each sphere by F = −C_d ρ π r² |u| u/2, u = v − V, with the drag coefficient of Schiller and \
-                   Naumann (1933) C_d = 24/Re (1 + 0.15 Re^0.687), Re = 2 ρ |u| r/μ; for small Re this is Stokes' 6 π μ r u, and it holds \
-                   up to Re about 800. No buoyancy. Velocities are those of the half step at which forces are computed; in the setup of a \
-                   run those of the whole step. As in LAMMPS from 4 Jul 2026 on. Units in which mass · length/time² is no force (`real`, `metal` …) are refused.",
+            text: "A fluid that rests, or flows at V, pulls at each sphere by F = −C_d ρ π r² |u| u/2, u = v − V, with \
+                   the drag coefficient of Schiller and Naumann (1933) C_d = 24/Re (1 + 0.15 Re^0.687), Re = 2 ρ |u| \
+                   r/μ; for small Re this is Stokes' 6 π μ r u, and it holds up to Re about 800. No buoyancy.\n\n\
+                   Velocities are those of the half step at which forces are computed; in the setup of a run those of \
+                   the whole step. As in LAMMPS from 4 Jul 2026 on. Units in which mass · length/time² is no force \
+                   (`real`, `metal` …) are refused.",
             example: "fix air ball viscous/nonlinear 1.2 1.8e-5 velocity 0.0 0.0 0.4",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Fluid::GRAMMAR)]
+    }
+}
+
+/// The fluid around the spheres.
+#[derive(Clone, Words)]
+struct Fluid {
+    /// The density of the fluid [mass/volume].
+    #[word(name = "rho", positive)]
+    density: f64,
+    /// The dynamic viscosity of the fluid [pressure·time].
+    #[word(name = "mu", positive, what = "the viscosity of the fluid")]
+    viscosity: f64,
+    /// The velocity of the fluid [velocity]; without it the fluid rests.
+    #[word(keyword, name = "Vx Vy Vz", what = "the velocity {} of the fluid")]
+    velocity: [f64; 3],
 }
 
 impl FixStyle for ViscousNonlinear {
@@ -46,30 +65,9 @@ impl FixStyle for ViscousNonlinear {
             let d = Diagnostic::error(Code::NOT_SUPPORTED, cx.span, text);
             return Err(d.help("take units lj, si, cgs, micro or nano").into());
         }
-        let fluid = Fluid {
-            density: args.positive("the density of the fluid")?,
-            viscosity: args.positive("the viscosity of the fluid")?,
-            velocity: [0.0; 3],
-        };
-        let mut fix = Declared { id: cx.id.to_string(), group: cx.group, fluid };
-        while let Some(word) = args.next() {
-            if word.text != "velocity" {
-                return Err(args.unknown(word, &["velocity"]));
-            }
-            for (own, axis) in fix.fluid.velocity.iter_mut().zip(["x", "y", "z"]) {
-                *own = args.number(&format!("the velocity of the fluid along {axis}"))?;
-            }
-        }
-        Ok(Box::new(fix))
+        let fluid: Fluid = read(args, cx)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, fluid }))
     }
-}
-
-/// The fluid around the spheres.
-#[derive(Clone)]
-struct Fluid {
-    density: f64,
-    viscosity: f64,
-    velocity: Vec3,
 }
 
 impl Fluid {

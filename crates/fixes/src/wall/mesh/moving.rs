@@ -49,7 +49,7 @@ impl Motion {
             }
             "rotate" => {
                 let point = three(args, "P")?;
-                let axis = direction(args)?;
+                let axis = direction(args, cx)?;
                 let span = args.here();
                 let period = args.number("the period")?;
                 if period == 0.0 {
