@@ -2,6 +2,7 @@
 
 use crate::peri_view::view;
 use crate::probe::Probe;
+use crate::words::Words;
 use perigrain_base::diag::Result;
 use perigrain_base::math::body::principal;
 use perigrain_base::math::vec3::{SIX, Vec3};
@@ -11,7 +12,8 @@ use perigrain_world::World;
 use perigrain_world::contacts::WallSpring;
 
 /// How the step of peridynamic solids is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+#[word(what = "estimate of the solids' step")]
 pub enum Estimate {
     /// h/√(K/ρ).
     #[default]

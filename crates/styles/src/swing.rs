@@ -3,6 +3,7 @@
 use crate::bond::{BondForce, Standing, Swing};
 use crate::matter::Masses;
 use crate::pull::{apart, find, periods};
+use crate::words::Words;
 use perigrain_base::diag::{Result, Span};
 use perigrain_base::math::vec3::{Vec3, length};
 use perigrain_bonded::limit::Swinging;
@@ -11,7 +12,8 @@ use perigrain_lang::Args;
 use perigrain_world::World;
 
 /// How the step of bonded particles is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+#[word(what = "estimate of the bonds' step")]
 pub enum Estimate {
     /// A bound from the bonds of each particle, 70 to 100 % of the limit.
     #[default]

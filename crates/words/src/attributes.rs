@@ -26,6 +26,8 @@ pub struct Said {
     pub kind: Option<Expr>,
     pub flatten: bool,
     pub skip: bool,
+    /// A place is that of the keyword.
+    pub placed: bool,
     pub refused: Vec<String>,
 }
 
@@ -82,6 +84,7 @@ impl Said {
                 "non_negative" => self.non_negative = true,
                 "flatten" => self.flatten = true,
                 "skip" => self.skip = true,
+                "placed" => self.placed = true,
                 _ => return Err(meta.error("unknown here: see the page of `perigrain_words`")),
             }
             Ok(())

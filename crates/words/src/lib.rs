@@ -10,7 +10,7 @@
 //! | in `#[word(…)]` | meaning |
 //! |---|---|
 //! | `name = "lo hi"` | placeholders of the syntax line, one for each word; without it the field's own name |
-//! | `what = "the seed"` | the name in messages |
+//! | `what = "the seed"` | the name in messages; `{}` in it is the placeholder of the word that is read |
 //! | `keyword`, `keyword = "type"` | a keyword (by its own name) with values; may stand in any order behind the others |
 //! | `flag` | a keyword without values: whether it stands there |
 //! | `default = 1.0` | the value of a keyword that is not there; without it `Default::default()` |
@@ -18,6 +18,7 @@
 //! | `list` | the values of a keyword are all words up to the next keyword |
 //! | `least = 1` | how many of a list must be there |
 //! | `positive`, `non_negative`, `from = 1` | bounds of numbers |
+//! | `placed` | the place of an `At` is that of the keyword; a `flag` is an `Option<Span>` then |
 //! | `with = path, kind = Kind::Number` | a reading function of its own, and what it reads |
 //! | `flatten` | the words and keywords of another struct stand here |
 //! | `skip` | no word at all: `Default::default()` |

@@ -115,26 +115,27 @@ impl Field {
 
     /// The expression that reads it in order.
     pub fn read(&self) -> syn::Result<TokenStream> {
-        self.reading(&self.ty, true)
+        self.reading(&self.ty, true, 0)
     }
 
     /// The expression that reads the words behind the keyword: of a list one of its members, unless all stand there.
     pub fn read_value(&self) -> syn::Result<TokenStream> {
         if self.said.flag {
-            return Ok(quote!(true));
+            return Ok(if self.said.placed { quote!(Some(word.span)) } else { quote!(true) });
         }
         match shape(&self.ty)? {
             Shape::Maybe(of) => {
-                let value = self.reading(of, false)?;
+                let value = self.reading(of, false, 0)?;
                 Ok(quote!(Some(#value)))
             }
-            Shape::Many(of) if !self.said.list => self.reading(of, false),
-            _ => self.reading(&self.ty, true),
+            Shape::Many(of) if !self.said.list => self.reading(of, false, 0),
+            _ => self.reading(&self.ty, true, 0),
         }
     }
 
-    fn reading(&self, ty: &Type, open: bool) -> syn::Result<TokenStream> {
-        let what = &self.what;
+    /// The expression that reads a type; `k` counts the words of a group.
+    fn reading(&self, ty: &Type, open: bool, k: usize) -> syn::Result<TokenStream> {
+        let what = self.what.replace("{}", self.names.get(k).map_or("", String::as_str));
         if let Some(with) = &self.said.with {
             return Ok(match shape(ty)? {
                 Shape::Maybe(_) if open => {
@@ -155,11 +156,11 @@ impl Field {
         }
         Ok(match shape(ty)? {
             Shape::Maybe(of) if open => {
-                let value = self.reading(of, false)?;
+                let value = self.reading(of, false, k)?;
                 quote!(if args.is_empty() || args.at_keyword() { None } else { Some(#value) })
             }
             Shape::Many(of) if open => {
-                let (value, least) = (self.reading(of, false)?, self.said.least);
+                let (value, least) = (self.reading(of, false, k)?, self.said.least);
                 quote!({
                     let mut all = vec![];
                     while all.len() < #least || args.peek().is_some_and(|w| !args.at_keyword() && <#of as Value>::begins(w)) {
@@ -168,16 +169,22 @@ impl Field {
                     all
                 })
             }
+            Shape::Placed(of) if self.said.placed => {
+                let value = self.reading(of, false, k)?;
+                quote!(At { value: #value, span: word.span, unknown: word.unknown })
+            }
             Shape::Placed(of) => {
-                let value = self.reading(of, false)?;
+                let value = self.reading(of, false, k)?;
                 quote!(At::read(args, |args| Ok(#value))?)
             }
             Shape::Tuple(types) => {
-                let values = types.iter().map(|t| self.reading(t, false)).collect::<syn::Result<Vec<_>>>()?;
+                let values = types.iter().enumerate().map(|(k, t)| self.reading(t, false, k));
+                let values = values.collect::<syn::Result<Vec<_>>>()?;
                 quote!((#(#values),*))
             }
             Shape::Array(of, count) => {
-                let values = vec![self.reading(of, false)?; count];
+                let values =
+                    (0..count).map(|k| self.reading(of, false, k)).collect::<syn::Result<Vec<_>>>()?;
                 quote!([#(#values),*])
             }
             _ if self.said.positive => quote!(args.positive(#what)?),

@@ -11,7 +11,10 @@ pub use grammar::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder};
 pub use perigrain_base::diag::Result;
 pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
-pub use values::{At, Axis, GlobalValue, Nullable, Seed, Types, Value, Whole};
+pub use values::{
+    At, Axis, Fraction, GlobalValue, MarsagliaSeed, Nullable, OneType, PerAtom, Seed, Types, Units, Value,
+    VelocityAxis, Whole,
+};
 
 use crate::common::choice_or_refuse;
 

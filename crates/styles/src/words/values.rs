@@ -5,7 +5,7 @@ use crate::BuildCx;
 use crate::common::{self, variable_param};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Args, Param, Word};
-use perigrain_world::{GroupId, Region};
+use perigrain_world::{GroupId, Region, World};
 use std::path::PathBuf;
 
 /// What a word of a line, or a few words, can be read as.
@@ -112,6 +112,25 @@ impl Value for Param {
     }
 }
 
+/// A number, or a variable with one value or with one for each particle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerAtom(pub Param);
+
+impl From<PerAtom> for Param {
+    fn from(param: PerAtom) -> Self {
+        param.0
+    }
+}
+
+impl Value for PerAtom {
+    const KIND: Kind = Kind::Param;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let param = variable_param(args, what)?;
+        cx.param(&param, true)?;
+        Ok(Self(param))
+    }
+}
+
 impl Value for GroupId {
     const KIND: Kind = Kind::Group;
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
@@ -183,6 +202,79 @@ impl Value for Seed {
     const KIND: Kind = Kind::Whole;
     fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
         common::seed(args).map(Self)
+    }
+}
+
+/// A seed of Marsaglia's stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MarsagliaSeed(pub u32);
+
+impl Value for MarsagliaSeed {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        common::marsaglia_seed(args).map(Self)
+    }
+}
+
+/// A number from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fraction(pub f64);
+
+impl Value for Fraction {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        common::fraction(args).map(Self)
+    }
+}
+
+/// A type that there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OneType(pub u16);
+
+impl Value for OneType {
+    const KIND: Kind = Kind::Types;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let (span, types) = (args.here(), cx.world.types);
+        let unknown = args.peek().is_some_and(|w| w.unknown);
+        let k = args.integer(what)?;
+        match u16::try_from(k) {
+            Ok(t) if k >= 1 && k as usize <= types => Ok(Self(t)),
+            _ if unknown => Ok(Self(1)),
+            _ => fail(Code::BAD_VALUE, span, format!("there are types 1 to {types}, not {k}")),
+        }
+    }
+}
+
+/// In which units the distances of a line are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, perigrain_words::Words)]
+#[word(what = "value of units")]
+pub enum Units {
+    /// In spacings of the `lattice`.
+    #[default]
+    Lattice,
+    /// In those of the box.
+    Box,
+}
+
+impl Units {
+    /// Factors from the line's distances to the box's.
+    pub fn scales(self, world: &World) -> [f64; 3] {
+        common::scales(world, self == Self::Lattice)
+    }
+}
+
+/// `vx`, `vy` or `vz` as 0, 1 or 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VelocityAxis(pub usize);
+
+impl Value for VelocityAxis {
+    const KIND: Kind = Kind::Choice(&[
+        super::Alternative { word: "vx", about: "", parts: &[] },
+        super::Alternative { word: "vy", about: "", parts: &[] },
+        super::Alternative { word: "vz", about: "", parts: &[] },
+    ]);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        common::velocity_axis(args).map(Self)
     }
 }
 
