@@ -314,6 +314,10 @@ fn pages_state_the_question_they_answer() {
     for (page, text) in pages_in("howto").into_iter().chain(pages_in("theory")) {
         let first = text.lines().nth(2).unwrap();
         let question = first.starts_with('*') && first.ends_with("?*");
-        assert!(text.starts_with("# ") && question, "{}: *A question?* belongs below its title", page.display());
+        assert!(
+            text.starts_with("# ") && question,
+            "{}: *A question?* belongs below its title",
+            page.display()
+        );
     }
 }

@@ -56,7 +56,8 @@ fn staggered_beds_with_friction_press_as_plain_ones() {
 
 #[test]
 fn respa_friction_is_right_and_lammps_has_its_own() {
-    let of = |scheme, switches| output_with("respa_friction.in", "BOUNCE", &[("scheme", scheme)], switches)[0];
+    let of =
+        |scheme, switches| output_with("respa_friction.in", "BOUNCE", &[("scheme", scheme)], switches)[0];
     // LAMMPS 22Jul2025 prints -0.18750 for plain steps.
     let plain = of("verlet", &[]);
     assert!((plain + 0.18750).abs() < 1e-4, "{plain}");
