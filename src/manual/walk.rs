@@ -226,6 +226,7 @@ impl Walk<'_> {
             }
             Kind::Words(grammar) => self.nested(grammar),
             Kind::OrNull(inner) if self.typed[self.at] != "NULL" => self.taken(*inner),
+            Kind::Or(words, other) => self.taken(*if words.has(self.typed[self.at]) { words } else { other }),
             _ => {
                 self.at += 1;
                 true
@@ -263,6 +264,10 @@ impl Walk<'_> {
             Kind::OrNull(inner) => {
                 self.offers.push(Offer::Word("NULL", ""));
                 self.offer(place, *inner);
+            }
+            Kind::Or(words, other) => {
+                self.offer(place, *words);
+                self.offer(place, *other);
             }
             Kind::Words(grammar) => {
                 let parts = grammar.in_order();

@@ -9,6 +9,7 @@ use perigrain_neigh::list::{Reach, difference};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::within;
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Kind, Or, Value, Whole, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
@@ -22,39 +23,63 @@ impl Style for CentroAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group centro/atom fcc|bcc|N [axes yes|no]",
+            syntax: "",
             summary: "Centro-symmetry of each particle's neighbourhood.",
-            text: "Per-atom vector in distance² units: of the N (even; fcc: 12, bcc: 8) nearest neighbours, |R_i + R_j|² of all pairs, of which \
+            text: "Per-atom vector in distance² units: of the N nearest neighbours, |R_i + R_j|² of all pairs, of which \
                    the N/2 smallest are added up (Kelchner, Plimpton & Hamilton, Phys. Rev. B 58, 1998, 11085): 0 on an undisturbed \
                    lattice, large at surfaces and defects; 0 outside the group and for particles with fewer than N neighbours within the cutoff of \
                    forces (see compute rdf). Neighbours belong to any group.\n\n\
-                   `axes yes`: an array of 10 columns, the parameter and three unit vectors: along the lines through the two neighbours of the \
+                   The unit vectors of `axes yes` point along the lines through the two neighbours of the \
                    most symmetric pair and of the next one (from the neighbour that is further back in the order of ids), and across both.",
             example: "pair_style zero 2.0\npair_coeff * *\ncompute c all centro/atom 6",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of neighbours, even.
+    #[word(name = "N")]
+    neighbours: At<Or<Lattice, Count>>,
+    /// An array of 10 columns in place of the vector: the parameter and three unit vectors.
+    #[word(keyword, what = "axes", default = false)]
+    axes: bool,
+}
+
+/// A lattice, for its number of neighbours.
+#[derive(Clone, Copy, Words)]
+enum Lattice {
+    /// 12 neighbours.
+    Fcc,
+    /// 8 neighbours.
+    Bcc,
+}
+
+/// A number of neighbours.
+#[derive(Clone, Copy)]
+struct Count(usize);
+
+impl Value for Count {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        <usize as Whole>::from(args, 2, "`fcc`, `bcc` or the number of neighbours").map(Self)
     }
 }
 
 impl ComputeStyle for CentroAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let (word, at) = (args.peek_text().to_string(), args.here());
-        let neighbours = match word.as_str() {
-            "fcc" | "bcc" => {
-                args.next();
-                if word == "fcc" { 12 } else { 8 }
-            }
-            _ => args.integer_from(2, "`fcc`, `bcc` or the number of neighbours")? as usize,
+        let Line { neighbours: At { value, span: at, .. }, axes } = read(args, cx)?;
+        let neighbours = match value {
+            Or::Word(Lattice::Fcc) => 12,
+            Or::Word(Lattice::Bcc) => 8,
+            Or::Else(Count(n)) => n,
         };
         if neighbours % 2 != 0 || neighbours > MOST {
             let text = format!("the number of neighbours must be even and at most {MOST}");
             return fail(Code::BAD_VALUE, at, text);
-        }
-        let mut axes = false;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "axes" => axes = args.flag("axes")?,
-                _ => return Err(args.unknown(word, &["axes"])),
-            }
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, neighbours, axes }))
     }

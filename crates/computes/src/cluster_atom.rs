@@ -7,6 +7,7 @@ use perigrain_neigh::list::Reach;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{Clusters, held_together, within};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
@@ -26,14 +27,17 @@ impl Style for ClusterAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group cluster/atom cutoff",
+            syntax: "",
             summary: "Clusters of particles that are close to each other.",
-            text: "Per-atom vector: two particles of the group closer than the cutoff (distance units) belong to one cluster; \
+            text: "Per-atom vector: two particles of the group closer than the cutoff belong to one cluster; \
                    its number is the smallest id in it. 0 outside the group. Numbers are far apart: give them to \
                    `compute chunk/atom … compress yes` to count clusters. Unlike LAMMPS it needs no pair style, and the \
                    cutoff may be longer than that of forces.",
             example: "compute c all cluster/atom 1.5",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Within::GRAMMAR)]
     }
 }
 
@@ -43,15 +47,17 @@ impl Style for FragmentAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group fragment/atom [single yes|no]",
+            syntax: "",
             summary: "Fragments: particles that bonds hold together.",
             text: "Per-atom vector: two particles of the group with an unbroken bond between them belong to one fragment; its \
-                   number is the smallest id in it. A particle without any such bond has 0, or its own id with \
-                   `single yes`; 0 outside the group. Bonds are those of molecules, turned off or not, as in LAMMPS, and in addition those of \
+                   number is the smallest id in it. A particle without any such bond has 0; 0 outside the group. Bonds are those of molecules, turned off or not, as in LAMMPS, and in addition those of \
                    peridynamic bodies, which are there from the first run on. With \
                    `compute chunk/atom c_ID compress yes` fragments can be counted, weighed and followed.",
             example: "compute f all fragment/atom single yes",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -61,40 +67,49 @@ impl Style for AggregateAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group aggregate/atom cutoff",
+            syntax: "",
             summary: "Clusters of particles that are close to each other or bonded.",
             text: "Per-atom vector as that of compute cluster/atom, but unbroken peridynamic bonds hold particles together, \
                    too, and so do the bonds of molecules.",
             example: "compute a all aggregate/atom 1.5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Within::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Within {
+    /// The cutoff [distance].
+    #[word(positive)]
+    cutoff: f64,
+}
+
+#[derive(Words)]
+struct Line {
+    /// A particle without any bond has its own id, not 0.
+    #[word(keyword, default = false)]
+    single: bool,
 }
 
 impl ComputeStyle for ClusterAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let cutoff = Some(args.positive("the cutoff")?);
-        args.finish()?;
+        let cutoff = Some(read::<Within>(args, cx)?.cutoff);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, cutoff, bonds: false, single: true }))
     }
 }
 
 impl ComputeStyle for AggregateAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let cutoff = Some(args.positive("the cutoff")?);
-        args.finish()?;
+        let cutoff = Some(read::<Within>(args, cx)?.cutoff);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, cutoff, bonds: true, single: true }))
     }
 }
 
 impl ComputeStyle for FragmentAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mut single = false;
-        while let Some(word) = args.next() {
-            if word.text != "single" {
-                return Err(args.unknown(word, &["single"]));
-            }
-            single = args.flag("single")?;
-        }
+        let Line { single } = read(args, cx)?;
         let style = cx.world.particles.style;
         if !(style.peri || style.bonded) {
             let text = "fragment/atom needs particles with bonds";

@@ -1,12 +1,13 @@
 //! compute coord/atom: number of neighbours of each particle.
 
 use super::{Compute, ComputeStyle};
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_neigh::list::Reach;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{one_image, within};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
@@ -20,36 +21,49 @@ impl Style for CoordAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group coord/atom cutoff R [group group2] [type …]",
+            syntax: "",
             summary: "Coordination number: neighbours of each particle within a distance.",
-            text: "How many particles of group2 (all) are closer than R (distance units); 0 outside the group. Per-atom vector \
-                   without types or with one; with several types or ranges such as `2*3` a column for each. Unlike LAMMPS \
-                   it needs no pair style, and R may be longer than the cutoff of forces (up to half a periodic length). The style `orientorder` is refused.",
+            text: "How many particles are closer than R; 0 outside the group. Per-atom vector \
+                   without types or with one, with several a column for each. Unlike LAMMPS \
+                   it needs no pair style, and R may be longer than the cutoff of forces (up to half a periodic length).",
             example: "compute n all coord/atom cutoff 1.5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(what = "`cutoff`")]
+    method: Method,
+    /// Neighbours belong to this group, to any without it.
+    among: Among,
+    /// Neighbours are of this type, or of one in this range such as `2*3`.
+    #[word(name = "type")]
+    types: Vec<Types>,
+}
+
+/// What a neighbour is.
+#[derive(Words)]
+#[word(refused = "orientorder")]
+enum Method {
+    /// All within a distance.
+    Cutoff(#[word(name = "R", what = "the cutoff", positive)] f64),
+}
+
+#[derive(Words)]
+struct Among {
+    #[word(keyword, name = "group2")]
+    group: Option<GroupId>,
 }
 
 impl ComputeStyle for CoordAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.expect("`cutoff`")?;
-        match word.text.as_str() {
-            "cutoff" => {}
-            "orientorder" => {
-                let text = "the style `orientorder` of compute coord/atom is not in perigrain: use `cutoff`";
-                return fail(Code::NOT_SUPPORTED, word.span, text);
-            }
-            _ => return Err(args.unknown(word, &["cutoff", "orientorder"])),
-        }
-        let cutoff = args.positive("the cutoff")?;
-        let mut among = GroupId::ALL;
-        if args.eat("group") {
-            among = cx.group(args.expect("a group")?)?;
-        }
-        let mut types = vec![];
-        while !args.is_empty() {
-            types.push(args.type_range(cx.world.types)?);
-        }
+        let Line { method: Method::Cutoff(cutoff), among, types } = read(args, cx)?;
+        let among = among.group.unwrap_or(GroupId::ALL);
+        let mut types: Vec<_> = types.into_iter().map(|Types(first, last)| (first, last)).collect();
         if types.is_empty() {
             types.push((1, u16::MAX));
         }

@@ -8,6 +8,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
 use perigrain_styles::step_op::{StepOp, Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -21,31 +22,38 @@ impl Style for DisplaceAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group displace/atom [refresh name]",
+            syntax: "",
             summary: "Displacement of each particle since the compute was declared.",
             text: "Per-atom array of 4 columns in distance units: dx, dy, dz and their length, with positions unwrapped \
                    across periodic faces; 0 outside the group. Particles made later start where they are at the next run \
-                   or use. `refresh name` names an atom-style variable: after each snapshot of a dump with \
-                   `dump_modify dump-ID refresh c_ID`, the particles for which it is not zero start anew where they are, \
-                   so that `dump_modify thresh` can show a particle each time that it has come some way.",
+                   or use. With `refresh` of this line and of dump_modify, `dump_modify thresh` can show a particle each time \
+                   that it has come some way.",
             example: "compute u all displace/atom",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// An atom-style variable: after each snapshot of a dump with `dump_modify dump-ID refresh c_ID`, the particles for which it is
+    /// not zero start anew where they are.
+    #[word(keyword, name = "name", with = atom_variable, kind = Kind::Variable)]
+    refresh: Option<ValueRef>,
+}
+
+fn atom_variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let name = args.expect("the name of an atom-style variable")?;
+    let r = ValueRef { kind: RefKind::Variable, name: name.text.clone(), index: vec![], span: name.span };
+    cx.reading(&r, Wants::PerAtom)?;
+    Ok(r)
 }
 
 impl ComputeStyle for DisplaceAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mut refresh = None;
-        while let Some(word) = args.next() {
-            if word.text != "refresh" {
-                return Err(args.unknown(word, &["refresh"]));
-            }
-            let name = args.expect("the name of an atom-style variable")?;
-            let r =
-                ValueRef { kind: RefKind::Variable, name: name.text.clone(), index: vec![], span: name.span };
-            cx.reading(&r, Wants::PerAtom)?;
-            refresh = Some(r);
-        }
+        let Line { refresh } = read(args, cx)?;
         Ok(Box::new(Declared { id: cx.id.to_string(), origin: Origin::of(cx.id), group: cx.group, refresh }))
     }
 }

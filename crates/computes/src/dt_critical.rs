@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::swing;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
@@ -23,31 +24,55 @@ impl Style for DtCritical {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID all dt/critical [pd cfl|silling|exact] [dem particle|none] [bonds local|exact|none] [safety S]",
+            syntax: "",
             summary: "The longest stable time steps of peridynamic solids, of grains in contact and of bonded particles.",
             text: "Global vector of four: 1 the step of the solids, 2 that of the grains, 3 m, the whole number of times the \
                    shorter of the solids' and of grains' and bonds' fits into the longer (at least 1), 4 that of the bonds; scalar: the shortest. \
-                   Steps are in time units and times S (0.8 unless given); a side that the scene does not have, and grains while nothing \
-                   touches, have the step `inf`.\n\n\
-                   `pd`: `cfl` is h/√(K/ρ) with h = V^(1/3) (Hartmann et al. 2022, equations 41 and 42), `silling` \
-                   √(2 ρ/Σ c w V/|ξ|) over the bonds that live (Silling & Askari 2005), `exact` 2/ω of the scene as it is: ω² \
-                   is the largest eigenvalue of M⁻¹K, K being the derivative of the forces at the present positions, with \
-                   the bonds that still live, any material, volumes and layout. It is found by Lanczos' method (power \
-                   iteration that keeps its vectors) and costs some 50 to 200 force evaluations each time it is read. What \
-                   holds particles fast makes the true limit longer still; dashpots make it shorter.\n\n\
-                   `dem particle`: the least √(m/k) and √(I/k_r) over all that touch, k from the normal and tangential \
+                   A side that the scene does not have, and grains while nothing touches, have the step `inf`.\n\n\
+                   `cfl` and `silling` are estimates from the bonds that live. `exact` is the limit of the scene as it is: 2/ω, ω² being \
+                   the largest eigenvalue of M⁻¹K and K the derivative of the forces at the present positions, with the bonds that \
+                   still live, any material, volumes and layout. It is found by Lanczos' method (power iteration that keeps its vectors) and \
+                   costs some 50 to 200 force evaluations each time it is read. What holds particles fast makes the true limit longer \
+                   still; dashpots make it shorter.\n\n\
+                   The grains' step is the least √(m/k) and √(I/k_r) over all that touch, k from the normal and tangential \
                    stiffness of its contacts with others as they are now (Hartmann et al., equation 43). Two free grains \
                    would stand 1.4 times, a held one 2 times that; contacts askew to the axes, strong dashpots and springs of rolling and \
                    twisting may stand less, and the step is never longer than these allow. Contacts with walls count too; those of hybrid \
                    particles count here, with their mass.\n\n\
-                   `bonds`: of particles that bond styles `harmonic` and `bpm/*` (but `bpm/peri`: `pd`) join, displacements and rotations, \
+                   Bonds are those of `bond_style harmonic` and `bpm/*` (but `bpm/peri`: `pd`), with displacements and rotations, \
                    with the stiffnesses that the deck's lines say and directions as they are. `local` bounds ω² by twice the largest eigenvalue \
-                   of what holds one particle among its partners, a step that is certain, 70 to 100 % of the limit; `exact` is 2/ω of the whole \
-                   network by Lanczos' method (right to 3·10⁻⁴, some 20 to 100 products). Dashpots of bonds count: the limit is that of \
-                   dt² K + 2 dt C ≤ 4 M. Where particles are bonded and touch others too, both act together: S = 0.8 and `dem` leave room for that.",
+                   of what holds one particle among its partners; `exact` takes the whole network by Lanczos' method (right to 3·10⁻⁴, some 20 \
+                   to 100 products). Dashpots of bonds count: the limit is that of dt² K + 2 dt C ≤ 4 M. Where particles are bonded and touch \
+                   others too, both act together: a `safety` of 0.8 and `dem` leave room for that.",
             example: "compute dtc all dt/critical pd silling safety 1.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(keyword, default = Estimate::Cfl)]
+    pd: Estimate,
+    #[word(keyword, default = Grains::Particle)]
+    dem: Grains,
+    #[word(keyword, default = swing::Estimate::Local)]
+    bonds: swing::Estimate,
+    /// The part of the limit that all steps are.
+    #[word(keyword, name = "S", positive, default = 0.8)]
+    safety: f64,
+}
+
+/// How the step of the grains is found.
+#[derive(PartialEq, Words)]
+#[word(what = "estimate of the grains' step")]
+enum Grains {
+    /// From the contacts of each particle.
+    Particle,
+    /// Not at all.
+    None,
 }
 
 impl ComputeStyle for DtCritical {
@@ -55,21 +80,9 @@ impl ComputeStyle for DtCritical {
         if cx.group != GroupId::ALL {
             return fail(Code::BAD_VALUE, cx.span, "compute dt/critical must use the group `all`");
         }
-        let bonds = swing::Estimate::Local;
-        let mut me = Declared { id: cx.id.to_string(), how: Estimate::Cfl, grains: true, bonds, safety: 0.8 };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "pd" => me.how = Estimate::read(args)?,
-                "dem" => {
-                    me.grains =
-                        args.choice("estimate of the grains' step", &["particle", "none"])? == "particle"
-                }
-                "bonds" => me.bonds = swing::Estimate::read(args)?,
-                "safety" => me.safety = args.positive("the part of the limit")?,
-                _ => return Err(args.unknown(word, &["pd", "dem", "bonds", "safety"])),
-            }
-        }
-        Ok(Box::new(me))
+        let Line { pd, dem, bonds, safety } = read(args, cx)?;
+        let (id, grains) = (cx.id.to_string(), dem == Grains::Particle);
+        Ok(Box::new(Declared { id, how: pd, grains, bonds, safety }))
     }
 }
 

@@ -7,6 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Interaction, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -23,58 +24,69 @@ impl Style for GroupGroup {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group group/group group2 [pair yes|no] [molecule off|inter|intra] [kspace no] [boundary yes|no]",
+            syntax: "",
             summary: "Energy and force between two groups.",
             text: "Scalar and vector of 3 (both extensive): the energy of all pairs with one end in the group and the other in group2, and \
                    the force on the ends in the group, in energy and force units. Pairs are those of compute pair/local with the \
                    same numbers: of granular styles only the force along the line of centres counts, and there is no energy, as in \
-                   LAMMPS. A pair both of whose ends are in both groups counts once and has no force. `molecule inter` takes pairs of different molecules \
-                   only, `intra` those of the same; `pair no` leaves nothing. Without electric forces `kspace yes` is refused and `boundary` \
-                   changes nothing. Bonds of bond styles do not count. Where no pair style can be asked about single pairs the line is refused, as \
+                   LAMMPS. A pair both of whose ends are in both groups counts once and has no force. Bonds of bond styles do not count. Where no pair style can be asked about single pairs the line is refused, as \
                    in LAMMPS: `peri/lps`, `peri/ves`, `peri/eps`.",
             example: "compute push all group/group all",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The second group.
+    #[word(name = "group2")]
+    other: GroupId,
+    /// Whether there are pairs at all.
+    #[word(keyword, default = true)]
+    pair: bool,
+    #[word(keyword)]
+    molecule: Option<At<Molecules>>,
+    /// `yes` is refused: there are no electric forces.
+    #[word(keyword)]
+    kspace: Option<At<bool>>,
+    /// Changes nothing without electric forces.
+    #[word(keyword)]
+    boundary: bool,
 }
 
 /// Selection of pairs by molecule.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "value of molecule")]
 enum Molecules {
+    /// All pairs.
+    #[word("off")]
     Any,
+    /// Pairs of different molecules only.
+    #[word("inter")]
     Different,
+    /// Pairs of the same molecule only.
+    #[word("intra")]
     Same,
 }
 
 impl ComputeStyle for GroupGroup {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let other = cx.group(args.expect("the second group")?)?;
-        let (mut pair, mut molecules) = (true, Molecules::Any);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "pair" => pair = args.flag("pair")?,
-                "kspace" => {
-                    if args.flag("kspace")? {
-                        let text =
-                            "there are no electric forces in perigrain: `kspace yes` has nothing to add";
-                        let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
-                        return Err(d.help("leave `kspace` out").into());
-                    }
-                }
-                "boundary" => drop(args.flag("boundary")?),
-                "molecule" => {
-                    molecules = match args.choice("value of molecule", &["off", "inter", "intra"])? {
-                        "inter" => Molecules::Different,
-                        "intra" => Molecules::Same,
-                        _ => Molecules::Any,
-                    };
-                    if molecules != Molecules::Any && !cx.world.particles.style.molecules {
-                        let text = "particles of this atom_style belong to no molecules";
-                        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-                        return Err(d.help("`fix ID all property/atom mol` gives them molecule IDs").into());
-                    }
-                }
-                _ => return Err(args.unknown(word, &["pair", "kspace", "boundary", "molecule"])),
-            }
+        let Line { other, pair, molecule, kspace, boundary: _ } = read(args, cx)?;
+        if let Some(At { span, .. }) = kspace.filter(|k| k.value) {
+            let text = "there are no electric forces in perigrain: `kspace yes` has nothing to add";
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+            return Err(d.help("leave `kspace` out").into());
+        }
+        let molecules = molecule.map_or(Molecules::Any, |m| m.value);
+        if let Some(At { span, .. }) = molecule.filter(|_| molecules != Molecules::Any)
+            && !cx.world.particles.style.molecules
+        {
+            let text = "particles of this atom_style belong to no molecules";
+            let d = Diagnostic::error(Code::CONFLICT, span, text);
+            return Err(d.help("`fix ID all property/atom mol` gives them molecule IDs").into());
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, other, pair, molecules }))
     }

@@ -59,10 +59,11 @@ mod temp_sphere;
 mod thermal;
 mod vacf;
 
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::BuildCx;
 pub use perigrain_styles::compute::{Compute, ComputeStyle};
+use perigrain_styles::words::{Kind, Value, Words};
 use perigrain_world::columns::VOLUME_PROPERTY;
 
 /// Every compute style.
@@ -175,19 +176,51 @@ fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
     .into())
 }
 
-/// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are accepted and contribute
-/// nothing.
-fn energy_terms(args: &mut Args) -> Result<Terms> {
-    let all = args.is_empty();
-    let mut terms = Terms { pair: all, bond: all, fix: all };
-    while !args.is_empty() {
-        let known = ["pair", "bond", "angle", "dihedral", "improper", "kspace", "fix"];
-        match args.choice("term of the potential energy", &known)? {
-            "pair" => terms.pair = true,
-            "bond" => terms.bond = true,
-            "fix" => terms.fix = true,
-            _ => {}
+/// A share of a family of bonds: above 0, at most 1.
+struct Share(f64);
+
+impl Value for Share {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let (at, share) = (args.here(), args.positive(what)?);
+        match share > 1.0 {
+            true => fail(Code::BAD_VALUE, at, "damage is a share: above 0, at most 1"),
+            false => Ok(Self(share)),
         }
     }
-    Ok(terms)
+}
+
+/// The line of a potential energy.
+#[derive(Words)]
+struct EnergyTerms {
+    #[word(name = "term")]
+    terms: Vec<Term>,
+}
+
+/// A term of the potential energy.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "term of the potential energy")]
+enum Term {
+    /// What pair styles have tallied.
+    Pair,
+    /// The energies of bonds.
+    Bond,
+    /// The energies of fixes with `fix_modify ID energy yes`; per particle, what the host of `fix external` has set.
+    Fix,
+    /// Nothing, as no style has it.
+    Angle,
+    /// Nothing, as no style has it.
+    Dihedral,
+    /// Nothing, as no style has it.
+    Improper,
+    /// Nothing, as no style has it.
+    Kspace,
+}
+
+impl EnergyTerms {
+    /// The terms that are named, or all if none is.
+    fn chosen(&self) -> Terms {
+        let has = |term| self.terms.is_empty() || self.terms.contains(&term);
+        Terms { pair: has(Term::Pair), bond: has(Term::Bond), fix: has(Term::Fix) }
+    }
 }

@@ -7,6 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, count, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -20,26 +21,31 @@ impl Style for Msd {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group msd [com yes|no] [average yes|no]",
+            syntax: "",
             summary: "Mean squared displacement of the group since the compute was declared.",
             text: "Vector of 4 (intensive) in squared distance units: the means of dx², dy², dz² and their sum, with \
-                   positions unwrapped across periodic faces. `com yes` takes the drift of the centre of mass away; \
-                   `average yes` measures from each particle's mean place over all uses of the compute so far instead of \
-                   its first place.",
+                   positions unwrapped across periodic faces.",
             example: "compute m all msd com yes",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Takes the drift of the centre of mass away.
+    #[word(keyword, what = "com", default = false)]
+    com: bool,
+    /// Measures from each particle's mean place over all uses of the compute so far, not from its first place.
+    #[word(keyword, what = "average", default = false)]
+    average: bool,
 }
 
 impl ComputeStyle for Msd {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let (mut com, mut average) = (false, false);
-        while !args.is_empty() {
-            match args.choice("keyword of compute msd", &["com", "average"])? {
-                "com" => com = args.flag("com")?,
-                _ => average = args.flag("average")?,
-            }
-        }
+        let Line { com, average } = read(args, cx)?;
         Ok(Box::new(Declared {
             id: cx.id.to_string(),
             origin: Origin::of(cx.id),

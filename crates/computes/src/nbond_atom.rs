@@ -4,8 +4,9 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::common::bond_type;
+
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
+use perigrain_styles::words::{BondType, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, MASK, TAG};
 use perigrain_world::index::Index;
@@ -20,9 +21,9 @@ impl Style for NbondAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group nbond/atom [bond/type T]",
+            syntax: "",
             summary: "How many bonds each particle has.",
-            text: "Per-atom vector: the bonds of which a particle is an end, of one type or of all; those that have broken or are turned off \
+            text: "Per-atom vector: the bonds of which a particle is an end; those that have broken or are turned off \
                    (`delete_bonds`) do not count. 0 outside the group; the other end may be outside. Bonds of `pair_style peri/…` are \
                    another matter: `compute damage/atom` counts them.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
@@ -31,6 +32,16 @@ impl Style for NbondAtom {
                       compute most all reduce max c_n\nthermo_style custom step c_most\nrun 10",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Only bonds of this type count.
+    #[word(keyword = "bond/type", name = "T")]
+    kind: Option<BondType>,
 }
 
 impl ComputeStyle for NbondAtom {
@@ -40,13 +51,8 @@ impl ComputeStyle for NbondAtom {
             let d = Diagnostic::error(Code::INCOMPLETE, cx.span, text);
             return Err(d.help("`atom_style bond` or `bpm/sphere`, alone or in a hybrid, has them").into());
         }
-        let mut kind = None;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "bond/type" => kind = Some(i32::from(bond_type(args, cx.world.bonds.types)?)),
-                _ => return Err(args.unknown(word, &["bond/type"])),
-            }
-        }
+        let Line { kind } = read(args, cx)?;
+        let kind = kind.map(|BondType(kind)| i32::from(kind));
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, kind }))
     }
 }

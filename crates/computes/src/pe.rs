@@ -1,10 +1,11 @@
 //! compute pe: potential energy.
 
-use super::{Compute, ComputeStyle, Terms, energy_terms};
+use super::{Compute, ComputeStyle, EnergyTerms, Terms};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::TALLY;
 use perigrain_world::{GroupId, SlotId};
@@ -18,14 +19,16 @@ impl Style for Pe {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID all pe [pair fix bond angle dihedral improper kspace …]",
+            syntax: "",
             summary: "Potential energy of the whole scene.",
-            text: "Scalar (extensive), in energy units: what pair styles have tallied (`pair`), bonds (`bond`) and the energies of \
-                   fixes with `fix_modify ID energy yes` (`fix`). Without keywords all terms count, with keywords only \
-                   those named; terms that no style of the scene has are 0. For peridynamic particles in LAMMPS' \
+            text: "Scalar (extensive), in energy units. Without terms all count, with terms only those named; those that no \
+                   style of the scene has are 0. The group is `all`. For peridynamic particles in LAMMPS' \
                    convention it is a sum of energy densities.",
             example: "compute bonds all pe pair",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(EnergyTerms::GRAMMAR)]
     }
 }
 
@@ -34,7 +37,7 @@ impl ComputeStyle for Pe {
         if cx.group != GroupId::ALL {
             return fail(Code::BAD_VALUE, cx.span, "compute pe must use the group `all`");
         }
-        let terms = energy_terms(args)?;
+        let terms = read::<EnergyTerms>(args, cx)?.chosen();
         Ok(Box::new(Declared { id: cx.id.to_string(), terms }))
     }
 }

@@ -1,10 +1,11 @@
 //! compute pe/atom: potential energy of each particle.
 
-use super::{Compute, ComputeStyle, Terms, energy_terms};
+use super::{Compute, ComputeStyle, EnergyTerms, Terms};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, TALLY};
 use perigrain_world::{GroupId, SlotId};
@@ -18,19 +19,22 @@ impl Style for PeAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group pe/atom [pair fix bond angle dihedral improper kspace …]",
+            syntax: "",
             summary: "Potential energy of each particle.",
             text: "Per-atom vector, in energy units (energy density for peridynamic particles in LAMMPS' convention): \
-                   half of the energy of each pair goes to either particle. `fix` is what the host of `fix external` has set for each \
-                   particle; no other fix has energies per particle. 0 outside the group.",
+                   half of the energy of each pair goes to either particle. Without terms all count, with terms only those named. No \
+                   fix but `fix external` has energies per particle. 0 outside the group.",
             example: "compute w all pe/atom",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(EnergyTerms::GRAMMAR)]
     }
 }
 
 impl ComputeStyle for PeAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let terms = energy_terms(args)?;
+        let terms = read::<EnergyTerms>(args, cx)?.chosen();
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, terms }))
     }
 }

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, TALLY};
 use perigrain_world::{GroupId, SlotId, World};
@@ -12,26 +13,61 @@ use perigrain_world::{GroupId, SlotId, World};
 /// The style.
 pub struct Pressure;
 
-const KEYWORDS: &[&str] =
-    &["ke", "pair", "bond", "angle", "dihedral", "improper", "kspace", "fix", "virial", "pair/hybrid"];
-
 impl Style for Pressure {
     fn name(&self) -> &'static str {
         "pressure"
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID all pressure temp-ID [ke pair fix virial …]",
+            syntax: "",
             summary: "Pressure of the whole box and its tensor.",
             text: "Scalar (intensive), in pressure units: P = (dof k_B T + W_xx + W_yy + W_zz) / (3 V), with T and dof of \
                    compute temp-ID, the virial W of all pairs and bonds, and the volume V of the present box (area and 2 instead \
-                   of 3 in two dimensions). Vector of 6: xx yy zz xy xz yz of (Σ m v_a v_b + W_ab) / V. Without \
-                   keywords all terms count; `ke`, `pair` … choose some, `virial` is all but `ke`; terms that no style \
-                   of the scene has are 0; `fix` is what `fix_modify ID virial yes` adds. `NULL` for temp-ID where `ke` is not wanted. \
-                   For peridynamic particles the virial carries one factor of volume, as in LAMMPS.",
+                   of 3 in two dimensions). Vector of 6: xx yy zz xy xz yz of (Σ m v_a v_b + W_ab) / V. Without terms all \
+                   count, with terms only those named; those that no style of the scene has are 0. The group is `all`. For peridynamic particles the virial carries one factor of volume, as in LAMMPS.",
             example: "compute p all pressure thermo_temp virial",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// A temperature compute, for the kinetic term; `NULL` where `ke` does not count.
+    #[word(
+        name = "temp-ID",
+        what = "the ID of a temperature compute, or NULL",
+        kind = Kind::OrNull(&Kind::Compute)
+    )]
+    temp: Word,
+    #[word(name = "term", what = "keyword of compute pressure")]
+    terms: Vec<Term>,
+}
+
+/// A term of a pressure or stress.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(refused = "pair/hybrid")]
+pub(super) enum Term {
+    /// The kinetic term.
+    Ke,
+    /// Pairs.
+    Pair,
+    /// Bonds.
+    Bond,
+    /// What `fix_modify ID virial yes` adds.
+    Fix,
+    /// All but `ke`.
+    Virial,
+    /// Nothing, as no style has it.
+    Angle,
+    /// Nothing, as no style has it.
+    Dihedral,
+    /// Nothing, as no style has it.
+    Improper,
+    /// Nothing, as no style has it.
+    Kspace,
 }
 
 impl ComputeStyle for Pressure {
@@ -39,36 +75,20 @@ impl ComputeStyle for Pressure {
         if cx.group != GroupId::ALL {
             return fail(Code::BAD_VALUE, cx.span, "compute pressure must use the group `all`");
         }
-        let temp = args.expect("the ID of a temperature compute, or NULL")?;
-        let (ke, parts) = terms("compute pressure", args)?;
-        let temperature = if ke { Some(temperature(temp, cx)?) } else { None };
+        let Line { temp, terms } = read(args, cx)?;
+        let (ke, parts) = Term::chosen(&terms);
+        let temperature = if ke { Some(temperature(&temp, cx)?) } else { None };
         Ok(Box::new(Declared { id: cx.id.to_string(), temperature, parts }))
     }
 }
 
-/// The terms of a pressure or stress that a line names, or all if it names none: the kinetic term and the
-/// parts of the virial. Parts that no style has are accepted and contribute nothing.
-///
-/// # Errors
-/// Other words.
-pub(super) fn terms(name: &str, args: &mut Args) -> Result<(bool, Parts)> {
-    let all = args.is_empty();
-    let (mut ke, mut parts) = (all, Parts { pair: all, bond: all, fix: all });
-    while let Some(word) = args.peek() {
-        match args.choice(&format!("keyword of {name}"), KEYWORDS)? {
-            "ke" => ke = true,
-            "pair" => parts.pair = true,
-            "bond" => parts.bond = true,
-            "fix" => parts.fix = true,
-            "virial" => parts = Parts { pair: true, bond: true, fix: true },
-            "pair/hybrid" => {
-                let text = format!("{name} of one sub-style of pair_style hybrid is not in perigrain");
-                return fail(Code::NOT_SUPPORTED, word.span, text);
-            }
-            _ => {}
-        }
+impl Term {
+    /// What the named terms are, or all if none is named: the kinetic term and the parts of the virial.
+    pub fn chosen(named: &[Self]) -> (bool, Parts) {
+        let has = |term| named.is_empty() || named.contains(&term);
+        let part = |term| has(term) || has(Term::Virial);
+        (has(Term::Ke), Parts { pair: part(Term::Pair), bond: part(Term::Bond), fix: part(Term::Fix) })
     }
-    Ok((ke, parts))
 }
 
 /// The temperature compute named by a word.

@@ -1,13 +1,14 @@
 //! compute stress/atom: the stress of each particle times its volume.
 
-use super::pressure::{Parts, temperature, terms};
+use super::pressure::{Parts, Term, temperature};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Nullable, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TALLY, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId, World};
@@ -21,27 +22,38 @@ impl Style for StressAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group stress/atom temp-ID|NULL [ke pair bond fix virial …]",
+            syntax: "",
             summary: "Stress of each particle, times its volume.",
             text: "Per-atom array of 6 columns, xx yy zz xy xz yz, in pressure·volume units: −m v_a v_b − W_ab; 0 outside the group. \
                    The virial W gives each end of a pair half of d_a F_b, with all forces of the pair, also across its line \
-                   of centres; forces are those of the step, at the velocities of its middle. `fix` is what `fix_modify ID virial \
-                   yes` adds. Without keywords all terms count, with keywords those named; `virial` is all but `ke`; terms \
-                   that no style of the scene has are 0. The sum over all particles of the first three columns is −3 V times \
-                   the pressure. A temperature may be named, as in LAMMPS; velocities are taken as they are. For peridynamic \
+                   of centres; forces are those of the step, at the velocities of its middle. The sum over all particles of the first three \
+                   columns is −3 V times the pressure.\n\nWithout terms all count, with terms only those named; those that no style \
+                   of the scene has are 0. For peridynamic \
                    particles the virial carries one factor of volume, as in LAMMPS.",
             example: "compute s all stress/atom NULL virial",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// A temperature compute may be named, as in LAMMPS: velocities are taken as they are.
+    #[word(name = "temp-ID", what = "the ID of a temperature compute, or NULL", kind = Kind::OrNull(&Kind::Compute))]
+    temp: Nullable<Word>,
+    #[word(name = "term", what = "keyword of compute stress/atom")]
+    terms: Vec<Term>,
 }
 
 impl ComputeStyle for StressAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.expect("the ID of a temperature compute, or NULL")?;
-        if word.text != "NULL" {
-            temperature(word, cx)?;
+        let Line { temp: Nullable(temp), terms } = read(args, cx)?;
+        if let Some(word) = temp {
+            temperature(&word, cx)?;
         }
-        let (ke, parts) = terms("compute stress/atom", args)?;
+        let (ke, parts) = Term::chosen(&terms);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, ke, parts }))
     }
 }

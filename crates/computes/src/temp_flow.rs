@@ -4,8 +4,9 @@ use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_styles::common::{axis, ramp, scales, units_lattice, velocity_axis};
+use perigrain_styles::common::ramp;
 use perigrain_styles::matter::{Masses, count, sum};
+use perigrain_styles::words::{Axis, Form, Grammar, Units, VelocityAxis, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, World};
 
@@ -24,12 +25,15 @@ impl Style for TempCom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/com",
+            syntax: "",
             summary: "Temperature of the group without the motion of its centre of mass.",
             text: "As `compute temp`, of velocities from which that of the group's centre of mass is taken away. `velocity … temp ID bias \
                    yes` leaves this motion as it is.",
             example: "compute t ball temp/com",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Grammar::NONE)]
     }
 }
 
@@ -39,13 +43,16 @@ impl Style for TempPartial {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/partial 0|1 0|1 0|1",
+            syntax: "",
             summary: "Temperature of some components of velocity.",
-            text: "As `compute temp`, of the components x, y, z of velocity that are given as 1. Of n components the degrees of freedom are \
+            text: "As `compute temp`, of some components of velocity. Of n components the degrees of freedom are \
                    n N less n/d of what `compute temp` takes off in d dimensions. `velocity … temp ID bias yes` leaves the other \
                    components as they are.",
             example: "compute t all temp/partial 1 1 0",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Partial::GRAMMAR)]
     }
 }
 
@@ -55,14 +62,58 @@ impl Style for TempRamp {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/ramp vx|vy|vz VLO VHI x|y|z CLO CHI [units lattice|box]",
+            syntax: "",
             summary: "Temperature of the group without a shear flow.",
             text: "As `compute temp`, of velocities from which a linear profile is taken away: one component is VLO at the coordinate CLO \
-                   and VHI at CHI, constant beyond, as `velocity … ramp` makes it. Velocities and coordinates are in lattice \
-                   spacings (per time) unless `units box` is given.",
+                   and VHI at CHI, constant beyond, as `velocity … ramp` makes it.",
             example: "compute t all temp/ramp vx 0.0 8.0 y 0.0 0.01 units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Ramp::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Partial {
+    /// Whether the component of velocity along x, y, z counts: 1, else 0.
+    #[word(name = "x y z", what = "flag of a component")]
+    components: [Component; 3],
+}
+
+/// Whether a component counts.
+#[derive(Clone, Copy, PartialEq, Words)]
+pub(super) enum Component {
+    #[word("0")]
+    Off,
+    #[word("1")]
+    On,
+}
+
+impl Component {
+    /// Whether it is 1.
+    pub fn counts(self) -> bool {
+        self == Component::On
+    }
+}
+
+#[derive(Words)]
+struct Ramp {
+    /// The component of velocity.
+    #[word(name = "vdim")]
+    along: VelocityAxis,
+    /// The velocities at the two ends.
+    #[word(name = "VLO VHI", what = "a velocity")]
+    by: [f64; 2],
+    /// The coordinate over which it rises.
+    #[word(name = "dim", what = "axis of the ramp")]
+    axis: Axis,
+    /// The two ends.
+    #[word(name = "CLO CHI", what = "an end")]
+    between: [f64; 2],
+    /// Units of velocities (per time) and coordinates.
+    #[word(keyword, default = Units::Lattice)]
+    units: Units,
 }
 
 /// The velocity bias.
@@ -84,8 +135,7 @@ impl ComputeStyle for TempCom {
 
 impl ComputeStyle for TempPartial {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mut one = || -> Result<bool> { Ok(args.choice("flag of a component", &["0", "1"])? == "1") };
-        let counts = [one()?, one()?, one()?];
+        let counts = read::<Partial>(args, cx)?.components.map(Component::counts);
         if counts[2] && cx.world.settings.two_dimensional {
             let text = "velocities along z do not count in a flat scene (`dimension 2`)";
             return fail(Code::CONFLICT, cx.span, text);
@@ -96,18 +146,8 @@ impl ComputeStyle for TempPartial {
 
 impl ComputeStyle for TempRamp {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let along = velocity_axis(args)?;
-        let by = [args.number("the lower velocity")?, args.number("the upper velocity")?];
-        let axis = axis(args, "axis of the ramp")?;
-        let between = [args.number("the lower end")?, args.number("the upper end")?];
-        let mut lattice = true;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "units" => lattice = units_lattice(args)?,
-                _ => return Err(args.unknown(word, &["units"])),
-            }
-        }
-        let scale = scales(cx.world, lattice);
+        let Ramp { along: VelocityAxis(along), by, axis: Axis(axis), between, units } = read(args, cx)?;
+        let scale = units.scales(cx.world);
         let (by, between) = (by.map(|b| b * scale[along]), between.map(|c| c * scale[axis]));
         declared(Stream::Ramp { along, by, axis, between }, args, cx)
     }

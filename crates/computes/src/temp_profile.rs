@@ -1,11 +1,13 @@
 //! compute temp/profile: temperature relative to the mean velocities of bins.
 
+use super::temp_flow::Component;
 use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::memory;
 use perigrain_lang::Args;
 use perigrain_styles::matter::{Masses, count};
+use perigrain_styles::words::{At, Form, Kind, Value, Whole, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{GroupId, World};
 
@@ -18,36 +20,101 @@ impl Style for TempProfile {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/profile 0|1 0|1 0|1 x|y|z|xy|yz|xz|xyz N … [out tensor|bin]",
+            syntax: "",
             summary: "Temperature of the group without the mean velocity of each part of the box.",
-            text: "As `compute temp`, of velocities from which the components x, y, z that are given as 1 of the mean of their bin, \
-                   weighted with mass, are taken away. The box is cut into N equal bins along each of the axes that are named. Degrees of \
-                   freedom: d N − s B − `extra/dof` of N particles, B bins and s components, `extra/dof` being d − s unless \
+            text: "As `compute temp`, of velocities from which components of the mean of their bin, weighted with mass, are taken \
+                   away. Degrees of freedom: d N − s B − `extra/dof` of N particles, B bins and s components, `extra/dof` being d − s unless \
                    `compute_modify` says otherwise.\n\n\
-                   `out bin` gives, instead of the vector of the tensor, a global array (intensive) with a row for each bin, x varying fastest: \
-                   how many particles it has and their temperature, of d n − s − `extra/dof` n/N degrees of freedom; 0 where these are not positive.",
+                   The rows of `out bin` are those of the bins, x varying fastest; temperatures are of d n − s − `extra/dof` n/N degrees of freedom; 0 where these are not positive.",
             example: "compute t all temp/profile 1 1 1 z 2",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Whether the mean's component along x, y, z is taken away: 1, else 0.
+    #[word(name = "x y z", what = "flag of a component")]
+    components: [Component; 3],
+    #[word(what = "axes of bins")]
+    axes: At<Axes>,
+    #[word(keyword)]
+    out: Out,
+}
+
+/// Along which axes the box is cut into equal bins, and into how many.
+#[derive(Clone, Copy, Words)]
+enum Axes {
+    /// Slabs along x.
+    X { nx: Count },
+    /// Slabs along y.
+    Y { ny: Count },
+    /// Slabs along z.
+    Z { nz: Count },
+    /// Columns across x and y.
+    Xy { nx: Count, ny: Count },
+    /// Columns across y and z.
+    Yz { ny: Count, nz: Count },
+    /// Columns across x and z.
+    Xz { nx: Count, nz: Count },
+    /// Boxes.
+    Xyz { nx: Count, ny: Count, nz: Count },
+}
+
+/// The number of bins along an axis.
+#[derive(Clone, Copy)]
+struct Count(usize);
+
+impl Value for Count {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        <usize as Whole>::from(args, 1, "the number of bins").map(Self)
+    }
+}
+
+/// What stands beside the scalar.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "value of out")]
+enum Out {
+    /// The vector of compute temp.
+    #[default]
+    Tensor,
+    /// A global array (intensive) with a row for each bin: how many particles it has and their temperature.
+    Bin,
+}
+
+impl Axes {
+    fn bins(self) -> [usize; 3] {
+        match self {
+            Axes::X { nx } => [nx.0, 1, 1],
+            Axes::Y { ny } => [1, ny.0, 1],
+            Axes::Z { nz } => [1, 1, nz.0],
+            Axes::Xy { nx, ny } => [nx.0, ny.0, 1],
+            Axes::Yz { ny, nz } => [1, ny.0, nz.0],
+            Axes::Xz { nx, nz } => [nx.0, 1, nz.0],
+            Axes::Xyz { nx, ny, nz } => [nx.0, ny.0, nz.0],
+        }
+    }
+
+    fn along_z(self) -> bool {
+        matches!(self, Axes::Z { .. } | Axes::Yz { .. } | Axes::Xz { .. } | Axes::Xyz { .. })
     }
 }
 
 impl ComputeStyle for TempProfile {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mut one = || -> Result<bool> { Ok(args.choice("flag of a component", &["0", "1"])? == "1") };
-        let streams = [one()?, one()?, one()?];
+        let Line { components, axes: At { value: axes, span, .. }, out } = read(args, cx)?;
+        let (streams, bins) = (components.map(Component::counts), axes.bins());
         let flat = cx.world.settings.two_dimensional;
         if streams[2] && flat {
             let text = "velocities along z do not count in a flat scene (`dimension 2`)";
             return fail(Code::CONFLICT, cx.span, text);
         }
-        let span = args.here();
-        let axes = args.choice("axes of bins", &["x", "y", "z", "xy", "yz", "xz", "xyz"])?;
-        if axes.contains('z') && flat {
+        if axes.along_z() && flat {
             return fail(Code::CONFLICT, span, "a flat scene (`dimension 2`) has no bins along z");
-        }
-        let mut bins = [1; 3];
-        for axis in axes.bytes() {
-            bins[usize::from(axis - b'x')] = args.integer_from(1, "the number of bins")? as usize;
         }
         if bins.iter().try_fold(1usize, |all, n| all.checked_mul(*n)).is_none_or(|all| all > MOST) {
             return fail(Code::BAD_VALUE, span, format!("more than {MOST} bins"));
@@ -56,13 +123,7 @@ impl ComputeStyle for TempProfile {
         if let Some(d) = memory::lacking(bytes, "so many bins") {
             return Err(d.at(span).into());
         }
-        let mut by_bin = false;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "out" => by_bin = args.choice("value of out", &["tensor", "bin"])? == "bin",
-                _ => return Err(args.unknown(word, &["out"])),
-            }
-        }
+        let by_bin = out == Out::Bin;
         Ok(Box::new(Thermal::new(Profile { streams, bins, by_bin }, cx)))
     }
 }

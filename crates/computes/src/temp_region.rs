@@ -5,6 +5,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::matter::{Chosen, sum};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, Key, Region, World};
 
@@ -17,7 +18,7 @@ impl Style for TempRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/region region-ID",
+            syntax: "",
             summary: "Temperature of the group's particles in a region.",
             text: "As `compute temp`, of the particles that are in the region at that moment: d N − `extra/dof` degrees of freedom, \
                    N being their number, `extra/dof` d unless `compute_modify` says otherwise. N is counted at each use, \
@@ -26,14 +27,22 @@ impl Style for TempRegion {
             example: "compute t all temp/region half",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The region.
+    #[word(name = "region-ID")]
+    region: Key<Region>,
 }
 
 impl ComputeStyle for TempRegion {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.expect("a region")?;
-        cx.region(word)?;
-        args.finish()?;
-        Ok(Box::new(Thermal::new(Inside(Key::new(&word.text)), cx)))
+        let Line { region } = read(args, cx)?;
+        Ok(Box::new(Thermal::new(Inside(region), cx)))
     }
 }
 

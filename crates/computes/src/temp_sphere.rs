@@ -9,6 +9,7 @@ use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::sum;
 use perigrain_styles::step_op::{Wanted, fill_sums_if};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -22,7 +23,7 @@ impl Style for TempSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/sphere [dof all|rotate] [bias ID]",
+            syntax: "",
             summary: "Temperature of the group's translation and rotation, or of rotation alone.",
             text: "Scalar (intensive): T = Σ (m v² + I ω²)/(dof k_B) with I = 2/5 m R². Each sphere has 6 degrees of \
                    freedom (in two dimensions 3), of rotation alone 3 (1); a particle without a radius only those of its \
@@ -30,27 +31,42 @@ impl Style for TempSphere {
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
                    each use (see `compute temp`).\n\n\
-                   `bias ID`: the flow that compute temp/com, temp/deform, temp/partial, temp/profile, temp/ramp or temp/region ID of the same group takes away from \
-                   velocities does not count here either; a component that is taken away whole counts for no degree of freedom, nor do \
-                   particles outside the region. `velocity … \
-                   temp ID bias yes` then leaves this flow as it is, and compute pressure has the rest as its kinetic part.",
+                   Under a `bias` a component that is taken away whole counts for no degree of freedom, nor do particles outside the \
+                   region. `velocity … temp ID bias yes` then leaves this flow as it is, and compute pressure has the rest as its kinetic part.",
             example: "compute drift all temp/com\ncompute t all temp/sphere bias drift",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(keyword)]
+    dof: Freedom,
+    /// The flow that this compute temp/com, temp/deform, temp/partial, temp/profile, temp/ramp or temp/region of the same group
+    /// takes away from velocities does not count here either.
+    #[word(keyword, name = "ID", with = temp_flow::named, kind = Kind::Compute)]
+    bias: Option<ValueRef>,
+}
+
+/// The degrees of freedom that count.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "value of dof")]
+enum Freedom {
+    /// Those of translation and rotation.
+    #[default]
+    All,
+    /// Those of rotation alone.
+    Rotate,
 }
 
 impl ComputeStyle for TempSphere {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         needs_spheres(self.name(), cx)?;
-        let (mut rotate, mut bias) = (false, None);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "dof" => rotate = args.choice("value of dof", &["all", "rotate"])? == "rotate",
-                "bias" => bias = Some(temp_flow::named(args, cx)?),
-                _ => return Err(args.unknown(word, &["dof", "bias"])),
-            }
-        }
-        let (id, rules) = (cx.id.to_string(), Rules::default());
+        let Line { dof, bias } = read(args, cx)?;
+        let (id, rules, rotate) = (cx.id.to_string(), Rules::default(), dof == Freedom::Rotate);
         Ok(Box::new(Declared { id, group: cx.group, rotate, bias, rules }))
     }
 }

@@ -48,7 +48,7 @@ struct Line {
     #[word(flatten)]
     samples: Samples,
     /// A `compute chunk/atom`.
-    #[word(name = "chunkID", with = ChunkRef::read, kind = Kind::Compute)]
+    #[word(name = "chunkID")]
     chunks: ChunkRef,
     /// What is averaged: `vx vy vz fx fy fz`, `density/number`, `density/mass` (per volume of the bin, or of the box), `temp`,
     /// `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name`.

@@ -41,8 +41,8 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
                     })
                 }
                 fn begins(word: &Word) -> bool {
-                    let known: &[&str] = #known;
-                    known.contains(&word.text.as_str())
+                    let (known, refused): (&[&str], &[&str]) = (#known, #refused);
+                    known.iter().chain(refused).any(|k| *k == word.text)
                 }
             }
         };

@@ -5,7 +5,8 @@
 //! page, and what Tab and editors offer (`perigrain_styles::words`).
 //!
 //! A field's doc comment is its sentence in the manual. Its first words, up to a comma, colon, bracket or full stop, are its
-//! name in messages; a bracket behind them is its unit: `/// The drag coefficient γ [force/velocity].` A field may say:
+//! name in messages; a bracket behind them is its unit: `/// The drag coefficient γ [force/velocity].` A keyword of `yes` or `no` is
+//! called by itself. A field may say:
 //!
 //! | in `#[word(…)]` | meaning |
 //! |---|---|

@@ -29,7 +29,11 @@ impl Field {
     /// A field of this name, which stands in the syntax line unless the field says another.
     pub fn new(said: Said, name: &str, ty: &Type) -> Self {
         let names = said.name.as_deref().unwrap_or(name).split_whitespace().map(String::from).collect();
-        Self { what: said.what(name), names, said, ty: ty.clone() }
+        let what = match is_switch(ty) && said.own_what().is_none() {
+            true => said.keyword.clone().flatten().unwrap_or_else(|| name.to_string()),
+            false => said.what(name),
+        };
+        Self { what, names, said, ty: ty.clone() }
     }
 
     /// The keyword, if it is one.
@@ -89,7 +93,7 @@ impl Field {
         match shape(ty)? {
             Shape::Tuple(types) => all(types, names),
             Shape::Array(of, count) => all(vec![of; count], names),
-            Shape::Placed(of) => self.of_one(of, names),
+            Shape::Placed(of) => self.of(of, names),
             _ => self.of_one(ty, names),
         }
     }
@@ -156,14 +160,17 @@ impl Field {
         }
         Ok(match shape(ty)? {
             Shape::Maybe(of) if open => {
-                let value = self.reading(of, false, k)?;
-                quote!(if args.is_empty() || args.at_keyword() { None } else { Some(#value) })
+                let (value, first) = (self.reading(of, false, k)?, first(of)?);
+                quote!(match args.peek() {
+                    Some(w) if !args.at_keyword() && <#first as Value>::begins(w) => Some(#value),
+                    _ => None,
+                })
             }
             Shape::Many(of) if open => {
-                let (value, least) = (self.reading(of, false, k)?, self.said.least);
+                let (value, least, first) = (self.reading(of, false, k)?, self.said.least, first(of)?);
                 quote!({
                     let mut all = vec![];
-                    while all.len() < #least || args.peek().is_some_and(|w| !args.at_keyword() && <#of as Value>::begins(w)) {
+                    while all.len() < #least || args.peek().is_some_and(|w| !args.at_keyword() && <#first as Value>::begins(w)) {
                         all.push(#value);
                     }
                     all
@@ -194,6 +201,20 @@ impl Field {
                 None => quote!(<#ty as Value>::value(#what, args, cx)?),
             },
         })
+    }
+}
+
+/// Whether it is `yes` or `no`, whose name in messages is the keyword.
+fn is_switch(ty: &Type) -> bool {
+    matches!(ty, Type::Path(path) if path.path.is_ident("bool"))
+}
+
+/// The type of the first word of a value.
+fn first(ty: &Type) -> syn::Result<&Type> {
+    match shape(ty)? {
+        Shape::Placed(of) | Shape::Array(of, _) => first(of),
+        Shape::Tuple(types) => types.first().map_or(Ok(ty), |of| first(of)),
+        _ => Ok(ty),
     }
 }
 

@@ -1,11 +1,12 @@
 //! compute angmom/chunk: angular momentum of each chunk.
 
-use super::ChunkRef;
+use super::OfChunks;
 use super::moments::Rows;
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::matter::solid;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,21 +18,23 @@ impl Style for AngmomChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group angmom/chunk chunkID",
+            syntax: "",
             summary: "Angular momentum of each chunk about its centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m r × v over the particles of the chunk that are in the \
                    group, with r from their centre of mass and positions unwrapped across periodic faces, in mass distance velocity \
                    units. Spheres add 2/5 m R² ω of their own spin (LAMMPS since 2026; in 22Jul2025, and under `compat lammps/2025`, \
-                   they are points). chunkID names a `compute chunk/atom`.",
+                   they are points).",
             example: "compute cc all chunk/atom type\ncompute l all angmom/chunk cc",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
 impl ComputeStyle for AngmomChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        args.finish()?;
+        let OfChunks { chunks } = read(args, cx)?;
         let (id, group) = (cx.id.to_string(), cx.group);
         Ok(Box::new(Rows { id, group, chunks, columns: 3, of: |w, m| m.angular_momentum(solid(w)).concat() }))
     }

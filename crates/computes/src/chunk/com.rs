@@ -1,12 +1,13 @@
 //! compute com/chunk: centre of mass of each chunk.
 
-use super::{ChunkRef, Chunks, sums};
+use super::{ChunkRef, Chunks, OfChunks, sums};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -20,20 +21,22 @@ impl Style for ComChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group com/chunk chunkID",
+            syntax: "",
             summary: "Centre of mass of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m x / Σ m over the particles of the chunk that \
                    are in the group, with positions unwrapped across periodic faces, in distance units; zeros for chunks \
-                   without mass. chunkID names a `compute chunk/atom`.",
+                   without mass.",
             example: "compute cc all chunk/atom type\ncompute c all com/chunk cc",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
 impl ComputeStyle for ComChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        args.finish()?;
+        let OfChunks { chunks } = read(args, cx)?;
         Ok(Box::new(Means { id: cx.id.to_string(), group: cx.group, chunks, of: unwrapped }))
     }
 }

@@ -1,7 +1,7 @@
 //! compute continuum/chunk: continuum fields (density, velocity, stress …) by coarse graining of particles
 //! and contacts.
 
-use super::fields::{Field, Fields, Needed, Scope};
+use super::fields::{Columns, Field, Fields, Needed, Scope};
 use super::grid::Grid;
 use super::kernel::Kernel;
 use super::{ChunkRef, Chunks};
@@ -14,6 +14,7 @@ use perigrain_styles::common::orthogonal;
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::probe::{Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{Bins, BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
@@ -30,7 +31,7 @@ impl Style for ContinuumChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group continuum/chunk chunkID cutoff width field … [boundary/atom group] [boundary/fix]",
+            syntax: "",
             summary: "Fields of density, velocity, stress and more, coarse-grained at the centres of bins.",
             text: "Global array (intensive): a row per bin of a `compute chunk/atom` (`bin/1d`, `bin/2d`, `bin/3d`, without `compress`), a column per field. \
                    Fields are those of Goldhirsch (2010) at the centres of the bins, with the kernel W(r) = a (exp(−r²/2w²) − exp(−c²/2w²)) of \
@@ -50,10 +51,7 @@ impl Style for ContinuumChunk {
                    a and b are x, y, z; `velocity/*` and `stress/*` stand for all components, in two dimensions without z. Stresses are in pressure units, tension \
                    positive, and need not be symmetric; volume, contacts, fabric and boundaries need spheres. Forces are those of pair styles that can be \
                    asked about single pairs (`compute pair/local`); bonds of a bond style do not count.\n\n\
-                   Particles count that are in the group and in a chunk; of a pair both. \
-                   `boundary/atom G`: particles of G are a boundary: they count in no sum, and their contacts with others count in `boundary/force`, and in the stress by the line from the centre to the \
-                   place of contact (Weinhart et al. 2012). `boundary/fix`: so do all walls of `fix wall/gran`, `wall/gran/region` and `wall/mesh`, \
-                   each with `contacts`. Then density · acceleration = ∇·stress + density · g − `boundary/force`, up to the walls.\n\n\
+                   Particles count that are in the group and in a chunk; of a pair both. With a boundary, density · acceleration = ∇·stress + density · g − `boundary/force`, up to the walls.\n\n\
                    The box must be orthogonal. LAMMPS (of 2026) has this style with differences where its page and its program disagree: its gradient `xy` is that \
                    of v_y along x; of contacts with `boundary/atom` it counts one half to the place of contact and one half along the whole line; \
                    contacts reach no bins that are out of the cutoff of both ends, where the line may pass; and bins must divide a periodic box.",
@@ -61,43 +59,58 @@ impl Style for ContinuumChunk {
                       compute c all continuum/chunk cc 1.5 0.5 density velocity/* stress/zz",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The `compute chunk/atom` that makes the bins.
+    #[word(name = "chunkID")]
+    chunks: At<ChunkRef>,
+    /// The cutoff of the kernel [distance].
+    #[word(positive)]
+    cutoff: f64,
+    /// The width of the kernel [distance].
+    #[word(positive)]
+    width: At<f64>,
+    /// A field, with its components.
+    #[word(name = "field", what = "a field, as `density`", least = 1)]
+    fields: Vec<At<Columns>>,
+    /// Particles of this group are a boundary: they count in no sum, and their contacts with others count in `boundary/force`,
+    /// and in the stress by the line from the centre to the place of contact (Weinhart et al. 2012).
+    #[word(keyword = "boundary/atom", name = "group")]
+    boundary: Option<GroupId>,
+    /// So are all walls of `fix wall/gran`, `wall/gran/region` and `wall/mesh`, each with `contacts`.
+    #[word(flag = "boundary/fix")]
+    walls: bool,
 }
 
 impl ComputeStyle for ContinuumChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.peek().map_or(cx.span, |w| w.span);
-        let chunks = ChunkRef::read(args, cx)?;
-        let flat = cx.world.settings.two_dimensional;
-        let bins = bins_of(&chunks, flat, word)?;
-        let (cutoff, span) = (args.positive("the cutoff of the kernel")?, args.here());
-        let width = args.positive("the width of the kernel")?;
-        let Some(kernel) = Kernel::new(chunks.kind.coordinates, cutoff, width) else {
-            let text = format!("a kernel of cutoff {cutoff} and width {width} does not fit double precision");
-            return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
+        let Line { chunks: At { value: chunks, span: at, .. }, cutoff, width, fields, boundary, walls } =
+            read(args, cx)?;
+        let bins = bins_of(&chunks, cx.world.settings.two_dimensional, at)?;
+        let Some(kernel) = Kernel::new(chunks.kind.coordinates, cutoff, width.value) else {
+            let text = format!(
+                "a kernel of cutoff {cutoff} and width {} does not fit double precision",
+                width.value
+            );
+            return Err(Diagnostic::error(Code::BAD_VALUE, width.span, text)
                 .help("about a grain's diameter is a width that serves, and three times as much a cutoff")
                 .into());
         };
-        let mut c = Declared {
-            id: cx.id.to_string(),
-            group: cx.group,
-            chunks,
-            bins,
-            kernel,
-            fields: vec![],
-            boundary: None,
-            walls: false,
-        };
-        let force = c.read(args, cx, flat)?;
-        if c.fields.is_empty() {
-            args.expect("a field, as `density`")?;
-            return fail(Code::MISSING_ARGUMENT, args.here(), "a field is missing, as `density`");
-        }
-        if let Some(span) = force.filter(|_| c.boundary.is_none() && !c.walls) {
+        let force = fields.iter().find(|f| f.value.0.iter().any(Field::is_boundary_force));
+        if let Some(At { span, .. }) = force.filter(|_| boundary.is_none() && !walls) {
             let text = "`boundary/force` needs a boundary";
-            return Err(Diagnostic::error(Code::CONFLICT, span, text)
+            return Err(Diagnostic::error(Code::CONFLICT, *span, text)
                 .help("add `boundary/atom GROUP` or `boundary/fix` at the end of the line")
                 .into());
         }
+        let fields = fields.into_iter().flat_map(|f| f.value.0).collect();
+        let (id, group) = (cx.id.to_string(), cx.group);
+        let c = Declared { id, group, chunks, bins, kernel, fields, boundary, walls };
         if c.fields.iter().any(|f| f.needs_spheres()) {
             crate::need_spheres("a field of volumes or contacts", cx)?;
         }
@@ -152,29 +165,6 @@ struct Declared {
 }
 
 impl Declared {
-    /// Reads fields and keywords; returns the span of the first `boundary/force`.
-    fn read(&mut self, args: &mut Args, cx: &BuildCx, flat: bool) -> Result<Option<Span>> {
-        let mut force = None;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "boundary/fix" => self.walls = true,
-                "boundary/atom" => {
-                    self.boundary = Some(cx.group(args.expect("the group of the boundary's particles")?)?);
-                }
-                _ => {
-                    let Some(read) = Field::read(word, flat)? else {
-                        return Err(args.unknown(word, &Field::words()));
-                    };
-                    if read.iter().any(Field::is_boundary_force) {
-                        force = force.or(Some(word.span));
-                    }
-                    self.fields.extend(read);
-                }
-            }
-        }
-        Ok(force)
-    }
-
     /// Readings of the walls' contacts, seven columns per wall.
     fn walls(&self, cx: &mut dyn SealCx, stage: Stage, when: &When) -> Result<Vec<[Reading; 7]>> {
         if !self.walls {

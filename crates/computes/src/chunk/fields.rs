@@ -6,10 +6,11 @@ use super::kernel::Kernel;
 use crate::pair_local::of_group;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{SIX, Vec3, add, dot, scale, sub};
-use perigrain_lang::Word;
-use perigrain_styles::Reading;
+use perigrain_lang::{Args, Word};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::probe::Interaction;
+use perigrain_styles::words::{Alternative, Kind, Value, alternatives};
+use perigrain_styles::{BuildCx, Reading};
 use perigrain_world::{GroupId, World};
 use std::f64::consts::PI;
 
@@ -31,22 +32,22 @@ enum Quantity {
     Temperature,
 }
 
-/// Names, and numbers of indices.
-const QUANTITIES: [(&str, usize, Quantity); 14] = [
-    ("natoms", 0, Quantity::Count),
-    ("density", 0, Quantity::Density),
-    ("volume/fraction", 0, Quantity::Volume),
-    ("momentum", 1, Quantity::Momentum),
-    ("velocity", 1, Quantity::Velocity),
-    ("momentum/grad", 2, Quantity::MomentumGradient),
-    ("velocity/grad", 2, Quantity::VelocityGradient),
-    ("strain/rate", 2, Quantity::StrainRate),
-    ("stress", 2, Quantity::Stress),
-    ("stress/ke", 2, Quantity::Kinetic),
-    ("stress/contacts", 2, Quantity::Contacts),
-    ("boundary/force", 1, Quantity::BoundaryForce),
-    ("fabric", 2, Quantity::Fabric),
-    ("temperature", 0, Quantity::Temperature),
+/// Names, with the number of indices.
+const QUANTITIES: [(&str, (usize, Quantity)); 14] = [
+    ("natoms", (0, Quantity::Count)),
+    ("density", (0, Quantity::Density)),
+    ("volume/fraction", (0, Quantity::Volume)),
+    ("momentum", (1, Quantity::Momentum)),
+    ("velocity", (1, Quantity::Velocity)),
+    ("momentum/grad", (2, Quantity::MomentumGradient)),
+    ("velocity/grad", (2, Quantity::VelocityGradient)),
+    ("strain/rate", (2, Quantity::StrainRate)),
+    ("stress", (2, Quantity::Stress)),
+    ("stress/ke", (2, Quantity::Kinetic)),
+    ("stress/contacts", (2, Quantity::Contacts)),
+    ("boundary/force", (1, Quantity::BoundaryForce)),
+    ("fabric", (2, Quantity::Fabric)),
+    ("temperature", (0, Quantity::Temperature)),
 ];
 
 const AXES: [char; 3] = ['x', 'y', 'z'];
@@ -64,10 +65,10 @@ impl Field {
     ///
     /// # Errors
     /// A field with missing or wrong components.
-    pub fn read(word: &Word, flat: bool) -> Result<Option<Vec<Self>>> {
+    fn read(word: &Word, flat: bool) -> Result<Option<Vec<Self>>> {
         let dims = if flat { 2 } else { 3 };
         let mut bad = None;
-        for (name, rank, what) in QUANTITIES {
+        for (name, (rank, what)) in QUANTITIES {
             let Some(rest) = word.text.strip_prefix(name) else { continue };
             let component = rest.strip_prefix('/').unwrap_or(rest);
             let one = |letters: &str| -> Option<Vec<usize>> {
@@ -99,11 +100,6 @@ impl Field {
         Err(Diagnostic::error(Code::BAD_VALUE, word.span, text).help(help).into())
     }
 
-    /// All words, for suggestions in messages.
-    pub fn words() -> Vec<&'static str> {
-        QUANTITIES.iter().map(|q| q.0).chain(["boundary/atom", "boundary/fix"]).collect()
-    }
-
     /// Whether it is a component of `boundary/force`.
     pub fn is_boundary_force(&self) -> bool {
         self.what == Quantity::BoundaryForce
@@ -114,6 +110,21 @@ impl Field {
         self.what == Quantity::Volume || Needed::of(&[*self]).pairs
     }
 }
+
+/// All columns that a word stands for.
+pub struct Columns(pub Vec<Field>);
+
+impl Value for Columns {
+    const KIND: Kind = Kind::Choice(NAMES);
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect(what)?;
+        let known = QUANTITIES.iter().map(|q| q.0).chain(["boundary/atom", "boundary/fix"]);
+        let columns = Field::read(word, cx.world.settings.two_dimensional)?;
+        columns.map(Self).ok_or_else(|| args.unknown(word, &known.collect::<Vec<_>>()))
+    }
+}
+
+const NAMES: &[Alternative] = &alternatives(&QUANTITIES);
 
 /// The sums that the columns need.
 #[derive(Clone, Copy, Debug, Default)]

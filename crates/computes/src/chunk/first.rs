@@ -1,7 +1,7 @@
 //! compute msd/chunk, vacf/chunk: state of chunks compared with their state at the first run.
 
 use super::moments::{mean, weighted};
-use super::{ChunkRef, Chunks};
+use super::{ChunkRef, Chunks, OfChunks};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, sub};
@@ -9,6 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{check_masses, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -25,14 +26,17 @@ impl Style for MsdChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group msd/chunk chunkID",
+            syntax: "",
             summary: "Squared displacement of each chunk's centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 4 columns in distance² units: dx², dy², dz² and their sum, of the centre of \
                    mass of the chunk's particles that are in the group since the first run after this line began; positions are \
                    unwrapped across periodic faces. The number of chunks must stay: `nchunk once` (and `ids once`, if the \
-                   particles of a chunk are to stay) of the `compute chunk/atom` that chunkID names. Restart files hold the beginning.",
+                   particles of a chunk are to stay) of the `compute chunk/atom`. Restart files hold the beginning.",
             example: "compute cc all chunk/atom type nchunk once\ncompute m all msd/chunk cc",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
@@ -42,7 +46,7 @@ impl Style for VacfChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group vacf/chunk chunkID",
+            syntax: "",
             summary: "Velocity autocorrelation of each chunk's centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 4 columns in velocity² units: the products of the three components of the \
                    velocity of the centre of mass, of the chunk's particles that are in the group, with what they were when the first \
@@ -50,6 +54,9 @@ impl Style for VacfChunk {
                    hold the beginning.",
             example: "compute cc all chunk/atom type nchunk once\ncompute v all vacf/chunk cc",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
@@ -74,8 +81,7 @@ fn declared(
     args: &mut Args,
     cx: &BuildCx,
 ) -> Result<Box<dyn Compute>> {
-    let chunks = ChunkRef::read(args, cx)?;
-    args.finish()?;
+    let OfChunks { chunks } = read(args, cx)?;
     Ok(Box::new(SinceFirst { id: cx.id.to_string(), group: cx.group, style, chunks, of, compare }))
 }
 

@@ -6,6 +6,7 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{SIX, dot};
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::World;
 
@@ -18,27 +19,32 @@ impl Style for GyrationChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group gyration/chunk chunkID [tensor]",
+            syntax: "",
             summary: "Radius of gyration of each chunk.",
             text: "Global vector (intensive) of length Nchunk: √(Σ m r² / Σ m) over the particles of the chunk that are in the group, \
-                   with r from their centre of mass and positions unwrapped across periodic faces, in distance units. With `tensor` \
-                   a global array of 6 columns xx, yy, zz, xy, xz, yz: Σ m r_a r_b / Σ m, in distance² units. Zeros for chunks without \
-                   mass. chunkID names a `compute chunk/atom`.",
+                   with r from their centre of mass and positions unwrapped across periodic faces, in distance units. Zeros for chunks without \
+                   mass.",
             example: "compute cc all chunk/atom type\ncompute g all gyration/chunk cc tensor",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The `compute chunk/atom` that makes the chunks.
+    #[word(name = "chunkID")]
+    chunks: ChunkRef,
+    /// A global array of 6 columns xx, yy, zz, xy, xz, yz in place of the vector: Σ m r_a r_b / Σ m, in distance² units.
+    #[word(flag)]
+    tensor: bool,
 }
 
 impl ComputeStyle for GyrationChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        let mut tensor = false;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "tensor" => tensor = true,
-                _ => return Err(args.unknown(word, &["tensor"])),
-            }
-        }
+        let Line { chunks, tensor } = read(args, cx)?;
         let (id, group) = (cx.id.to_string(), cx.group);
         Ok(Box::new(match tensor {
             true => Rows { id, group, chunks, columns: 6, of: tensors },

@@ -28,6 +28,7 @@ pub use assign::{hold, let_go, window};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Stage, When};
+use perigrain_styles::words::{Kind, Value, Words};
 use perigrain_styles::{BuildCx, Chunking, SealCx, Wants};
 use perigrain_world::{Numbers, Slot, SlotId, World};
 
@@ -43,12 +44,18 @@ pub struct ChunkRef {
     span: Span,
 }
 
-impl ChunkRef {
-    /// Parses the ID of a `compute chunk/atom`.
-    ///
-    /// # Errors
-    /// An unknown compute, or one of another style.
-    pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+/// The line of a compute that needs no other words than its chunks.
+#[derive(Words)]
+struct OfChunks {
+    /// The `compute chunk/atom` that makes the chunks.
+    #[word(name = "chunkID")]
+    chunks: ChunkRef,
+}
+
+/// The ID of a `compute chunk/atom`.
+impl Value for ChunkRef {
+    const KIND: Kind = Kind::Compute;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the ID of a compute chunk/atom")?;
         let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
         if let Some(shape) = cx.shape(&r) {
@@ -64,7 +71,9 @@ impl ChunkRef {
         cx.reading(&r, Wants::PerAtom)?;
         Ok(Self::new(r.name, Chunking::default(), word.span))
     }
+}
 
+impl ChunkRef {
     fn new(id: String, kind: Chunking, span: Span) -> Self {
         Self { window: window(&id), id, kind, span }
     }

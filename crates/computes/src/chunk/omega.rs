@@ -1,12 +1,13 @@
 //! compute omega/chunk: angular velocity of each chunk.
 
-use super::ChunkRef;
+use super::OfChunks;
 use super::moments::{Members, Rows};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::Args;
 use perigrain_styles::matter::solid;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::World;
 
@@ -19,21 +20,23 @@ impl Style for OmegaChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group omega/chunk chunkID",
+            syntax: "",
             summary: "Angular velocity of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: the ω with I ω = L, I and L being the chunk's inertia tensor \
                    and angular momentum (compute inertia/chunk, angmom/chunk), in radians per time. About axes whose moment is \
                    smaller than a millionth of the largest nothing turns: chunks of one particle \
-                   and about the line through two (LAMMPS, and `compat lammps`, does so only where det I is below 10⁻⁶). chunkID names a `compute chunk/atom`.",
+                   and about the line through two (LAMMPS, and `compat lammps`, does so only where det I is below 10⁻⁶).",
             example: "compute cc all chunk/atom type\ncompute w all omega/chunk cc",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
 impl ComputeStyle for OmegaChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        args.finish()?;
+        let OfChunks { chunks } = read(args, cx)?;
         let (id, group) = (cx.id.to_string(), cx.group);
         Ok(Box::new(Rows { id, group, chunks, columns: 3, of: omega }))
     }

@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -19,56 +20,77 @@ impl Style for PropertyChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group property/chunk chunkID count|id|coord1|coord2|coord3 …",
+            syntax: "",
             summary: "Attributes of chunks.",
-            text: "Global vector of length Nchunk for one attribute, array for several (intensive). `count`: how many \
-                   particles of the group are in the chunk. `id`: the number the chunk had before `compress yes` of \
-                   the `compute chunk/atom`, which it needs. `coord1 coord2 coord3`: the middle of the bin along the axes \
-                   in the order in which they were given, in distance units or, under `units reduced`, as fractions of \
-                   the box; for bin/sphere the radius; for bin/cylinder the radius, then the place along the axis.",
+            text: "Global vector of length Nchunk for one attribute, array for several (intensive). \
+                   Coordinates are the middle of the bin along the axes in the order in which they were given, in distance \
+                   units or, under `units reduced`, as fractions of the box; for bin/sphere the radius; for bin/cylinder the \
+                   radius, then the place along the axis.",
             example: "compute cc all chunk/atom bin/1d z lower 1.0\ncompute p all property/chunk cc count coord1",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The `compute chunk/atom` that makes the chunks.
+    #[word(name = "chunkID")]
+    chunks: ChunkRef,
+    #[word(name = "attribute", what = "attribute of chunks", least = 1)]
+    list: Vec<At<Attribute>>,
+}
+
+#[derive(Clone, Copy, Words)]
+enum Attribute {
+    /// How many particles of the group are in the chunk.
+    Count,
+    /// The number that the chunk had before `compress yes` of the `compute chunk/atom`, which it needs.
+    Id,
+    /// The first coordinate.
+    Coord1,
+    /// The second coordinate.
+    Coord2,
+    /// The third coordinate.
+    Coord3,
+}
+
+impl Attribute {
+    /// The number of the coordinate, from 0, and its word.
+    fn coordinate(self) -> Option<(usize, &'static str)> {
+        match self {
+            Attribute::Coord1 => Some((0, "coord1")),
+            Attribute::Coord2 => Some((1, "coord2")),
+            Attribute::Coord3 => Some((2, "coord3")),
+            Attribute::Count | Attribute::Id => None,
         }
     }
 }
 
-#[derive(Clone, Copy)]
-enum Attribute {
-    Count,
-    Id,
-    Coordinate(usize),
-}
-
-const NAMES: &[&str] = &["count", "id", "coord1", "coord2", "coord3"];
-
 impl ComputeStyle for PropertyChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        let mut list = vec![];
-        while !args.is_empty() || list.is_empty() {
-            let span = args.peek().map_or(cx.span, |w| w.span);
-            let name = args.choice("attribute of chunks", NAMES)?;
-            list.push(match name {
-                "count" => Attribute::Count,
-                "id" if chunks.kind.compressed => Attribute::Id,
-                "id" => {
+        let Line { chunks, list } = read(args, cx)?;
+        for At { value, span, .. } in &list {
+            let n = chunks.kind.coordinates;
+            match value.coordinate() {
+                Some((k, name)) if k >= n => {
+                    let text =
+                        format!("the chunks of compute {} have {n} coordinates, no `{name}`", chunks.id);
+                    return fail(Code::CONFLICT, *span, text);
+                }
+                None if matches!(value, Attribute::Id) && !chunks.kind.compressed => {
                     let text = format!(
                         "`id` needs `compress yes` in compute {}: without it ids are 1, 2, 3 …",
                         chunks.id
                     );
-                    return fail(Code::CONFLICT, span, text);
+                    return fail(Code::CONFLICT, *span, text);
                 }
-                _ => {
-                    let k = NAMES.iter().position(|n| *n == name).unwrap_or(2) - 2;
-                    if k >= chunks.kind.coordinates {
-                        let n = chunks.kind.coordinates;
-                        let text =
-                            format!("the chunks of compute {} have {n} coordinates, no `{name}`", chunks.id);
-                        return fail(Code::CONFLICT, span, text);
-                    }
-                    Attribute::Coordinate(k)
-                }
-            });
+                _ => {}
+            }
         }
+        let list = list.into_iter().map(|a| a.value).collect();
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, chunks, list }))
     }
 }
@@ -102,10 +124,10 @@ impl Compute for Declared {
             let into = if list.len() == 1 { &mut out.vector } else { &mut out.array };
             into.clear();
             for k in 0..chunks.count() {
-                into.extend(list.iter().map(|a| match *a {
-                    Attribute::Count => counts[k][0],
-                    Attribute::Id => chunks.original(k),
-                    Attribute::Coordinate(d) => chunks.coordinate(k, d),
+                into.extend(list.iter().map(|a| match a.coordinate() {
+                    Some((d, _)) => chunks.coordinate(k, d),
+                    None if matches!(a, Attribute::Count) => counts[k][0],
+                    None => chunks.original(k),
                 }));
             }
             out.array_cols = list.len();

@@ -3,9 +3,10 @@
 use super::{ChunkRef, Chunks};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -19,21 +20,39 @@ impl Style for ReduceChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group reduce/chunk chunkID sum|min|max input …",
+            syntax: "",
             summary: "Sums and extremes of per-atom values, chunk by chunk.",
-            text: "Global vector of length Nchunk for one input, array for several (intensive). Inputs: `c_ID`, `c_ID[k]`, \
-                   `c_ID[*]`, `f_ID`, `f_ID[k]` and `v_name` of an atom-style variable, for particles of the group. A chunk \
-                   without particles has the sum 0, the minimum 1e20 and the maximum −1e20. chunkID names a \
-                   `compute chunk/atom`.",
+            text: "Global vector of length Nchunk for one input, array for several (intensive). Only particles of the \
+                   group count. A chunk without particles has the sum 0, the minimum 1e20 and the maximum −1e20.",
             example: "compute cc all chunk/atom type\ncompute k all ke/atom\ncompute s all reduce/chunk cc sum c_k",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-#[derive(Clone, Copy)]
+#[derive(Words)]
+struct Line {
+    /// The `compute chunk/atom` that makes the chunks.
+    #[word(name = "chunkID")]
+    chunks: ChunkRef,
+    #[word(name = "mode")]
+    mode: Mode,
+    /// Values per particle: `c_ID`, `c_ID[k]`, `c_ID[*]`, `f_ID`, `f_ID[k]` and `v_name` of an atom-style variable.
+    #[word(name = "input", what = "at least one input, as `c_ID`", kind = Kind::Value, least = 1)]
+    inputs: Vec<Word>,
+}
+
+/// What is made of the values of a chunk.
+#[derive(Clone, Copy, Words)]
+#[word(what = "mode of compute reduce/chunk")]
 enum Mode {
+    /// Their sum.
     Sum,
+    /// The smallest.
     Min,
+    /// The largest.
     Max,
 }
 
@@ -57,15 +76,9 @@ impl Mode {
 
 impl ComputeStyle for ReduceChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        let mode = match args.choice("mode of compute reduce/chunk", &["sum", "min", "max"])? {
-            "min" => Mode::Min,
-            "max" => Mode::Max,
-            _ => Mode::Sum,
-        };
+        let Line { chunks, mode, inputs: words } = read(args, cx)?;
         let mut inputs = vec![];
-        while !args.is_empty() || inputs.is_empty() {
-            let word = args.expect("at least one input, as `c_ID`")?;
+        for word in &words {
             for word in cx.expand(word, Wants::PerAtom)? {
                 let known = |r: &ValueRef| !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
                 let Some(r) = ValueRef::parse(&word.text, word.span)?.filter(known) else {

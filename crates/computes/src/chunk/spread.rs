@@ -3,9 +3,10 @@
 use super::{ChunkRef, Chunks};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -19,23 +20,34 @@ impl Style for SpreadAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group chunk/spread/atom chunkID c_ID|c_ID[k]|f_ID|f_ID[k] …",
+            syntax: "",
             summary: "Gives each particle what is known of its chunk.",
-            text: "Per-atom vector for one input, array for several. Inputs: the vector of a compute …/chunk or a column of its array \
-                   (`c_ID[k]`, `c_ID[*]`), and the vector or a column of a fix (`fix ave/chunk`, `fix ave/time … mode vector`). Each particle \
-                   of the group has the row of its chunk; 0 outside all chunks and where an input has fewer rows. Whether an \
-                   input has rows of the same chunks is not checked. chunkID names a `compute chunk/atom`.",
+            text: "Per-atom vector for one input, array for several. Each particle of the group has the row of its chunk; 0 outside all chunks and where an input has fewer rows. Whether an \
+                   input has rows of the same chunks is not checked.",
             example: "compute cc all chunk/atom type\ncompute c all com/chunk cc\ncompute s all chunk/spread/atom cc c_c[*]",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The `compute chunk/atom` that makes the chunks.
+    #[word(name = "chunkID")]
+    chunks: ChunkRef,
+    /// The vector of a compute …/chunk or a column of its array (`c_ID`, `c_ID[k]`, `c_ID[*]`), and the vector or a column of a
+    /// fix (`fix ave/chunk`, `fix ave/time … mode vector`).
+    #[word(name = "input", what = "at least one input, as `c_ID`", kind = Kind::Value, least = 1)]
+    inputs: Vec<Word>,
 }
 
 impl ComputeStyle for SpreadAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
+        let Line { chunks, inputs: words } = read(args, cx)?;
         let mut inputs = vec![];
-        while !args.is_empty() || inputs.is_empty() {
-            let word = args.expect("at least one input, as `c_ID`")?;
+        for word in &words {
             for word in cx.expand(word, Wants::Vector)? {
                 let known = |r: &ValueRef| matches!(r.kind, RefKind::Compute | RefKind::Fix);
                 let Some(r) = ValueRef::parse(&word.text, word.span)?.filter(known) else {

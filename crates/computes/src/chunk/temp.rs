@@ -10,6 +10,7 @@ use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -23,63 +24,66 @@ impl Style for TempChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/chunk chunkID [temp|kecom|internal …] [com yes|no] [bias ID] [adof n] [cdof n]",
+            syntax: "",
             summary: "Temperature of particles in chunks, and of each chunk.",
             text: "Scalar (intensive): T = Σ m v²/(dof k_B) over the particles of the group that are in chunks, dof = N `adof` + Nchunk \
                    `cdof`; 0 where dof is not positive. Vector of 6 (extensive): Σ m v_a v_b for xx yy zz xy xz yz, in energy units. With \
-                   values a global array (intensive), a row per chunk: `temp`, its temperature, of N `adof` + `cdof` degrees of freedom; `kecom`, ½ M v² \
-                   of its centre of mass; `internal`, Σ ½ m v² of what is left without the motion of its centre. Chunks without particles have zeros.\n\n\
-                   `com yes` takes the motion of each chunk's centre away before temperatures are taken; `bias ID` the flow that compute \
-                   temp/com, temp/partial, temp/ramp … ID takes away, from all values. Not both. `adof` is 3 (in two dimensions 2) unless it is given, \
-                   `cdof` 0; nothing is taken off for the bias, and `compute_modify` has no effect. Under `-compat lammps` `ke` of thermo output and pressures ignore the \
-                   motion if this is their temperature, as in LAMMPS. chunkID names a `compute \
-                   chunk/atom`. With `com yes` it cannot be the bias of other commands, unlike in LAMMPS.",
+                   values a global array (intensive), a row per chunk and a column per value. Chunks without particles have zeros.\n\n\
+                   `com yes` and `bias` exclude each other. Nothing is taken off the degrees of freedom for the bias, and `compute_modify` \
+                   has no effect. Under `-compat lammps` `ke` of thermo output and pressures ignore the \
+                   motion if this is their temperature, as in LAMMPS. With `com yes` it cannot be the bias of other commands, unlike in LAMMPS.",
             example: "compute cc all chunk/atom type\ncompute t all temp/chunk cc temp internal com yes",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-#[derive(Clone, Copy)]
-enum Value {
+#[derive(Words)]
+struct Line {
+    /// The `compute chunk/atom` that makes the chunks.
+    #[word(name = "chunkID")]
+    chunks: ChunkRef,
+    #[word(name = "value")]
+    values: Vec<Column>,
+    /// Takes the motion of each chunk's centre away before temperatures are taken.
+    #[word(keyword, default = false)]
+    com: bool,
+    /// The temperature compute (temp/com, temp/partial, temp/ramp …) whose flow is taken away from all values.
+    #[word(keyword, name = "ID", with = temp_flow::named, kind = Kind::Compute)]
+    bias: Option<ValueRef>,
+    /// Degrees of freedom per particle: 3 without it, 2 in flat scenes.
+    #[word(keyword, name = "n", what = "degrees of freedom per particle")]
+    adof: Option<f64>,
+    /// Degrees of freedom per chunk.
+    #[word(keyword, name = "n", what = "degrees of freedom per chunk", default = 0.0)]
+    cdof: f64,
+}
+
+/// What a column of the array holds.
+#[derive(Clone, Copy, Words)]
+enum Column {
+    /// The temperature of the chunk, of N `adof` + `cdof` degrees of freedom.
+    #[word("temp")]
     Temperature,
+    /// ½ M v² of its centre of mass.
+    #[word("kecom")]
     OfCentre,
+    /// Σ ½ m v² of what is left without the motion of its centre.
     Internal,
 }
 
 impl ComputeStyle for TempChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        let adof = if cx.world.settings.two_dimensional { 2.0 } else { 3.0 };
-        let (id, group) = (cx.id.to_string(), cx.group);
-        let mut c = Declared { id, group, chunks, values: vec![], com: false, bias: None, adof, cdof: 0.0 };
-        let words = ["temp", "kecom", "internal", "com", "bias", "adof", "cdof"];
-        let mut options = false;
-        while let Some(word) = args.next() {
-            let value = match word.text.as_str() {
-                "temp" => Some(Value::Temperature),
-                "kecom" => Some(Value::OfCentre),
-                "internal" => Some(Value::Internal),
-                _ => None,
-            };
-            match (value, word.text.as_str()) {
-                (Some(value), _) if !options => c.values.push(value),
-                (Some(_), text) => {
-                    let text = format!("the value `{text}` must stand before the keywords");
-                    return Err(Diagnostic::error(Code::BAD_VALUE, word.span, text).into());
-                }
-                (_, "com") => c.com = args.flag("com")?,
-                (_, "bias") => c.bias = Some(temp_flow::named(args, cx)?),
-                (_, "adof") => c.adof = args.number("degrees of freedom per particle")?,
-                (_, "cdof") => c.cdof = args.number("degrees of freedom per chunk")?,
-                _ => return Err(args.unknown(word, &words)),
-            }
-            options |= value.is_none();
-        }
-        if let Some(bias) = c.bias.as_ref().filter(|_| c.com) {
+        let Line { chunks, values, com, bias, adof, cdof } = read(args, cx)?;
+        if let Some(bias) = bias.as_ref().filter(|_| com) {
             let text = "`com yes` and `bias` cannot be used together";
             return Err(Diagnostic::error(Code::CONFLICT, bias.span, text).into());
         }
-        Ok(Box::new(c))
+        let adof = adof.unwrap_or(if cx.world.settings.two_dimensional { 2.0 } else { 3.0 });
+        let (id, group) = (cx.id.to_string(), cx.group);
+        Ok(Box::new(Declared { id, group, chunks, values, com, bias, adof, cdof }))
     }
 }
 
@@ -88,7 +92,7 @@ struct Declared {
     id: String,
     group: GroupId,
     chunks: ChunkRef,
-    values: Vec<Value>,
+    values: Vec<Column>,
     com: bool,
     bias: Option<ValueRef>,
     adof: f64,
@@ -109,10 +113,10 @@ impl Declared {
             let dof = self.adof * n + self.cdof;
             let of_centre = mean(*centre);
             self.values.iter().map(move |value| match value {
-                Value::Temperature if *n > 0.0 => counting * (c.mvv2e / (dof * c.boltz)),
-                Value::Temperature => 0.0,
-                Value::OfCentre => 0.5 * c.mvv2e * centre[3] * dot(of_centre, of_centre),
-                Value::Internal => 0.5 * c.mvv2e * thermal,
+                Column::Temperature if *n > 0.0 => counting * (c.mvv2e / (dof * c.boltz)),
+                Column::Temperature => 0.0,
+                Column::OfCentre => 0.5 * c.mvv2e * centre[3] * dot(of_centre, of_centre),
+                Column::Internal => 0.5 * c.mvv2e * thermal,
             })
         });
         row.collect()

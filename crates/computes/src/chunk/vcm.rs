@@ -1,10 +1,11 @@
 //! compute vcm/chunk: velocity of the centre of mass of each chunk.
 
-use super::ChunkRef;
+use super::OfChunks;
 use super::com::Means;
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -16,20 +17,21 @@ impl Style for VcmChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group vcm/chunk chunkID",
+            syntax: "",
             summary: "Velocity of the centre of mass of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m v / Σ m over the particles of the chunk that \
-                   are in the group, in velocity units; zeros for chunks without mass. chunkID names a `compute \
-                   chunk/atom`.",
+                   are in the group, in velocity units; zeros for chunks without mass.",
             example: "compute cc all chunk/atom type\ncompute v all vcm/chunk cc",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
 impl ComputeStyle for VcmChunk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let chunks = ChunkRef::read(args, cx)?;
-        args.finish()?;
+        let OfChunks { chunks } = read(args, cx)?;
         Ok(Box::new(Means { id: cx.id.to_string(), group: cx.group, chunks, of: |w, i| w.particles.v[i] }))
     }
 }

@@ -47,6 +47,29 @@ pub enum Kind {
     Words(&'static Grammar),
     /// This, or `NULL` for nothing.
     OrNull(&'static Kind),
+    /// One of some words, or else something of the second kind.
+    Or(&'static Kind, &'static Kind),
+}
+
+impl Kind {
+    /// Whether a word is one of its choices.
+    pub fn has(&self, text: &str) -> bool {
+        matches!(self, Self::Choice(all) if all.iter().any(|a| a.word == text))
+    }
+}
+
+/// Syntax lines show the name of a place in which one of more words may stand, not these words.
+const MANY: usize = 16;
+
+/// The words of a table as choices, described by what the place says.
+pub const fn alternatives<T, const N: usize>(rows: &[(&'static str, T); N]) -> [Alternative; N] {
+    let mut all = [Alternative { word: "", about: "", parts: &[] }; N];
+    let mut k = 0;
+    while k < N {
+        all[k].word = rows[k].0;
+        k += 1;
+    }
+    all
 }
 
 /// A place for a word.
@@ -151,6 +174,18 @@ impl Grammar {
     /// The same as words.
     pub fn keywords(&'static self) -> Vec<&'static str> {
         self.every().iter().map(|k| k.word).collect()
+    }
+
+    /// The words that may stand where those in order end: what may be left out there, more of a list, and keywords.
+    pub fn known(&'static self) -> Vec<&'static str> {
+        let mut known = self.keywords();
+        for part in self.in_order().into_iter().rev() {
+            let (Part::Maybe([Part::Word(word), ..]) | Part::Many([Part::Word(word), ..], _)) = part else {
+                break;
+            };
+            known.splice(0..0, word.alternatives().iter().map(|a| a.word));
+        }
+        known
     }
 
     /// Whether a word is a keyword of the line.
@@ -311,6 +346,7 @@ impl Placeholder {
     fn alternatives(&self) -> &'static [Alternative] {
         match self.kind {
             Kind::Choice(all) => all,
+            Kind::Or(Kind::Choice(all), _) => all,
             _ => &[],
         }
     }
@@ -320,11 +356,16 @@ impl Placeholder {
         match self.kind {
             Kind::Switch => "yes|no".into(),
             Kind::Words(grammar) => grammar.line(),
+            Kind::Choice(all) if all.len() > MANY => self.name.into(),
             Kind::Choice(all) if all.iter().all(|a| a.parts.is_empty()) => {
                 all.iter().map(|a| a.word).collect::<Vec<_>>().join("|")
             }
             Kind::Choice(all) => all.iter().map(Alternative::shown).collect::<Vec<_>>().join(" | "),
             Kind::OrNull(_) => format!("{}|NULL", self.name),
+            Kind::Or(first, second) => {
+                let shown = [first, second].map(|kind| Self { kind: *kind, ..*self }.shown());
+                shown.join(if shown.iter().any(|s| s.contains(' ')) { " | " } else { "|" })
+            }
             _ => self.name.into(),
         }
     }
@@ -332,7 +373,9 @@ impl Placeholder {
     /// The same without the words behind choices.
     fn short(&self) -> String {
         match self.kind {
-            Kind::Choice(all) => all.iter().map(|a| a.word).collect::<Vec<_>>().join("|"),
+            Kind::Choice(all) if all.len() <= MANY => {
+                all.iter().map(|a| a.word).collect::<Vec<_>>().join("|")
+            }
             _ => self.shown(),
         }
     }

@@ -7,13 +7,13 @@ mod grammar;
 mod values;
 
 pub use crate::BuildCx;
-pub use grammar::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder};
+pub use grammar::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder, alternatives};
 pub use perigrain_base::diag::Result;
 pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
 pub use values::{
-    At, Axis, Fraction, GlobalValue, MarsagliaSeed, Nullable, OneType, PerAtom, Seed, Types, Units, Value,
-    VelocityAxis, Whole,
+    At, Axis, BondType, Fraction, GlobalValue, MarsagliaSeed, Nullable, OneType, Or, PerAtom, Seed, Types,
+    Units, Value, VelocityAxis, Whole,
 };
 
 use crate::common::choice_or_refuse;
@@ -66,7 +66,7 @@ pub fn inner<T: Words>(args: &mut Args, cx: &BuildCx) -> Result<T> {
 
 /// The refusal of a word where a keyword should stand.
 fn unexpected<T: Words>(word: &Word, args: &Args) -> perigrain_base::diag::Diagnostics {
-    let known = T::GRAMMAR.keywords();
+    let known = T::GRAMMAR.known();
     if T::GRAMMAR.refuses(&word.text) {
         return crate::common::not_here(word, &format!("keyword of {}", args.command()));
     }

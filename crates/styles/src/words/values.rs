@@ -5,7 +5,7 @@ use crate::BuildCx;
 use crate::common::{self, variable_param};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Args, Param, Word};
-use perigrain_world::{GroupId, Region, World};
+use perigrain_world::{GroupId, Key, Region, World};
 use std::path::PathBuf;
 
 /// What a word of a line, or a few words, can be read as.
@@ -145,6 +145,15 @@ impl Value for Region {
     }
 }
 
+/// The ID of a region.
+impl Value for Key<Region> {
+    const KIND: Kind = Kind::Region;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("a region")?;
+        cx.region(word).map(|_| Self::new(&word.text))
+    }
+}
+
 /// A type or a range of types, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Types(pub u16, pub u16);
@@ -191,6 +200,17 @@ impl Value for GlobalValue {
     }
     fn begins(word: &Word) -> bool {
         ["c_", "f_", "v_"].iter().any(|p| word.text.starts_with(p))
+    }
+}
+
+/// A bond type that there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BondType(pub u16);
+
+impl Value for BondType {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        common::bond_type(args, cx.world.bonds.types).map(Self)
     }
 }
 
@@ -289,6 +309,28 @@ impl<T: Value> Value for Nullable<T> {
             return Ok(Self(None));
         }
         T::value(what, args, cx).map(|value| Self(Some(value)))
+    }
+}
+
+/// A word of some, or else something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Or<W, T> {
+    /// One of these words.
+    Word(W),
+    /// What stands there in place of them.
+    Else(T),
+}
+
+impl<W: Value, T: Value> Value for Or<W, T> {
+    const KIND: Kind = Kind::Or(&W::KIND, &T::KIND);
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        match args.peek().is_some_and(W::begins) {
+            true => W::value(what, args, cx).map(Self::Word),
+            false => T::value(what, args, cx).map(Self::Else),
+        }
+    }
+    fn begins(word: &Word) -> bool {
+        W::begins(word) || T::begins(word)
     }
 }
 
