@@ -13,6 +13,7 @@ trap 'rm -rf "$work"' EXIT
 for tool in git dpkg-deb python3 strip objdump; do
     command -v "$tool" >/dev/null || { echo "release: skipped, $tool is not installed"; exit 0; }
 done
+git -C "$top" rev-parse --verify --quiet HEAD >/dev/null || { echo "release: skipped, this is no git repository"; exit 0; }
 fail() {
     echo "release: $1" >&2
     exit 1
