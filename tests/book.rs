@@ -285,7 +285,7 @@ fn formulas_name_their_source_and_the_code_that_computes_them() {
 fn verified_cases_that_the_book_names_are_there() {
     let mut wrong = String::new();
     for (page, text) in pages_in("theory") {
-        let Some((_, cases)) = text.split_once("Held to by `perigrain verify`") else { continue };
+        let Some((_, cases)) = text.split_once("Checked by `perigrain verify`") else { continue };
         for name in spans(cases) {
             let groups = fs::read_dir(docs().join("../src/verify/cases")).unwrap().map(|e| e.unwrap().path());
             if !groups.into_iter().any(|group| group.join(format!("{name}.in")).exists()) {

@@ -92,12 +92,12 @@ const BOOK: [&str; 2] = [
      - [Benchmarks](benchmarks.md)\n\
      - [Stability](stability.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
-     - [Decks of others](safe.md)\n\
+     - [Untrusted decks](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\
      - [Forecast on many machines](scaling.md)\n\
      - [What a step does without](skipping.md)\n\n\
-     # The program inside\n\n\
-     - [The house](architecture.md)\n\
+     # Inside the program\n\n\
+     - [Architecture](architecture.md)\n\
      - [Decisions: crates](decisions/crates.md)\n\
      - [Decisions: state and plans](decisions/state.md)\n\
      - [Decisions: passes over particles](decisions/passes.md)\n\
@@ -109,8 +109,8 @@ const BOOK: [&str; 2] = [
      - [Decisions: ranks](decisions/ranks.md)\n\
      - [Decisions: adding laws](decisions/adding-laws.md)\n\
      - [Decisions: dependencies](decisions/dependencies.md)\n\
-     - [Decisions: what strangers hit](decisions/strangers.md)\n\
-     - [Decisions: what moves particles as a whole](decisions/movers.md)\n\
+     - [Decisions: faults found by outside tests](decisions/strangers.md)\n\
+     - [Decisions: motions of matter as a whole](decisions/movers.md)\n\
      - [Decisions: names](decisions/names.md)\n",
 ];
 

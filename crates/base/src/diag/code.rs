@@ -196,7 +196,7 @@ codes! {
         "Particles move ten times as fast as waves with more than a million times the energy that the run began with, or no fix does work and there is a million times as much energy all the same: it was made from nothing, by a time step that is too long or by particles that overlap heavily. `thermo_modify energy ignore` lets such a run continue; under `compat lammps` it is a warning.",
         "", "";
     NOT_ALLOWED = 207, "not allowed by -safe",
-        "The program was started with `-safe`, which keeps a deck in its own folder: no `shell`, no environment, no file outside, and so much memory, so many steps, lines, files and pixels. `Decks of others` in the manual lists the limits, and how to allow more.",
+        "The program was started with `-safe`, which keeps a deck in its own folder: no `shell`, no environment, no file outside, and so much memory, so many steps, lines, files and pixels. `Untrusted decks` in the manual lists the limits, and how to allow more.",
         "", "";
     OUTSIDE = 208, "the hosting program failed",
         "A `fix external pf/callback` calls the program that hosts the run for forces: that program has set no function, or the function ended in an exception. In a terminal no program hosts the run; in Python `lmp.set_fix_external_callback` sets the function.",
