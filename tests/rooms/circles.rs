@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::fs;
 
 /// Where circles are looked for: the sources of a crate, and the module below which files count (the crate itself if empty).
-const LOOKED_AT: &[(&str, &str)] = &[("crates/peri/src", "")];
+const LOOKED_AT: &[(&str, &str)] = &[("crates/peri/src", ""), ("src", "graph")];
 
 /// The most files that may import each other in one circle.
 const MOST: usize = 3;

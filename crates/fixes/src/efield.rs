@@ -86,8 +86,8 @@ impl FixStyle for Efield {
         }
         // As in LAMMPS the potential overrides the energy.
         let energy = match (potential, energy) {
-            (Some(of), _) => Energy::Said { of: of.value.0, potential: true },
-            (None, Some(of)) => Energy::Said { of: of.value.0, potential: false },
+            (Some(of), _) => Energy::Given { of: of.value.0, potential: true },
+            (None, Some(of)) => Energy::Given { of: of.value.0, potential: false },
             _ if constant => Energy::Own,
             _ => Energy::None,
         };

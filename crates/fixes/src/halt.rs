@@ -197,7 +197,7 @@ impl Fix for Declared {
         };
         let (me, log, access) = (self.clone(), cx.log(), Needs::new().read(SLOTS).write(CLOCK));
         let op = StepOp::new(format!("fix {} halt", self.id), Stage::EndOfStep, access, move |w, t| {
-            let value = me.now(w, reading)?;
+            let value = me.present_value(w, reading)?;
             if !me.operator.holds(value, me.value) {
                 return Ok(());
             }

@@ -132,3 +132,14 @@ pub fn wrong<T>(span: Span, text: &str) -> syn::Result<T> {
 pub fn literals(words: &[String]) -> TokenStream {
     quote::quote!(&[#(#words),*])
 }
+
+/// What the code that is written names: one by one, so that types of the deriving module keep their names.
+pub fn imports() -> TokenStream {
+    quote::quote! {
+        #[allow(unused_imports)]
+        use ::perigrain_styles::words::{
+            Alternative, Args, At, BuildCx, Grammar, Keyword, Kind, Part, Placeholder, Result, Value, Whole, Word,
+            Words, inner, one_of,
+        };
+    }
+}

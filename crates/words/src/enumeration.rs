@@ -1,6 +1,6 @@
 //! An enum: one of several words, each with words of its own behind it.
 
-use super::attributes::{Said, literals};
+use super::attributes::{Said, imports, literals};
 use super::parts::Field;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -28,9 +28,10 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
         Some(what) => quote!(#what),
         None => quote!(what),
     };
+    let imports = imports();
     Ok(quote! {
         const _: () = {
-            use ::perigrain_styles::words::*;
+            #imports
             impl Value for #ident {
                 const KIND: Kind = Kind::Choice(&[#(#alternatives),*]);
                 #[allow(unreachable_code)]

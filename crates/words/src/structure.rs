@@ -1,6 +1,6 @@
 //! A struct: words in order, then keywords.
 
-use super::attributes::{Said, literals, wrong};
+use super::attributes::{Said, imports, literals, wrong};
 use super::parts::Field;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -33,9 +33,10 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
     }
     let Built { parts, keywords, begin, arms, nested, fields } = built;
     let refused = literals(&own.refused);
+    let imports = imports();
     Ok(quote! {
         const _: () = {
-            use ::perigrain_styles::words::*;
+            #imports
             impl Words for #ident {
                 const GRAMMAR: &'static Grammar =
                     &Grammar { parts: &[#(#parts),*], keywords: &[#(#keywords),*], refused: #refused };
