@@ -10,6 +10,7 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::near::bonds_within;
 use perigrain_styles::pull::{Pull, Stretched, apart};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Alternative, Form, Kind, Value, Words, alternatives, one_in, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, Fields, KIND, MASK, MASS, MEMO, TAG, TYPE_MASS, V, X};
 use perigrain_world::index::Index;
@@ -24,15 +25,10 @@ impl Style for BondLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group bond/local dist|dx|dy|dz|engpot|force|fx|fy|fz|engvib|engrot|engtrans|omega|velvib|b1|… …",
+            syntax: "",
             summary: "Lengths, energies, forces and relative motion of bonds.",
             text: "Local vector for one value, array for several; a row for each bond with both ends in the group, in the order \
-                   of compute property/local. `dist`: length, `dx dy dz` its components from the second end to the first; \
-                   `engpot force fx fy fz`: energy and force of the bond (0 while it is turned off; negative pulls the ends \
-                   together); of the ends' motion against their centre of mass: `engvib` kinetic energy along the bond, `engrot` \
-                   across it, `velvib` the speed of lengthening, `omega` angular velocity; `engtrans`: kinetic energy of the \
-                   centre. `b1 b2 …` and other names are additional values of the bond style, listed on its page; 0 of bonds that are turned off. \
-                   There are no energies and forces of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
+                   of compute property/local. There are no energies and forces of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
@@ -40,10 +36,13 @@ impl Style for BondLocal {
                       thermo_style custom step c_m[*]\nrun 10",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Value {
+enum Quantity {
     Dist,
     D(usize),
     EngPot,
@@ -58,31 +57,63 @@ enum Value {
     Extra(&'static str),
 }
 
-/// The values that only some bond styles provide.
-const EXTRAS: [&str; 12] =
-    ["b1", "b2", "b3", "b4", "b5", "b6", "b7", "tension", "shear", "bend", "twist", "load"];
-
-const VALUES: [(&str, Value); 14] = [
-    ("dist", Value::Dist),
-    ("dx", Value::D(0)),
-    ("dy", Value::D(1)),
-    ("dz", Value::D(2)),
-    ("engpot", Value::EngPot),
-    ("force", Value::Force),
-    ("fx", Value::F(0)),
-    ("fy", Value::F(1)),
-    ("fz", Value::F(2)),
-    ("engvib", Value::EngVib),
-    ("engrot", Value::EngRot),
-    ("engtrans", Value::EngTrans),
-    ("omega", Value::Omega),
-    ("velvib", Value::VelVib),
+const QUANTITIES: [(&str, Quantity); 26] = [
+    ("dist", Quantity::Dist),
+    ("dx", Quantity::D(0)),
+    ("dy", Quantity::D(1)),
+    ("dz", Quantity::D(2)),
+    ("engpot", Quantity::EngPot),
+    ("force", Quantity::Force),
+    ("fx", Quantity::F(0)),
+    ("fy", Quantity::F(1)),
+    ("fz", Quantity::F(2)),
+    ("engvib", Quantity::EngVib),
+    ("engrot", Quantity::EngRot),
+    ("engtrans", Quantity::EngTrans),
+    ("omega", Quantity::Omega),
+    ("velvib", Quantity::VelVib),
+    ("b1", Quantity::Extra("b1")),
+    ("b2", Quantity::Extra("b2")),
+    ("b3", Quantity::Extra("b3")),
+    ("b4", Quantity::Extra("b4")),
+    ("b5", Quantity::Extra("b5")),
+    ("b6", Quantity::Extra("b6")),
+    ("b7", Quantity::Extra("b7")),
+    ("tension", Quantity::Extra("tension")),
+    ("shear", Quantity::Extra("shear")),
+    ("bend", Quantity::Extra("bend")),
+    ("twist", Quantity::Extra("twist")),
+    ("load", Quantity::Extra("load")),
 ];
 
-impl Value {
+const NAMES: &[Alternative] = &alternatives(&QUANTITIES);
+
+impl Value for Quantity {
+    const KIND: Kind = Kind::Choice(NAMES);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        if let Some(word) = args.peek().filter(|w| w.text.starts_with("v_") || w.text == "set") {
+            let text = format!("`{}`: variables of the length are not in perigrain", word.text);
+            return fail(Code::NOT_SUPPORTED, word.span, text);
+        }
+        one_in("value of bonds", args, &QUANTITIES)
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// `dist`: length, `dx dy dz` its components from the second end to the first; `engpot force fx fy fz`: energy and force of the
+    /// bond (0 while it is turned off; negative pulls the ends together); of the ends' motion against their centre of mass: `engvib`
+    /// kinetic energy along the bond, `engrot` across it, `velvib` the speed of lengthening, `omega` angular velocity; `engtrans`:
+    /// kinetic energy of the centre; `b1 b2 …` and other names: values of the bond style, listed on its page, 0 of bonds that are
+    /// turned off.
+    #[word(name = "value", least = 1)]
+    values: Vec<Quantity>,
+}
+
+impl Quantity {
     /// Whether it needs a bond style.
     fn of_force(self) -> bool {
-        matches!(self, Value::EngPot | Value::Force | Value::F(_) | Value::Extra(_))
+        matches!(self, Quantity::EngPot | Quantity::Force | Quantity::F(_) | Quantity::Extra(_))
     }
 }
 
@@ -96,17 +127,7 @@ impl ComputeStyle for BondLocal {
             );
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let names: Vec<&'static str> = VALUES.iter().map(|v| v.0).chain(EXTRAS).collect();
-        let mut values = vec![];
-        while values.is_empty() || !args.is_empty() {
-            if let Some(word) = args.peek().filter(|w| w.text.starts_with("v_") || w.text == "set") {
-                let text = format!("`{}`: variables of the length are not in perigrain", word.text);
-                return fail(Code::NOT_SUPPORTED, word.span, text);
-            }
-            let name = args.choice("value of bonds", &names)?;
-            let extra = Value::Extra(name);
-            values.push(VALUES.iter().find(|v| v.0 == name).map_or(extra, |v| v.1));
-        }
+        let Line { values } = read(args, cx)?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, values }))
     }
 }
@@ -115,7 +136,7 @@ impl ComputeStyle for BondLocal {
 struct Declared {
     id: String,
     group: GroupId,
-    values: Vec<Value>,
+    values: Vec<Quantity>,
 }
 
 /// A bond with the positions and velocities of its ends.
@@ -129,7 +150,7 @@ struct Row {
 }
 
 impl Row {
-    fn get(&self, value: Value) -> f64 {
+    fn get(&self, value: Quantity) -> f64 {
         let [a, b] = self.mass;
         let total = a + b;
         let r = norm(self.d);
@@ -138,20 +159,20 @@ impl Row {
         let reduced = a * b / total;
         let across2 = (dot(relative, relative) - along * along).max(0.0);
         match value {
-            Value::Dist => r,
-            Value::D(k) => self.d[k],
-            Value::EngPot => self.pull.energy,
-            Value::Force => r * self.pull.force_per_length,
-            Value::F(k) => self.d[k] * self.pull.force_per_length,
-            Value::EngVib => 0.5 * self.mvv2e * reduced * along * along,
-            Value::EngRot => 0.5 * self.mvv2e * reduced * across2,
-            Value::EngTrans => {
+            Quantity::Dist => r,
+            Quantity::D(k) => self.d[k],
+            Quantity::EngPot => self.pull.energy,
+            Quantity::Force => r * self.pull.force_per_length,
+            Quantity::F(k) => self.d[k] * self.pull.force_per_length,
+            Quantity::EngVib => 0.5 * self.mvv2e * reduced * along * along,
+            Quantity::EngRot => 0.5 * self.mvv2e * reduced * across2,
+            Quantity::EngTrans => {
                 let c: Vec3 = std::array::from_fn(|k| (a * self.v[0][k] + b * self.v[1][k]) / total);
                 0.5 * self.mvv2e * total * dot(c, c)
             }
-            Value::Omega => across2.sqrt() / r,
-            Value::VelVib => along,
-            Value::Extra(_) => 0.0,
+            Quantity::Omega => across2.sqrt() / r,
+            Quantity::VelVib => along,
+            Quantity::Extra(_) => 0.0,
         }
     }
 }
@@ -166,7 +187,7 @@ impl Declared {
         let (known, name) = style.map_or((&[][..], ""), |s| (s.extras(), s.name()));
         let mut places = vec![];
         for value in &self.values {
-            let Value::Extra(wanted) = value else { continue };
+            let Quantity::Extra(wanted) = value else { continue };
             let Some(place) = known.iter().position(|t| t == wanted) else {
                 let text = format!("bond_style {name} has no `{wanted}` of its bonds");
                 let d = Diagnostic::error(Code::WRONG_KIND, span, text);
@@ -234,7 +255,7 @@ impl Compute for Declared {
                     let row =
                         Row { d, pull, mass: [masses.get(a), masses.get(b)], v: [p.v[a], p.v[b]], mvv2e };
                     out.local.extend(me.values.iter().map(|v| match v {
-                        Value::Extra(_) => extra.next().unwrap_or(0.0),
+                        Quantity::Extra(_) => extra.next().unwrap_or(0.0),
                         v => row.get(*v),
                     }));
                 }

@@ -6,6 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::touching;
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X, X0};
 use perigrain_world::{GroupId, SlotId};
@@ -19,23 +20,30 @@ impl Style for ContactAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group contact/atom [group2]",
+            syntax: "",
             summary: "Number of spheres that each particle touches.",
-            text: "Per-atom vector: how many particles of group2 (all) are no further away than the sum of both radii; 0 \
+            text: "Per-atom vector: how many particles are no further away than the sum of both radii; 0 \
                    outside the group. Pairs that `neigh_modify exclude` takes away do not count, contacts with walls neither. \
                    Cohesive contacts that hold across a gap are none here. Unlike LAMMPS it needs no pair style.",
             example: "compute touching all contact/atom",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Particles of this group count, all without it.
+    #[word(name = "group2")]
+    among: Option<GroupId>,
 }
 
 impl ComputeStyle for ContactAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         super::need_spheres("compute contact/atom", cx)?;
-        let among = match args.next() {
-            Some(word) => cx.group(word)?,
-            None => GroupId::ALL,
-        };
+        let among = read::<Line>(args, cx)?.among.unwrap_or(GroupId::ALL);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, among }))
     }
 }

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, KIND, MASK, TAG};
 use perigrain_world::index::Index;
@@ -19,33 +20,42 @@ impl Style for CountType {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group count/type atom|bond",
+            syntax: "",
             summary: "How many particles, or bonds, of each type there are.",
-            text: "Global vector (intensive), a number for each type of particles or bonds. `atom` counts the particles of the group; `bond` the bonds with both \
-                   ends in it, those among them that `delete_bonds` has turned off. Bonds that have broken are gone, so that the scalar of `bond`, LAMMPS' number \
-                   of bonds of type 0, is 0. There are no angles, dihedrals and impropers.",
+            text: "Global vector (intensive), a number for each type of particles or bonds. Bonds that have broken are gone, so that the scalar of `bond`, LAMMPS' number \
+                   of bonds of type 0, is 0.",
             example: "compute kinds all count/type atom\nvariable grains equal c_kinds[2]",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "kind", what = "what is counted: atom or bond")]
+    counted: At<Counted>,
+}
+
+/// What is counted.
+#[derive(PartialEq, Words)]
+#[word(refused = "angle dihedral improper")]
+enum Counted {
+    /// The particles of the group.
+    Atom,
+    /// The bonds with both ends in the group, those among them that `delete_bonds` has turned off.
+    Bond,
 }
 
 impl ComputeStyle for CountType {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.expect("what is counted: atom or bond")?;
-        let bonds = match word.text.as_str() {
-            "atom" => false,
-            "bond" => true,
-            "angle" | "dihedral" | "improper" => {
-                let text = format!("there are no {}s to count", word.text);
-                return Err(Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).into());
-            }
-            _ => return Err(args.unknown(word, &["atom", "bond"])),
-        };
+        let At { value: counted, span, .. } = read::<Line>(args, cx)?.counted;
+        let bonds = counted == Counted::Bond;
         if bonds && !cx.world.particles.style.bonded {
-            let d = Diagnostic::error(Code::INCOMPLETE, word.span, "this atom style has no bonds");
+            let d = Diagnostic::error(Code::INCOMPLETE, span, "this atom style has no bonds");
             return Err(d.help("`atom_style bond` or `bpm/sphere`, alone or in a hybrid, has them").into());
         }
-        args.finish()?;
         let types = if bonds { cx.world.bonds.types } else { cx.world.types };
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, bonds, types }))
     }

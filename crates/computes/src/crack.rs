@@ -1,6 +1,6 @@
 //! compute crack: position of a crack tip, length, speed and direction of the crack, and its number of arms.
 
-use super::{Compute, ComputeStyle};
+use super::{Compute, ComputeStyle, Share};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{dot, length, scale, sub};
 use perigrain_lang::Args;
@@ -9,6 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::Clusters;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, TAG, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId, World};
@@ -30,61 +31,58 @@ impl Style for CrackTip {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group crack dx dy dz [damage phi] [from x y z] [width w]",
+            syntax: "",
             summary: "A crack that runs in a direction: its tip, length, speed, angle and number of arms.",
             text: "Global vector of 8: 1–3 the tip, 4 the length, 5 the speed, 6 the angle in degrees, 7 the number of arms, 8 the \
-                   number of cracked particles; all 0 while nothing is cracked. A particle of the group is cracked when at least the share \
-                   `phi` of its family is broken (default 0.35; compute damage/atom). The tip is the cracked particle \
-                   that lies farthest in the direction (dx dy dz), at its place before the first run. Length is the straight \
-                   distance to the tip from the point `from` (box units; by default where the tip is at the first \
-                   evaluation), angle that between this line and the direction. Speed is the change of length since the \
-                   evaluation before, over the time between; 0 at the first. Arms are the groups of cracked particles no \
-                   further than 2.1 lattice spacings from each other, among those within `w` (default 4 spacings) behind the \
-                   tip. The group chooses what to look at: leave out edges that shatter.",
+                   number of cracked particles; all 0 while nothing is cracked. The tip is the cracked particle that lies farthest in \
+                   the direction, at its place before the first run. Length is the straight distance to the tip from where the crack \
+                   begins, angle that between this line and the direction. Speed is the change of length since the evaluation before, \
+                   over the time between; 0 at the first. Arms are the groups of cracked particles no further than 2.1 lattice spacings \
+                   from each other, among those in a slab behind the tip. The group chooses what to look at: leave out edges that \
+                   shatter.",
             example: "compute tip all crack 0 1 0 from 0 -0.004 0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The direction in which the crack runs.
+    #[word(name = "dx dy dz", what = "a component of the crack's direction")]
+    along: At<[f64; 3]>,
+    /// The share of its family from which on a particle is cracked (compute damage/atom).
+    #[word(keyword, name = "phi", what = "the damage of a cracked particle", default = Share(DAMAGE), shown = "0.35")]
+    damage: Share,
+    /// Where the crack begins, in units of the box; without it where the tip is at the first evaluation.
+    #[word(keyword, name = "x y z", what = "a coordinate of the crack's beginning")]
+    from: Option<[f64; 3]>,
+    /// The width of the slab behind the tip [distance]: 4 lattice spacings without it.
+    #[word(keyword, name = "w", positive)]
+    width: Option<f64>,
 }
 
 impl ComputeStyle for CrackTip {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         super::need_bonds("crack", cx)?;
-        let at = args.here();
-        let along = triple(args, "a component of the crack's direction")?;
+        let Line { along: At { value: along, span: at, .. }, damage, from, width } = read(args, cx)?;
         let size = length(along);
         if size == 0.0 {
             return fail(Code::BAD_VALUE, at, "the direction of a crack must not be zero");
         }
         let spacing = cx.world.lattice.spacing[0];
-        let mut c = Declared {
+        Ok(Box::new(Declared {
             id: cx.id.to_string(),
             group: cx.group,
             along: scale(1.0 / size, along),
-            damage: DAMAGE,
-            from: None,
-            width: 4.0 * spacing,
+            damage: damage.0,
+            from,
+            width: width.unwrap_or(4.0 * spacing),
             arm: ARM * spacing,
-        };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "damage" => {
-                    let at = args.here();
-                    c.damage = args.positive("the damage of a cracked particle")?;
-                    if c.damage > 1.0 {
-                        return fail(Code::BAD_VALUE, at, "damage is a share: above 0, at most 1");
-                    }
-                }
-                "from" => c.from = Some(triple(args, "a coordinate of the crack's beginning")?),
-                "width" => c.width = args.positive("the width of the slab behind the tip")?,
-                _ => return Err(args.unknown(word, &["damage", "from", "width"])),
-            }
-        }
-        Ok(Box::new(c))
+        }))
     }
-}
-
-fn triple(args: &mut Args, what: &str) -> Result<[f64; 3]> {
-    Ok([args.number(what)?, args.number(what)?, args.number(what)?])
 }
 
 #[derive(Clone)]

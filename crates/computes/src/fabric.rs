@@ -1,6 +1,6 @@
 //! compute fabric: tensors of contact orientations and contact forces.
 
-use super::pair_local::{answering, of_group, touches};
+use super::pair_local::{Cutoff, answering, of_group, touches};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::length;
@@ -8,6 +8,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Interaction, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -24,65 +25,65 @@ impl Style for Fabric {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group fabric type|radius contact|branch|force/normal|force/tangential … \
-                     [type/include list1 list2] …",
+            syntax: "",
             summary: "Tensors of the directions, lengths and forces of contacts.",
             text: "Scalar (extensive): the number of pairs. Vector (intensive) of xx yy zz xy xz yz for each tensor named, in that order, over the \
-                   pairs with both ends in the group. With n the direction of a pair and r its distance, means ⟨⟩ over all N pairs:\n\n\
-                   * `contact`: C = 15/2 (⟨n n⟩ − 1/3 I);\n\
-                   * `branch`: 15/(2 tr D) (D − tr D/3 I) with D = ⟨r n n / (1 + n·C n)⟩;\n\
-                   * `force/normal`: the same with the force f_n along n in the place of r;\n\
-                   * `force/tangential`: 15/(3 tr N) (T − tr T/3 I) with T = ⟨f_t n n / (1 + n·C n)⟩, f_t the size of the \
-                   force across n and N that of `force/normal` (Ouadfel and Rothenburg 2001).\n\n\
-                   `radius`: pairs of spheres that touch; `type`: pairs within the cutoff of their types, those that \
-                   do not touch with zero force. `type/include` keeps pairs of one type of the first list with one of the second; \
-                   lists are types or ranges with commas, as `1,3*4`; several of them add up.",
+                   pairs with both ends in the group. With n the direction of a pair and r its distance, ⟨⟩ is the mean over all N pairs.",
             example: "compute fabric all fabric radius contact force/normal force/tangential",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Which pairs count: those of spheres that touch, or those within the cutoff of their types, of which those that do not
+    /// touch have no force.
+    cutoff: Cutoff,
+    #[word(name = "tensor", what = "a tensor, as `contact`", least = 1)]
+    tensors: Vec<Tensor>,
+    /// Only pairs of one type of the first list with one of the second count: types or ranges with commas, as `1,3*4`; several of them
+    /// add up.
+    #[word(keyword = "type/include", name = "list1 list2", what = "a list of types")]
+    included: Vec<[TypeList; 2]>,
 }
 
 /// The tensors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
 enum Tensor {
+    /// C = 15/2 (⟨n n⟩ − 1/3 I).
     Contact,
+    /// 15/(2 tr D) (D − tr D/3 I) with D = ⟨r n n / (1 + n·C n)⟩.
     Branch,
+    /// The same with the force f_n along n in the place of r.
+    #[word("force/normal")]
     Normal,
+    /// 15/(3 tr N) (T − tr T/3 I) with T = ⟨f_t n n / (1 + n·C n)⟩, f_t the size of the force across n and N that of `force/normal`
+    /// (Ouadfel and Rothenburg 2001).
+    #[word("force/tangential")]
     Tangential,
 }
 
-const TENSORS: [(&str, Tensor); 4] = [
-    ("contact", Tensor::Contact),
-    ("branch", Tensor::Branch),
-    ("force/normal", Tensor::Normal),
-    ("force/tangential", Tensor::Tangential),
-];
+/// Selected types (index type − 1).
+struct TypeList(Vec<bool>);
+
+impl Value for TypeList {
+    const KIND: Kind = Kind::Types;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        type_list(args.expect(what)?, cx.world.types).map(Self)
+    }
+}
 
 impl ComputeStyle for Fabric {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let touching = args.choice("cutoff", &["type", "radius"])? == "radius";
+        let Line { cutoff, tensors, included } = read(args, cx)?;
+        let touching = cutoff == Cutoff::Radius;
         if touching {
             super::need_spheres("`radius`", cx)?;
         }
-        let (mut tensors, mut included) = (vec![], vec![]);
-        while let Some(word) = args.next() {
-            match TENSORS.iter().find(|t| t.0 == word.text) {
-                Some((_, tensor)) => tensors.push(*tensor),
-                None if word.text == "type/include" => {
-                    let types = cx.world.types;
-                    let first = type_list(args.expect("a list of types")?, types)?;
-                    included.push([first, type_list(args.expect("a second list of types")?, types)?]);
-                }
-                None => {
-                    let known: Vec<&'static str> =
-                        TENSORS.iter().map(|t| t.0).chain(["type/include"]).collect();
-                    return Err(args.unknown(word, &known));
-                }
-            }
-        }
-        if tensors.is_empty() {
-            args.expect("a tensor, as `contact`")?;
-        }
+        let included = included.into_iter().map(|lists| lists.map(|list| list.0)).collect();
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, touching, tensors, included }))
     }
 }

@@ -1,13 +1,14 @@
 //! compute fragments: pieces of a body that are connected by bonds, their velocities, and the mass eroded.
 
-use super::{Compute, ComputeStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use super::{Compute, ComputeStyle, Share};
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::near::{Clusters, held_together};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{
@@ -26,11 +27,11 @@ impl Style for Fragments {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group fragments [least n] [damage phi]",
+            syntax: "",
             summary: "Spectrum of the fragments that unbroken bonds hold together: masses, velocities, eroded mass and volume.",
             text: "Fragments are those of compute fragment/atom within the group; a particle without any unbroken bond is one by itself. \
                    The heaviest is the body, the rest is eroded. Global vector of 8: 1 the number of fragments of at \
-                   least `n` particles (default 2), 2 the mass of the body, 3 the mass of the other fragments of at \
+                   least n particles, 2 the mass of the body, 3 the mass of the other fragments of at \
                    least n particles, 4 that of the dust (all smaller ones), 5 the eroded mass (3 and 4), 6 its volume: that \
                    of the crater, reckoned before the first run, 7 its speed, root of the mean square weighted with mass, 8 the speed of its fastest \
                    fragment. Global array, a row for each fragment of at least n particles, the heaviest first (equal \
@@ -39,13 +40,26 @@ impl Style for Fragments {
                    their place; volumes are the peridynamic ones, elsewhere those of spheres. Bonds are those of families and those of the bond table \
                    (`bond_style bpm/*`, `harmonic`), turned off or not.\n\n\
                    A crack leaves crushed particles behind it, and single bonds across such dust are enough to make one fragment \
-                   of its two sides. With `damage phi`, of peridynamic particles only, a particle that has lost the share `phi` of its family or more (compute \
-                   damage/atom) holds nothing together: it counts as one by itself, with the dust. Particles at a clean crack through \
+                   of its two sides unless `damage` parts them. Particles at a clean crack through \
                    planes of bonds have lost up to a half, less farther from it; values of 0.5 to 0.8 part what is crushed from what \
                    is not.",
             example: "compute pieces plate fragments least 5 damage 0.6",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The least number of particles of a fragment that is no dust.
+    #[word(keyword, name = "n", what = "the least number of particles", from = 1, default = 2)]
+    least: usize,
+    /// A peridynamic particle that has lost this share of its family or more (compute damage/atom) holds nothing together: it counts
+    /// as one by itself, with the dust.
+    #[word(keyword, name = "phi", what = "the damage of what holds nothing together", placed)]
+    damage: Option<At<Share>>,
 }
 
 impl ComputeStyle for Fragments {
@@ -55,27 +69,13 @@ impl ComputeStyle for Fragments {
         if !w.particles.style.bonded {
             super::need_bonds("fragments", cx)?;
         }
-        let (mut least, mut damage) = (2, None);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "least" => least = args.integer_from(1, "the least number of particles")? as usize,
-                "damage" if !families => {
-                    let text =
-                        "only peridynamic particles have a damage: bonds of the bond table hold or are gone";
-                    let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-                    return Err(d.help("leave `damage` out").into());
-                }
-                "damage" => {
-                    let at = args.here();
-                    let share = args.positive("the damage of what holds nothing together")?;
-                    if share > 1.0 {
-                        return fail(Code::BAD_VALUE, at, "damage is a share: above 0, at most 1");
-                    }
-                    damage = Some(share);
-                }
-                _ => return Err(args.unknown(word, &["least", "damage"])),
-            }
+        let Line { least, damage } = read(args, cx)?;
+        if let Some(At { span, .. }) = damage.as_ref().filter(|_| !families) {
+            let text = "only peridynamic particles have a damage: bonds of the bond table hold or are gone";
+            let d = Diagnostic::error(Code::CONFLICT, *span, text);
+            return Err(d.help("leave `damage` out").into());
         }
+        let damage = damage.map(|d| d.value.0);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, least, damage }))
     }
 }

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -18,16 +19,28 @@ impl Style for GlobalAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group global/atom index input …",
+            syntax: "",
             summary: "Gives each particle the element of a global vector that an index of its own names.",
-            text: "`index` is a value per particle (`c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, `v_name`), rounded towards zero; inputs \
-                   are global vectors: `c_ID`, `f_ID`, a column `c_ID[k]`, `c_ID[*]` or `f_ID[k]` of a global array, or \
-                   `v_name` of a vector-style variable. Per-atom vector for one input, array for several; 0 where the index \
+            text: "Per-atom vector for one input, array for several; 0 where the index \
                    is below 1 or beyond the vector, and outside the group. With the chunk of each particle as index it shows \
                    every particle the value of its chunk.",
             example: "compute cc all chunk/atom type\ncompute com all com/chunk cc\ncompute g all global/atom c_cc c_com[3]",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// A value per particle (`c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, `v_name`), rounded towards zero.
+    #[word(name = "index", what = "the index, a value per particle", kind = Kind::Value)]
+    index: Word,
+    /// Global vectors: `c_ID`, `f_ID`, a column `c_ID[k]`, `c_ID[*]` or `f_ID[k]` of a global array, or `v_name` of a vector-style
+    /// variable.
+    #[word(name = "input", what = "a global vector, as `c_ID`", kind = Kind::Value, least = 1)]
+    inputs: Vec<Word>,
 }
 
 /// A reference that can be read during a run.
@@ -46,11 +59,12 @@ fn reference(word: &Word) -> Result<ValueRef> {
 
 impl ComputeStyle for GlobalAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let index = reference(args.expect("the index, a value per particle")?)?;
+        let Line { index, inputs: words } = read(args, cx)?;
+        let index = reference(&index)?;
         cx.reading(&index, Wants::PerAtom)?;
         let mut inputs = vec![];
-        while !args.is_empty() || inputs.is_empty() {
-            for word in cx.expand(args.expect("a global vector, as `c_ID`")?, Wants::Vector)? {
+        for word in &words {
+            for word in cx.expand(word, Wants::Vector)? {
                 let r = reference(&word)?;
                 cx.reading(&r, Wants::Vector)?;
                 inputs.push(r);

@@ -47,10 +47,10 @@ struct Line {
     /// Whether there are pairs at all.
     #[word(keyword, default = true)]
     pair: bool,
-    #[word(keyword)]
+    #[word(keyword, placed)]
     molecule: Option<At<Molecules>>,
     /// `yes` is refused: there are no electric forces.
-    #[word(keyword)]
+    #[word(keyword, placed)]
     kspace: Option<At<bool>>,
     /// Changes nothing without electric forces.
     #[word(keyword)]

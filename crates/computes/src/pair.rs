@@ -2,9 +2,10 @@
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::TALLY;
 use perigrain_world::{Key, SlotId};
@@ -18,19 +19,57 @@ impl Style for PairEnergy {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group pair pstyle [1] [epair|evdwl|ecoul]",
+            syntax: "",
             summary: "Potential energy of one pair style, as a sub-style of `hybrid`.",
-            text: "Scalar (extensive), in energy units: what the pair style `pstyle` has tallied, 0 for granular styles as in LAMMPS. \
-                   The style must be declared before. `evdwl` is the same, `ecoul` 0: no style of perigrain has charges. \
-                   The group decides nothing. A sub-style occurs once in a `hybrid`, so that its number can only be 1.",
+            text: "Scalar (extensive), in energy units: what a pair style has tallied, 0 for granular styles as in LAMMPS. The group \
+                   decides nothing.",
             example: "compute bonds all pair peri/pmb",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The name of a pair style, which must be declared before.
+    #[word(name = "pstyle", what = "the name of a pair style")]
+    style: Word,
+    /// A sub-style occurs once in a `hybrid`, so that its number can only be 1.
+    #[word(name = "1")]
+    number: Option<At<Number>>,
+    part: Option<Energy>,
+}
+
+/// The number of a sub-style.
+struct Number(i64);
+
+impl Value for Number {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer("the number of the sub-style").map(Self)
+    }
+    fn begins(word: &Word) -> bool {
+        word.text.starts_with(|c: char| c.is_ascii_digit())
+    }
+}
+
+/// Which part of the energy.
+#[derive(PartialEq, Words)]
+#[word(what = "part of the energy")]
+enum Energy {
+    /// All of it.
+    Epair,
+    /// All of it, as no style of perigrain has charges.
+    Evdwl,
+    /// 0, as no style of perigrain has charges.
+    Ecoul,
 }
 
 impl ComputeStyle for PairEnergy {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.expect("the name of a pair style")?;
+        let Line { style: word, number, part } = read(args, cx)?;
         let known = cx.names.pair_styles();
         if !known.contains(&word.text.as_str()) {
             let text = format!("`{}` is no pair style of this scene", word.text);
@@ -42,17 +81,11 @@ impl ComputeStyle for PairEnergy {
             }
             .into());
         }
-        if args.peek_text().starts_with(|c: char| c.is_ascii_digit()) {
-            let span = args.here();
-            if args.integer("the number of the sub-style")? != 1 {
-                let text = format!("`{}` is there once: its number is 1", word.text);
-                return fail(Code::BAD_VALUE, span, text);
-            }
+        if let Some(At { span, .. }) = number.filter(|n| n.value.0 != 1) {
+            let text = format!("`{}` is there once: its number is 1", word.text);
+            return fail(Code::BAD_VALUE, span, text);
         }
-        let mut coulomb = false;
-        if !args.is_empty() {
-            coulomb = args.choice("part of the energy", &["epair", "evdwl", "ecoul"])? == "ecoul";
-        }
+        let coulomb = part == Some(Energy::Ecoul);
         Ok(Box::new(Declared { id: cx.id.to_string(), style: Key::new(&word.text), coulomb }))
     }
 }

@@ -2,10 +2,11 @@
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, Word};
+use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Interaction, OWN, Probe, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Alternative, Form, Kind, Value, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -22,20 +23,16 @@ impl Style for PairLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group pair/local dist|dx|dy|dz|eng|force|fx|fy|fz|p1|p2|… … [cutoff type|radius]",
+            syntax: "",
             summary: "Distance, force and more of every pair of particles.",
             text: "Local vector for one value, array for several; a row for each pair with both ends in the group, in the order of \
-                   compute property/local: the particle of smaller id is the first. `dist`: distance; `dx dy dz`: x_1 − x_2; \
-                   `force`: force along the line of centres, positive where it pushes apart; `fx fy fz`: that force on the first; \
-                   `eng`: energy of the pair, 0 for granular styles as in LAMMPS.\n\n\
-                   `p1` … are the pair style's own. `granular` has 12: the tangential force on the first (1–3) and its size (4), \
+                   compute property/local: the particle of smaller id is the first.\n\n\
+                   Of values of its own `granular` has 12: the tangential force on the first (1–3) and its size (4), \
                    the rolling force (5–7) and its size (8), the twisting torque (9), x_1 − x_2 (10–12); with `normal mdr` a 13th, the mean of the areas of contact of both sides, and with a model of `heat` one more, the heat that flows into the first [energy/time]. `gran/…` have 10: the \
                    tangential force (1–3) and its size (4), the relative velocity along the line of centres (5–7) and across \
                    it (8–10). Forces are those at the present positions and velocities; history is what the contact remembers of \
                    the last step.\n\n\
-                   `cutoff type` (the default): pairs within the cutoff of their types, for granular styles the largest radii of \
-                   the two types together, with zeros where spheres do not touch; `cutoff radius`: pairs closer than the sum of \
-                   their radii. LAMMPS' first particle of a pair is that of its neighbour list, and its granular style shortens the \
+                   LAMMPS' first particle of a pair is that of its neighbour list, and its granular style shortens the \
                    springs of contacts that slide when this compute (or fabric) looks at them, which changes the run; \
                    perigrain's computes change nothing.\n\n\
                    Of peridynamic styles `peri/pmb` alone can be asked, as in LAMMPS, by itself and without `peri_modify broken compress`, `surface`, `influence` and `horizon own`: \
@@ -46,11 +43,14 @@ impl Style for PairLocal {
             example: "compute c all pair/local dist force p4 cutoff radius",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
 /// Value of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Value {
+enum Quantity {
     Distance,
     Along(usize),
     Energy,
@@ -59,65 +59,81 @@ enum Value {
     Own(usize),
 }
 
-impl Value {
+impl Quantity {
     fn of(self, p: &Interaction) -> f64 {
         match self {
-            Value::Distance => p.distance(),
-            Value::Along(k) => p.d[k],
-            Value::Energy => p.energy,
+            Quantity::Distance => p.distance(),
+            Quantity::Along(k) => p.d[k],
+            Quantity::Energy => p.energy,
             // Pairs that do not touch have force 0, not −0.
-            Value::Force => p.central() + 0.0,
-            Value::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
-            Value::Own(k) => p.own[k],
+            Quantity::Force => p.central() + 0.0,
+            Quantity::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
+            Quantity::Own(k) => p.own[k],
         }
     }
 }
 
-const VALUES: [(&str, Value); 9] = [
-    ("dist", Value::Distance),
-    ("dx", Value::Along(0)),
-    ("dy", Value::Along(1)),
-    ("dz", Value::Along(2)),
-    ("eng", Value::Energy),
-    ("force", Value::Force),
-    ("fx", Value::ForceAlong(0)),
-    ("fy", Value::ForceAlong(1)),
-    ("fz", Value::ForceAlong(2)),
+const QUANTITIES: [(&str, Quantity); 9] = [
+    ("dist", Quantity::Distance),
+    ("dx", Quantity::Along(0)),
+    ("dy", Quantity::Along(1)),
+    ("dz", Quantity::Along(2)),
+    ("eng", Quantity::Energy),
+    ("force", Quantity::Force),
+    ("fx", Quantity::ForceAlong(0)),
+    ("fy", Quantity::ForceAlong(1)),
+    ("fz", Quantity::ForceAlong(2)),
 ];
 
-fn value(word: &Word, args: &Args) -> Result<Value> {
-    if let Some((_, v)) = VALUES.iter().find(|v| v.0 == word.text) {
-        return Ok(*v);
-    }
-    match word.text.strip_prefix('p').and_then(|n| n.parse::<usize>().ok()) {
-        Some(n) if (1..=OWN).contains(&n) => Ok(Value::Own(n - 1)),
-        Some(n) => {
-            let text = format!("no pair style has a value `p{n}`: they end at p{OWN}");
-            fail(Code::BAD_VALUE, word.span, text)
+const NAMES: &[Alternative] = &alternatives(&QUANTITIES);
+
+impl Value for Quantity {
+    const KIND: Kind = Kind::Or(&Kind::Choice(NAMES), &Kind::Text);
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let word = args.expect(what)?;
+        if let Some((_, v)) = QUANTITIES.iter().find(|v| v.0 == word.text) {
+            return Ok(*v);
         }
-        None => {
-            let known: Vec<&'static str> = VALUES.iter().map(|v| v.0).chain(["p1", "cutoff"]).collect();
-            Err(args.unknown(word, &known))
+        match word.text.strip_prefix('p').and_then(|n| n.parse::<usize>().ok()) {
+            Some(n) if (1..=OWN).contains(&n) => Ok(Quantity::Own(n - 1)),
+            Some(n) => {
+                let text = format!("no pair style has a value `p{n}`: they end at p{OWN}");
+                fail(Code::BAD_VALUE, word.span, text)
+            }
+            None => {
+                let known = QUANTITIES.iter().map(|v| v.0).chain(["p1", "cutoff"]);
+                Err(args.unknown(word, &known.collect::<Vec<_>>()))
+            }
         }
     }
+}
+
+#[derive(Words)]
+struct Line {
+    /// `dist`: distance; `dx dy dz`: x_1 − x_2; `force`: force along the line of centres, positive where it pushes apart; `fx fy
+    /// fz`: that force on the first; `eng`: energy of the pair, 0 for granular styles as in LAMMPS; `p1` …: the pair style's own.
+    #[word(name = "pN", what = "a value, as `dist`", least = 1)]
+    values: Vec<Quantity>,
+    #[word(keyword)]
+    cutoff: Cutoff,
+}
+
+/// Which pairs there are.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "cutoff")]
+pub(super) enum Cutoff {
+    /// Pairs within the cutoff of their types, for granular styles the largest radii of the two types together: those that do not
+    /// touch have forces of 0.
+    #[default]
+    Type,
+    /// Pairs of spheres closer than the sum of their radii.
+    Radius,
 }
 
 impl ComputeStyle for PairLocal {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mut values = vec![];
-        while let Some(word) = args.peek().filter(|w| w.text != "cutoff") {
-            args.next();
-            values.push(value(word, args)?);
-        }
-        if values.is_empty() {
-            args.expect("a value, as `dist`")?;
-            return fail(Code::MISSING_ARGUMENT, args.here(), "a value is missing before `cutoff`");
-        }
-        let mut touching = false;
-        if args.eat("cutoff") {
-            touching = args.choice("cutoff", &["type", "radius"])? == "radius";
-        }
-        args.finish()?;
+        let Line { values, cutoff } = read(args, cx)?;
+        let touching = cutoff == Cutoff::Radius;
         if touching {
             super::need_spheres("`cutoff radius`", cx)?;
         }
@@ -129,7 +145,7 @@ impl ComputeStyle for PairLocal {
 struct Declared {
     id: String,
     group: GroupId,
-    values: Vec<Value>,
+    values: Vec<Quantity>,
     /// `cutoff radius`.
     touching: bool,
 }
@@ -138,7 +154,8 @@ impl Declared {
     /// Checks that some style provides as many values of its own as are requested.
     fn check(&self, probes: &[Box<dyn Probe>], cx: &dyn SealCx) -> Result<()> {
         let most = probes.iter().map(|p| p.own()).max().unwrap_or(0);
-        let asked = self.values.iter().filter_map(|v| if let Value::Own(k) = v { Some(k + 1) } else { None });
+        let asked =
+            self.values.iter().filter_map(|v| if let Quantity::Own(k) = v { Some(k + 1) } else { None });
         match asked.max() {
             Some(p) if p > most => {
                 let names: Vec<&str> = probes.iter().map(|p| p.name()).collect();

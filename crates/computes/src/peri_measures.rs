@@ -1,6 +1,6 @@
 //! Computes peri/defgrad/atom, peri/strain/atom and peri/stress/atom: deformation of peridynamic families.
 
-use super::{Compute, ComputeStyle};
+use super::{Compute, ComputeStyle, Share};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
 use perigrain_base::par;
 use perigrain_lang::Args;
@@ -9,6 +9,7 @@ use perigrain_peri::moduli::Elastic;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
 use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId};
@@ -28,7 +29,7 @@ impl Style for DefgradAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group peri/defgrad/atom [torn nan|zero] [damage PHI]",
+            syntax: "",
             summary: "Deformation gradient of each peridynamic particle, from its unbroken bonds.",
             text: "Per-atom array of 10 columns: F_xx F_xy F_xz F_yx … F_zz, and J = det F, without dimension. \
                    F = (Σ ω w Y⊗ξ V_j) K⁻¹ with K = Σ ω w ξ⊗ξ V_j over the unbroken bonds, ξ a bond at the first run and Y \
@@ -37,12 +38,14 @@ impl Style for DefgradAtom {
                    among them, where no three bonds have independent directions (one layer of particles), \
                    before the first run, for particles without a family, and outside the group.\n\n\
                    The few bonds of a torn family are a mechanism: its F shows how hinges turn, not how a solid is strained, and \
-                   its stress may be hundreds of times what a bond ever bears. All columns are NaN, or 0 with `torn zero`, \
-                   where more than `damage PHI` of the family's volume is broken (default 0.7), or where the least eigenvalue of K \
-                   is below 0.05 of that of the whole family. `compute reduce` with min and max passes over NaN; means and sums of \
+                   its stress may be hundreds of times what a bond ever bears. A family is torn beyond `damage`, or where the least \
+                   eigenvalue of K is below 0.05 of that of the whole family. `compute reduce` with min and max passes over NaN; means and sums of \
                    a body with torn families are NaN unless `torn zero` is given, and then count those as 0.",
             example: "compute F all peri/defgrad/atom",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -52,13 +55,16 @@ impl Style for StrainAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group peri/strain/atom [torn nan|zero] [damage PHI]",
+            syntax: "",
             summary: "Green–Lagrange strain of each peridynamic particle.",
             text: "Per-atom array of 6 columns xx yy zz xy xz yz: E = ½(FᵀF − 1), without dimension, F as that of compute \
                    peri/defgrad/atom; rotations have no strain. Shear components are half the change of angle. 0 where there is \
                    no F, NaN (or 0) in torn families: `torn` and `damage` as of that compute.",
             example: "compute E all peri/strain/atom",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -68,7 +74,7 @@ impl Style for CauchyAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group peri/stress/atom neohooke E nu [torn nan|zero] [damage PHI]\ncompute ID group peri/stress/atom neohooke material ID [torn nan|zero] [damage PHI]",
+            syntax: "",
             summary: "Cauchy stress of each peridynamic particle, as of a Neo-Hooke solid that is deformed alike.",
             text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
                    J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
@@ -79,36 +85,98 @@ impl Style for CauchyAtom {
             example: "compute S all peri/stress/atom neohooke 1.0e5 0.48",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfNumbers::GRAMMAR), Form::behind(OfMaterial::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(keyword)]
+    torn: Gap,
+    /// A family is torn where more than this share of its volume is broken.
+    #[word(
+        keyword,
+        name = "PHI",
+        what = "the share of a family beyond which it is torn",
+        default = Share(0.7),
+        shown = "0.7"
+    )]
+    damage: Share,
+}
+
+/// What torn families have.
+#[derive(Default, Words)]
+#[word(what = "value of torn families")]
+enum Gap {
+    /// NaN in all columns of torn families.
+    #[default]
+    Nan,
+    /// 0 in all columns of torn families.
+    Zero,
+}
+
+#[derive(Words)]
+struct OfNumbers {
+    law: Law,
+    /// Young's modulus E [pressure].
+    #[word(name = "E", positive)]
+    young: f64,
+    /// Poisson's ratio nu, between −1 and 0.5.
+    #[word(what = "Poisson's ratio nu")]
+    nu: At<f64>,
+    #[word(flatten)]
+    rest: Line,
+}
+
+#[derive(Words)]
+struct OfMaterial {
+    law: Law,
+    material: Named,
+    #[word(flatten)]
+    rest: Line,
+}
+
+/// The material law of the stress.
+#[derive(Words)]
+#[word(what = "material law of the stress")]
+enum Law {
+    Neohooke,
+}
+
+/// A material of the deck.
+#[derive(Words)]
+enum Named {
+    /// Its Young's modulus and Poisson's ratio.
+    Material(#[word(name = "ID", with = of_material, kind = Kind::Material)] Elastic),
 }
 
 impl ComputeStyle for DefgradAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        declared(Measure::Gradient, args, cx)
+        declared(Measure::Gradient, &read(args, cx)?, cx)
     }
 }
 
 impl ComputeStyle for StrainAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        declared(Measure::Strain, args, cx)
+        declared(Measure::Strain, &read(args, cx)?, cx)
     }
 }
 
 impl ComputeStyle for CauchyAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        args.choice("material law of the stress", &["neohooke"])?;
-        let solid = match args.eat("material") {
-            true => of_material(args, cx)?,
-            false => {
-                let young = args.positive("Young's modulus E")?;
-                let at = args.here();
-                let nu = args.number("Poisson's ratio nu")?;
-                if !(nu > -1.0 && nu < 0.5) {
-                    return fail(Code::BAD_VALUE, at, "nu must lie between -1 and 0.5");
-                }
-                Elastic { young, nu }
+        let (solid, rest) = if args.peek_at(1).is_some_and(|w| w.text == "material") {
+            let OfMaterial { law: Law::Neohooke, material: Named::Material(solid), rest } = read(args, cx)?;
+            (solid, rest)
+        } else {
+            let OfNumbers { law: Law::Neohooke, young, nu: At { value: nu, span, unknown }, rest } =
+                read(args, cx)?;
+            if !unknown && !(nu > -1.0 && nu < 0.5) {
+                return fail(Code::BAD_VALUE, span, "nu must lie between -1 and 0.5");
             }
+            (Elastic { young, nu }, rest)
         };
-        declared(Measure::Stress { bulk: solid.bulk(), shear: solid.shear() }, args, cx)
+        declared(Measure::Stress { bulk: solid.bulk(), shear: solid.shear() }, &rest, cx)
     }
 }
 
@@ -129,26 +197,9 @@ fn of_material(args: &mut Args, cx: &BuildCx) -> Result<Elastic> {
     Ok(Elastic { young: m.young, nu: m.nu })
 }
 
-fn declared(measure: Measure, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-    let mut torn = Torn { most: 0.7, value: f64::NAN };
-    while args.peek().is_some() {
-        let word = args.here();
-        match args.choice("keyword", &["torn", "damage"])? {
-            "torn" => {
-                torn.value = if args.choice("value of torn families", &["nan", "zero"])? == "zero" {
-                    0.0
-                } else {
-                    f64::NAN
-                };
-            }
-            _ => {
-                torn.most = args.positive("the share of a family beyond which it is torn")?;
-                if torn.most > 1.0 {
-                    return fail(Code::BAD_VALUE, word, "damage is a share of the family: from 0 to 1");
-                }
-            }
-        }
-    }
+fn declared(measure: Measure, line: &Line, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+    let value = if matches!(line.torn, Gap::Zero) { 0.0 } else { f64::NAN };
+    let torn = Torn { most: line.damage.0, value };
     super::need_bonds(measure.name(), cx)?;
     Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, measure, torn }))
 }

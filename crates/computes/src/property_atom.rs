@@ -10,6 +10,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, unwrapped};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{BOND_FACTORS, HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
@@ -29,14 +30,20 @@ impl Style for PropertyAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group property/atom attribute …",
+            syntax: "",
             summary: "Attributes of each particle.",
-            text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
-                   mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
-                   image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style bpm/sphere `quatw quati quatj quatk`, the orientation; with atom_style dipole `mux muy muz`, the dipole moment, and `mu`, its size; with charges `q`; with atom_style peri `vfrac`, the volume, `peri/strength` and `peri/stiffness`, the factors of `set`, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
-                   with the particle (with its first end only, under `newton off` with both); with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
-                   belong to atom styles that perigrain does not have and are refused. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
+            text: "Per-atom vector for one attribute, array for several; 0 outside the group. All are in the deck's units. LAMMPS' other \
+                   attributes belong to atom styles that perigrain does not have and are refused.\n\n\
+                   - `id type proc mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` image \
+                   counts; `vx vy vz fx fy fz`.\n\
+                   - With atom_style sphere `radius diameter omegax omegay omegaz tqx tqy tqz`; with bpm/sphere `quatw quati quatj quatk`, the \
+                   orientation; with dipole `mux muy muz`, the dipole moment, and `mu`, its size; with charges `q`.\n\
+                   - With atom_style peri `vfrac`, the volume, `peri/strength` and `peri/stiffness`, the factors of `set`, and `s0`.\n\
+                   - With molecules `mol` and `nbonds`, how many bonds are listed with the particle (with its first end only, under `newton off` \
+                   with both).\n\
+                   - With `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest \
+                   stretch, and `lambda`, its plastic multiplier (0 without bonds).\n\
+                   - `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
                    `s0` of pair styles peri/… is LAMMPS' critical stretch: the largest s00 − α s of the bonds that a particle had before the \
                    last step broke some, s being their stretches in that step. Under `-compat lammps` the next step breaks by it, else by \
                    s00 − α s_min of each pair of types, which is the same where all pairs have one s00 and α. Without bonds, and before the first \
@@ -44,6 +51,16 @@ impl Style for PropertyAtom {
             example: "compute r all property/atom radius",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// What each column holds.
+    #[word(name = "attribute", what = "an attribute, as `radius`", kind = Kind::Attribute, least = 1)]
+    attributes: Vec<Word>,
 }
 
 /// What a particle needs to have an attribute.
@@ -240,13 +257,9 @@ fn scaled(w: &World, i: usize, d: usize) -> f64 {
 
 impl ComputeStyle for PropertyAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let first = args.expect("an attribute, as `radius`")?;
-        let mut reads = reads_of(&first.text);
-        let mut getters = vec![read_attribute(first, cx)?];
-        while let Some(word) = args.next() {
-            reads |= reads_of(&word.text);
-            getters.push(read_attribute(word, cx)?);
-        }
+        let Line { attributes } = read(args, cx)?;
+        let reads = attributes.iter().fold(Fields::NONE, |reads, word| reads | reads_of(&word.text));
+        let getters = attributes.iter().map(|word| read_attribute(word, cx)).collect::<Result<_>>()?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters, reads }))
     }
 }

@@ -1,6 +1,6 @@
 //! compute property/local: ids and types of particles in contact and of bonded particles.
 
-use super::pair_local::{answering, of_group};
+use super::pair_local::{Cutoff, answering, of_group};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
@@ -9,6 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{bonds, bonds_within, within};
 use perigrain_styles::probe::{Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Alternative, Form, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -25,22 +26,20 @@ impl Style for PropertyLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group property/local patom1|patom2|ptype1|ptype2 … [cutoff type|radius]\n\
-                     compute ID group property/local natom1|natom2|ntype1|ntype2 …\n\
-                     compute ID group property/local batom1|batom2|btype …",
+            syntax: "",
             summary: "Ids and types of the two ends of every pair, contact or bond.",
             text: "Local vector for one attribute, array for several; a row for each pair with both ends in the group, in the \
-                   order of their ids. `patom1 patom2 ptype1 ptype2`: ids and types of the pairs of compute pair/local with the \
-                   same `cutoff`: those within the cutoff of their types, or with `radius` spheres closer than the sum of \
-                   their radii, for which no pair style is needed. `natom1 …`: the pairs of the neighbour list, which \
-                   reaches one skin further and is as old as its last rebuild. `batom1 batom2 btype`: ids of the ends and type of every \
-                   bond, in the order of the first one's place in storage; without an atom style that has bonds, of every unbroken \
-                   peridynamic bond, whose type is 1 (in LAMMPS these have no such list). Attributes of the three \
-                   kinds do not mix. Those of angles, dihedrals and impropers are refused; peridynamic styles cannot be asked \
-                   for pairs and lists yet. `dump local` writes them, `compute reduce … inputs local` adds \
-                   them up.",
+                   order of their ids. `dump local` writes them, `compute reduce … inputs local` adds them up.\n\n\
+                   The pairs of `natom1 …` are those of the neighbour list, which reaches one skin further and is as old as its last \
+                   rebuild. The bonds of `batom1 …` stand in the order of the first end's place in storage; without an atom style that \
+                   has bonds they are the unbroken peridynamic bonds, whose type is 1 (in LAMMPS these have no such list).\n\n\
+                   Attributes of the three kinds do not mix. Those of angles, dihedrals and impropers are refused; peridynamic \
+                   styles have no pairs and lists here yet.",
             example: "compute b all property/local batom1 batom2",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -69,19 +68,21 @@ impl Row {
 
 type Getter = fn(&Row) -> f64;
 
-const ATTRIBUTES: &[(&str, Of, Getter)] = &[
-    ("patom1", Of::Contact, |r| f64::from(r.tags[0])),
-    ("patom2", Of::Contact, |r| f64::from(r.tags[1])),
-    ("ptype1", Of::Contact, |r| f64::from(r.kinds[0])),
-    ("ptype2", Of::Contact, |r| f64::from(r.kinds[1])),
-    ("natom1", Of::List, |r| f64::from(r.tags[0])),
-    ("natom2", Of::List, |r| f64::from(r.tags[1])),
-    ("ntype1", Of::List, |r| f64::from(r.kinds[0])),
-    ("ntype2", Of::List, |r| f64::from(r.kinds[1])),
-    ("batom1", Of::Bond, |r| f64::from(r.tags[0])),
-    ("batom2", Of::Bond, |r| f64::from(r.tags[1])),
-    ("btype", Of::Bond, |r| f64::from(r.bond)),
+const ATTRIBUTES: [(&str, (Of, Getter)); 11] = [
+    ("patom1", (Of::Contact, |r| f64::from(r.tags[0]))),
+    ("patom2", (Of::Contact, |r| f64::from(r.tags[1]))),
+    ("ptype1", (Of::Contact, |r| f64::from(r.kinds[0]))),
+    ("ptype2", (Of::Contact, |r| f64::from(r.kinds[1]))),
+    ("natom1", (Of::List, |r| f64::from(r.tags[0]))),
+    ("natom2", (Of::List, |r| f64::from(r.tags[1]))),
+    ("ntype1", (Of::List, |r| f64::from(r.kinds[0]))),
+    ("ntype2", (Of::List, |r| f64::from(r.kinds[1]))),
+    ("batom1", (Of::Bond, |r| f64::from(r.tags[0]))),
+    ("batom2", (Of::Bond, |r| f64::from(r.tags[1]))),
+    ("btype", (Of::Bond, |r| f64::from(r.bond))),
 ];
+
+const NAMES: &[Alternative] = &alternatives(&ATTRIBUTES);
 
 /// LAMMPS' attributes that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
@@ -89,11 +90,21 @@ const ELSEWHERE: &[&str] = &[
     "iatom2", "iatom3", "iatom4", "itype",
 ];
 
+#[derive(Words)]
+struct Line {
+    /// `patom1 patom2 ptype1 ptype2`: ids and types of the pairs of compute pair/local with the same `cutoff`; `natom1 natom2 ntype1
+    /// ntype2`: those of the pairs of the neighbour list; `batom1 batom2 btype`: ids of the ends and type of every bond.
+    #[word(name = "attribute", what = "an attribute, as `batom1`", kind = Kind::Choice(NAMES), least = 1)]
+    attributes: Vec<Word>,
+    #[word(keyword)]
+    cutoff: Cutoff,
+}
+
 impl ComputeStyle for PropertyLocal {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let Line { attributes, cutoff } = read(args, cx)?;
         let mut list: Vec<(Of, Getter)> = vec![];
-        while let Some(word) = args.peek().filter(|w| w.text != "cutoff") {
-            args.next();
+        for word in &attributes {
             let (of, getter) = attribute(word)?;
             if list.first().is_some_and(|(first, _)| *first != of) {
                 let text = format!("`{}` cannot stand beside the attributes before it", word.text);
@@ -103,15 +114,7 @@ impl ComputeStyle for PropertyLocal {
             }
             list.push((of, getter));
         }
-        let Some((of, _)) = list.first().copied() else {
-            args.expect("an attribute, as `batom1`")?;
-            return fail(Code::MISSING_ARGUMENT, args.here(), "an attribute is missing before `cutoff`");
-        };
-        let mut touching = false;
-        if args.eat("cutoff") {
-            touching = args.choice("cutoff", &["type", "radius"])? == "radius";
-        }
-        args.finish()?;
+        let (of, touching) = (list[0].0, cutoff == Cutoff::Radius);
         let style = cx.world.particles.style;
         if of == Of::Bond && !style.peri && !style.bonded {
             return fail(Code::INCOMPLETE, cx.span, "these attributes need `atom_style bond`");
@@ -126,8 +129,8 @@ impl ComputeStyle for PropertyLocal {
 
 fn attribute(word: &Word) -> Result<(Of, Getter)> {
     let name = word.text.as_str();
-    if let Some((_, of, getter)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
-        return Ok((*of, *getter));
+    if let Some((_, found)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
+        return Ok(*found);
     }
     if ELSEWHERE.contains(&name) {
         let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, format!("`{name}` is not in perigrain"));

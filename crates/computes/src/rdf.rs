@@ -8,6 +8,7 @@ use perigrain_neigh::list::{Reach, difference};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{one_image, within};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -22,36 +23,48 @@ impl Style for Rdf {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group rdf Nbin [itype jtype …] [cutoff R]",
+            syntax: "",
             summary: "Radial distribution functions g(r) and coordination numbers.",
-            text: "Global array (intensive) of Nbin rows and 1 + 2 columns for each pair of types or ranges such as `2*3` (all types if none \
-                   is given): the middle of the shell, in distance units; g(r), how many particles of jtype there are in the shell \
+            text: "Global array (intensive) of Nbin rows and 1 + 2 columns for each pair of types: the middle of the shell, in distance units; g(r), how many particles of jtype there are in the shell \
                    around one of itype beside how many there would be if they were spread evenly over the box; and how many \
                    there are up to this shell's end. Both ends belong to the group; pairs that exclusions and bonds take away do not count. In two \
                    dimensions shells are rings.\n\n\
-                   Shells of equal width reach up to R, or up to the cutoff of forces: of granular styles twice the largest radius as \
-                   the run begins (grains of `fix freeze` do not count beside each other), of peridynamic ones the largest horizon. R may be longer than in LAMMPS, up to half a periodic length; a \
-                   deck without pair style needs it.",
+                   Without a cutoff of its own shells reach up to that of forces: of granular styles twice the largest radius as \
+                   the run begins (grains of `fix freeze` do not count beside each other), of peridynamic ones the largest horizon.",
             example: "compute g all rdf 20 cutoff 1.5",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of bins, shells of equal width.
+    #[word(name = "Nbin", with = bins, kind = Kind::Whole)]
+    bins: usize,
+    /// The types of the particle in the middle and of those around it, or ranges such as `2*3`; all types if none is given.
+    #[word(name = "itype jtype")]
+    pairs: Vec<[Types; 2]>,
+    /// Shells reach up to this distance, up to half a periodic length, longer than in LAMMPS; a deck without pair style needs it
+    /// [distance].
+    #[word(keyword, name = "R", what = "the cutoff", positive)]
+    cutoff: Option<f64>,
+}
+
+fn bins(args: &mut Args, _: &BuildCx) -> Result<usize> {
+    args.count("the number of bins", BYTES_PER_BIN)
 }
 
 impl ComputeStyle for Rdf {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let bins = args.count("the number of bins", BYTES_PER_BIN)?;
+        let Line { bins, pairs, cutoff } = read(args, cx)?;
         if bins > MOST {
             return fail(Code::BAD_VALUE, cx.span, format!("more than {MOST} bins"));
         }
-        let (mut pairs, mut cutoff) = (vec![], None);
-        while !args.is_empty() {
-            if args.eat("cutoff") {
-                cutoff = Some(args.positive("the cutoff")?);
-                args.finish()?;
-            } else {
-                pairs.push([args.type_range(cx.world.types)?, args.type_range(cx.world.types)?]);
-            }
-        }
+        let ends = |Types(first, last)| (first, last);
+        let mut pairs: Vec<_> = pairs.into_iter().map(|pair| pair.map(ends)).collect();
         if pairs.is_empty() {
             pairs.push([(1, u16::MAX); 2]);
         }

@@ -7,9 +7,10 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::Chosen;
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{F, MASK, REGIONS, V, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, Region, SlotId, World};
 
 /// `compute … reduce`.
 pub struct Reduce;
@@ -23,50 +24,87 @@ impl Style for Reduce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group reduce sum|min|max|ave|sumsq|avesq|sumabs|aveabs|minabs|maxabs input … \
-                     [replace i j] [inputs peratom|local]",
+            syntax: "",
             summary: "Sums, extremes and means of per-atom or local values over the group.",
-            text: "Inputs: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `c_ID[*]`, `f_ID`, `f_ID[k]`, and `v_name` of an \
-                   atom-style variable. One input gives a scalar, several a vector; sums are extensive, all else \
-                   intensive. For an empty group: 0, but 1e20 for `min` and `minabs` and −1e20 for `max`. NaNs never \
-                   are extremes. `replace i j` (modes `min` and `max`) gives, in place of the i-th result, the i-th \
-                   input's value where the j-th input has its extreme. `inputs local` reads local values instead \
-                   (`compute property/local` …), of which all count, whatever the group. LAMMPS 22Jul2025 gives 1e20 for every `minabs` and, where there are \
-                   several inputs, does not divide `aveabs` by the number of particles; perigrain does so only under \
-                   `-compat lammps`. LAMMPS' `sumabs` of several inputs is unset memory; perigrain's is the sum.",
+            text: "One input gives a scalar, several a vector; sums are extensive, all else intensive. For an empty group: 0, but \
+                   1e20 for `min` and `minabs` and −1e20 for `max`. NaNs never are extremes.\n\n\
+                   LAMMPS 22Jul2025 gives 1e20 for every `minabs` and, where there are several inputs, does not divide `aveabs` by the \
+                   number of particles; perigrain does so only under `-compat lammps`. LAMMPS' `sumabs` of several inputs is unset \
+                   memory; perigrain's is the sum.",
             example: "compute worst all reduce max c_dmg",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "mode")]
+    mode: Mode,
+    /// Values per particle: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `c_ID[*]`, `f_ID`, `f_ID[k]`, and `v_name` of an atom-style
+    /// variable.
+    #[word(name = "input", what = "at least one input, as `vx` or `c_ID`", kind = Kind::Attribute, least = 1)]
+    inputs: Vec<Word>,
+    /// The i-th result is the i-th input's value where the j-th input has its extreme; for the modes `min` and `max`.
+    #[word(keyword, name = "i j", what = "the number of an input", from = 1)]
+    replace: Vec<[At<usize>; 2]>,
+    #[word(keyword = "inputs", placed)]
+    level: Option<At<Level>>,
+}
+
+#[derive(Words)]
+struct OfRegion {
+    /// The region.
+    #[word(name = "region-ID")]
+    region: Key<Region>,
+    #[word(flatten)]
+    line: Line,
+}
+
+/// What is read.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "kind of inputs")]
+enum Level {
+    /// Values per particle, of those of the group.
+    Peratom,
+    /// Local values (`compute property/local` …), of which all count, whatever the group.
+    Local,
 }
 
 /// The reduction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+#[word(what = "mode of compute reduce")]
 enum Mode {
+    /// The sum.
     Sum,
+    /// The smallest value.
     Min,
+    /// The largest value.
     Max,
+    /// The mean.
     Ave,
+    /// The sum of squares.
+    #[word("sumsq")]
     SumSquares,
+    /// The mean of squares.
+    #[word("avesq")]
     AveSquares,
+    /// The sum of absolute values.
     SumAbs,
+    /// The mean of absolute values.
     AveAbs,
+    /// The smallest absolute value.
     MinAbs,
+    /// The largest absolute value.
     MaxAbs,
 }
-
-const MODES: &[&str] =
-    &["sum", "min", "max", "ave", "sumsq", "avesq", "sumabs", "aveabs", "minabs", "maxabs"];
 
 /// LAMMPS' extreme of an empty set.
 pub const BIG: f64 = 1e20;
 
 impl Mode {
-    fn named(name: &str) -> Self {
-        use Mode::*;
-        let all = [Sum, Min, Max, Ave, SumSquares, AveSquares, SumAbs, AveAbs, MinAbs, MaxAbs];
-        all[MODES.iter().position(|m| *m == name).unwrap_or(0)]
-    }
-
     /// The contribution of one value.
     fn term(self, a: f64) -> f64 {
         match self {
@@ -144,57 +182,45 @@ impl Style for ReduceRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group reduce/region region-ID sum|min|max|… input … [replace i j]",
+            syntax: "",
             summary: "As compute reduce, for particles that are in a region at that moment.",
-            text: "Modes, inputs and results are those of compute reduce; a particle counts while it is in the group and inside \
+            text: "Results are those of compute reduce; a particle counts while it is in the group and inside \
                    the region.",
             example: "compute deep all reduce/region half max vz",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(OfRegion::GRAMMAR)]
     }
 }
 
 impl ComputeStyle for Reduce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        Ok(Box::new(Declared::read(None, args, cx)?))
+        Ok(Box::new(Declared::new(None, &read(args, cx)?, cx)?))
     }
 }
 
 impl ComputeStyle for ReduceRegion {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let word = args.expect("a region")?;
-        cx.region(word)?;
-        Ok(Box::new(Declared::read(Some(word.text.clone()), args, cx)?))
+        let OfRegion { region, line } = read(args, cx)?;
+        Ok(Box::new(Declared::new(Some(region.text().to_string()), &line, cx)?))
     }
 }
 
-/// The words before the keywords `replace` and `inputs`, and those keywords.
-fn split<'a>(args: &mut Args<'a>) -> Vec<&'a Word> {
-    let mut words = vec![];
-    while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "replace" | "inputs")) {
-        args.next();
-        words.push(word);
-    }
-    words
-}
-
-/// `replace i j`, returned with indices from 0.
-fn read_replace(mode: Mode, inputs: usize, args: &mut Args) -> Result<[usize; 2]> {
-    let span = args.here();
-    let mut pair = [0; 2];
-    for k in &mut pair {
-        let (span, n) = (args.here(), args.integer_from(1, "the number of an input")? as usize);
-        if n > inputs {
-            return fail(Code::BAD_VALUE, span, format!("there are {inputs} inputs, not {n}"));
-        }
-        *k = n - 1;
+/// Inputs of `replace i j`, counted from 0.
+fn replaced(pair: [At<usize>; 2], mode: Mode, inputs: usize) -> Result<[usize; 2]> {
+    let [first, _] = pair;
+    if let Some(At { value, span, .. }) = pair.into_iter().find(|n| n.value > inputs && !n.unknown) {
+        return fail(Code::BAD_VALUE, span, format!("there are {inputs} inputs, not {value}"));
     }
     if !matches!(mode, Mode::Min | Mode::Max) {
-        return fail(Code::CONFLICT, span, "`replace` needs the mode `min` or `max`");
+        return fail(Code::CONFLICT, first.span, "`replace` needs the mode `min` or `max`");
     }
-    if pair[0] == pair[1] {
-        return fail(Code::BAD_VALUE, span, "`replace` needs two different inputs");
+    let [i, j] = pair.map(|n| n.value.min(inputs).saturating_sub(1));
+    if i == j && pair.iter().all(|n| !n.unknown) {
+        return fail(Code::BAD_VALUE, first.span, "`replace` needs two different inputs");
     }
-    Ok(pair)
+    Ok([i, j])
 }
 
 fn read_input(word: &Word, local: bool, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> {
@@ -244,38 +270,21 @@ struct Declared {
 }
 
 impl Declared {
-    fn read(region: Option<String>, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let mode = Mode::named(args.choice("mode of compute reduce", MODES)?);
-        let words = split(args);
-        // `inputs` determines how the words before it are read.
-        let kind = (0..args.len()).find(|k| args.peek_at(*k).is_some_and(|w| w.text == "inputs"));
-        let kind = kind.and_then(|k| args.peek_at(k + 1)).map_or("", |w| w.text.as_str());
-        let local = kind == "local";
+    fn new(region: Option<String>, line: &Line, cx: &BuildCx) -> Result<Self> {
+        let (mode, local) = (line.mode, line.level.filter(|level| level.value == Level::Local));
         let mut inputs = vec![];
-        for word in words {
-            read_input(word, local, cx, &mut inputs)?;
+        for word in &line.inputs {
+            read_input(word, local.is_some(), cx, &mut inputs)?;
         }
         if inputs.is_empty() {
-            args.expect("at least one input, as `vx` or `c_ID`")?;
             return fail(Code::MISSING_ARGUMENT, cx.span, "at least one input is missing, as `vx` or `c_ID`");
         }
-        let mut replace = vec![];
-        while !args.is_empty() {
-            let span = args.here();
-            match args.choice("keyword of compute reduce", &["replace", "inputs"])? {
-                "replace" => replace.push(read_replace(mode, inputs.len(), args)?),
-                _ => {
-                    args.choice("kind of inputs", &["peratom", "local"])?;
-                    if local && region.is_some() {
-                        return fail(
-                            Code::CONFLICT,
-                            span,
-                            "local values are in no region: use compute reduce",
-                        );
-                    }
-                }
-            }
+        let replace = line.replace.iter().map(|pair| replaced(*pair, mode, inputs.len()));
+        let replace = replace.collect::<Result<Vec<_>>>()?;
+        if let (Some(At { span, .. }), true) = (local, region.is_some()) {
+            return fail(Code::CONFLICT, span, "local values are in no region: use compute reduce");
         }
+        let local = local.is_some();
         let touched = mode == Mode::MinAbs || (mode == Mode::AveAbs && inputs.len() > 1);
         if touched {
             cx.fault(cx.span, "`minabs` is 1e20, and `aveabs` of several inputs is a sum", false);

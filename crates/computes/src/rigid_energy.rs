@@ -7,6 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::rigid_bodies::{Body, bodies, bodies_key};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
 use perigrain_world::field::{MEMO, RIGID};
 use perigrain_world::{Numbers, SlotId};
@@ -23,12 +24,14 @@ impl Style for KeRigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group ke/rigid fix-ID",
+            syntax: "",
             summary: "Kinetic energy of the translation of rigid bodies.",
-            text: "Scalar (extensive), in energy units: Σ ½ M v² of the centres of all bodies of this `fix rigid`, `rigid/nve`, \
-                   `rigid/small` or `rigid/nve/small`. The group decides nothing. 0 before bodies are set up, when a run begins.",
+            text: "Scalar (extensive), in energy units: Σ ½ M v² of the centres of all bodies of the fix. The group decides nothing. 0 before bodies are set up, when a run begins.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single\ncompute k all ke/rigid body",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -38,13 +41,22 @@ impl Style for ErotateRigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group erotate/rigid fix-ID",
+            syntax: "",
             summary: "Kinetic energy of the rotation of rigid bodies.",
-            text: "Scalar (extensive), in energy units: Σ ½ ω · I ω about the centres of all bodies of this `fix rigid`, `rigid/nve`, \
-                   `rigid/small` or `rigid/nve/small`. The group decides nothing. 0 before bodies are set up, when a run begins.",
+            text: "Scalar (extensive), in energy units: Σ ½ ω · I ω about the centres of all bodies of the fix. The group decides nothing. 0 before bodies are set up, when a run begins.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single\ncompute r all erotate/rigid body",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// A `fix rigid`, `rigid/nve`, `rigid/small` or `rigid/nve/small`.
+    #[word(name = "fix-ID")]
+    fix: RigidFix,
 }
 
 impl ComputeStyle for KeRigid {
@@ -60,8 +72,7 @@ impl ComputeStyle for ErotateRigid {
 }
 
 fn declared(twice: fn(&Body) -> f64, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-    let fix = RigidFix::read(args, cx)?;
-    args.finish()?;
+    let Line { fix } = read(args, cx)?;
     Ok(Box::new(Energy { id: cx.id.to_string(), fix, twice }))
 }
 
@@ -79,12 +90,12 @@ impl RigidFix {
     pub fn bodies(&self) -> Numbers {
         bodies_key(self.style, &self.id)
     }
+}
 
-    /// Parses the ID of a fix rigid.
-    ///
-    /// # Errors
-    /// Unknown fixes and fixes of other styles.
-    pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+/// The ID of a fix rigid.
+impl Value for RigidFix {
+    const KIND: Kind = Kind::Fix;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the ID of a fix rigid")?;
         let r = ValueRef { kind: RefKind::Fix, name: word.text.clone(), index: vec![], span: word.span };
         let Some(style) = cx.names.fix_style(&r.name) else {

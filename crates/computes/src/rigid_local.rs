@@ -9,6 +9,7 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
 use perigrain_styles::rigid_bodies::{Body, bodies, body_column};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Alternative, At, Form, Kind, Value, Words, alternatives, one_in, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, MEMO, MOLECULE, RIGID, SLOTS, TAG, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -22,25 +23,25 @@ impl Style for RigidLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group rigid/local fix-ID attribute …",
+            syntax: "",
             summary: "Attributes of each rigid body.",
-            text: "Local vector for one attribute, array for several; a row for each body of this `fix rigid/small` or `rigid/nve/small` whose \
+            text: "Local vector for one attribute, array for several; a row for each body of the fix whose \
                    owner is in the group, in the order of the bodies. The owner is the particle nearest to the middle of the box around the \
-                   body's particles when a run first finds it (of several the one with the least ID). Attributes, in the deck's \
-                   units: `id`, of the owner; `mol`, its molecule ID; `mass`; `x y z`, the centre, wrapped into the box as of the last rebuild of neighbour \
-                   lists, `xu yu zu` unwrapped, `ix iy iz` the image counts between them; `vx vy vz`; `fx fy fz`; `omegax omegay \
-                   omegaz`; `angmomx angmomy angmomz`; `quatw quati quatj quatk`; `tqx tqy tqz`; `inertiax inertiay inertiaz`, the principal \
-                   moments, ascending; the sides that their axes point to, and with them the quaternion, may be others than in LAMMPS. No rows before bodies are set up, when a run begins. LAMMPS' rows stand in the order of owners in memory.",
+                   body's particles when a run first finds it (of several the one with the least ID). The \
+                   sides that the axes of the moments point to, and with them the quaternion, may be others than in LAMMPS. No rows before bodies are set up, when a run begins. LAMMPS' rows stand in the order of owners in memory.",
             example: "unfix motion\nset group plate diameter 0.0\nfix mine all property/atom mol\nset group plate mol 1\n\
                       fix body plate rigid/small molecule\ncompute b all rigid/local body mass x y z",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
 /// Arguments: body, id of its owner, offset of its image counts from the box.
 type Read = fn(&Body, [f64; 2], Vec3) -> f64;
 
-const ATTRIBUTES: &[(&str, Read)] = &[
+const ATTRIBUTES: [(&str, Read); 34] = [
     ("id", |_, owner, _| owner[0]),
     ("mol", |_, owner, _| owner[1]),
     ("mass", |b, _, _| b.mass),
@@ -77,21 +78,40 @@ const ATTRIBUTES: &[(&str, Read)] = &[
     ("inertiaz", |b, _, _| b.moments[2]),
 ];
 
+const NAMES: &[Alternative] = &alternatives(&ATTRIBUTES);
+
+/// An attribute of a body.
+struct Attribute(Read);
+
+impl Value for Attribute {
+    const KIND: Kind = Kind::Choice(NAMES);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        one_in("attribute of a rigid body", args, &ATTRIBUTES).map(Self)
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// A `fix rigid/small` or `rigid/nve/small`.
+    #[word(name = "fix-ID")]
+    fix: At<RigidFix>,
+    /// In the deck's units: `id`, of the owner; `mol`, its molecule ID; `mass`; `x y z`, the centre, wrapped into the box as of the
+    /// last rebuild of neighbour lists, `xu yu zu` unwrapped, `ix iy iz` the image counts between them; `vx vy vz`; `fx fy fz`;
+    /// `omegax omegay omegaz`; `angmomx angmomy angmomz`; `quatw quati quatj quatk`; `tqx tqy tqz`; `inertiax inertiay inertiaz`, the
+    /// principal moments, ascending.
+    #[word(name = "attribute", least = 1)]
+    list: Vec<Attribute>,
+}
+
 impl ComputeStyle for RigidLocal {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let at = args.here();
-        let fix = RigidFix::read(args, cx)?;
+        let Line { fix: At { value: fix, span: at, .. }, list } = read(args, cx)?;
         if !fix.style.ends_with("/small") {
             let text = format!("fix `{}` (style {}) is not of style rigid/small", fix.id, fix.style);
             let d = Diagnostic::error(Code::WRONG_KIND, at, text);
             return Err(d.help("its array holds the same for its bodies").into());
         }
-        let names: Vec<&'static str> = ATTRIBUTES.iter().map(|a| a.0).collect();
-        let mut list = vec![];
-        while list.is_empty() || !args.is_empty() {
-            let name = args.choice("attribute of a rigid body", &names)?;
-            list.extend(ATTRIBUTES.iter().filter(|a| a.0 == name).map(|a| a.1));
-        }
+        let list = list.into_iter().map(|a| a.0).collect();
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, fix, list }))
     }
 }

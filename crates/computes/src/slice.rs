@@ -2,9 +2,10 @@
 
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::SlotId;
 use perigrain_world::field::SLOTS;
@@ -18,24 +19,39 @@ impl Style for Slice {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group slice Nstart Nstop Nskip input …",
+            syntax: "",
             summary: "Takes some elements of vectors.",
             text: "From each input the elements Nstart, Nstart + Nskip … below Nstop, counted from 1: as in LAMMPS 22Jul2025, \
-                   Nstop itself is not among them, except where it is the only one (LAMMPS lacks the last one where Nskip does not divide Nstop − Nstart, or crashes). Inputs are global vectors: `c_ID`, `f_ID`, `v_name` of a vector-style variable, \
-                   or a column `c_ID[k]`, `f_ID[k]` of a global array. One input gives a vector, several an array with a \
+                   Nstop itself is not among them, except where it is the only one (LAMMPS lacks the last one where Nskip does not divide Nstop − Nstart, or crashes). One input gives a vector, several an array with a \
                    column each. Whether values grow with the scene follows from the inputs. The group means nothing.",
             example: "compute diagonal all slice 1 4 1 c_thermo_press",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The first element, counted from 1.
+    #[word(name = "Nstart", from = 1)]
+    start: usize,
+    /// The last element, itself not taken unless it is the first.
+    #[word(name = "Nstop", from = 1)]
+    stop: At<usize>,
+    /// The distance of elements.
+    #[word(name = "Nskip", from = 1)]
+    skip: usize,
+    /// Global vectors: `c_ID`, `f_ID`, `v_name` of a vector-style variable, or a column `c_ID[k]`, `f_ID[k]` of a global array.
+    #[word(name = "input", what = "an input", kind = Kind::Value, least = 1)]
+    inputs: Vec<Word>,
 }
 
 impl ComputeStyle for Slice {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let start = args.integer_from(1, "the first element")? as usize;
-        let span = args.here();
-        let stop = args.integer_from(1, "the last element")? as usize;
-        let skip = args.integer_from(1, "the distance of elements")? as usize;
-        if stop < start {
+        let Line { start, stop: At { value: stop, span, unknown }, skip, inputs: words } = read(args, cx)?;
+        if stop < start && !unknown {
             return fail(
                 Code::BAD_VALUE,
                 span,
@@ -44,8 +60,7 @@ impl ComputeStyle for Slice {
         }
         let mut inputs = vec![];
         let mut extensive = false;
-        let first = args.expect("an input")?;
-        for word in std::iter::once(first).chain(args.rest()) {
+        for word in &words {
             for word in cx.expand(word, Wants::Vector)? {
                 let r = match ValueRef::parse(&word.text, word.span)? {
                     Some(r) if !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) => r,

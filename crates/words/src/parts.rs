@@ -171,6 +171,9 @@ impl Field {
                 quote!({
                     let mut all = vec![];
                     while all.len() < #least || args.peek().is_some_and(|w| !args.at_keyword() && <#first as Value>::begins(w)) {
+                        if args.at_keyword() {
+                            return lacking(#what, args);
+                        }
                         all.push(#value);
                     }
                     all

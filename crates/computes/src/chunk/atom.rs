@@ -1,12 +1,13 @@
 //! compute chunk/atom: assigns particles to chunks by spatial bins, by type or by any value.
 
 use super::assign::{Task, key, window};
-use super::words::{Spec, What};
+use super::words::{Line, Spec, What};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words};
 use perigrain_styles::{BuildCx, Chunking, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, MOLECULE, REGIONS, SLOTS, X};
 use perigrain_world::{Fields, SlotId, World};
@@ -20,29 +21,21 @@ impl Style for ChunkAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group chunk/atom bin/1d|bin/2d|bin/3d|bin/sphere|bin/cylinder|type|molecule|c_ID|f_ID|v_name … [keyword value …]",
+            syntax: "",
             summary: "Numbers particles into chunks, for computes and fixes that work chunk by chunk.",
             text: "Per-atom vector: the chunk of each particle from 1 to Nchunk, 0 for none.\n\n\
-                   - `bin/1d dim origin delta`, `bin/2d` and `bin/3d` with two or three of these: layers of thickness \
-                   `delta` along x, y or z in both directions from `origin` (`lower center upper` of what they cover, or a \
-                   coordinate). The last axis given varies fastest.\n\
-                   - `bin/sphere x y z rmin rmax n`: n shells. `bin/cylinder dim origin delta c1 c2 rmin rmax n`: layers \
-                   along an axis, varying fastest, times n rings.\n\
-                   - `type`; `molecule`, the molecule ID; `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, `v_name`: a value per particle, rounded towards zero. \
-                   With `compress yes` particles whose value or molecule is below 1 form chunks like all others, as in \
-                   LAMMPS; else they are outside all chunks.\n\n\
-                   Keywords: `region ID`; `nchunk once|every` counts chunks at the first or at every use (once for types and, without a region, molecules, \
-                   and for bins where the box cannot change); `limit 0` or `limit N max|exact`; `ids once|nfreq|every`: \
-                   when particles are numbered, `nfreq` at the first step of a window of `fix ave/chunk`; `compress yes` \
-                   leaves out numbers without particles; `discard yes|no|mixed`: whether those outside all chunks belong \
-                   to none or to the nearest (`mixed`: to the nearest where bins end at the box); `bound dim lo hi` for \
-                   layers; `pbc yes`: minimum image distances for spheres and cylinders; `units box|lattice|reduced` \
-                   (lattice). A `fix ave/chunk`, or a `fix ave/time` of rows of chunks, holds their number during its windows. \
+                   A value per particle, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` or `v_name`, is rounded towards zero. With `compress yes` \
+                   particles whose value or molecule is below 1 form chunks like all others, as in LAMMPS; else they are outside all \
+                   chunks.\n\n\
+                   A `fix ave/chunk`, or a `fix ave/time` of rows of chunks, holds their number during its windows. \
                    Under `-compat lammps` `mixed` drops what is above the last layer \
                    also where layers end at the box, as LAMMPS 22Jul2025 does. LAMMPS 22Jul2025 ignores or crashes on `limit` together with `compress`; here it \
                    does what LAMMPS' manual says.",
             example: "compute cc all chunk/atom bin/1d z lower 0.1 units reduced",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -52,9 +52,18 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether a word is one of its choices.
+    /// The words that may stand there.
+    pub fn choices(&self) -> &'static [Alternative] {
+        match self {
+            Self::Choice(all) => all,
+            Self::Or(words, _) => words.choices(),
+            _ => &[],
+        }
+    }
+
+    /// Whether a word is one of them.
     pub fn has(&self, text: &str) -> bool {
-        matches!(self, Self::Choice(all) if all.iter().any(|a| a.word == text))
+        self.choices().iter().any(|a| a.word == text)
     }
 }
 
@@ -183,7 +192,7 @@ impl Grammar {
             let (Part::Maybe([Part::Word(word), ..]) | Part::Many([Part::Word(word), ..], _)) = part else {
                 break;
             };
-            known.splice(0..0, word.alternatives().iter().map(|a| a.word));
+            known.splice(0..0, word.kind.choices().iter().map(|a| a.word));
         }
         known
     }
@@ -299,7 +308,7 @@ impl Part {
     fn rows(&self, rows: &mut Vec<[String; 4]>) {
         match self {
             Part::Word(word) => {
-                let choices = word.alternatives().iter().any(|a| !a.about.is_empty());
+                let choices = word.kind.choices().iter().any(|a| !a.about.is_empty());
                 match rows.last_mut() {
                     Some(last) if !word.about.is_empty() && last[1] == word.about => {
                         last[0] = format!("{} {}", last[0], word.name);
@@ -321,7 +330,7 @@ impl Part {
                 if let Kind::Words(grammar) = word.kind {
                     grammar.in_order().iter().for_each(|part| part.choices(keyword, rows));
                 }
-                for one in word.alternatives() {
+                for one in word.kind.choices() {
                     let shown = format!("{keyword} {}", one.shown());
                     rows.push([shown.trim().to_string(), one.about.into(), String::new(), String::new()]);
                 }
@@ -343,14 +352,6 @@ impl Alternative {
 }
 
 impl Placeholder {
-    fn alternatives(&self) -> &'static [Alternative] {
-        match self.kind {
-            Kind::Choice(all) => all,
-            Kind::Or(Kind::Choice(all), _) => all,
-            _ => &[],
-        }
-    }
-
     /// As it stands in a syntax line: choices by their words.
     pub fn shown(&self) -> String {
         match self.kind {

@@ -17,6 +17,7 @@ pub use values::{
 };
 
 use crate::common::choice_or_refuse;
+use perigrain_base::diag::{Code, fail};
 
 /// A line, or a part of one, as words in order and keywords.
 pub trait Words: Sized {
@@ -74,6 +75,28 @@ fn unexpected<T: Words>(word: &Word, args: &Args) -> perigrain_base::diag::Diagn
         return crate::common::left_over(word, args);
     }
     args.unknown(word, &known)
+}
+
+/// Takes one of the words of a table, for what stands beside it.
+///
+/// # Errors
+/// Any other word, with the nearest known one.
+pub fn one_in<T: Clone>(what: &str, args: &mut Args, rows: &[(&'static str, T)]) -> Result<T> {
+    let names: Vec<&'static str> = rows.iter().map(|row| row.0).collect();
+    let name = args.choice(what, &names)?;
+    match rows.iter().find(|row| row.0 == name) {
+        Some((_, value)) => Ok(value.clone()),
+        None => unreachable!("`choice` takes none but these words"),
+    }
+}
+
+/// The refusal of a keyword where one of a list should stand.
+///
+/// # Errors
+/// Always.
+pub fn lacking<T>(what: &str, args: &Args) -> Result<T> {
+    let text = format!("{what} is missing before `{}`", args.peek_text());
+    fail(Code::MISSING_ARGUMENT, args.here(), text)
 }
 
 /// Takes one of the known words; one that only LAMMPS knows is refused by name.
