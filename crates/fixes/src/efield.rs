@@ -43,7 +43,7 @@ impl Style for Efield {
 struct Line {
     /// The field [electric field]: numbers, or `v_name` of equal-style variables, for charges alone also of atom-style ones,
     /// evaluated each step.
-    #[word(name = "ex ey ez", what = "{}", with = components, kind = Kind::Param)]
+    #[word(name = "ex ey ez", with = components, kind = Kind::Param)]
     field: [Param; 3],
     /// Only particles inside it.
     #[word(keyword, name = "ID")]

@@ -1,13 +1,13 @@
 //! fix evaporate: deletes particles at random.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, RegionId};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
-use perigrain_styles::common::seed;
 use perigrain_styles::matter::{Chosen, publish};
 use perigrain_styles::newcomers::Account;
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Seed, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::{MASK, X};
@@ -22,38 +22,51 @@ impl Style for Evaporate {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group evaporate N M region-ID seed [molecule no]",
+            syntax: "",
             summary: "Deletes M particles of a region every N steps, chosen at random.",
-            text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of them \
-                   where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both programs keep \
-                   particles in the same order (`atom_modify sort 0 0` there). Ids of the others stay. A second run continues where the first \
-                   one ended, also after a restart. `molecule yes`, by which whole molecules go, is refused. Scalar (intensive): how many are gone so far.",
+            text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of \
+                   them where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both \
+                   programs keep particles in the same order (`atom_modify sort 0 0` there). Ids of the others stay. A \
+                   second run continues where the first one ended, also after a restart. Scalar (intensive): how many \
+                   are gone so far.",
             example: "fix dry grains evaporate 5 1 ball 4711",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Acts at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    /// The number of particles M.
+    #[word(name = "M", from = 1)]
+    count: i64,
+    /// Where particles go.
+    #[word(name = "region-ID")]
+    region: RegionId,
+    /// The seed of the random numbers.
+    seed: Seed,
+    /// Whether whole molecules go: `yes` is refused.
+    #[word(keyword, what = "molecule", placed, shown = "no")]
+    molecule: Option<At<bool>>,
 }
 
 impl FixStyle for Evaporate {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps N")?;
-        let count = args.integer_from(1, "the number of particles M")? as u64;
-        let word = args.expect("the region's ID")?;
-        cx.region(word)?;
-        let region = word.text.clone();
-        let seed = seed(args)?;
-        while let Some(word) = args.next() {
-            if word.text != "molecule" {
-                return Err(args.unknown(word, &["molecule"]));
-            }
-            if args.flag("molecule")? {
-                let text = match cx.world.particles.style.molecules {
-                    true => "whole molecules do not go in perigrain, only their particles",
-                    false => "the particles of this scene belong to no molecules",
-                };
-                return fail(Code::CONFLICT, word.span, text);
-            }
+        let Line { every, count, region: RegionId(region), seed: Seed(seed), molecule } = read(args, cx)?;
+        if let Some(molecule) = molecule.filter(|molecule| molecule.value) {
+            let text = match cx.world.particles.style.molecules {
+                true => "whole molecules do not go in perigrain, only their particles",
+                false => "the particles of this scene belong to no molecules",
+            };
+            return fail(Code::CONFLICT, molecule.span, text);
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, count, region, seed }))
+        let (id, group, count) = (cx.id.to_string(), cx.group, count as u64);
+        Ok(Box::new(Declared { id, group, every, count, region, seed }))
     }
 }
 

@@ -3,12 +3,13 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_plan::{Stage, When};
-use perigrain_styles::common::{orthogonal, variable_param};
+use perigrain_styles::common::orthogonal;
+use perigrain_styles::words::{Grammar, Keyword, Kind, Part, Placeholder, Value, Words};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::World;
 
 /// The words for faces, two per direction, the lower one first.
-pub const FACES: [&str; 6] = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"];
+const FACES: [&str; 6] = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"];
 
 /// One wall: its axis, its side and its position.
 #[derive(Clone)]
@@ -38,26 +39,6 @@ impl Spot {
 }
 
 impl Face {
-    /// Parses the position of the face named by `word`; `None` if it names none.
-    ///
-    /// # Errors
-    /// A repeated face, and mistakes in the position.
-    pub fn read(word: &Word, before: &[Face], args: &mut Args, cx: &BuildCx) -> Result<Option<Self>> {
-        let Some(k) = FACES.iter().position(|f| *f == word.text) else { return Ok(None) };
-        let (axis, high) = (k / 2, k % 2 == 1);
-        if before.iter().any(|f| (f.axis, f.high) == (axis, high)) {
-            let text = format!("the wall `{}` is there already; use a second fix", word.text);
-            return fail(Code::CONFLICT, word.span, text);
-        }
-        let edge = args.eat("EDGE");
-        let place = match edge {
-            true => Param::Number(edge_of(cx.world, axis, high)),
-            false => variable_param(args, "the wall's place")?,
-        };
-        cx.param(&place, false)?;
-        Ok(Some(Self { axis, high, place, edge }))
-    }
-
     /// Its word.
     pub fn name(&self) -> &'static str {
         FACES[2 * self.axis + usize::from(self.high)]
@@ -83,6 +64,62 @@ impl Face {
     }
 }
 
+/// Walls in the order in which they are named, each with what stands behind its place.
+pub struct Walls<T>(pub Vec<(Face, T)>);
+
+/// The place of a wall.
+const PLACE: Part = Part::Word(Placeholder {
+    name: "place",
+    kind: Kind::Param,
+    about: "The place of a wall: `EDGE` (the face of the box when the fix is declared: it does not move with the box), a number, \
+            or `v_name` of an equal-style variable, evaluated each step.",
+    unit: "length",
+});
+
+/// A keyword that names a wall.
+const fn wall(word: &'static str, values: &'static [Part], about: &'static str) -> Keyword {
+    Keyword { word, values, about, default: "", repeats: false }
+}
+
+impl<T: Words> Walls<T> {
+    const VALUES: &'static [Part] = &[PLACE, Part::All(T::GRAMMAR)];
+}
+
+impl<T: Words> Words for Walls<T> {
+    const GRAMMAR: &'static Grammar = &Grammar {
+        parts: &[],
+        keywords: &[
+            wall("xlo", Self::VALUES, "A wall with the particles above it along x."),
+            wall("xhi", Self::VALUES, "A wall with the particles below it along x."),
+            wall("ylo", Self::VALUES, "A wall with the particles above it along y."),
+            wall("yhi", Self::VALUES, "A wall with the particles below it along y."),
+            wall("zlo", Self::VALUES, "A wall with the particles above it along z."),
+            wall("zhi", Self::VALUES, "A wall with the particles below it along z."),
+        ],
+        refused: &[],
+    };
+
+    fn begin(_: &mut Args, _: &BuildCx) -> Result<Self> {
+        Ok(Self(vec![]))
+    }
+
+    fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
+        let Some(k) = FACES.iter().position(|f| *f == word.text) else { return Ok(false) };
+        let (axis, high) = (k / 2, k % 2 == 1);
+        if self.0.iter().any(|(f, _)| (f.axis, f.high) == (axis, high)) {
+            let text = format!("the wall `{}` is there already; use a second fix", word.text);
+            return fail(Code::CONFLICT, word.span, text);
+        }
+        let edge = args.eat("EDGE");
+        let place = match edge {
+            true => Param::Number(edge_of(cx.world, axis, high)),
+            false => Param::value("the wall's place", args, cx)?,
+        };
+        self.0.push((Face { axis, high, place, edge }, T::begin(args, cx)?));
+        Ok(true)
+    }
+}
+
 /// The current face of the box.
 fn edge_of(w: &World, axis: usize, high: bool) -> f64 {
     w.domain.as_ref().map_or(0.0, |d| if high { d.hi[axis] } else { d.lo[axis] })
@@ -92,13 +129,13 @@ fn edge_of(w: &World, axis: usize, high: bool) -> f64 {
 ///
 /// # Errors
 /// No wall, or a wall across a periodic direction.
-pub fn check(faces: &[Face], through: bool, args: &Args, cx: &BuildCx) -> Result<()> {
-    if faces.is_empty() {
+pub fn check<T>(walls: &[(Face, T)], through: bool, args: &Args, cx: &BuildCx) -> Result<()> {
+    if walls.is_empty() {
         let text = "there is no wall: name at least one of xlo xhi ylo yhi zlo zhi";
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
     let Some(domain) = &*cx.world.domain else { return Ok(()) };
-    let round = faces.iter().find(|f| domain.periodic()[f.axis]).filter(|_| !through);
+    let round = walls.iter().map(|(face, _)| face).find(|f| domain.periodic()[f.axis]).filter(|_| !through);
     let Some(face) = round else { return Ok(()) };
     let axis = ["x", "y", "z"][face.axis];
     let text = format!("the wall `{}` stands in a direction that repeats: {axis} is periodic", face.name());

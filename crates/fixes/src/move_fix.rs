@@ -11,9 +11,9 @@ use perigrain_base::math::vec3::{add, sub};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::{number_or_null, param_or_null, scales, units_lattice};
 use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Kind, Nullable, PerAtom, Units, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, SlotId, Vectors, World};
@@ -28,101 +28,108 @@ impl Style for Move {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group move linear Vx Vy Vz | wiggle Ax Ay Az period | rotate Px Py Pz Rx Ry Rz period | \
-                     transrot Vx Vy Vz Px Py Pz Rx Ry Rz period | variable v_dx v_dy v_dz v_vx v_vy v_vz \
-                     [units lattice|box]",
+            syntax: "",
             summary: "Moves particles on a prescribed path, whatever the forces on them.",
-            text: "With t the time since the fix was declared and x0 the position then (unwrapped): `linear` is \
-                   x = x0 + V t, v = V; `wiggle` is x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period; `rotate` turns \
-                   the particles about the axis R through P, right-handed, orientations (`bpm/sphere`) included, and gives spheres the angular velocity ω; the other motions leave orientations as they are; \
-                   `transrot` is `rotate` about an axis that flies at V. `variable`: displacements from x0 and velocities by \
-                   equal- or atom-style variables; without a displacement the velocity moves the particle, without a velocity \
-                   the velocity stays. Where a component is `NULL` (for `variable`: both) it is integrated as by fix nve. V, A \
-                   and P are in lattice spacings unless `units box`. It moves the particles itself: they belong to no other \
-                   integrator. Particles that join the group later move on from where they are. Per-atom array: x0, 3 \
-                   columns. `timestep`, `fix dt/reset` and reset_timestep do not disturb the path. LAMMPS refuses the first \
-                   two beside fix move; after reset_timestep it takes the new steps since the declaration's old one, which \
+            text: "t is the time since the fix was declared and x0 the position then (unwrapped). Where a component is \
+                   `NULL` (for `variable`: both) it is integrated as by fix nve. It moves the particles itself: they \
+                   belong to no other integrator. Particles that join the group later move on from where they are. \
+                   Orientations (`bpm/sphere`) turn with `rotate` and `transrot` alone. Per-atom array: x0, 3 columns.\n\n\
+                   `timestep`, `fix dt/reset` and reset_timestep do not disturb the path. LAMMPS refuses the first two \
+                   beside fix move; after reset_timestep it takes the new steps since the declaration's old one, which \
                    makes the particles jump, and so does perigrain under `-compat lammps`.",
             example: "fix grip top move linear 0.0 0.0 3.0 units box",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "motion")]
+    motion: Motion,
+    /// V, A and P are in these units; variables are not scaled.
+    #[word(keyword)]
+    units: Units,
+}
+
+/// The motion of the particles.
+#[derive(Words)]
+#[word(what = "motion")]
+enum Motion {
+    /// x = x0 + V t, v = V.
+    Linear(#[word(name = "Vx Vy Vz", what = "{}")] [Nullable<f64>; 3]),
+    /// x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period.
+    Wiggle {
+        #[word(name = "Ax Ay Az", what = "{}")]
+        amplitude: [Nullable<f64>; 3],
+        #[word(positive, what = "the period")]
+        period: f64,
+    },
+    /// The particles turn about the axis R through P, right-handed; spheres get the angular velocity ω.
+    Rotate(Turn),
+    /// `rotate` about an axis that flies at V.
+    Transrot(#[word(name = "Vx Vy Vz", what = "{}")] [f64; 3], Turn),
+    /// Displacements from x0 and velocities by equal- or atom-style variables; without a displacement the velocity moves the
+    /// particle, without a velocity the velocity stays.
+    Variable {
+        #[word(name = "v_dx v_dy v_dz", what = "the variable {}")]
+        displacement: [Nullable<Named>; 3],
+        #[word(name = "v_vx v_vy v_vz", what = "the variable {}")]
+        velocity: [Nullable<Named>; 3],
+    },
+}
+
+/// A turn about an axis.
+#[derive(Words)]
+struct Turn {
+    #[word(name = "Px Py Pz", what = "{}")]
+    point: [f64; 3],
+    #[word(name = "Rx Ry Rz", with = direction, kind = Kind::Number)]
+    axis: [f64; 3],
+    #[word(positive, what = "the period")]
+    period: f64,
+}
+
+/// A variable with one value, or one for each particle.
+struct Named(ValueRef);
+
+impl Value for Named {
+    const KIND: Kind = Kind::Reference;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        match PerAtom::value(what, args, cx)?.0 {
+            Param::Ref(r) => Ok(Self(r)),
+            Param::Number(_) => fail(Code::WRONG_KIND, span, format!("{what} is written v_name, or NULL")),
         }
     }
 }
 
 impl FixStyle for Move {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let kind = args.choice("motion", &["linear", "wiggle", "rotate", "transrot", "variable"])?;
-        let mut path = match kind {
-            "linear" => Path::Linear(components(args)?),
-            "wiggle" => {
-                let amplitude = components(args)?;
-                Path::Wiggle(amplitude, 2.0 * PI / args.positive("the period")?)
-            }
-            "variable" => {
-                let mut three = |names: [&str; 3]| -> Result<[Option<ValueRef>; 3]> {
-                    let [x, y, z] = names.map(|name| variable(args, cx, name));
-                    Ok([x?, y?, z?])
-                };
-                Path::Variables(Box::new([three(["x", "y", "z"])?, three(["vx", "vy", "vz"])?]))
-            }
-            _ => {
-                let velocity = if kind == "transrot" { three(args, "V")? } else { [0.0; 3] };
-                let point = three(args, "P")?;
-                let axis = direction(args, cx)?;
-                let omega = 2.0 * PI / args.positive("the period")?;
-                Path::Turn { point, axis, omega, velocity }
+        let Line { motion, units } = read(args, cx)?;
+        let scale = units.scales(cx.world);
+        let scaled = |a: [f64; 3]| std::array::from_fn(|d| a[d] * scale[d]);
+        let some = |a: [Nullable<f64>; 3]| std::array::from_fn(|d| a[d].0.map(|a| a * scale[d]));
+        let turn = |turn: Turn, velocity| {
+            let (point, axis, omega) = (scaled(turn.point), turn.axis, 2.0 * PI / turn.period);
+            Path::Turn { point, axis, omega, velocity }
+        };
+        let path = match motion {
+            Motion::Linear(v) => Path::Linear(some(v)),
+            Motion::Wiggle { amplitude, period } => Path::Wiggle(some(amplitude), 2.0 * PI / period),
+            Motion::Rotate(about) => turn(about, [0.0; 3]),
+            Motion::Transrot(velocity, about) => turn(about, scaled(velocity)),
+            Motion::Variable { displacement, velocity } => {
+                let names =
+                    [displacement, velocity].map(|three| three.map(|name| name.0.map(|named| named.0)));
+                Path::Variables(Box::new(names))
             }
         };
-        let mut lattice = true;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "units" => lattice = units_lattice(args)?,
-                _ => return Err(args.unknown(word, &["units"])),
-            }
-        }
-        let scale = scales(cx.world, lattice);
-        match &mut path {
-            Path::Linear(a) | Path::Wiggle(a, _) => {
-                *a = std::array::from_fn(|d| a[d].map(|a| a * scale[d]));
-            }
-            Path::Turn { point, velocity, .. } => {
-                (0..3).for_each(|d| (point[d], velocity[d]) = (point[d] * scale[d], velocity[d] * scale[d]));
-            }
-            Path::Variables(..) => {}
-        }
         let key = Key::new(&format!("move/{}", cx.id));
         let turn = Grip::new(&format!("{key}/turn"));
         Ok(Box::new(Declared { id: cx.id.to_string(), key, turn, group: cx.group, path }))
-    }
-}
-
-/// Parses three numbers, each of which may be `NULL`.
-fn components(args: &mut Args) -> Result<[Option<f64>; 3]> {
-    let mut found = [None; 3];
-    for (found, axis) in found.iter_mut().zip(["x", "y", "z"]) {
-        *found = number_or_null(args, &format!("the {axis} component"))?;
-    }
-    Ok(found)
-}
-
-/// Parses three numbers.
-fn three(args: &mut Args, what: &str) -> Result<[f64; 3]> {
-    let mut number = |axis| args.number(&format!("{what}{axis}"));
-    Ok([number("x")?, number("y")?, number("z")?])
-}
-
-/// Parses a variable or `NULL`.
-fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef>> {
-    let word = args.peek();
-    match param_or_null(args, &format!("the variable for {what}"))? {
-        None => Ok(None),
-        Some(Param::Ref(r)) => {
-            cx.param(&Param::Ref(r.clone()), true)?;
-            Ok(Some(r))
-        }
-        Some(Param::Number(_)) => {
-            let span = word.map(|w| w.span);
-            fail(Code::WRONG_KIND, span, format!("the variable for {what} is written v_name, or NULL"))
-        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::Op;
+use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::properties::MOLECULE;
@@ -18,45 +19,84 @@ impl Style for PropertyAtomFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group property/atom name … [mol] [temperature] [heatflow] [ghost yes|no] [writedata yes|no]",
+            syntax: "",
             summary: "Gives all particles properties of the deck's own.",
-            text: "A name is `i_NAME` (whole numbers) or `d_NAME` (numbers), or `i2_NAME N` and `d2_NAME N` for N columns. They \
-                   are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME value` (or \
-                   `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix store/state` and in formulas \
-                   (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` are what granular contacts that conduct heat \
-                   read and write, and `fix heat/flow` integrates. `mol` gives \
-                   molecule IDs to particles whose style has none. `write_data` writes them all into a section of the fix's name, \
-                   unless `writedata no`, and `read_data … fix ID NULL SECTION` reads it. `ghost` is read for LAMMPS' decks. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
+            text: "Properties are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME \
+                   value` (or `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix \
+                   store/state` and in formulas (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` \
+                   are what granular contacts that conduct heat read and write, and `fix heat/flow` integrates.\n\n\
+                   `write_data` writes them all into a section of the fix's name, and `read_data … fix ID NULL SECTION` \
+                   reads it. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
             example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    names: Names,
+    /// There are no ghosts: without effect.
+    #[word(keyword, what = "ghost", placed)]
+    ghost: Option<At<bool>>,
+    /// Whether `write_data` writes them.
+    #[word(keyword, what = "writedata", default = true)]
+    writedata: bool,
+}
+
+/// The columns of the names of a line, which may stand behind keywords as well.
+struct Names(Vec<String>);
+
+impl Words for Names {
+    const GRAMMAR: &'static Grammar = &Grammar {
+        parts: &[Part::Many(
+            &[Part::Word(Placeholder {
+                name: "name",
+                kind: Kind::Text,
+                about: "`i_NAME` (whole numbers), `d_NAME` (numbers), `i2_NAME N` or `d2_NAME N` for N columns, `temperature`, \
+                        `heatflow`, or `mol`: molecule IDs for particles whose style has none.",
+                unit: "",
+            })],
+            1,
+        )],
+        keywords: &[],
+        refused: &[],
+    };
+
+    fn begin(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let mut names = Self(vec![]);
+        while let Some(word) = args.peek().filter(|_| !args.at_keyword()) {
+            args.next();
+            names.keyword(word, args, cx)?;
+        }
+        Ok(names)
+    }
+
+    fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
+        let Self(names) = self;
+        match word.text.as_str() {
+            "mol" => {
+                no_molecules(word, cx, names.iter().any(|name| name == MOLECULE))?;
+                names.push(MOLECULE.to_string());
+            }
+            "q" | "rmass" => {
+                let text = format!("`{}` cannot be added: atom styles define what particles have", word.text);
+                return fail(Code::NOT_SUPPORTED, word.span, text);
+            }
+            _ => names.extend(columns(word, args, cx, names)?),
+        }
+        Ok(true)
     }
 }
 
 impl FixStyle for PropertyAtomFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let (mut names, mut written): (Vec<String>, _) = (vec![], true);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "writedata" => written = args.flag("writedata")?,
-                "ghost" => {
-                    args.flag("ghost")?;
-                    cx.note(Diagnostic::note(
-                        Code::NO_EFFECT,
-                        word.span,
-                        "without effect: there are no ghosts",
-                    ));
-                }
-                "mol" => {
-                    no_molecules(word, cx, names.iter().any(|name| name == MOLECULE))?;
-                    names.push(MOLECULE.to_string());
-                }
-                "q" | "rmass" => {
-                    let text =
-                        format!("`{}` cannot be added: atom styles define what particles have", word.text);
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
-                _ => names.extend(columns(word, args, cx, &names)?),
-            }
+        let Line { names: Names(names), ghost, writedata: written } = read(args, cx)?;
+        if let Some(ghost) = ghost {
+            cx.note(Diagnostic::note(Code::NO_EFFECT, ghost.span, "without effect: there are no ghosts"));
         }
         if names.is_empty() {
             args.expect("a name such as i_flag or d_heat")?;

@@ -9,6 +9,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::scales;
 use perigrain_styles::matter::{Whole, centre, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -22,16 +23,55 @@ impl Style for Recenter {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group recenter x y z [shift group2] [units box|lattice|fraction]",
+            syntax: "",
             summary: "Shifts particles every step so that the centre of mass of the group stays at a place.",
-            text: "Each of x y z is a number, `NULL` (not held) or `INIT` (where the centre was when the fix was declared). \
-                   The group itself is shifted, or another after `shift`. Numbers are in lattice spacings unless `units box`, \
-                   or fractions of the box. Velocities stay. Acts after the time integration of fixes declared before: \
-                   declare it after them. Scalar (extensive): the length of the last shift; vector of 3 (extensive): the \
-                   shift. Under `-compat lammps` the group's mass is that of the run's beginning, also once particles have been \
-                   lost or have come.",
+            text: "Velocities stay. Acts after the time integration of fixes declared before: declare it after them. \
+                   Under `-compat lammps` the group's mass is that of the run's beginning, also once particles have \
+                   been lost or have come. Scalar (extensive): the length of the last shift; vector of 3 (extensive): \
+                   the shift.",
             example: "fix still plate recenter INIT INIT NULL",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The place of the centre: numbers, `NULL` (not held) or `INIT` (where the centre was when the fix was declared).
+    #[word(name = "x y z", what = "{} of the centre")]
+    hold: [Hold; 3],
+    /// The group to shift; without it the group itself.
+    #[word(keyword, name = "group2")]
+    shift: Option<GroupId>,
+    #[word(keyword, shown = "lattice")]
+    units: Scale,
+}
+
+/// In which units the place is.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "value of units")]
+enum Scale {
+    /// In those of the box.
+    Box,
+    /// In spacings of the `lattice`.
+    #[default]
+    Lattice,
+    /// In parts of the box.
+    Fraction,
+}
+
+impl Value for Hold {
+    const KIND: Kind = Kind::OrNull(&Kind::Number);
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        if args.eat("NULL") {
+            return Ok(Hold::Free);
+        }
+        if args.eat("INIT") {
+            return Ok(Hold::Initial);
+        }
+        args.number(what).map(Hold::At)
     }
 }
 
@@ -45,28 +85,13 @@ enum Hold {
 
 impl FixStyle for Recenter {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let mut hold = [Hold::Free; 3];
-        for (hold, axis) in hold.iter_mut().zip(["x", "y", "z"]) {
-            *hold = match args.peek_text() {
-                "NULL" => args.next().map_or(Hold::Free, |_| Hold::Free),
-                "INIT" => args.next().map_or(Hold::Initial, |_| Hold::Initial),
-                _ => Hold::At(args.number(&format!("{axis} of the centre"))?),
-            };
-        }
-        let (mut shifted, mut units) = (cx.group, "lattice");
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "shift" => shifted = cx.group(args.expect("the group to shift")?)?,
-                "units" => units = args.choice("value of units", &["box", "lattice", "fraction"])?,
-                _ => return Err(args.unknown(word, &["shift", "units"])),
-            }
-        }
-        let scale = scales(cx.world, units == "lattice");
+        let Line { hold, shift, units } = read(args, cx)?;
+        let scale = scales(cx.world, units == Scale::Lattice);
         let hold = std::array::from_fn(|d| match hold[d] {
             Hold::At(c) => Hold::At(c * scale[d]),
             other => other,
         });
-        let fraction = units == "fraction";
+        let (shifted, fraction) = (shift.unwrap_or(cx.group), units == Scale::Fraction);
         let (id, key) = (cx.id.to_string(), Key::new(&format!("recenter/{}", cx.id)));
         Ok(Box::new(Declared { id, key, group: cx.group, shifted, hold, fraction }))
     }

@@ -1,12 +1,13 @@
 //! fix store/state: stores attributes and values of particles.
 
 use super::{Fix, FixStyle};
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::Result;
 use perigrain_computes::property_atom::{Getter, find_attribute, read_attribute};
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::centre;
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, Slot, SlotId, World};
@@ -20,16 +21,30 @@ impl Style for StoreState {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group store/state N input … [com yes|no]",
+            syntax: "",
             summary: "Keeps per-atom attributes and values as they were at one moment, or every N steps.",
-            text: "Inputs: the attributes of `compute property/atom` (positions, velocities, forces, radius …), `c_ID`, \
-                   `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name` of an atom-style variable. N = 0: once, \
-                   attributes when the fix is declared, values and properties (`i_NAME`, `d_NAME` …) in the setup of the next run; N > 0: then, and at multiples \
-                   of N. `com yes`: `xu yu zu` are kept relative to the centre of mass of the group. Per-atom vector for one \
-                   input, array for several; 0 for particles outside the group and those that come later.",
+            text: "Per-atom vector for one input, array for several; 0 for particles outside the group and those that come later.",
             example: "fix start all store/state 0 xu yu zu\ncompute far all reduce max f_start[1]",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Kept at first (attributes when the fix is declared, values and properties such as `d_NAME` in the setup of the next run) and
+    /// anew at multiples of N [steps]; 0: at first alone.
+    #[word(name = "N", what = "the number of steps N", from = 0)]
+    every: i64,
+    /// What is kept: the attributes of `compute property/atom` (positions, velocities, forces, radius …), `c_ID`, `c_ID[k]`,
+    /// `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name` of an atom-style variable.
+    #[word(name = "input", what = "an input such as xu or c_ID", kind = Kind::Attribute, least = 1)]
+    inputs: Vec<Word>,
+    /// Whether `xu yu zu` are kept relative to the centre of mass of the group.
+    #[word(keyword, what = "com", default = false)]
+    com: bool,
 }
 
 /// One input.
@@ -43,21 +58,15 @@ enum Input {
 
 impl FixStyle for StoreState {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(0, "the number of steps N")?;
+        let Line { every, inputs: words, com: relative } = read(args, cx)?;
         let mut inputs = vec![];
-        while let Some(word) = args.peek().filter(|w| w.text != "com") {
-            args.next();
+        for word in &words {
             let custom = cx.world.columns.custom(&word.text).map(|_| "");
             match find_attribute(&word.text).or(custom) {
                 Some(name) => inputs.push(Input::Attribute(name, read_attribute(word, cx)?)),
                 None => value(word, every, cx, &mut inputs)?,
             }
         }
-        if inputs.is_empty() {
-            let text = "`fix` ends too early: an input such as xu or c_ID is missing";
-            return fail(Code::MISSING_ARGUMENT, args.here(), text);
-        }
-        let relative = args.eat("com") && args.flag("com")?;
         let filled: Numbers = Key::new(&format!("store/state/{}", cx.id));
         let columns = (0..inputs.len()).map(|k| filled.with(&format!("/{k}"))).collect();
         let (id, group) = (cx.id.to_string(), cx.group);

@@ -1,14 +1,14 @@
 //! fix wall/harmonic, wall/lj93 and the like: flat walls with normal forces and no friction.
 
-use super::faces::{Face, Spot, check};
-use super::wall_law::{Law, NAMES, formula, numbers};
+use super::faces::{Face, Spot, Walls, check};
+use super::wall_law::{LAWS, Law, numbers};
 use super::{Facts, Fix, FixStyle, Minimizing, needs_spheres};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::{scales, units_lattice, variable_param};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Alternative, At, Form, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, Fields, MASK, RADIUS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
@@ -35,39 +35,39 @@ pub static MORSE: FlatWall = FlatWall(5);
 const STYLES: [&str; 6] =
     ["wall/lj93", "wall/lj126", "wall/lj1043", "wall/colloid", "wall/harmonic", "wall/morse"];
 
-/// Syntax, text and example of each style.
-static PAGES: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| NAMES.iter().map(|law| page(law)).collect());
+/// Text and example of each style.
+static PAGES: LazyLock<Vec<[String; 2]>> =
+    LazyLock::new(|| STYLES.iter().map(|style| page(law_of(style))).collect());
 
-fn page(law: &str) -> [String; 3] {
-    let words = numbers(law).join(" ");
-    let syntax = format!(
-        "fix ID group wall/{law} xlo|xhi|ylo|yhi|zlo|zhi EDGE|place {words} cutoff … [units lattice|box] [pbc yes|no]"
-    );
+/// The law of a style.
+fn law_of(style: &str) -> &'static Alternative {
+    let known = LAWS.iter().find(|law| style.strip_prefix("wall/") == Some(law.word));
+    known.unwrap_or(&LAWS[0])
+}
+
+fn page(law: &Alternative) -> [String; 2] {
     let text = format!(
-        "A particle of the group whose centre is at a distance r < cutoff from a wall feels the force −dE/dr away from it, with {}; the energy \
-         is shifted to 0 at the cutoff. {} \
-         Up to six walls, each named by the face on whose side it stands: `zlo` pushes upwards, `zhi` downwards. The place is `EDGE` (the \
-         face of the box when the fix is declared: it does not move with the box), a number, or `v_name` of an equal-style variable; so are \
-         the numbers of the law (from a variable not negative); variables are evaluated each step. Places, numbers or variables, are in \
-         lattice spacings unless `units box`; other distances are not. A particle at the wall or behind it ends the run. Faces of a wall's \
-         direction must not be periodic unless `pbc yes`; distances are not taken across them.\n\n\
+        "A particle of the group whose centre is at a distance r < cutoff from a wall feels the force −dE/dr away from it; the energy is \
+         shifted to 0 at the cutoff. {} {} A particle at the wall or behind it ends the run.\n\n\
+         Up to six walls. The place is `EDGE` (the face of the box when the fix is declared: it does not move with the box), a number, or \
+         `v_name` of an equal-style variable; so are the numbers of the law (from a variable not negative); variables are evaluated each \
+         step.\n\n\
          Scalar (extensive): the energy of all walls; `fix_modify ID energy yes` adds it to the potential energy. Vector (extensive): the \
          force on each wall in the order in which they were named, negative where it is pushed downwards. `fix_modify ID virial yes` adds \
-         Σ F r to the virial of pressures across each wall. `fix wall/region` has the same laws for regions. `fld yes` is for LAMMPS' \
-         lubrication styles and refused.",
-        formula(law),
-        if law == "colloid" {
+         Σ F r to the virial of pressures across each wall. `fix wall/region` has the same laws for regions.",
+        law.about,
+        if law.word == "colloid" {
             "A sphere that touches the wall ends the run."
         } else {
             "Sizes of spheres do not count."
         },
     );
-    let numbers = match law {
+    let numbers = match law.word {
         "morse" => "1.0e-6 2000.0 0.001",
         "harmonic" => "1.0e6 0.0",
         _ => "1.0e-6 0.001",
     };
-    [syntax, text, format!("fix soft grains wall/{law} zlo -0.004 {numbers} 0.003 units box")]
+    [text, format!("fix soft grains wall/{} zlo -0.004 {numbers} 0.003 units box", law.word)]
 }
 
 impl Style for FlatWall {
@@ -75,71 +75,127 @@ impl Style for FlatWall {
         STYLES[self.0]
     }
     fn doc(&self) -> Doc {
-        let [syntax, text, example] = &PAGES[self.0];
-        Doc { syntax, summary: "Flat walls that push and pull particles without friction.", text, example }
+        let [text, example] = &PAGES[self.0];
+        Doc {
+            syntax: "",
+            summary: "Flat walls that push and pull particles without friction.",
+            text,
+            example,
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(if self.is_morse() { Morses::GRAMMAR } else { Wells::GRAMMAR })]
     }
 }
 
-const KEYWORDS: &[&str] = &["xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "units", "fld", "pbc"];
+#[derive(Words)]
+struct Wells {
+    #[word(flatten)]
+    walls: Walls<Well>,
+    #[word(flatten)]
+    common: Common,
+}
+
+#[derive(Words)]
+struct Morses {
+    #[word(flatten)]
+    walls: Walls<Morse>,
+    #[word(flatten)]
+    common: Common,
+}
+
+/// The numbers of laws with a length and an energy.
+#[derive(Words)]
+struct Well {
+    #[word(what = "epsilon")]
+    epsilon: Param,
+    #[word(what = "sigma")]
+    sigma: Param,
+    #[word(positive, what = "the cutoff")]
+    cutoff: f64,
+}
+
+/// The numbers of the Morse law.
+#[derive(Words)]
+struct Morse {
+    #[word(name = "D0", what = "D0")]
+    depth: Param,
+    #[word(what = "alpha")]
+    alpha: Param,
+    #[word(what = "r0")]
+    r0: Param,
+    #[word(positive, what = "the cutoff")]
+    cutoff: f64,
+}
+
+#[derive(Words)]
+struct Common {
+    /// Places, numbers and variables, are in these units; other distances are in those of the box.
+    #[word(keyword)]
+    units: Units,
+    /// Whether faces of a wall's direction may be periodic; distances are not taken across them.
+    #[word(keyword, what = "pbc", default = false)]
+    pbc: bool,
+    /// For LAMMPS' lubrication styles: `yes` is refused.
+    #[word(keyword, what = "fld", shown = "no")]
+    fld: Option<At<bool>>,
+}
+
+impl FlatWall {
+    fn is_morse(&self) -> bool {
+        self.name() == "wall/morse"
+    }
+}
 
 impl FixStyle for FlatWall {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let law = NAMES[self.0];
+        let law = law_of(self.name()).word;
         if law == "colloid" {
             needs_spheres(cx, self.name())?;
         }
-        let (mut faces, mut pushes, mut lattice, mut through) = (vec![], vec![], true, false);
-        while let Some(word) = args.next() {
-            if let Some(face) = Face::read(word, &faces, args, cx)? {
-                faces.push(face);
-                pushes.push(Words::read(law, args, cx)?);
-                continue;
-            }
-            match word.text.as_str() {
-                "units" => lattice = units_lattice(args)?,
-                "pbc" => through = args.flag("pbc")?,
-                "fld" => no_lubrication(args)?,
-                _ => return Err(args.unknown(word, KEYWORDS)),
-            }
-        }
-        check(&faces, through, args, cx)?;
+        let (walls, common): (Vec<_>, _) = if self.is_morse() {
+            let line: Morses = read(args, cx)?;
+            (line.walls.0.into_iter().map(|(face, push)| (face, push.into())).collect(), line.common)
+        } else {
+            let line: Wells = read(args, cx)?;
+            (line.walls.0.into_iter().map(|(face, push)| (face, push.into())).collect(), line.common)
+        };
+        no_lubrication(common.fld)?;
+        check(&walls, common.pbc, args, cx)?;
         Ok(Box::new(Declared {
             id: cx.id.to_string(),
             group: cx.group,
             law,
-            walls: faces.into_iter().zip(pushes).collect(),
-            scale: scales(cx.world, lattice),
+            walls,
+            scale: common.units.scales(cx.world),
             virial: false,
         }))
     }
 }
 
 /// Refuses `fld yes`: no pair style here uses the walls' forces.
-fn no_lubrication(args: &mut Args) -> Result<()> {
-    let span = args.here();
-    if args.flag("fld")? {
-        let text = "`fld yes` gives the walls' forces to lubrication styles (pair_style lubricateU), of which there are none here";
-        return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("leave it out").into());
-    }
-    Ok(())
+fn no_lubrication(fld: Option<At<bool>>) -> Result<()> {
+    let Some(fld) = fld.filter(|fld| fld.value) else { return Ok(()) };
+    let text = "`fld yes` gives the walls' forces to lubrication styles (pair_style lubricateU), of which there are none here";
+    Err(Diagnostic::error(Code::NOT_SUPPORTED, fld.span, text).help("leave it out").into())
 }
 
 /// Parameters of the law.
 #[derive(Clone)]
-struct Words {
+struct Push {
     numbers: Vec<Param>,
     cutoff: f64,
 }
 
-impl Words {
-    fn read(law: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let mut given = vec![];
-        for what in numbers(law) {
-            let number = variable_param(args, what)?;
-            cx.param(&number, false)?;
-            given.push(number);
-        }
-        Ok(Self { numbers: given, cutoff: args.positive("the cutoff")? })
+impl From<Well> for Push {
+    fn from(law: Well) -> Self {
+        Self { numbers: vec![law.epsilon, law.sigma], cutoff: law.cutoff }
+    }
+}
+
+impl From<Morse> for Push {
+    fn from(law: Morse) -> Self {
+        Self { numbers: vec![law.depth, law.alpha, law.r0], cutoff: law.cutoff }
     }
 }
 
@@ -199,7 +255,7 @@ struct Declared {
     group: GroupId,
     /// Name of the law.
     law: &'static str,
-    walls: Vec<(Face, Words)>,
+    walls: Vec<(Face, Push)>,
     /// Scale of positions along each direction.
     scale: [f64; 3],
     /// `fix_modify virial yes`.

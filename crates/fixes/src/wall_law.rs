@@ -1,29 +1,60 @@
 //! Force laws of smooth walls by distance: the laws of LAMMPS' fix wall and fix wall/region.
 
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_styles::BuildCx;
+use perigrain_styles::common::unknown_style;
+use perigrain_styles::words::{Alternative, Kind, Part, Placeholder, Value};
 use std::f64::consts::{PI, SQRT_2};
 
-/// Their words.
-pub const NAMES: [&str; 6] = ["lj93", "lj126", "lj1043", "colloid", "harmonic", "morse"];
+/// The laws: their words, the formulas of their energies, and their parameters, of which the last is the cutoff.
+pub const LAWS: &[Alternative] = &[
+    law("lj93", "E = ε (2/15 (σ/r)⁹ − (σ/r)³), a half-space of points of a 12-6 law.", WELL),
+    law("lj126", "E = 4 ε ((σ/r)¹² − (σ/r)⁶).", WELL),
+    law("lj1043", "E = 2π ε (2/5 (σ/r)¹⁰ − (σ/r)⁴ − √2 σ³/(3 (r + 0.61 σ/√2)³)), layers of a lattice.", WELL),
+    law(
+        "colloid",
+        "E = ε (σ⁶/7560 ((6R − D)/D⁷ + (D + 8R)/(D + 2R)⁷) − 1/6 (2R r/(D (D + 2R)) + ln(D/(D + 2R)))) with D = r − R, the \
+         half-space for a sphere of radius R.",
+        WELL,
+    ),
+    law(
+        "harmonic",
+        "E = ε (r − cutoff)², ε in energy/distance²; sigma has no meaning here and may be any number not below zero.",
+        WELL,
+    ),
+    law("morse", "E = D0 (exp(−2 alpha (r − r0)) − 2 exp(−alpha (r − r0))).", MORSE),
+];
 
-/// Names of a law's parameters.
+/// Names of a law's numbers.
 pub fn numbers(name: &str) -> &'static [&'static str] {
     if name == "morse" { &["D0", "alpha", "r0"] } else { &["epsilon", "sigma"] }
 }
 
-/// The formula of a law's energy for its page.
-pub fn formula(name: &str) -> &'static str {
-    match name {
-        "lj93" => "E = ε (2/15 (σ/r)⁹ − (σ/r)³), a half-space of points of a 12-6 law",
-        "lj126" => "E = 4 ε ((σ/r)¹² − (σ/r)⁶)",
-        "lj1043" => "E = 2π ε (2/5 (σ/r)¹⁰ − (σ/r)⁴ − √2 σ³/(3 (r + 0.61 σ/√2)³)), layers of a lattice",
-        "colloid" => {
-            "E = ε (σ⁶/7560 ((6R − D)/D⁷ + (D + 8R)/(D + 2R)⁷) − 1/6 (2R r/(D (D + 2R)) + ln(D/(D + 2R)))) with D = r − R, the \
-             half-space for a sphere of radius R"
+const WELL: &[Part] = &[number("epsilon"), number("sigma"), number("cutoff")];
+const MORSE: &[Part] = &[number("D0"), number("alpha"), number("r0"), number("cutoff")];
+
+const fn law(word: &'static str, about: &'static str, parts: &'static [Part]) -> Alternative {
+    Alternative { word, about, parts }
+}
+
+const fn number(name: &'static str) -> Part {
+    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
+}
+
+impl Value for Law {
+    const KIND: Kind = Kind::Choice(LAWS);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let name = args.expect("the law of the wall")?;
+        if !LAWS.iter().any(|law| law.word == name.text) {
+            let known: Vec<_> = LAWS.iter().map(|law| law.word).collect();
+            return Err(unknown_style(name, "law of a wall", &known));
         }
-        "morse" => "E = D0 (exp(−2 alpha (r − r0)) − 2 exp(−alpha (r − r0)))",
-        _ => {
-            "E = ε (r − cutoff)², ε in energy/distance²; sigma has no meaning here and may be any number not below zero"
-        }
+        let given = match name.text.as_str() {
+            "morse" => [args.number("D0")?, args.number("alpha")?, args.number("r0")?],
+            _ => [args.number("epsilon")?, args.non_negative("sigma")?, 0.0],
+        };
+        Ok(Self::new(&name.text, given, args.positive("the cutoff")?))
     }
 }
 
@@ -58,7 +89,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// The law of this name with its parameters, see [`numbers`].
+    /// The law of this name with its parameters, see [`LAWS`].
     pub fn new(name: &str, [a, b, c]: [f64; 3], cutoff: f64) -> Self {
         let form = match name {
             "lj93" => Form::Lj93([a, b]),

@@ -1,13 +1,13 @@
 //! fix wall/reflect: flat walls that reflect particles.
 
-use super::faces::{Face, Spot, check};
+use super::faces::{Face, Spot, Walls, check};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
-use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{MASK, SLOTS, V, X};
 use perigrain_world::{GroupId, World};
@@ -21,41 +21,44 @@ impl Style for WallReflect {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group wall/reflect xlo|xhi|ylo|yhi|zlo|zhi EDGE|place … [units lattice|box]",
+            syntax: "",
             summary: "Throws particles back that have gone through flat walls.",
-            text: "After the drift of a step a particle of the group whose centre is at a distance d beyond a wall is put \
-                   as far inside, and its velocity across the wall changes sign. Up to six walls, each named by the face on whose side it \
-                   stands: `xlo` holds x above its place, `xhi` below. The place is `EDGE` (the face of the box when the fix is \
-                   declared: it does not move with the box), a number, or `v_name` of an equal-style variable, evaluated each step; numbers and variables \
-                   are in lattice spacings unless `units box`. A moving wall gives no velocity to the particles it reflects. Sizes of spheres do not count, nor does \
-                   their spin change. Faces of that direction must not be periodic. Energy is kept to first order in the time step only. \
-                   Not in minimizations, and not under `run_style respa`, in which LAMMPS silently reflects no particle.",
+            text: "After the drift of a step a particle of the group whose centre is at a distance d beyond a wall is \
+                   put as far inside, and its velocity across the wall changes sign. Up to six walls. A moving wall \
+                   gives no velocity to the particles it reflects. Sizes of spheres do not count, nor does their spin \
+                   change. Faces of that direction must not be periodic.\n\n\
+                   Energy is kept to first order in the time step only. Not in minimizations, and not under `run_style \
+                   respa`, in which LAMMPS silently reflects no particle.",
             example: "fix floor grains wall/reflect zlo -0.001 zhi EDGE units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    walls: Walls<Bare>,
+    /// Places, numbers and variables, are in these units.
+    #[word(keyword)]
+    units: Units,
+}
+
+/// Behind the place of a wall stands nothing.
+#[derive(Words)]
+struct Bare {}
 
 impl FixStyle for WallReflect {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let (mut faces, mut lattice) = (vec![], true);
-        while let Some(word) = args.next() {
-            if let Some(face) = Face::read(word, &faces, args, cx)? {
-                faces.push(face);
-                continue;
-            }
-            match word.text.as_str() {
-                "units" => lattice = units_lattice(args)?,
-                _ => {
-                    return Err(args.unknown(word, &["xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "units"]));
-                }
-            }
-        }
-        check(&faces, false, args, cx)?;
+        let Line { walls, units } = read(args, cx)?;
+        check(&walls.0, false, args, cx)?;
         if cx.names.all(perigrain_styles::UseKind::Fix).iter().any(|id| is_rigid(cx, id)) {
             let text = "a wall that puts particles back pulls rigid bodies apart for a moment: `fix wall/harmonic` does not";
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, cx.span, text));
         }
-        let scale = scales(cx.world, lattice);
+        let (faces, scale) = (walls.0.into_iter().map(|(face, _)| face).collect(), units.scales(cx.world));
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, faces, scale }))
     }
 }

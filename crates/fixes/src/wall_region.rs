@@ -1,19 +1,18 @@
 //! fix wall/region: the surface of a region as a wall with normal forces and no friction.
 
-use super::wall_law::{Law, NAMES, formula, numbers};
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::wall_law::Law;
+use super::{Facts, Fix, FixStyle, Minimizing, RegionId};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, scale};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
-use perigrain_styles::common::unknown_style;
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, RADIUS, REGIONS, SLOTS, TAG, TALLY, X};
 use perigrain_world::region::{Look, Near};
 use perigrain_world::{GroupId, Key, Region, World};
-use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The style.
@@ -25,62 +24,51 @@ impl Style for WallRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group wall/region regionID lj93|lj126|lj1043|colloid|harmonic epsilon sigma cutoff | morse D0 alpha r0 cutoff",
+            syntax: "",
             summary: "The surface of a region as a smooth wall that pushes and pulls particles.",
-            text: &TEXT,
+            text: "A particle of the group whose centre is at a distance r < cutoff from the surface of the region feels the force −dE/dr \
+                   along the line from the nearest point of the surface; each face that is so near acts, as do the planes of a block \
+                   near its edges. Energies are shifted to 0 at the cutoff. Other ε and D0 are energies, σ, r0 and the cutoff \
+                   distances, alpha is 1/distance.\n\n\
+                   All that `fix wall/gran/region` says of surfaces holds here: sides, unions, intersections, `open` faces, meshes, \
+                   regions that move with variables. A particle that leaves the region, comes to its surface or (`colloid`) touches \
+                   it ends the run, but for leaving regions with open faces. Distances are not taken across periodic faces.\n\n\
+                   Scalar (extensive): the energy; `fix_modify ID energy yes` adds it to the potential energy, as minimizations need \
+                   it. Vector of 3 (extensive): the force on the wall. `fix_modify ID virial yes` adds the wall to pressures and \
+                   stresses, `respa` chooses the level of steps. LAMMPS 22Jul2025's `colloid` attracts where it should repel, and its \
+                   energy is no integral of its force: so it is under `-compat lammps` alone.",
             example: "units lj\natom_style sphere\nregion b block -5 5 -5 5 -5 5\ncreate_box 1 b\nregion ball sphere 0 0 0 4\ncreate_atoms 1 single 0 0 2.9\n\
                       set group all diameter 1.0\nset group all density 1.0\nfix 1 all nve\nfix shell all wall/region ball lj93 1.0 1.0 2.5\nfix_modify shell energy yes\n\
                       thermo_style custom step pe f_shell f_shell[3]\nrun 100",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-/// Text of the page.
-static TEXT: LazyLock<String> = LazyLock::new(|| {
-    let laws: Vec<String> = NAMES.iter().map(|name| format!("- `{name}`: {}", formula(name))).collect();
-    format!(
-        "A particle of the group whose centre is at a distance r < cutoff from the surface of the region feels the force −dE/dr along the \
-         line from the nearest point of the surface; each face that is so near acts, as do the planes of a block near its edges. Energies are \
-         shifted to 0 at the cutoff:\n\n{}\n\n\
-         Other ε and D0 are energies, σ, r0 and the cutoff distances, alpha is 1/distance. All that `fix wall/gran/region` says of \
-         surfaces holds here: sides, unions, intersections, `open` faces, meshes, regions that move with variables. A particle that leaves \
-         the region, comes to its surface or (`colloid`) touches it ends the run, but for leaving regions with open faces. Distances are not \
-         taken across periodic faces.\n\n\
-         Scalar (extensive): the energy; `fix_modify ID energy yes` adds it to the potential energy, as minimizations need it. Vector of 3 \
-         (extensive): the force on the wall. `fix_modify ID virial yes` adds the wall to pressures and stresses, `respa` chooses the level of \
-         steps. LAMMPS 22Jul2025's `colloid` attracts where it should repel, and its energy is no integral of its force: so it is under \
-         `-compat lammps` alone.",
-        laws.join("\n")
-    )
-});
+#[derive(Words)]
+struct Line {
+    /// The region whose surface is the wall.
+    #[word(name = "regionID")]
+    region: At<RegionId>,
+    #[word(name = "law")]
+    law: At<Law>,
+}
 
 impl FixStyle for WallRegion {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let word = args.expect("the region's ID")?;
-        cx.region(word)?;
-        let (region, span) = (word.text.clone(), word.span);
-        let style = args.expect("the law of the wall")?;
-        if !NAMES.contains(&style.text.as_str()) {
-            return Err(unknown_style(style, "law of a wall", &NAMES));
-        }
-        let mut given = [0.0; 3];
-        for (number, what) in given.iter_mut().zip(numbers(&style.text)) {
-            *number = if *what == "sigma" { args.non_negative(what)? } else { args.number(what)? };
-        }
-        let law = Law::new(&style.text, given, args.positive("the cutoff")?);
+        let Line { region, law: At { value: law, span: style, .. } } = read(args, cx)?;
+        let (span, RegionId(region)) = (region.span, region.value);
         let law = if cx.world.settings.lammps() { law.inverted() } else { law };
         if law.needs_radii() {
             if !cx.world.particles.style.sphere {
-                let d = Diagnostic::error(
-                    Code::WRONG_ORDER,
-                    style.span,
-                    "`colloid` needs particles with a radius",
-                );
+                let d =
+                    Diagnostic::error(Code::WRONG_ORDER, style, "`colloid` needs particles with a radius");
                 return Err(d.help("put `atom_style sphere` at the top of the deck").into());
             }
-            cx.fault(style.span, "`colloid` of fix wall/region that attracts where it should repel", false);
+            cx.fault(style, "`colloid` of fix wall/region that attracts where it should repel", false);
         }
-        args.finish()?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, region, span, law, virial: false }))
     }
 }

@@ -272,7 +272,7 @@ impl Grammar {
 impl Keyword {
     /// The keyword with what stands behind it.
     pub fn shown(&self) -> String {
-        let values = self.values.iter().map(Part::shown);
+        let values = self.values.iter().map(Part::shown).filter(|shown| !shown.is_empty());
         std::iter::once(self.word.to_string()).chain(values).collect::<Vec<_>>().join(" ")
     }
 
