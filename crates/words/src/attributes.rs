@@ -139,7 +139,7 @@ pub fn imports() -> TokenStream {
         #[allow(unused_imports)]
         use ::perigrain_styles::words::{
             Alternative, Args, At, BuildCx, Grammar, Keyword, Kind, Part, Placeholder, Result, Value, Whole, Word,
-            Words, inner, one_of,
+            Words, inner, lacking, one_of,
         };
     }
 }
