@@ -26,9 +26,9 @@ pub fn line() -> String {
 fn lanes() -> &'static str {
     match Form::here() {
         #[cfg(target_arch = "x86_64")]
-        Form::Gathers | Form::Eight => "avx512",
+        Form::Gathers { .. } | Form::Eight { .. } => "avx512",
         #[cfg(target_arch = "x86_64")]
-        Form::Four => "avx2",
+        Form::Four { .. } => "avx2",
         Form::Plain => "portable",
     }
 }
