@@ -64,17 +64,17 @@ impl Page {
         }
     }
 
-    /// The tables of its declared words as Markdown, each behind an empty line.
-    pub fn tables(&self) -> String {
-        let tables = self.forms.iter().map(|form| form.grammar.table()).filter(|table| !table.is_empty());
-        tables.map(|table| format!("\n{table}")).collect()
+    /// The table of its declared words as Markdown, behind an empty line.
+    pub fn table(&self) -> String {
+        let table = Form::table(self.forms);
+        if table.is_empty() { table } else { format!("\n{table}") }
     }
 
     /// The page as Markdown.
     pub fn markdown(&self) -> String {
         let Doc { summary, text, example, .. } = self.doc;
         let mut page = format!("# {}\n\n{summary}\n\n```text\n{}\n```\n", self.title(), self.syntax());
-        page.push_str(&self.tables());
+        page.push_str(&self.table());
         if !text.is_empty() {
             let _ = write!(page, "\n{}\n", text.trim());
         }

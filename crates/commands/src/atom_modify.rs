@@ -1,9 +1,10 @@
 //! `atom_modify`: how LAMMPS finds and orders particles; accepted, without effect on numbers.
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
-use perigrain_styles::common::{bad_keyword, before_box, not_here, setting};
+use perigrain_styles::common::{before_box, setting};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,35 +17,62 @@ impl Style for AtomModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "atom_modify [map yes|array|hash] [sort N size] [id yes]",
+            syntax: "",
             summary: "Accepted for the sake of LAMMPS decks: perigrain finds and orders particles by itself.",
-            text: "`map` and `id` must come before the box. `first` and `id no` are refused.",
+            text: "`map` and `id` must come before the box.",
             example: "atom_modify map array sort 0 0.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(least = 1, refused = "first")]
+struct Line {
+    /// How particles are found by their ids.
+    #[word(keyword)]
+    map: Option<Map>,
+    /// How often particles are sorted, and the size of bins.
+    #[word(keyword)]
+    sort: Option<Sorting>,
+    /// Whether particles have ids; `no` is refused.
+    #[word(keyword, what = "id")]
+    id: Option<At<bool>>,
+}
+
+/// How LAMMPS finds particles by their ids.
+#[derive(Words)]
+#[word(what = "kind of map")]
+enum Map {
+    Yes,
+    Array,
+    Hash,
+}
+
+/// How LAMMPS sorts particles.
+#[derive(Words)]
+struct Sorting {
+    /// The sorting interval [steps].
+    #[word(name = "N", from = 0)]
+    _interval: i64,
+    /// The bin size [length].
+    #[word(name = "size", non_negative)]
+    _size: f64,
 }
 
 impl CommandStyle for AtomModify {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        a.peek().map_or_else(|| a.clone().expect("a keyword").map(|_| ()), |_| Ok(()))?;
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "map" => {
-                    before_box(cx, "atom_modify map")?;
-                    a.choice("kind of map", &["yes", "array", "hash"])?;
-                }
-                "sort" => {
-                    a.integer_from(0, "the sorting interval")?;
-                    a.non_negative("the bin size")?;
-                }
-                "id" => {
-                    before_box(cx, "atom_modify id")?;
-                    let value = a.peek().cloned();
-                    if let (false, Some(w)) = (a.flag("id")?, value) {
-                        return Err(not_here(&w, "particles without ids: atom_modify id"));
-                    }
-                }
-                _ => return Err(bad_keyword(a, word, &["map", "sort", "id"], &["first"])),
+        let line: Line = read(a, cx)?;
+        if line.map.is_some() {
+            before_box(cx, "atom_modify map")?;
+        }
+        if let Some(id) = line.id {
+            before_box(cx, "atom_modify id")?;
+            if !id.value {
+                let text = "particles without ids: atom_modify id `no` is not in perigrain yet";
+                return fail(Code::NOT_SUPPORTED, id.span, text);
             }
         }
         let text = "atom_modify has no effect here: particles are found and ordered without it";

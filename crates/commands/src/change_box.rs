@@ -1,20 +1,18 @@
 //! `change_box`: size and faces of the box, with particles moved along if requested.
 
-use super::boundary::pair_of_faces;
+use super::boundary::AllFaces;
 use super::replicate::log_box;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, on_particles, scales, units_lattice};
+use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{bonds_across, bonds_fit};
+use perigrain_styles::words::{Each, Form, Said, Units, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
-use perigrain_world::{Boundary, Domain, Face, GroupId};
+use perigrain_world::{Boundary, Domain, GroupId};
 
 /// The command.
 pub struct ChangeBox;
-
-const KEYWORDS: [&str; 12] =
-    ["x", "y", "z", "xy", "xz", "yz", "boundary", "ortho", "triclinic", "set", "remap", "units"];
 
 impl Style for ChangeBox {
     fn name(&self) -> &'static str {
@@ -23,31 +21,82 @@ impl Style for ChangeBox {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "change_box GROUP x|y|z final LO HI | x|y|z delta DLO DHI | x|y|z scale S | x|y|z volume | \
-                     xy|xz|yz final T | xy|xz|yz delta DT | boundary X Y Z | set | remap | ortho | triclinic …  \
-                     [units lattice|box]",
+            syntax: "",
             summary: "Changes size, shape and faces of the box.",
-            text: "What is asked happens in order. `scale` and `volume` change an edge about its middle; `volume` keeps the \
-                   volume that the box had before the edge named just before it changed (two `volume` in a row share it). \
-                   Particles stay where they are unless `remap` is given: then those of the group move with the box, from \
-                   where it was at the start of the line, or at the last `set` or `remap`, to where it is now. `boundary` changes \
-                   what the faces do; image counts along a dimension that is no longer periodic become 0. At the end \
-                   shrink-wrapped faces follow the particles and periodic ones wrap them. `triclinic` \
-                   makes the box one that may lean, `ortho` one that may not, for which its tilts must be 0; `xy`, `xz` and `yz` \
-                   set its tilts or change them. Distances are in lattice spacings unless `units box` is given, \
-                   `xy` and `xz` in those along x, `yz` in those along y. Where peridynamic bonds cross a periodic face, its edge may \
-                   change with `remap` alone: the body is strained evenly with the box, from the state at the first run.",
+            text: "What is asked happens in order. Particles stay where they are unless `remap` is said. Image counts along a \
+                   dimension that is no longer periodic become 0. At the end shrink-wrapped faces follow the particles and periodic \
+                   ones wrap them.\n\n\
+                   Distances in `xy` and `xz` are in lattice spacings along x, in `yz` in those along y. Where peridynamic bonds \
+                   cross a periodic face, its edge may change with `remap` alone: the body is strained evenly with the box, from \
+                   the state at the first run.",
             example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(least = 1)]
+struct Line {
+    /// The particles that `remap` moves.
+    #[word(name = "GROUP")]
+    group: GroupId,
+    #[word(flatten)]
+    changes: Each<Change>,
+    /// The unit of distances.
+    #[word(keyword, default = Units::Lattice)]
+    units: Units,
+}
+
+#[derive(Words)]
+#[word(keywords)]
+enum Change {
+    X(#[word(name = "change")] Edge),
+    Y(#[word(name = "change")] Edge),
+    Z(#[word(name = "change")] Edge),
+    Xy(#[word(name = "change")] Tilt),
+    Xz(#[word(name = "change")] Tilt),
+    Yz(#[word(name = "change")] Tilt),
+    /// What the faces do from now on, as in `boundary`.
+    Boundary(AllFaces),
+    /// The box may not lean from now on; its tilts must be 0.
+    Ortho,
+    /// The box may lean from now on.
+    Triclinic,
+    /// The box from which `remap` begins is the present one.
+    Set,
+    /// The particles of the group move with the box, from where it was at the start of the line, or at the last `set` or `remap`, to where
+    /// it is now.
+    Remap,
 }
 
 /// How an edge changes.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Words)]
+#[word(what = "change")]
 enum Edge {
-    Final(f64, f64),
-    Delta(f64, f64),
-    Scale(f64),
+    /// The new faces.
+    Final(
+        #[word(name = "LO", what = "the lower face")] f64,
+        #[word(name = "HI", what = "the upper face")] f64,
+    ),
+    /// By how much each face is shifted.
+    Delta(#[word(name = "DLO", what = "the shift")] f64, #[word(name = "DHI", what = "the shift")] f64),
+    /// A factor, about the middle.
+    Scale(#[word(name = "S", what = "the factor", positive)] f64),
+    /// About the middle, so that the box has the volume that it had before the edge named just before changed; two in a row share that.
+    Volume,
+}
+
+/// How a tilt changes.
+#[derive(Clone, Copy, Words)]
+#[word(what = "change")]
+enum Tilt {
+    /// The new tilt.
+    Final(#[word(name = "T", what = "the tilt")] f64),
+    /// By how much it changes.
+    Delta(#[word(name = "DT", what = "the tilt")] f64),
 }
 
 /// One change that the line requests.
@@ -61,11 +110,10 @@ enum Step {
     /// A tilt (xy, xz, yz), set or changed by so much.
     Tilt {
         k: usize,
-        by: f64,
-        delta: bool,
+        how: Tilt,
         span: Span,
     },
-    Boundary([[Face; 2]; 3]),
+    Boundary(Boundary),
     Ortho(Span),
     Triclinic,
     Set,
@@ -75,46 +123,28 @@ enum Step {
 impl CommandStyle for ChangeBox {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let group = cx.group(a.expect("a group")?)?;
-        let (mut steps, mut lattice) = (vec![], true);
-        let mut word = Some(a.expect("what to change")?);
-        while let Some(keyword) = word {
-            match keyword.text.as_str() {
-                "x" | "y" | "z" => edge(keyword, a, &mut steps)?,
-                "boundary" => {
-                    let mut faces = [[Face::Periodic; 2]; 3];
-                    for (pair, what) in faces.iter_mut().zip(["x", "y", "z"]) {
-                        *pair = pair_of_faces(a.expect(&format!("the faces in {what}"))?)?;
-                    }
-                    steps.push(Step::Boundary(faces));
-                }
-                "ortho" => steps.push(Step::Ortho(keyword.span)),
-                "triclinic" => steps.push(Step::Triclinic),
-                "set" => steps.push(Step::Set),
-                "remap" => steps.push(Step::Remap),
-                "units" => lattice = units_lattice(a)?,
-                "xy" | "xz" | "yz" => {
-                    let k = ["xy", "xz", "yz"].iter().position(|n| *n == keyword.text).unwrap_or(0);
-                    if k > 0 && cx.world.settings.two_dimensional {
-                        let text = format!("the tilt {} of a flat scene must be 0", keyword.text);
-                        return fail(Code::CONFLICT, keyword.span, text);
-                    }
-                    let made = steps.iter().any(|s| matches!(s, Step::Triclinic));
-                    if !made && cx.world.domain.as_ref().is_some_and(|d| d.tilt.is_none()) {
-                        return Err(cannot_lean(keyword.span));
-                    }
-                    let delta = a.choice("change", &["final", "delta"])? == "delta";
-                    steps.push(Step::Tilt { k, by: a.number("the tilt")?, delta, span: keyword.span });
-                }
-                _ => return Err(a.unknown(keyword, &KEYWORDS)),
+        let Line { group, changes, units } = read(a, cx)?;
+        let mut steps = vec![];
+        for Said { word, value, .. } in changes.0 {
+            match value {
+                Change::X(how) => edge(0, how, &word, &mut steps)?,
+                Change::Y(how) => edge(1, how, &word, &mut steps)?,
+                Change::Z(how) => edge(2, how, &word, &mut steps)?,
+                Change::Xy(how) => steps.push(tilt(0, how, &word, &steps, cx)?),
+                Change::Xz(how) => steps.push(tilt(1, how, &word, &steps, cx)?),
+                Change::Yz(how) => steps.push(tilt(2, how, &word, &steps, cx)?),
+                Change::Boundary(faces) => steps.push(Step::Boundary(faces.into())),
+                Change::Ortho => steps.push(Step::Ortho(word.span)),
+                Change::Triclinic => steps.push(Step::Triclinic),
+                Change::Set => steps.push(Step::Set),
+                Change::Remap => steps.push(Step::Remap),
             }
-            word = a.next();
         }
-        let scale = scales(cx.world, lattice);
+        let scale = units.scales(cx.world);
         let span = cx.span;
         if let (true, [Step::Boundary(faces)]) = (cx.checking, steps.as_slice()) {
             // A check has no particles for faces to follow, but later lines depend on what the faces are.
-            let faces = Boundary(*faces);
+            let faces = *faces;
             return Ok(common::setting(move |cx| {
                 if let Some(domain) = &mut *cx.world.domain {
                     common::check_flat(faces, (domain.lo[2], domain.hi[2]), domain.flat)?;
@@ -134,31 +164,38 @@ fn cannot_lean(span: Span) -> Diagnostics {
         .into()
 }
 
-fn edge(word: &Word, a: &mut Args, steps: &mut Vec<Step>) -> Result<()> {
-    let d = usize::from(word.text.as_bytes()[0] - b'x');
-    let style = a.choice("change", &["final", "delta", "scale", "volume"])?;
-    let how = match style {
-        "final" => Edge::Final(a.number("the lower face")?, a.number("the upper face")?),
-        "delta" => Edge::Delta(a.number("the shift")?, a.number("the shift")?),
-        "scale" => Edge::Scale(a.positive("the factor")?),
-        _ => {
-            return match steps.last_mut() {
-                Some(Step::Edge { d: first, volume, .. })
-                    if *first != d && !volume.contains(&d) && volume.len() < 2 =>
-                {
-                    volume.push(d);
-                    Ok(())
-                }
-                _ => {
-                    let text = "`volume` must follow a change of another edge";
-                    let diagnostic = Diagnostic::error(Code::CONFLICT, word.span, text);
-                    Err(diagnostic.help("write for example `x scale 1.1 y volume`").into())
-                }
-            };
+/// Adds the change of an edge to the steps.
+fn edge(d: usize, how: Edge, word: &Word, steps: &mut Vec<Step>) -> Result<()> {
+    if !matches!(how, Edge::Volume) {
+        steps.push(Step::Edge { d, how, volume: vec![] });
+        return Ok(());
+    }
+    match steps.last_mut() {
+        Some(Step::Edge { d: first, volume, .. })
+            if *first != d && !volume.contains(&d) && volume.len() < 2 =>
+        {
+            volume.push(d);
+            Ok(())
         }
-    };
-    steps.push(Step::Edge { d, how, volume: vec![] });
-    Ok(())
+        _ => {
+            let text = "`volume` must follow a change of another edge";
+            let diagnostic = Diagnostic::error(Code::CONFLICT, word.span, text);
+            Err(diagnostic.help("write for example `x scale 1.1 y volume`").into())
+        }
+    }
+}
+
+/// The change of a tilt, of a box that may lean after the steps before.
+fn tilt(k: usize, how: Tilt, word: &Word, before: &[Step], cx: &BuildCx) -> Result<Step> {
+    if k > 0 && cx.world.settings.two_dimensional {
+        let text = format!("the tilt {} of a flat scene must be 0", word.text);
+        return fail(Code::CONFLICT, word.span, text);
+    }
+    let made = before.iter().any(|s| matches!(s, Step::Triclinic));
+    if !made && cx.world.domain.as_ref().is_some_and(|d| d.tilt.is_none()) {
+        return Err(cannot_lean(word.span));
+    }
+    Ok(Step::Tilt { k, how, span: word.span })
 }
 
 fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span: Span) -> Result<()> {
@@ -176,16 +213,19 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
                 boxes.push(domain.clone());
             }
             Step::Boundary(faces) => {
-                common::check_flat(Boundary(*faces), (domain.lo[2], domain.hi[2]), domain.flat)?;
+                common::check_flat(*faces, (domain.lo[2], domain.hi[2]), domain.flat)?;
                 for (d, unwound) in unwound.iter_mut().enumerate() {
-                    *unwound |= domain.boundary.periodic(d) && faces[d][0] != Face::Periodic;
+                    *unwound |= domain.boundary.periodic(d) && !faces.periodic(d);
                 }
-                domain.boundary = Boundary(*faces);
+                domain.boundary = *faces;
                 refit(&mut domain);
             }
-            Step::Tilt { k, by, delta, span } => {
+            Step::Tilt { k, how, span } => {
                 let Some(tilt) = &mut domain.tilt else { return Err(cannot_lean(*span)) };
-                tilt[*k] = scale[*k / 2] * by + if *delta { tilt[*k] } else { 0.0 };
+                tilt[*k] = match how {
+                    Tilt::Final(t) => scale[*k / 2] * t,
+                    Tilt::Delta(by) => scale[*k / 2] * by + tilt[*k],
+                };
                 refit(&mut domain);
                 boxes.push(domain.clone());
             }
@@ -264,6 +304,8 @@ fn reshape(domain: &mut Domain, d: usize, how: Edge, volume: &[usize], scale: f6
             (domain.lo[d], domain.hi[d]) = (domain.lo[d] + scale * lo, domain.hi[d] + scale * hi)
         }
         Edge::Scale(factor) => about_middle(domain, d, factor),
+        // It stands with the edge before it.
+        Edge::Volume => {}
     }
     check(domain, span)?;
     refit(domain);

@@ -2,9 +2,11 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_world::GroupId;
 
 /// The command.
 pub struct CommModify;
@@ -16,52 +18,49 @@ impl Style for CommModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "comm_modify [vel yes|no] [cutoff R] [mode single|multi|multi/old] [group ID] [cutoff/multi TYPE R] [reduce/multi]",
+            syntax: "",
             summary: "Accepted for the sake of LAMMPS decks: every process has the whole box.",
             text: "All velocities are at hand, whatever `vel` says, and all particles, whatever their cutoffs.",
             example: "comm_modify vel yes",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(least = 1)]
+struct Line {
+    #[word(keyword, what = "vel")]
+    vel: Option<bool>,
+    #[word(keyword, name = "R", what = "the cutoff", non_negative)]
+    cutoff: Option<f64>,
+    #[word(keyword)]
+    mode: Option<Mode>,
+    #[word(keyword, name = "ID")]
+    group: Option<GroupId>,
+    #[word(keyword = "cutoff/multi", name = "TYPE R", what = "the cutoff")]
+    multi: Vec<(Word, f64)>,
+    #[word(keyword = "cutoff/multi/old", name = "TYPE R", what = "the cutoff")]
+    multi_old: Vec<(Word, f64)>,
+    #[word(flag = "reduce/multi")]
+    reduce: bool,
+}
+
+/// How LAMMPS' processes exchange particles.
+#[derive(Words)]
+#[word(what = "mode")]
+enum Mode {
+    Single,
+    Multi,
+    #[word("multi/old")]
+    MultiOld,
 }
 
 impl CommandStyle for CommModify {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        if a.is_empty() {
-            a.expect("a keyword such as vel or cutoff")?;
-        }
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "vel" => {
-                    a.flag("vel")?;
-                }
-                "cutoff" => {
-                    a.non_negative("the cutoff")?;
-                }
-                "mode" => {
-                    a.choice("mode", &["single", "multi", "multi/old"])?;
-                }
-                "group" => {
-                    cx.group(a.expect("a group")?)?;
-                }
-                "cutoff/multi" | "cutoff/multi/old" => {
-                    a.expect("a collection or type, or a range of them")?;
-                    a.number("the cutoff")?;
-                }
-                "reduce/multi" => {}
-                _ => {
-                    const KNOWN: [&str; 7] = [
-                        "vel",
-                        "cutoff",
-                        "mode",
-                        "group",
-                        "cutoff/multi",
-                        "cutoff/multi/old",
-                        "reduce/multi",
-                    ];
-                    return Err(a.unknown(word, &KNOWN));
-                }
-            }
-        }
+        let _: Line = read(a, cx)?;
         let text = "comm_modify has no effect here: every process has the whole box";
         cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
         Ok(setting(|_| Ok(())))

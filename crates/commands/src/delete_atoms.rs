@@ -5,8 +5,9 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::stop;
-use perigrain_lang::{Args, Param, ValueRef};
-use perigrain_styles::common::{self, bad_keyword, on_particles, unknown_style};
+use perigrain_lang::{Args, Param};
+use perigrain_styles::common::{self, on_particles};
+use perigrain_styles::words::{At, AtomVariable, Form, Fraction, MarsagliaSeed, Nullable, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Domain, GroupId, Particles, Region};
 use std::collections::BTreeSet;
@@ -21,20 +22,33 @@ impl Style for DeleteAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "delete_atoms group ID | region ID | variable NAME | overlap D ID ID | \
-                     random fraction P yes|no GROUP REGION|NULL SEED | random count N yes|no GROUP REGION|NULL SEED  \
-                     [compress yes|no] [bond yes|no] [mol yes|no]",
+            syntax: "",
             summary: "Deletes the particles of a group or region, or those too near to others.",
-            text: "As in LAMMPS the last particle moves into the hole, and with `compress yes` (default) ids become storage \
-                   order + 1 afterwards. `overlap D A B` goes through the particles of A in order and deletes each that \
-                   is nearer than D to a particle of B that is still there. `random fraction` deletes a part of the \
-                   particles of a group inside a region, exactly with `yes`, about with `no`; `random count` deletes N of \
-                   them, or all if there are fewer (an error with `yes`), the ones that LAMMPS deletes. Peridynamic bonds of deleted particles are gone. \
-                   Other bonds go with `bond yes`; without it a bond that has lost one end is an error of the next run. `mol \
-                   yes` deletes whole molecules. Where particles have bonds, ids stay (LAMMPS ignores `compress yes` then).",
+            text: "As in LAMMPS the last particle moves into the hole. Peridynamic bonds of deleted particles are gone; of other \
+                   bonds, one that has lost one end is an error of the next run. Where particles have bonds, ids stay (LAMMPS \
+                   ignores `compress yes` then).",
             example: "delete_atoms region notch",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(refused = "condense")]
+struct Line {
+    #[word(name = "style")]
+    choice: Choice,
+    /// Ids become storage order + 1 afterwards.
+    #[word(keyword, what = "compress", default = true)]
+    compress: bool,
+    /// Bonds of deleted particles go, too.
+    #[word(keyword, what = "bond", placed, shown = "no")]
+    bond: Option<At<bool>>,
+    /// Whole molecules go.
+    #[word(keyword, what = "mol", placed, shown = "no")]
+    mol: Option<At<bool>>,
 }
 
 /// The options of a line.
@@ -47,105 +61,110 @@ struct How {
     mol: bool,
 }
 
+#[derive(Words)]
+#[word(what = "style of delete_atoms", style)]
 enum Choice {
-    Group(GroupId),
-    Region(Region),
-    Variable(ValueRef),
-    Overlap { cutoff: f64, first: GroupId, second: GroupId },
+    /// The particles of a group.
+    Group(#[word(name = "ID")] GroupId),
+    /// The particles inside a region.
+    Region(#[word(name = "ID")] Region),
+    /// Those for which an atom-style variable is not zero.
+    Variable(#[word(name = "NAME")] AtomVariable),
+    /// Goes through the particles of the first group in order and deletes each that is nearer than D to a particle of the second one
+    /// that is still there.
+    Overlap {
+        #[word(name = "D", what = "the distance", positive)]
+        cutoff: At<f64>,
+        #[word(name = "ID")]
+        first: GroupId,
+        #[word(name = "ID")]
+        second: GroupId,
+    },
+    /// A part of the particles of a group inside a region, the ones that LAMMPS deletes.
     Random(Random),
 }
 
 /// A random part of the particles of a group inside a region.
+#[derive(Words)]
 struct Random {
-    amount: Amount,
-    /// The number is exact.
+    #[word(name = "amount")]
+    amount: Share,
+    /// Whether the amount is exact, and an error if there are fewer, or about right.
+    #[word(name = "exact", what = "exactness")]
     exact: bool,
+    #[word(name = "GROUP")]
     group: GroupId,
-    region: Option<Region>,
-    seed: u32,
-    span: Span,
+    #[word(name = "REGION")]
+    region: Nullable<Region>,
+    #[word(name = "SEED")]
+    seed: MarsagliaSeed,
+}
+
+#[derive(Words)]
+#[word(what = "random style")]
+enum Share {
+    /// A part of them.
+    Fraction(#[word(name = "P")] At<Fraction>),
+    /// So many of them, or all if there are fewer.
+    Count(#[word(name = "N", what = "the number of particles", from = 0)] At<i64>),
+}
+
+impl Share {
+    /// The amount, and where it stands.
+    fn amount(&self) -> (Amount, Span) {
+        match self {
+            Self::Fraction(part) => (Amount::Ratio(part.value.0), part.span),
+            Self::Count(number) => (Amount::Count(number.value), number.span),
+        }
+    }
 }
 
 impl CommandStyle for DeleteAtoms {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let domain = common::domain(cx)?;
-        let style = a.expect("group, region or overlap")?;
-        let choice = match style.text.as_str() {
-            "group" => Choice::Group(cx.group(a.expect("a group")?)?),
-            "region" => Choice::Region(cx.region(a.expect("a region")?)?.clone()),
-            "variable" => Choice::Variable(common::atom_variable(cx, a.expect("a variable")?)?),
-            "overlap" => overlap(a, cx, domain)?,
-            "random" => Choice::Random(random(a, cx)?),
-            "porosity" => {
-                let text = "LAMMPS has no `delete_atoms porosity` any more";
-                let d = Diagnostic::error(Code::NOT_SUPPORTED, style.span, text);
-                return Err(d.help("write `delete_atoms random fraction P no GROUP REGION SEED`").into());
-            }
-            _ => {
-                const KNOWN: [&str; 5] = ["group", "region", "variable", "overlap", "random"];
-                return Err(unknown_style(style, "style of delete_atoms", &KNOWN));
-            }
-        };
-        let mut how = How { compress: true, bond: false, mol: false };
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "compress" => how.compress = a.flag("compress")?,
-                "bond" | "mol" => {
-                    let (yes, style) = (a.flag(&word.text)?, cx.world.particles.style);
-                    let (there, of) = match word.text.as_str() {
-                        "bond" => (style.bonded, &mut how.bond),
-                        _ => (style.molecules, &mut how.mol),
-                    };
-                    if yes && !there {
-                        let text = format!("`{} yes` needs an atom style with bonds", word.text);
-                        return fail(Code::CONFLICT, word.span, text);
-                    }
-                    *of = yes;
-                }
-                _ => return Err(bad_keyword(a, word, &["compress", "bond", "mol"], &["condense"])),
+        if let Some(word) = a.peek().filter(|word| word.text == "porosity") {
+            let text = "LAMMPS has no `delete_atoms porosity` any more";
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+            return Err(d.help("write `delete_atoms random fraction P no GROUP REGION SEED`").into());
+        }
+        let Line { choice, compress, bond, mol } = read(a, cx)?;
+        if let Choice::Overlap { cutoff, .. } = &choice {
+            let heights = domain.edges().heights();
+            if (0..3).any(|d| domain.periodic()[d] && cutoff.value > heights[d]) {
+                let text = "the distance is longer than a periodic edge of the box";
+                return fail(Code::BAD_VALUE, cutoff.span, text);
             }
         }
+        let style = cx.world.particles.style;
+        let bond = goes("bond", bond, style.bonded)?;
+        let mol = goes("mol", mol, style.molecules)?;
+        let how = How { compress, bond, mol };
         Ok(on_particles(vec![], move |cx| delete(cx, &choice, how)))
     }
 }
 
-fn random(a: &mut Args, cx: &BuildCx) -> Result<Random> {
-    let style = a.choice("random style", &["fraction", "count"])?;
-    let span = a.here();
-    let amount = match style {
-        "fraction" => Amount::Ratio(common::fraction(a)?),
-        _ => Amount::Count(a.integer_from(0, "the number of particles")?),
-    };
-    let exact = a.flag("exactness")?;
-    let group = cx.group(a.expect("a group")?)?;
-    let word = a.expect("a region or NULL")?;
-    let region = if word.text == "NULL" { None } else { Some(cx.region(word)?.clone()) };
-    Ok(Random { amount, exact, group, region, seed: common::marsaglia_seed(a)?, span })
-}
-
-fn overlap(a: &mut Args, cx: &BuildCx, domain: &Domain) -> Result<Choice> {
-    let span = a.here();
-    let cutoff = a.positive("the distance")?;
-    let heights = domain.edges().heights();
-    if (0..3).any(|d| domain.periodic()[d] && cutoff > heights[d]) {
-        return fail(Code::BAD_VALUE, span, "the distance is longer than a periodic edge of the box");
+/// Whether a keyword says `yes`, which needs particles that have what it is about.
+fn goes(name: &str, said: Option<At<bool>>, there: bool) -> Result<bool> {
+    match said {
+        Some(At { value: true, span, .. }) if !there => {
+            fail(Code::CONFLICT, span, format!("`{name} yes` needs an atom style with bonds"))
+        }
+        said => Ok(said.is_some_and(|said| said.value)),
     }
-    let (first, second) = (cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?);
-    Ok(Choice::Overlap { cutoff, first, second })
 }
 
 fn delete(cx: &mut ActCx, choice: &Choice, how: How) -> Result<()> {
     let mut marked: Vec<bool> = match choice {
         Choice::Group(g) => cx.world.particles.mask.iter().map(|m| m & g.bit() != 0).collect(),
         Choice::Region(r) => cx.world.particles.x.iter().map(|&x| r.contains(x)).collect(),
-        Choice::Variable(r) => {
+        Choice::Variable(AtomVariable(r)) => {
             cx.per_atom(&Param::Ref(r.clone()))?.into_iter().map(|v| v != 0.0).collect::<Vec<_>>()
         }
         Choice::Random(random) => drawn(cx, random)?,
         Choice::Overlap { cutoff, first, second } => {
             common::settle(cx.world);
             let domain = cx.world.domain()?;
-            overlapping(&cx.world.particles, domain, *cutoff, *first, *second)
+            overlapping(&cx.world.particles, domain, cutoff.value, *first, *second)
         }
     };
     if how.mol {
@@ -180,21 +199,23 @@ fn whole_molecules(p: &Particles, marked: &mut [bool]) {
 /// Marks the particles that the random stream chooses.
 fn drawn(cx: &mut ActCx, r: &Random) -> Result<Vec<bool>> {
     let p = &cx.world.particles;
-    let meant =
-        |i: &usize| p.mask[*i] & r.group.bit() != 0 && r.region.as_ref().is_none_or(|g| g.contains(p.x[*i]));
+    let meant = |i: &usize| {
+        p.mask[*i] & r.group.bit() != 0 && r.region.0.as_ref().is_none_or(|g| g.contains(p.x[*i]))
+    };
     let eligible: Vec<usize> = (0..p.len()).filter(meant).collect();
     let mut marked = vec![false; p.len()];
-    let chosen = match r.amount {
+    let (amount, span) = r.amount.amount();
+    let chosen = match amount {
         Amount::Ratio(fraction) if !r.exact => {
-            let mut stream = Marsaglia::new(r.seed);
+            let mut stream = Marsaglia::new(r.seed.0);
             eligible.into_iter().filter(|_| stream.uniform() <= fraction).collect()
         }
         Amount::Count(n) if n > eligible.len() as i64 && !r.exact => {
             let text = format!("only {} particles can be deleted, not {n}", eligible.len());
-            cx.note(Diagnostic::warning(Code::SUSPICIOUS, r.span, text));
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text));
             eligible
         }
-        amount => Subset { amount, seed: r.seed, span: r.span }.of(eligible)?,
+        amount => Subset { amount, seed: r.seed.0, span }.of(eligible)?,
     };
     chosen.into_iter().for_each(|i| marked[i] = true);
     Ok(marked)

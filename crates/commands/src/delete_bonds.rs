@@ -3,7 +3,8 @@
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
-use perigrain_styles::common::{self, not_here, on_particles, range_from, unknown_style};
+use perigrain_styles::common::{self, on_particles, range_from};
+use perigrain_styles::words::{Form, Kind, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{GroupId, World};
@@ -18,33 +19,79 @@ impl Style for DeleteBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "delete_bonds GROUP multi | atom TYPES | bond TYPES | stats  [any] [undo] [remove] [special]",
+            syntax: "",
             summary: "Turns bonds off, on again, or removes them.",
-            text: "Meant are bonds with both ends in the group, or with `any` one of them: all of them (`multi`), those with an end \
-                   of some types (`atom`), those of some bond types (`bond`); `stats` only counts. Types are `A`, `*`, `A*`, `*B` or \
-                   `A*B`. A bond turned off has its type negative: it exerts no force but still counts as bonded for `special_bonds`. \
-                   `undo` turns on what is off. `remove` then removes all bonds of the scene that are off, for good, and `special` \
-                   decides anew which pairs count as bonded. `angle` and the like are refused.",
+            text: "Meant are bonds with both ends in the group. Types are `A`, `*`, `A*`, `*B` or `A*B`. A bond turned off has its \
+                   type negative: it exerts no force but still counts as bonded for `special_bonds`. `angle` and the like are \
+                   refused.",
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\ndelete_bonds all bond 1\ndelete_bonds all stats",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
-#[derive(Clone, Copy)]
+#[derive(Words)]
+struct Line {
+    #[word(name = "GROUP")]
+    group: GroupId,
+    #[word(name = "style")]
+    choice: Choice,
+    #[word(flatten)]
+    how: How,
+}
+
+#[derive(Clone, Copy, Words)]
+#[word(what = "style of delete_bonds", style, refused = "angle dihedral improper")]
 enum Choice {
+    /// All of them are turned off.
     Multi,
-    Atom(i64, i64),
-    Bond(i64, i64),
+    /// Those with an end of some types are turned off.
+    Atom(#[word(name = "TYPES")] AtomTypes),
+    /// Those of some bond types are turned off.
+    Bond(#[word(name = "TYPES")] BondTypes),
+    /// None is: they are only counted.
     Stats,
 }
 
+/// Particle types from 0.
 #[derive(Clone, Copy)]
+struct AtomTypes(i64, i64);
+
+impl Value for AtomTypes {
+    const KIND: Kind = Kind::Types;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        range_from(args.expect("particle types")?, 0, cx.world.types as i64).map(|(lo, hi)| Self(lo, hi))
+    }
+}
+
+/// Bond types from 0.
+#[derive(Clone, Copy)]
+struct BondTypes(i64, i64);
+
+impl Value for BondTypes {
+    const KIND: Kind = Kind::Types;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        range_from(args.expect("bond types")?, 0, cx.world.bonds.types as i64).map(|(lo, hi)| Self(lo, hi))
+    }
+}
+
+#[derive(Clone, Copy, Words)]
 struct How {
+    /// Meant are bonds with one end in the group at least.
+    #[word(flag)]
     any: bool,
+    /// Bonds that are off are turned on.
+    #[word(flag)]
     undo: bool,
+    /// All bonds of the scene that are off then are removed for good.
+    #[word(flag)]
     remove: bool,
+    /// Decides anew which pairs count as bonded.
+    #[word(flag)]
     special: bool,
 }
 
@@ -56,36 +103,7 @@ impl CommandStyle for DeleteBonds {
             let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let group = cx.group(a.expect("a group")?)?;
-        let style = a.expect("multi, atom, bond or stats")?;
-        let choice = match style.text.as_str() {
-            "multi" => Choice::Multi,
-            "stats" => Choice::Stats,
-            "atom" => {
-                let (lo, hi) = range_from(a.expect("particle types")?, 0, cx.world.types as i64)?;
-                Choice::Atom(lo, hi)
-            }
-            "bond" => {
-                let (lo, hi) = range_from(a.expect("bond types")?, 0, cx.world.bonds.types as i64)?;
-                Choice::Bond(lo, hi)
-            }
-            "angle" | "dihedral" | "improper" => return Err(not_here(style, "delete_bonds")),
-            _ => {
-                const KNOWN: [&str; 4] = ["multi", "atom", "bond", "stats"];
-                return Err(unknown_style(style, "style of delete_bonds", &KNOWN));
-            }
-        };
-        let mut how = How { any: false, undo: false, remove: false, special: false };
-        while let Some(word) = a.next() {
-            let flag = match word.text.as_str() {
-                "any" => &mut how.any,
-                "undo" => &mut how.undo,
-                "remove" => &mut how.remove,
-                "special" => &mut how.special,
-                _ => return Err(a.unknown(word, &["any", "undo", "remove", "special"])),
-            };
-            *flag = true;
-        }
+        let Line { group, choice, how } = read(a, cx)?;
         Ok(on_particles(vec![], move |cx| delete(cx, group, choice, how)))
     }
 }
@@ -117,8 +135,10 @@ fn switch(w: &mut World, group: GroupId, choice: Choice, how: How) {
         let chosen = match choice {
             Choice::Multi => true,
             Choice::Stats => false,
-            Choice::Atom(lo, hi) => ends.iter().any(|&i| (lo..=hi).contains(&i64::from(p.kind[i]))),
-            Choice::Bond(lo, hi) => (lo..=hi).contains(&i64::from(kind)),
+            Choice::Atom(AtomTypes(lo, hi)) => {
+                ends.iter().any(|&i| (lo..=hi).contains(&i64::from(p.kind[i])))
+            }
+            Choice::Bond(BondTypes(lo, hi)) => (lo..=hi).contains(&i64::from(kind)),
         };
         // Only what is on can be turned off, and the other way round.
         if meant && chosen && kind > 0 {

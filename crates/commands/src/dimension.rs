@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{before_box, setting};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,7 +17,7 @@ impl Style for Dimension {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dimension 2|3",
+            syntax: "",
             summary: "Says whether the scene has three dimensions or lies in the plane z = 0.",
             text: "In two dimensions the z faces are periodic, the box holds z = 0, lattices are flat, temperatures and \
                    pressures count two directions, and particles do not see images along z. Nothing keeps particles in the \
@@ -24,13 +25,22 @@ impl Style for Dimension {
             example: "dimension 3",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "2|3", what = "the dimension")]
+    number: At<i64>,
 }
 
 impl CommandStyle for Dimension {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         before_box(cx, "dimension")?;
-        let span = a.here();
-        match a.integer("the dimension")? {
+        let Line { number: At { value, span, .. } } = read(a, cx)?;
+        match value {
             n @ (2 | 3) => Ok(setting(move |cx| {
                 cx.world.settings.two_dimensional = n == 2;
                 Ok(())

@@ -5,9 +5,8 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param};
-use perigrain_styles::common::{
-    self, axis, bad_keyword, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
-};
+use perigrain_styles::common::{self, on_particles};
+use perigrain_styles::words::{At, Axis, Form, PerAtom, Seed, Units, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::contacts::Rolls;
 use perigrain_world::{GroupId, Turn};
@@ -22,69 +21,81 @@ impl Style for DisplaceAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "displace_atoms GROUP move DX DY DZ | ramp x|y|z DLO DHI x|y|z CLO CHI | random DX DY DZ SEED | \
-                     rotate PX PY PZ RX RY RZ THETA  [units lattice|box]",
+            syntax: "",
             summary: "Moves the particles of a group once.",
-            text: "`move` takes numbers or variables. `ramp` moves by DLO where the coordinate is CLO, by DHI where it is \
-                   CHI, linearly between and constant beyond. `random` moves by up to ±DX, ±DY, ±DZ, each particle by \
-                   numbers that belong to its place, as in LAMMPS. `rotate` turns by THETA degrees about the axis through P \
-                   along R, particles unwrapped across periodic faces; orientations of `bpm/sphere` particles turn along, and so do the springs of \
-                   contacts between two of them (not under `compat lammps`), while velocities, spins and what holds particles to places in space \
-                   (`fix move`, `fix spring/self`, `compute displace/atom`) stay as they are. Distances are in lattice spacings unless `units box` \
-                   is said. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
+            text: "The particles of `rotate` are unwrapped across periodic faces; orientations of `bpm/sphere` particles turn \
+                   along, and so do the springs of contacts between two of them (not under `compat lammps`), while velocities, \
+                   spins and what holds particles to places in space (`fix move`, `fix spring/self`, `compute displace/atom`) stay \
+                   as they are. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
             example: "displace_atoms ball move 0 0 -0.001 units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
+#[derive(Words)]
+struct Line {
+    #[word(name = "GROUP")]
+    group: GroupId,
+    #[word(name = "motion")]
+    motion: At<Motion>,
+    /// The unit of distances.
+    #[word(keyword, default = Units::Lattice)]
+    units: Units,
+}
+
+#[derive(Words)]
+#[word(what = "style of displace_atoms", style)]
 enum Motion {
-    Shift([Param; 3]),
-    Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
-    Random { by: [f64; 3], seed: u32 },
-    Rotate { point: [f64; 3], axis: [f64; 3], angle: f64 },
+    /// By a displacement, of which each component is a number or a variable.
+    Move(#[word(name = "DX DY DZ", what = "the displacement")] [PerAtom; 3]),
+    /// By DLO where the coordinate is CLO, by DHI where it is CHI, linearly between and constant beyond.
+    Ramp {
+        #[word(name = "x|y|z", what = "direction of the displacement")]
+        along: Axis,
+        #[word(name = "DLO DHI", what = "the displacement")]
+        by: [f64; 2],
+        #[word(name = "x|y|z", what = "axis of the ramp")]
+        axis: Axis,
+        #[word(name = "CLO CHI", what = "the end of the ramp")]
+        between: [f64; 2],
+    },
+    /// By up to ±DX, ±DY, ±DZ, each particle by numbers that belong to its place, as in LAMMPS.
+    Random {
+        #[word(name = "DX DY DZ", what = "the range")]
+        by: [f64; 3],
+        #[word(name = "SEED")]
+        seed: Seed,
+    },
+    /// By the angle THETA in degrees about the axis through P along R.
+    Rotate {
+        #[word(name = "PX PY PZ", what = "a point of the axis")]
+        point: [f64; 3],
+        #[word(name = "RX RY RZ", what = "the axis")]
+        axis: [f64; 3],
+        #[word(name = "THETA", what = "the angle")]
+        degrees: At<f64>,
+    },
 }
 
 impl CommandStyle for DisplaceAtoms {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let group = cx.group(a.expect("a group")?)?;
-        let style = a.expect("move, ramp or random")?;
-        let motion = match style.text.as_str() {
-            "move" => {
-                let mut next = || {
-                    let p = variable_param(a, "the displacement")?;
-                    cx.param(&p, true).map(|()| p)
-                };
-                Motion::Shift([next()?, next()?, next()?])
+        let Line { group, motion: At { value: mut motion, span, .. }, units } = read(a, cx)?;
+        if let Motion::Rotate { axis, degrees, .. } = &mut motion {
+            let length = length(*axis);
+            if length == 0.0 {
+                return fail(Code::BAD_VALUE, degrees.span, "the axis of rotation has no direction");
             }
-            "ramp" => Motion::Ramp {
-                along: axis(a, "direction of the displacement")?,
-                by: [a.number("the displacement")?, a.number("the displacement")?],
-                axis: axis(a, "axis of the ramp")?,
-                between: [a.number("the lower end")?, a.number("the upper end")?],
-            },
-            "random" => {
-                let by = [a.number("the range")?, a.number("the range")?, a.number("the range")?];
-                Motion::Random { by, seed: seed(a)? }
-            }
-            "rotate" => rotation(a)?,
-            _ => {
-                const KNOWN: [&str; 4] = ["move", "ramp", "random", "rotate"];
-                return Err(unknown_style(style, "style of displace_atoms", &KNOWN));
-            }
-        };
+            *axis = axis.map(|x| x / length);
+        }
         if cx.world.settings.two_dimensional && leaves_plane(&motion) {
             let text = "displacements along z do not go with a flat scene (`dimension 2`)";
-            return fail(Code::CONFLICT, style.span, text);
+            return fail(Code::CONFLICT, span, text);
         }
-        let mut lattice = true;
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "units" => lattice = units_lattice(a)?,
-                _ => return Err(bad_keyword(a, word, &["units"], &[])),
-            }
-        }
-        let spacing = scales(cx.world, lattice);
+        let spacing = units.scales(cx.world);
         Ok(on_particles(vec![], move |cx| {
             cx.print("Displacing atoms ...");
             displace(cx, group, &motion, spacing)?;
@@ -95,24 +106,11 @@ impl CommandStyle for DisplaceAtoms {
     }
 }
 
-fn rotation(a: &mut Args) -> Result<Motion> {
-    let mut triple =
-        |what: &str| -> Result<[f64; 3]> { Ok([a.number(what)?, a.number(what)?, a.number(what)?]) };
-    let point = triple("a point of the axis")?;
-    let axis = triple("the axis")?;
-    let span = a.here();
-    let angle = std::f64::consts::PI * a.number("the angle")? / 180.0;
-    if length(axis) == 0.0 {
-        return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
-    }
-    Ok(Motion::Rotate { point, axis: axis.map(|x| x / length(axis)), angle })
-}
-
 /// Whether particles would leave the plane z = 0.
 fn leaves_plane(motion: &Motion) -> bool {
     match motion {
-        Motion::Shift([.., z]) => *z != Param::Number(0.0),
-        Motion::Ramp { along, .. } => *along == 2,
+        Motion::Move([.., PerAtom(z)]) => *z != Param::Number(0.0),
+        Motion::Ramp { along, .. } => along.0 == 2,
         Motion::Random { by, .. } => by[2] != 0.0,
         Motion::Rotate { axis, .. } => axis[0] != 0.0 || axis[1] != 0.0,
     }
@@ -122,10 +120,10 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
     let members: Vec<usize> =
         (0..cx.world.n()).filter(|&i| cx.world.particles.mask[i] & group.bit() != 0).collect();
     match motion {
-        Motion::Shift(params) => {
+        Motion::Move(params) => {
             // One direction after the other: a variable for y sees the shift in x already, as in LAMMPS.
             let before = cx.world.particles.x.clone();
-            for (d, param) in params.iter().enumerate() {
+            for (d, PerAtom(param)) in params.iter().enumerate() {
                 match cx.per_atom_of(param, &members) {
                     Ok(by) => members.iter().for_each(|&i| cx.world.particles.x[i][d] += spacing[d] * by[i]),
                     Err(e) => {
@@ -135,7 +133,7 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
                 }
             }
         }
-        Motion::Ramp { along, by, axis, between } => {
+        Motion::Ramp { along: Axis(along), by, axis: Axis(axis), between } => {
             let by = by.map(|b| spacing[*along] * b);
             let between = between.map(|c| spacing[*axis] * c);
             for &i in &members {
@@ -143,7 +141,7 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
                 x[*along] += common::ramp(x[*axis], between, by);
             }
         }
-        Motion::Random { by, seed } => {
+        Motion::Random { by, seed: Seed(seed) } => {
             let mut stream = ParkMiller::new(*seed);
             for &i in &members {
                 let x = &mut cx.world.particles.x[i];
@@ -153,8 +151,9 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
                 }
             }
         }
-        Motion::Rotate { point, axis, angle } => {
-            let turn = Turn::new([0, 1, 2].map(|d| spacing[d] * point[d]), *axis, *angle);
+        Motion::Rotate { point, axis, degrees } => {
+            let angle = std::f64::consts::PI * degrees.value / 180.0;
+            let turn = Turn::new([0, 1, 2].map(|d| spacing[d] * point[d]), *axis, angle);
             // Without coefficients nothing touches yet.
             let probes = cx.values.probes(cx.world).unwrap_or_default();
             let rolls: Vec<Rolls> = probes.iter().flat_map(|probe| probe.rolls()).collect();

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::{domain, setting};
+use perigrain_styles::words::{Form, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,14 +17,26 @@ impl Style for Mass {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "mass TYPE M",
+            syntax: "",
             summary: "Sets the mass of all particles of a type (atom_style atomic).",
-            text: "TYPE is a type or a range such as `*` or `2*4`. Particles of the styles sphere and peri have masses of \
-                   their own: `set … mass` or `set … density`; where they are in a hybrid with bonds, the line is taken for LAMMPS' \
-                   decks, without effect.",
+            text: "Particles of the styles sphere and peri have masses of their own: `set … mass` or `set … density`; where they \
+                   are in a hybrid with bonds, the line is taken for LAMMPS' decks, without effect.",
             example: "mass * 1.0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// A type, or a range such as `*` or `2*4`.
+    #[word(name = "TYPE")]
+    types: Types,
+    /// The mass [mass].
+    #[word(name = "M", positive)]
+    mass: f64,
 }
 
 impl CommandStyle for Mass {
@@ -35,8 +48,7 @@ impl CommandStyle for Mass {
             let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
             return Err(d.help("write `set type 1 mass …` or `set group all density …`").into());
         }
-        let (lo, hi) = a.type_range(cx.world.types)?;
-        let mass = a.positive("the mass")?;
+        let Line { types: Types(lo, hi), mass } = read(a, cx)?;
         if style.idle_type_mass() {
             let text = "masses of types have no effect here: every particle has its own";
             cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));

@@ -2,32 +2,15 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{bad_keyword, choice_or_refuse, setting};
+use perigrain_lang::Args;
+use perigrain_styles::common::setting;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::Minimizer;
-use perigrain_world::minimizer::{FireIntegrator, ForceNorm, LineSearch};
+use perigrain_world::minimizer::{Fire, FireIntegrator, ForceNorm, LineSearch};
 
 /// The command.
 pub struct MinModify;
-
-const KEYWORDS: [&str; 15] = [
-    "dmax",
-    "line",
-    "norm",
-    "integrator",
-    "tmax",
-    "tmin",
-    "delaystep",
-    "dtgrow",
-    "dtshrink",
-    "alpha0",
-    "alphashrink",
-    "halfstepback",
-    "initialdelay",
-    "vdfmax",
-    "abcfire",
-];
 
 impl Style for MinModify {
     fn name(&self) -> &'static str {
@@ -36,92 +19,130 @@ impl Style for MinModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "min_modify keyword value …",
+            syntax: "",
             summary: "Sets the numbers of `minimize`.",
-            text: "- `dmax D`: how far a coordinate may change in one line search, or in one step of `fire` [length]. By \
-                   default a tenth of the smallest particle (of a diameter, or of the root of a volume), and 0.1 where none has a size; \
-                   under `-compat lammps` 0.1, which is meant for units in which atoms are about 1 apart.\n\
-                   - `norm two|max|inf`: the length of the forces that is held against `ftol`: root of the sum of squares, \
-                   longest force on a particle, largest component.\n\
-                   - `line quadratic|backtrack` (`cg`, `sd`): halve steps until the energy has fallen by 0.4 of what the slope \
-                   promises; `quadratic` (the default) goes to the zero of the force along the line where the energy is \
-                   nearly quadratic.\n\n\
-                   Of `fire`:\n\n\
-                   - `integrator eulerimplicit|verlet|leapfrog|eulerexplicit`.\n\
-                   - `tmax`, `tmin`: bounds of the time step as multiples of `timestep` (10, 0.02).\n\
-                   - `delaystep N`: downhill iterations before the time step grows and the energy tolerance counts (20); \
-                   `initialdelay yes|no`: whether the first N iterations may not shorten the time step (yes).\n\
-                   - `dtgrow`, `dtshrink`: factors of the time step (1.1, 0.5); `alpha0`, `alphashrink`: first mixing of \
-                   velocity and force, and its factor (0.25, 0.99).\n\
-                   - `halfstepback yes|no`: go back half a step where the motion turns uphill (yes).\n\
-                   - `vdfmax N`: uphill iterations in a row after which it gives up (2000; 0 for never).\n\
-                   - `abcfire yes|no`: the mixing is corrected for its bias towards small velocities after a start, and speeds are \
-                   limited component by component to dmax/dt (Echeverri Restrepo & Andric, Comput. Mater. Sci. 218, 111978) \
-                   (no).\n\n\
+            text: "`line` belongs to `cg` and `sd`; what comes behind it in the table belongs to `fire`, but for `norm`. Words that do not stand \
+                   in a line stay as they are.\n\n\
                    The `forcezero` line search and what belongs to LAMMPS' spins are refused.",
             example: "min_modify dmax 1.0e-7 norm max integrator verlet tmax 6.0",
         }
     }
+
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+/// The words; those that are not there stay as they are.
+#[derive(Words)]
+#[word(least = 1, refused = "alpha_damp discrete_factor")]
+struct Line {
+    /// How far a coordinate may change in one line search, or in one step of `fire` [length]. By default a tenth of the smallest
+    /// particle (of a diameter, or of the root of a volume), and 0.1 where none has a size; under `-compat lammps` 0.1, which is meant
+    /// for units in which atoms are about 1 apart.
+    #[word(keyword, name = "D", what = "the largest displacement", positive, default = cx.world.settings.minimizer.dmax)]
+    dmax: Option<f64>,
+    #[word(keyword, like = Search, default = cx.world.settings.minimizer.line, shown = "quadratic")]
+    line: LineSearch,
+    #[word(keyword, like = Norm, default = cx.world.settings.minimizer.norm, shown = "two")]
+    norm: ForceNorm,
+    /// How steps in time are made.
+    #[word(keyword, like = Integrator, default = cx.world.settings.minimizer.fire.integrator, shown = "eulerimplicit")]
+    integrator: FireIntegrator,
+    /// The longest time step, in parts of `timestep`.
+    #[word(keyword, name = "F", what = "the longest time step", positive, default = cx.world.settings.minimizer.fire.tmax, shown = "10")]
+    tmax: f64,
+    /// The shortest time step, in parts of `timestep`.
+    #[word(keyword, name = "F", what = "the shortest time step", non_negative, default = cx.world.settings.minimizer.fire.tmin, shown = "0.02")]
+    tmin: f64,
+    /// Downhill iterations before the time step grows and the energy tolerance counts.
+    #[word(keyword, name = "N", what = "the delay in iterations", from = 0, default = cx.world.settings.minimizer.fire.delay, shown = "20")]
+    delaystep: i64,
+    /// The factor by which the time step grows.
+    #[word(keyword, name = "F", what = "the factor of growth", positive, default = cx.world.settings.minimizer.fire.grow, shown = "1.1")]
+    dtgrow: f64,
+    /// The factor by which the time step shrinks.
+    #[word(keyword, name = "F", what = "the factor of shrinking", positive, default = cx.world.settings.minimizer.fire.shrink, shown = "0.5")]
+    dtshrink: f64,
+    /// The first mixing of velocity and force.
+    #[word(keyword, name = "A", what = "the first mixing", non_negative, default = cx.world.settings.minimizer.fire.alpha0, shown = "0.25")]
+    alpha0: f64,
+    /// The factor of the mixing.
+    #[word(keyword, name = "F", what = "the factor of the mixing", positive, default = cx.world.settings.minimizer.fire.alpha_shrink, shown = "0.99")]
+    alphashrink: f64,
+    /// Whether to go back half a step where the motion turns uphill.
+    #[word(keyword, what = "halfstepback", default = cx.world.settings.minimizer.fire.half_step_back, shown = "yes")]
+    halfstepback: bool,
+    /// Whether the first iterations (`delaystep`) may not shorten the time step.
+    #[word(keyword, what = "initialdelay", default = cx.world.settings.minimizer.fire.initial_delay, shown = "yes")]
+    initialdelay: bool,
+    /// Uphill iterations in a row after which it gives up; 0 for never.
+    #[word(keyword, name = "N", what = "the most uphill iterations", from = 0, default = cx.world.settings.minimizer.fire.uphill_most, shown = "2000")]
+    vdfmax: i64,
+    /// Whether the mixing is corrected for its bias towards small velocities after a start, and speeds are limited component by component
+    /// to dmax/dt (Echeverri Restrepo & Andric, Comput. Mater. Sci. 218, 111978).
+    #[word(keyword, what = "abcfire", default = cx.world.settings.minimizer.fire.unbiased, shown = "no")]
+    abcfire: bool,
+}
+
+/// The line search of `cg` and `sd`.
+#[derive(Words)]
+#[word(what = "line search", of = LineSearch, refused = "forcezero spin_cubic spin_none")]
+enum Search {
+    /// As `backtrack`, but goes to the zero of the force along the line where the energy is nearly quadratic.
+    Quadratic,
+    /// Steps are halved until the energy has fallen by 0.4 of what the slope promises.
+    Backtrack,
+}
+
+/// The length of the forces that is held against `ftol`.
+#[derive(Words)]
+#[word(what = "norm of the forces", of = ForceNorm)]
+enum Norm {
+    /// The root of the sum of squares is held against `ftol`.
+    Two,
+    /// The longest force on a particle is held against `ftol`.
+    Max,
+    /// The largest component is held against `ftol`.
+    Inf,
+}
+
+/// The integrator of `fire`.
+#[derive(Words)]
+#[word(what = "integrator", of = FireIntegrator)]
+enum Integrator {
+    EulerImplicit,
+    Verlet,
+    Leapfrog,
+    EulerExplicit,
 }
 
 impl CommandStyle for MinModify {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let mut set = cx.world.settings.minimizer;
-        let mut word = Some(a.expect("a keyword")?);
-        while let Some(keyword) = word {
-            option(&mut set, keyword, a)?;
-            word = a.next();
-        }
-        if set.fire.tmin > set.fire.tmax {
-            let text = format!("tmin ({}) is above tmax ({})", set.fire.tmin, set.fire.tmax);
+        let line: Line = read(a, cx)?;
+        if line.tmin > line.tmax {
+            let text = format!("tmin ({}) is above tmax ({})", line.tmin, line.tmax);
             return fail(Code::CONFLICT, a.span(), text);
         }
+        let fire = Fire {
+            integrator: line.integrator,
+            tmax: line.tmax,
+            tmin: line.tmin,
+            delay: line.delaystep,
+            grow: line.dtgrow,
+            shrink: line.dtshrink,
+            alpha0: line.alpha0,
+            alpha_shrink: line.alphashrink,
+            half_step_back: line.halfstepback,
+            initial_delay: line.initialdelay,
+            uphill_most: line.vdfmax,
+            unbiased: line.abcfire,
+        };
+        let style = cx.world.settings.minimizer.style;
+        let set = Minimizer { style, dmax: line.dmax, line: line.line, norm: line.norm, fire };
         Ok(setting(move |cx| {
             cx.world.settings.minimizer = set;
             Ok(())
         }))
     }
-}
-
-fn option(set: &mut Minimizer, keyword: &Word, a: &mut Args) -> Result<()> {
-    let fire = &mut set.fire;
-    match keyword.text.as_str() {
-        "dmax" => set.dmax = Some(a.positive("the largest displacement")?),
-        "line" => {
-            let lammps = ["forcezero", "spin_cubic", "spin_none"];
-            set.line = match choice_or_refuse(a, "line search", &["quadratic", "backtrack"], &lammps)? {
-                "backtrack" => LineSearch::Backtrack,
-                _ => LineSearch::Quadratic,
-            }
-        }
-        "norm" => {
-            set.norm = match a.choice("norm of the forces", &["two", "max", "inf"])? {
-                "max" => ForceNorm::Max,
-                "inf" => ForceNorm::Inf,
-                _ => ForceNorm::Two,
-            }
-        }
-        "integrator" => {
-            let known = ["eulerimplicit", "verlet", "leapfrog", "eulerexplicit"];
-            fire.integrator = match a.choice("integrator", &known)? {
-                "verlet" => FireIntegrator::Verlet,
-                "leapfrog" => FireIntegrator::Leapfrog,
-                "eulerexplicit" => FireIntegrator::EulerExplicit,
-                _ => FireIntegrator::EulerImplicit,
-            }
-        }
-        "tmax" => fire.tmax = a.positive("the longest time step")?,
-        "tmin" => fire.tmin = a.non_negative("the shortest time step")?,
-        "delaystep" => fire.delay = a.integer_from(0, "the delay in iterations")?,
-        "dtgrow" => fire.grow = a.positive("the factor of growth")?,
-        "dtshrink" => fire.shrink = a.positive("the factor of shrinking")?,
-        "alpha0" => fire.alpha0 = a.non_negative("the first mixing")?,
-        "alphashrink" => fire.alpha_shrink = a.positive("the factor of the mixing")?,
-        "halfstepback" => fire.half_step_back = a.flag("halfstepback")?,
-        "initialdelay" => fire.initial_delay = a.flag("initialdelay")?,
-        "vdfmax" => fire.uphill_most = a.integer_from(0, "the most uphill iterations")?,
-        "abcfire" => fire.unbiased = a.flag("abcfire")?,
-        _ => return Err(bad_keyword(a, keyword, &KEYWORDS, &["alpha_damp", "discrete_factor"])),
-    }
-    Ok(())
 }

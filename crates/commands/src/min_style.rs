@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{Form, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::Minimizer;
 use perigrain_world::minimizer::MinStyle;
@@ -18,34 +19,51 @@ impl Style for MinStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "min_style cg|sd|fire|quickmin",
+            syntax: "",
             summary: "Chooses the algorithm of `minimize`.",
-            text: "- `cg` (the default): conjugate gradients of Polak and Ribière with line searches. Needs energies that \
-                   belong to the forces.\n\
-                   - `sd`: steepest descent with the same line searches.\n\
-                   - `fire`: damped motion with an adaptive time step (Bitzek et al., Phys. Rev. Lett. 97, 170201; Guénolé \
-                   et al., Comput. Mater. Sci. 175, 109584). It looks at forces alone and so serves grains, whose contact \
-                   laws count no energy; it begins with the deck's `timestep` and masses.\n\
-                   - `quickmin`: damped motion with the deck's `timestep` that keeps of its velocity only what points along the \
-                   forces (Sheppard et al., J. Chem. Phys. 128, 134106). Looks at forces alone too.\n\n\
-                   `min_modify` sets their numbers; `min_style` puts all of them back to their defaults, as in LAMMPS. LAMMPS' other styles are refused by name.",
+            text: "`min_modify` sets their numbers; `min_style` puts all of them back to their defaults, as in LAMMPS. LAMMPS' \
+                   other styles are refused by name.",
             example: "min_style fire",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    algorithm: Algorithm,
+}
+
+/// The algorithms.
+#[derive(Words)]
+#[word(what = "minimization style", of = MinStyle)]
+enum Algorithm {
+    /// Conjugate gradients of Polak and Ribière with line searches; the default. Needs energies that belong to the forces.
+    Cg,
+    /// Steepest descent with the same line searches.
+    Sd,
+    /// Damped motion with an adaptive time step (Bitzek et al., Phys. Rev. Lett. 97, 170201; Guénolé et al., Comput. Mater. Sci. 175,
+    /// 109584). It looks at forces alone and so serves grains, whose contact laws count no energy; it begins with the deck's `timestep`
+    /// and masses.
+    Fire,
+    /// Damped motion with the deck's `timestep` that keeps of its velocity only what points along the forces (Sheppard et al., J. Chem.
+    /// Phys. 128, 134106). Looks at forces alone too.
+    Quickmin,
 }
 
 impl CommandStyle for MinStyleCommand {
-    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let known = MinStyle::ALL.map(|(name, _)| name);
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         if let Some(refusal) = a
             .peek()
-            .filter(|word| !known.contains(&word.text.as_str()))
+            .filter(|word| !Algorithm::begins(word))
             .and_then(|word| lammps::refusal("min", "minimization style", word))
         {
             return Err(refusal);
         }
-        let name = a.choice("minimization style", &known)?;
-        let style = MinStyle::ALL.iter().find(|(n, _)| *n == name).map_or(MinStyle::Cg, |(_, s)| *s);
+        let Line { algorithm } = read(a, cx)?;
+        let style = MinStyle::from(algorithm);
         let span = a.span();
         Ok(setting(move |cx| {
             if cx.world.settings.minimizer.modified() {

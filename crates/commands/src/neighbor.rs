@@ -3,7 +3,8 @@
 use super::{Act, CommandStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::common::{choice_or_refuse, setting};
+use perigrain_styles::common::setting;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,7 +17,7 @@ impl Style for Neighbor {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "neighbor SKIN bin|nsq|multi",
+            syntax: "",
             summary: "Sets the extra reach of neighbour lists [length].",
             text: "Lists are rebuilt when a particle has moved half the skin (see `neigh_modify`). How they are built is \
                    perigrain's business: all words give the same lists, which search each size of particle by \
@@ -26,15 +27,34 @@ impl Style for Neighbor {
             example: "neighbor 0.5 bin",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The skin [length].
+    #[word(name = "SKIN", non_negative)]
+    skin: f64,
+    way: Way,
+}
+
+/// LAMMPS' ways of building lists.
+#[derive(PartialEq, Words)]
+#[word(what = "way of building lists", refused = "multi/old")]
+enum Way {
+    Bin,
+    Nsq,
+    Multi,
 }
 
 impl CommandStyle for Neighbor {
-    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let skin = a.non_negative("the skin")?;
-        let way = choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let Line { skin, way } = read(a, cx)?;
         Ok(setting(move |cx| {
             let near = &mut cx.world.settings.neighbor;
-            (near.skin, near.skin_set, near.multi) = (skin, true, way == "multi");
+            (near.skin, near.skin_set, near.multi) = (skin, true, way == Way::Multi);
             Ok(())
         }))
     }

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,18 +17,31 @@ impl Style for Newton {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "newton on|off [on|off]",
+            syntax: "",
             summary: "Accepted for the sake of LAMMPS decks: every pair is computed once, whatever the flags.",
-            text: "One flag for pairs and bonds, or one each. That for bonds must not change once the box exists.",
+            text: "The flag for bonds must not change once the box exists.",
             example: "newton off",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The flag of pairs.
+    #[word(what = "newton")]
+    pair: bool,
+    /// The flag of bonds; without it that of pairs.
+    #[word(what = "newton for bonds")]
+    bond: Option<bool>,
 }
 
 impl CommandStyle for Newton {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let pair = a.flag("newton")?;
-        let bond = if a.is_empty() { pair } else { a.flag("newton for bonds")? };
+        let Line { pair, bond } = read(a, cx)?;
+        let bond = bond.unwrap_or(pair);
         if cx.world.domain.is_some() && cx.world.settings.newton.bond != bond {
             let text = "`newton` for bonds must be set before the simulation box is defined";
             return fail(Code::WRONG_ORDER, cx.span, text);

@@ -2,13 +2,13 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_mesh::Sheet;
-use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::triangles::{self, Placing};
+use perigrain_styles::words::{At, Form, Forms, Units, Words};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
-use perigrain_world::Crack;
+use perigrain_world::{Crack, Region};
 
 /// The command.
 pub struct PeriCrack;
@@ -20,23 +20,76 @@ impl Style for PeriCrack {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "peri_crack plane px py pz nx ny nz [region ID] [units lattice|box]\nperi_crack region ID\n\
-                     peri_crack mesh FILE [scale S] [shift X Y Z] [units lattice|box]",
+            syntax: "",
             summary: "Cuts bonds: a notch or crack without taking particles away.",
-            text: "`plane` cuts every bond that crosses the plane through (px py pz) with the normal (nx ny nz), with \
-                   `region` only where the bond meets the plane inside that region. `region` alone cuts every bond that \
-                   passes through the region. `mesh` cuts every bond that crosses a triangle of a surface, which may be open, closed, \
-                   curved and in several pieces: an STL, OBJ, PLY or VTP file, placed as by `region mesh`. Bonds \
-                   through common edges, corners and the rim are cut; a particle on the surface belongs to the side of larger x (of \
-                   larger y or z, where the surface lies along x). Bonds across a periodic face of the box count where they \
-                   begin: keep surfaces away from there. Before the first run the crack waits until the families are built, then and \
-                   between runs particles count where they are. Cut bonds are broken bonds: they count as damage, their ends \
-                   repel each other when close, and nothing heals them. A crack that meets no bond is an error. \
-                   `units` concerns the point of the plane and the surface (lattice, as elsewhere).",
+            text: "Bonds across a periodic face of the box count where they begin: keep surfaces away from there. Before the first \
+                   run the crack waits until the families are built, then and between runs particles count where they are. Cut \
+                   bonds are broken bonds: they count as damage, their ends repel each other when close, and nothing heals them. A \
+                   crack that meets no bond is an error.",
             example: "region slit block INF 0.002 INF INF INF INF units box\n\
                       peri_crack plane 0 0.0015 0 0 1 0 region slit units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        Line::FORMS.to_vec()
+    }
+}
+
+#[derive(Words)]
+#[word(forms = "peri_crack", what = "what cuts")]
+enum Line {
+    /// Cuts every bond that crosses a plane.
+    Plane(Plane),
+    /// Cuts every bond that passes through a region.
+    Region(Through),
+    /// Cuts every bond that crosses a triangle of a surface, which may be open, closed, curved and in several pieces: an STL, OBJ, PLY or
+    /// VTP file, placed as by `region mesh`. Bonds through common edges, corners and the rim are cut; a particle on the surface belongs to
+    /// the side of larger x (of larger y or z, where the surface lies along x).
+    Mesh(Surface),
+}
+
+#[derive(Words)]
+struct Plane {
+    /// A point of the plane [length].
+    #[word(name = "px py pz", what = "a coordinate of the plane's point")]
+    point: [f64; 3],
+    #[word(flatten)]
+    normal: Normal,
+    /// Only where the bond meets the plane inside this region.
+    #[word(keyword, name = "ID")]
+    region: Option<Region>,
+    /// The unit of distances.
+    #[word(keyword, default = Units::Lattice)]
+    units: Units,
+}
+
+#[derive(Words)]
+struct Normal {
+    /// The normal of the plane.
+    #[word(name = "nx", what = "a component of the plane's normal")]
+    x: At<f64>,
+    /// The normal of the plane.
+    #[word(name = "ny nz", what = "a component of the plane's normal")]
+    others: [f64; 2],
+}
+
+#[derive(Words)]
+struct Through {
+    /// The region.
+    #[word(name = "ID")]
+    region: Region,
+}
+
+#[derive(Words)]
+struct Surface {
+    /// The file of triangles.
+    #[word(name = "FILE", what = "the name of a file of triangles", kind = Kind::File)]
+    file: Word,
+    #[word(flatten)]
+    placing: Placing,
+    /// The unit of distances.
+    #[word(keyword, default = Units::Lattice)]
+    units: Units,
 }
 
 impl CommandStyle for PeriCrack {
@@ -51,53 +104,28 @@ impl CommandStyle for PeriCrack {
         let words: Vec<&str> = (0..).map_while(|k| a.peek_at(k)).map(|w| w.text.as_str()).collect();
         let line = format!("peri_crack {}", words.join(" "));
         let mut crack = Crack { plane: None, region: None, sheet: None, line };
-        let what = a.choice("what cuts", &["plane", "region", "mesh"])?;
-        if what == "region" {
-            crack.region = Some(cx.region(a.expect("a region")?)?.clone());
-        } else if what == "mesh" {
-            crack.sheet = Some(sheet(a, cx)?);
-        } else {
-            let mut point = [0.0; 3];
-            for x in &mut point {
-                *x = a.number("a coordinate of the plane's point")?;
-            }
-            let at = a.here();
-            let mut normal = [0.0; 3];
-            for n in &mut normal {
-                *n = a.number("a component of the plane's normal")?;
-            }
-            if normal == [0.0; 3] {
-                return fail(Code::BAD_VALUE, at, "the normal of the plane must not be zero");
-            }
-            let mut lattice = true;
-            while let Some(word) = a.next() {
-                match word.text.as_str() {
-                    "region" => crack.region = Some(cx.region(a.expect("a region")?)?.clone()),
-                    "units" => lattice = units_lattice(a)?,
-                    _ => return Err(a.unknown(word, &["region", "units"])),
+        match Line::form(a, cx)? {
+            Line::Region(Through { region }) => crack.region = Some(region),
+            Line::Mesh(surface) => crack.sheet = Some(sheet(&surface, cx)?),
+            Line::Plane(Plane { point, normal: Normal { x, others: [y, z] }, region, units }) => {
+                let normal = [x.value, y, z];
+                if normal == [0.0; 3] {
+                    return fail(Code::BAD_VALUE, x.span, "the normal of the plane must not be zero");
                 }
+                let scale = units.scales(cx.world);
+                crack.region = region;
+                crack.plane = Some(([0, 1, 2].map(|k| point[k] * scale[k]), normal));
             }
-            let scale = scales(cx.world, lattice);
-            crack.plane = Some(([0, 1, 2].map(|k| point[k] * scale[k]), normal));
         }
         Ok(Box::new(Cut { crack }))
     }
 }
 
 /// Reads the surface that a file holds, and puts it in its place.
-fn sheet(a: &mut Args, cx: &BuildCx) -> Result<Sheet> {
-    let file = a.expect("the name of a file of triangles")?;
-    let (mut placing, mut lattice) = (Placing::default(), true);
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "units" => lattice = units_lattice(a)?,
-            _ if placing.keyword(word, a)? => {}
-            _ => return Err(a.unknown(word, &["scale", "shift", "units"])),
-        }
-    }
+fn sheet(Surface { file, placing, units }: &Surface, cx: &BuildCx) -> Result<Sheet> {
     let Some(surface) = triangles::read_faces(file, cx)? else { return Ok(Sheet::from(vec![])) };
     let mut placed = surface.triangles.clone();
-    placing.apply(&mut placed, scales(cx.world, lattice));
+    placing.apply(&mut placed, units.scales(cx.world));
     triangles::doubt_size(file, &placed, cx);
     Sheet::new(placed).map_err(|fault| {
         let text = format!("`{}` is no surface: {}", file.text, fault.text(&surface));

@@ -7,18 +7,14 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param, Word};
-use perigrain_styles::common::{self, free_id, scales, setting, units_lattice, unknown_style};
-use perigrain_styles::triangles::Placing;
+use perigrain_styles::common::{self, free_id, setting};
+use perigrain_styles::words::{At, Form, Forms, Kind, Nullable, Units, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style, Use, UseKind};
 use perigrain_world::region::{Motion, Shape, Turn, Variable};
 use perigrain_world::{Key, Region, memory};
-use shapes::Reader;
 
 /// The command.
 pub struct RegionCommand;
-
-/// Styles LAMMPS has besides.
-const ELSEWHERE: [&str; 2] = ["grid", "tri"];
 
 /// The shapes and what combines them, with the faces that `open` can name.
 pub const SHAPES: [(&str, u8); 10] = [
@@ -41,95 +37,160 @@ impl Style for RegionCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "region ID block XLO XHI YLO YHI ZLO ZHI | cone x|y|z C1 C2 RLO RHI LO HI | \
-                     cylinder x|y|z C1 C2 R LO HI | ellipsoid X Y Z A B C | mesh FILE [scale S] [shift X Y Z] | plane PX PY PZ NX NY NZ | \
-                     prism XLO XHI YLO YHI ZLO ZHI XY XZ YZ | sphere X Y Z R | union N ID ID … | \
-                     intersect N ID ID … | delete  [side in|out] [units lattice|box] [open FACE] … \
-                     [move v_X|NULL v_Y|NULL v_Z|NULL] [rotate v_THETA PX PY PZ RX RY RZ]",
+            syntax: "",
             summary: "Names a volume of space.",
-            text: "Surfaces belong to the inside. `INF` is far away, `EDGE` the face of the box as it is now. Distances are \
-                   in lattice spacings unless `units box` is given; a radius takes the spacing of x (of y for a cylinder or \
-                   cone along x). `side out` is everything else; the inside of a plane is the side of its normal. A prism \
-                   has the edges (XHI−XLO, 0, 0), (XY, YHI−YLO, 0) and (XZ, YZ, ZHI−ZLO).\n\n\
-                   Every number of a shape but the ends of a cylinder may be an equal-style variable `v_name`. `move` \
-                   shifts the region by variables and `rotate` turns it by a variable's angle in radians about an axis \
-                   through P along R, first turned, then shifted. Such a region is where its variables say at each \
-                   moment it is used: by a command, a formula, and in every step of a run by fixes, groups and dumps. \
-                   The displacement is in box units.\n\n\
-                   `mesh` is the body within a surface of triangles from a file: STL (text or binary), OBJ (its name ends so), \
-                   PLY (text or binary) or VTP (VTK's XML of surfaces; text, base64 or appended, zlib or plain). Polygons are cut \
-                   into fans around their first corner and should be convex. The file's numbers are multiplied by `scale`, \
-                   `shift`ed, and then in lattice spacings or box units as all distances are; `move` and `rotate` follow \
-                   variables as for other shapes. The surface must be closed: each edge borders two triangles (corners are \
-                   shared where their numbers are the same), and no two triangles cross or touch elsewhere; errors are reported with \
-                   the number of edges and the place of the first one. Triangles in the wrong order of corners are turned, and the \
-                   log says how many. A surface within another one is a hole. What is inside is exact for the \
-                   numbers of the file, wherever edges and corners lie; binary STL has seven digits, so that sites meant to lie on a \
-                   face may be on either side of it: shift the lattice by half a spacing (`origin`). `fix wall/mesh` and `peri_crack` read the \
-                   same files, open or closed.\n\n\
-                   `union` and `intersect` combine regions as they are declared now, their motions included, at most 10,000 of them in all and nested at \
-                   most 100 deep; they cannot \
-                   move by themselves. `open` names faces that walls made of the region leave open: for a block or prism 1 \
-                   to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle). Every use that queries \
-                   which particles are in a region takes it as if it were closed, as LAMMPS' manual says; LAMMPS 22Jul2025 takes \
-                   all particles there are, and so does `compat lammps`.",
+            text: "Surfaces belong to the inside. `INF` is far away, `EDGE` the face of the box as it is now. A radius takes the \
+                   lattice spacing of x (of y for a cylinder or cone along x).\n\n\
+                   Every number of a shape but the ends of a cylinder may be an equal-style variable `v_name`. With these, with \
+                   `move` and with `rotate` a region is where its variables say at each moment it is used: by a command, a formula, \
+                   and in every step of a run by fixes, groups and dumps. It is first turned, then shifted.\n\n\
+                   The file of `mesh` is STL (text or binary), OBJ (its name ends so), PLY (text or binary) or VTP (VTK's XML of \
+                   surfaces; text, base64 or appended, zlib or plain). Polygons are cut into fans around their first corner and \
+                   should be convex. After `scale` and `shift` the numbers count in lattice spacings or box units as all distances \
+                   do.\n\n\
+                   The surface must be closed: each edge borders two triangles (corners are shared where their numbers are the \
+                   same), and no two triangles cross or touch elsewhere; errors are reported with the number of edges and the place \
+                   of the first one. Triangles in the wrong order of corners are turned, and the log says how many. A surface \
+                   within another one is a hole.\n\n\
+                   What is inside is exact for the numbers of the file, wherever edges and corners lie; binary STL has seven \
+                   digits, so that sites meant to lie on a face may be on either side of it: shift the lattice by half a spacing \
+                   (`origin`). `fix wall/mesh` and `peri_crack` read the same files, open or closed.\n\n\
+                   `union` and `intersect` combine regions as they are declared now, their motions included, at most 10,000 of them \
+                   in all and nested at most 100 deep; they cannot move by themselves. Every use that queries which particles are \
+                   in a region takes it as if no face were open, as LAMMPS' manual says; LAMMPS 22Jul2025 takes all particles there \
+                   are, and so does `compat lammps`.",
             example: "variable lift equal 0.001*step\n\
                       region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box move NULL NULL v_lift\n\
                       region gear mesh gear.obj scale 0.001 shift 0.0 0.0 0.002 units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        Line::FORMS.to_vec()
+    }
 }
 
-/// The keywords after the shape.
+#[derive(Words)]
+#[word(forms = "region ID", what = "region style", style, refused = "grid tri")]
+enum Line {
+    /// A box along the axes.
+    Block(shapes::Block),
+    /// A cone or part of one along an axis through (C1, C2), from LO to HI.
+    Cone(shapes::Cone),
+    /// A cylinder along an axis through (C1, C2), from LO to HI.
+    Cylinder(shapes::Cylinder),
+    /// An ellipsoid about a place, with half axes A, B, C.
+    Ellipsoid(shapes::Ellipsoid),
+    /// The body within a surface of triangles from a file.
+    Mesh(shapes::Mesh),
+    /// The half of space on the side of the normal N of a plane through P.
+    Plane(shapes::Plane),
+    /// A body with the edges (XHI−XLO, 0, 0), (XY, YHI−YLO, 0) and (XZ, YZ, ZHI−ZLO).
+    Prism(shapes::Prism),
+    /// A sphere about a place.
+    Sphere(shapes::Sphere),
+    /// What is in one of N regions at least.
+    Union(shapes::Combined),
+    /// What is in all of N regions.
+    Intersect(shapes::Combined),
+    /// Forgets the region.
+    Delete,
+}
+
+/// The keywords behind all shapes.
+#[derive(Words)]
 struct Options {
-    outside: bool,
-    lattice: bool,
-    open: u8,
-    motion: Option<Motion>,
-    placing: Placing,
+    #[word(keyword, default = Side::In)]
+    side: Side,
+    /// The unit of distances.
+    #[word(keyword, default = Units::Lattice)]
+    units: Units,
+    /// A face that walls made of the region leave open: for a block or prism 1 to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower
+    /// end), 2 (upper end), 3 (mantle).
+    #[word(keyword, name = "FACE", what = "the face")]
+    open: Vec<At<i64>>,
+    /// Shifts the region by equal-style variables, in box units.
+    #[word(keyword = "move", name = "v_X v_Y v_Z", what = "the displacement", placed)]
+    shift: Option<At<[Nullable<EqualVariable>; 3]>>,
+    /// Turns the region by an equal-style variable's angle in radians about an axis through P along R.
+    #[word(keyword = "rotate", name = "turn", placed)]
+    turn: Option<At<Rotation>>,
+}
+
+/// Which side of the surface is meant.
+#[derive(PartialEq, Words)]
+#[word(what = "side")]
+enum Side {
+    /// The inside.
+    In,
+    /// Everything else.
+    Out,
+}
+
+#[derive(Words)]
+struct Rotation {
+    #[word(name = "v_THETA", what = "the angle")]
+    angle: EqualVariable,
+    #[word(name = "PX PY PZ", what = "a point of the axis")]
+    point: [f64; 3],
+    #[word(name = "RX RY RZ", what = "the axis")]
+    axis: [At<f64>; 3],
+}
+
+/// `v_name` of an equal-style variable.
+struct EqualVariable(Variable);
+
+impl Value for EqualVariable {
+    const KIND: Kind = Kind::Reference;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        match common::variable_param(args, what)? {
+            Param::Ref(r) => {
+                cx.value(&r, false)?;
+                Ok(Self(Variable { name: r.name, span: r.span }))
+            }
+            Param::Number(x) => {
+                let text = format!("{what} must be an equal-style variable `v_name`, not the number {x}");
+                fail(Code::WRONG_KIND, span, text)
+            }
+        }
+    }
 }
 
 impl CommandStyle for RegionCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let word = a.expect("the region's ID")?;
         let name = free_id(word, "the region's ID")?;
-        let style = a.expect("a shape")?;
-        if style.text == "delete" {
-            return delete(cx, name, word);
-        }
-        if cx.world.regions.find(&name).is_some()
-            && !cx.world.parts.restored.contains(&format!("region/{name}"))
-        {
+        let (style, span) = (a.peek_text(), a.here());
+        let exists = cx.world.regions.find(&name).is_some()
+            && !cx.world.parts.restored.contains(&format!("region/{name}"));
+        if exists && style != "delete" && !a.is_empty() {
             let text = format!("region `{name}` exists already");
             return fail(Code::DUPLICATE_NAME, word.span, text);
         }
-        if ELSEWHERE.contains(&style.text.as_str()) {
-            return Err(common::not_here(style, "region"));
-        }
-        let Some((_, faces)) = SHAPES.iter().find(|(s, _)| *s == style.text) else {
-            return Err(unknown_style(style, "region style", &SHAPES.map(|(s, _)| s)));
-        };
-        let options = options(a.clone(), cx, *faces, style)?;
-        let unit = scales(cx.world, options.lattice);
-        let mut reader = Reader::new(a, cx, unit);
         let mut log = vec![];
-        let shape = match style.text.as_str() {
-            "union" => Shape::Union(parts(reader.a, cx)?),
-            "intersect" => Shape::Intersect(parts(reader.a, cx)?),
-            "mesh" => {
-                let (solid, lines) = mesh::read(reader.a, cx, options.placing, unit)?;
+        let (shape, given, options) = match Line::form(a, cx)? {
+            Line::Delete => return delete(cx, name, word),
+            Line::Mesh(mesh) => {
+                let (solid, lines) = mesh::read(&mesh, cx)?;
                 log = lines;
-                Shape::Mesh(solid)
+                (Shape::Mesh(solid), vec![], mesh.options)
             }
-            name => reader.shape(name)?,
+            Line::Union(all) => (Shape::Union(all.parts.0), vec![], resting(all.options)?),
+            Line::Intersect(all) => (Shape::Intersect(all.parts.0), vec![], resting(all.options)?),
+            Line::Block(block) => block.made(cx)?,
+            Line::Cone(cone) => cone.made(cx)?,
+            Line::Cylinder(cylinder) => cylinder.made(cx)?,
+            Line::Ellipsoid(ellipsoid) => ellipsoid.made(cx)?,
+            Line::Plane(plane) => plane.made(cx)?,
+            Line::Prism(prism) => prism.made(cx)?,
+            Line::Sphere(sphere) => sphere.made(cx)?,
         };
-        let given = reader.given;
-        no_more(a, keywords(style))?;
-        a.rest();
         if let Some(fault) = shape.fault() {
-            return fail(Code::BAD_VALUE, style.span, format!("this is no {}: {fault}", style.text));
+            return fail(Code::BAD_VALUE, span, format!("this is no {style}: {fault}"));
         }
-        let Options { outside, open, motion, .. } = options;
+        let faces = SHAPES.iter().find(|(s, _)| *s == style).map_or(0, |(_, faces)| *faces);
+        let open = open(&options.open, faces)?;
+        let (outside, motion) = (options.side == Side::Out, motion(options, cx)?);
         let mut region = Region { outside, open, given, motion, ..Region::inside(shape) };
         region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
@@ -163,106 +224,52 @@ fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
     }))
 }
 
-/// Reads the keywords, which stand behind the shape's own words; every word after the first keyword must fit.
-fn options(mut a: Args, cx: &BuildCx, faces: u8, style: &Word) -> Result<Options> {
-    let (combined, known) = (matches!(style.text.as_str(), "union" | "intersect"), keywords(style));
-    let placing = Placing::default();
-    let mut options = Options { outside: false, lattice: true, open: 0, motion: None, placing };
-    while !a.is_empty() && !known.contains(&a.peek_text()) {
-        a.next();
+/// The options of a union or intersection, which cannot move by itself.
+fn resting(options: Options) -> Result<Options> {
+    let moves = options.shift.as_ref().map(|s| s.span).or(options.turn.as_ref().map(|t| t.span));
+    let Some(span) = moves else { return Ok(options) };
+    let text = "a union or intersection cannot move by itself";
+    let d = Diagnostic::error(Code::CONFLICT, span, text);
+    Err(d.help("give `move` or `rotate` to the regions it is made of").into())
+}
+
+/// The faces that are open, a bit each.
+fn open(named: &[At<i64>], faces: u8) -> Result<u8> {
+    let mut open = 0;
+    for At { value: k, span, .. } in named {
+        open |= match u8::try_from(*k) {
+            Ok(f) if f >= 1 && f <= faces => 1 << (f - 1),
+            _ if faces == 0 => return fail(Code::BAD_VALUE, *span, "this shape has no faces to open"),
+            _ => return fail(Code::BAD_VALUE, *span, format!("the shape has faces 1 to {faces}, not {k}")),
+        };
     }
-    let lattice = units_of(a.clone())?;
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "side" => options.outside = a.choice("side", &["in", "out"])? == "out",
-            "units" => options.lattice = units_lattice(&mut a)?,
-            "open" => options.open |= 1 << (face(&mut a, faces)? - 1),
-            "move" | "rotate" if combined => {
-                let text = "a union or intersection cannot move by itself";
-                let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-                return Err(d.help("give `move` or `rotate` to the regions it is made of").into());
-            }
-            "move" => options.motion.get_or_insert_default().shift = shift(&mut a, cx)?,
-            "rotate" => {
-                let turn = turn(&mut a, cx, scales(cx.world, lattice))?;
-                options.motion.get_or_insert_default().turn = Some(turn);
-            }
-            _ if known == MESH_KEYWORDS && options.placing.keyword(word, &mut a)? => {}
-            _ => return Err(a.unknown(word, known)),
+    Ok(open)
+}
+
+/// The motion that `move` and `rotate` say.
+fn motion(options: Options, cx: &BuildCx) -> Result<Option<Motion>> {
+    let Options { units, shift, turn, .. } = options;
+    let mut motion: Option<Motion> = None;
+    if let Some(shift) = shift {
+        motion.get_or_insert_default().shift = shift.value.map(|n| n.0.map(|EqualVariable(v)| v));
+    }
+    if let Some(At { value: Rotation { angle: EqualVariable(variable), point, axis }, .. }) = turn {
+        let (span, axis, spacing) = (axis[0].span, axis.map(|x| x.value), units.scales(cx.world));
+        let given = length(axis);
+        if given == 0.0 {
+            return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
         }
+        let point = [0, 1, 2].map(|d| spacing[d] * point[d]);
+        let turn = Turn { variable, point, axis: axis.map(|x| x / given), given, angle: 0.0.into() };
+        motion.get_or_insert_default().turn = Some(turn);
     }
-    Ok(options)
-}
-
-const KEYWORDS: [&str; 5] = ["side", "units", "open", "move", "rotate"];
-const MESH_KEYWORDS: [&str; 7] =
-    ["side", "units", "open", "move", "rotate", Placing::KEYWORDS[0], Placing::KEYWORDS[1]];
-
-fn keywords(style: &Word) -> &'static [&'static str] {
-    if style.text == "mesh" { &MESH_KEYWORDS } else { &KEYWORDS }
-}
-
-/// The value of a later `units`: it counts for a `rotate` before it too.
-fn units_of(mut a: Args) -> Result<bool> {
-    while let Some(word) = a.next() {
-        if word.text == "units" {
-            return units_lattice(&mut a);
-        }
-    }
-    Ok(true)
-}
-
-fn face(a: &mut Args, faces: u8) -> Result<u8> {
-    let span = a.here();
-    let k = a.integer("the face")?;
-    match u8::try_from(k) {
-        Ok(f) if f >= 1 && f <= faces => Ok(f),
-        _ if faces == 0 => fail(Code::BAD_VALUE, span, "this shape has no faces to open"),
-        _ => fail(Code::BAD_VALUE, span, format!("the shape has faces 1 to {faces}, not {k}")),
-    }
-}
-
-fn shift(a: &mut Args, cx: &BuildCx) -> Result<[Option<Variable>; 3]> {
-    let mut next = || {
-        if a.eat("NULL") { Ok(None) } else { equal_variable(a, cx, "the displacement").map(Some) }
-    };
-    Ok([next()?, next()?, next()?])
-}
-
-fn turn(a: &mut Args, cx: &BuildCx, spacing: [f64; 3]) -> Result<Turn> {
-    let variable = equal_variable(a, cx, "the angle")?;
-    let mut point = [0.0; 3];
-    for (x, s) in point.iter_mut().zip(spacing) {
-        *x = s * a.number("a point of the axis")?;
-    }
-    let span = a.here();
-    let along = [a.number("the axis")?, a.number("the axis")?, a.number("the axis")?];
-    if length(along) == 0.0 {
-        return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
-    }
-    let given = length(along);
-    Ok(Turn { variable, point, axis: along.map(|x| x / given), given, angle: 0.0.into() })
-}
-
-/// Takes `v_name` of an equal-style variable.
-fn equal_variable(a: &mut Args, cx: &BuildCx, what: &str) -> Result<Variable> {
-    let span = a.here();
-    match common::variable_param(a, what)? {
-        Param::Ref(r) => {
-            cx.value(&r, false)?;
-            Ok(Variable { name: r.name, span: r.span })
-        }
-        Param::Number(x) => {
-            let text = format!("{what} must be an equal-style variable `v_name`, not the number {x}");
-            fail(Code::WRONG_KIND, span, text)
-        }
-    }
+    Ok(motion)
 }
 
 /// How many regions one may be made of, and how deep they may be nested: each holds its parts.
 const MOST_PARTS: usize = 10_000;
 
-fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
+pub fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
     let n = a.integer_from(2, "the number of regions")?;
     let (mut parts, mut count) = (vec![], 1);
     for _ in 0..n {
@@ -287,14 +294,6 @@ fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
     match memory::lacking(bytes, "this region") {
         Some(d) => Err(d.at(cx.span).into()),
         None => Ok(parts),
-    }
-}
-
-/// The shape's words must end here: a keyword or the end of the line.
-fn no_more(a: &mut Args, known: &'static [&'static str]) -> Result<()> {
-    match a.peek() {
-        Some(w) if !known.contains(&w.text.as_str()) => Err(a.unknown(w, known)),
-        _ => Ok(()),
     }
 }
 

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter, rigid_bodies};
 use perigrain_world::bonds::ascending;
 use perigrain_world::index::Index;
@@ -19,41 +20,46 @@ impl Style for Replicate {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "replicate NX NY NZ [bond/periodic]",
+            syntax: "",
             summary: "Repeats the scene along the edges of its box.",
-            text: "The box grows to NX, NY, NZ times its lengths, and each particle gets a copy in each repetition, with \
-                   everything that belongs to it, places that it is held to or counts its way from moved along (`fix move`, `fix spring/self`, \
-                   `compute displace/atom`); contacts begin anew, and rigid bodies too; bonds join the copies of one repetition, and molecules get new IDs. \
-                   Bonds through a periodic face then span a whole repetition, which a warning counts: with `bond/periodic` each joins the nearest copies, so that \
-                   a bonded crystal continues through all repetitions. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
-                   fastest in ids). It must come before the first run of a scene with peridynamic bonds.",
+            text: "The box grows to NX, NY, NZ times its lengths, and each particle gets a copy in each repetition, with everything \
+                   that belongs to it, places that it is held to or counts its way from moved along (`fix move`, `fix spring/self`, \
+                   `compute displace/atom`); contacts begin anew, and rigid bodies too; bonds join the copies of one repetition, \
+                   and molecules get new IDs. Repetitions follow each other as in LAMMPS (z fastest in storage, x fastest in ids). \
+                   It must come before the first run of a scene with peridynamic bonds.\n\n\
+                   Without `bond/periodic` bonds through a periodic face span a whole repetition, which a warning counts.",
             example: "units lj\nlattice sc 0.5\nregion cell block 0 2 0 2 0 2\ncreate_box 1 cell\ncreate_atoms 1 box\n\
                       mass 1 1.0\nreplicate 2 2 1\nprint \"$(atoms) particles\"",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The numbers of repetitions along the edges.
+    #[word(name = "NX NY", what = "the number of repetitions", from = 1)]
+    across: [i64; 2],
+    #[word(name = "NZ", what = "the number of repetitions", from = 1)]
+    along: At<i64>,
+    /// Each bond through a periodic face joins the nearest copies, so that a bonded crystal continues through all repetitions.
+    #[word(flag = "bond/periodic")]
+    nearest: bool,
+    /// LAMMPS' faster way to the same particles; without effect.
+    #[word(flag)]
+    bbox: bool,
 }
 
 impl CommandStyle for Replicate {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let mut count = [1; 3];
-        for (d, n) in count.iter_mut().enumerate() {
-            let span = a.here();
-            *n = a.integer_from(1, "the number of repetitions")?;
-            if d == 2 && *n > 1 && cx.world.settings.two_dimensional {
-                return fail(Code::CONFLICT, span, "a flat scene cannot be repeated along z");
-            }
+        let Line { across: [x, y], along: At { value: z, span, .. }, nearest, .. } = read(a, cx)?;
+        if z > 1 && cx.world.settings.two_dimensional {
+            return fail(Code::CONFLICT, span, "a flat scene cannot be repeated along z");
         }
-        let mut nearest = false;
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                // LAMMPS' faster way to the same particles.
-                "bbox" => {}
-                "bond/periodic" => nearest = true,
-                _ => return Err(a.unknown(word, &["bond/periodic", "bbox"])),
-            }
-        }
-        Ok(on_particles(vec![], move |cx| repeat(cx, count, nearest)))
+        Ok(on_particles(vec![], move |cx| repeat(cx, [x, y, z], nearest)))
     }
 }
 

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,25 +17,31 @@ impl Style for ResetTimestep {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "reset_timestep N [time T]",
+            syntax: "",
             summary: "Sets the step counter; elapsed time becomes N times the step size, or T.",
-            text: "The scene is left alone. N is a whole number from 0. Refused while a fix counts steps: `ave/atom`, `ave/chunk`, \
-                   `ave/time`, `dt/reset`, `pour` or `vector`; and while a dump has written snapshots into a file that keeps growing.",
+            text: "The scene is left alone. Refused while a fix counts steps: `ave/atom`, `ave/chunk`, `ave/time`, `dt/reset`, \
+                   `pour` or `vector`; and while a dump has written snapshots into a file that keeps growing.",
             example: "reset_timestep 0",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The step.
+    #[word(name = "N", from = 0)]
+    step: i64,
+    /// The time, if it is not to be N times the step size [time].
+    #[word(keyword, name = "T")]
+    time: Option<f64>,
 }
 
 impl CommandStyle for ResetTimestep {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let step = a.integer_from(0, "the step")?;
-        let mut time = None;
-        while let Some(word) = a.next() {
-            if word.text != "time" {
-                return Err(a.unknown(word, &["time"]));
-            }
-            time = Some(a.number("the time")?);
-        }
+        let Line { step, time } = read(a, cx)?;
         if let Some((id, style)) = cx.names.counting_fix(cx.world) {
             let text = format!("the step cannot be reset while fix `{id}` ({style}) counts on it");
             let help = format!("put `unfix {id}` before this line, and the fix again after it");

@@ -4,65 +4,18 @@ mod change;
 mod orientation;
 mod scatter;
 
-use super::create_atoms::subset::Amount;
 use super::{Act, CommandStyle};
-use change::{Change, Item, Limit};
+use change::{Change, Limit};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
-use perigrain_styles::common::{self, bad_keyword, id_range, on_particles, seed, variable_param};
+use perigrain_styles::common::{self, bad_keyword, id_range, on_particles, variable_param};
+use perigrain_styles::words::{At, Each, Form, Keywords, Kind, Said, Types, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::{AtomStyle, GroupId, Region};
+use perigrain_world::{GroupId, Region};
 
 /// The command.
 pub struct Set;
-
-const KEYWORDS: [&str; 27] = [
-    "mol",
-    "bond",
-    "type",
-    "type/fraction",
-    "type/ratio",
-    "type/subset",
-    "image",
-    "density/disc",
-    "mass",
-    "density",
-    "diameter",
-    "peri/radius",
-    "peri/strength",
-    "peri/stiffness",
-    "volume",
-    "omega",
-    "quat",
-    "quat/random",
-    "charge",
-    "dipole",
-    "dipole/random",
-    "x",
-    "y",
-    "z",
-    "vx",
-    "vy",
-    "vz",
-];
-const ELSEWHERE: [&str; 15] = [
-    "spin",
-    "spin/atom",
-    "shape",
-    "length",
-    "tri",
-    "theta",
-    "theta/random",
-    "angmom",
-    "angle",
-    "dihedral",
-    "improper",
-    "epsilon",
-    "rheo/rho",
-    "rheo/status",
-    "sph/rho",
-];
 
 impl Style for Set {
     fn name(&self) -> &'static str {
@@ -71,57 +24,90 @@ impl Style for Set {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "set atom A*B | type A*B | mol A*B | group ID | region ID  KEYWORD VALUE …",
+            syntax: "",
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
-            text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
-                   `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `quat A B C THETA` (the orientation: turned by THETA degrees about an axis of any length; LAMMPS, and `-compat lammps`, turn farther about an axis that is not of unit length), `quat/random SEED`, `charge Q`, `dipole MUX MUY MUZ`, `dipole/random SEED MU` (moments of size MU in directions that LAMMPS draws too: corners of a cube are likelier), `image NX NY NZ` (`NULL` \
-                   leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is), `peri/radius`, `peri/strength`, `peri/stiffness`. A value is a number or an atom-style variable `v_name`. \
-                   Particles are chosen once for the whole line. \
-                   `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
-                   without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
-                   say it before `density`. `type/fraction` decides for each particle by a random number that belongs \
-                   to its place, `type/ratio` and `type/subset` change exactly the part or number of them that LAMMPS \
-                   changes. `peri/radius` gives peridynamic particles the sphere that meets others: `quasi` that of their \
-                   volume, (3V/4π)^⅓ = 0.62 spacings of a lattice (Hartmann et al. 2022), `half` V^⅓/2, or R; it leaves mass \
-                   and volume alone and comes after `volume`. `density/disc` is the mass per area of a disc, in flat scenes.\n\n\
-                   `peri/strength F` and `peri/stiffness F` give peridynamic particles factors: a bond breaks at its critical stretch (s00) times the \
-                   smaller strength of its ends, as a chain does at its weakest link, and has its micro-modulus times the mean of \
-                   their stiffnesses (`pair_style peri/pmb` alone). In the place of F may stand `weibull M SEED`, a number of a Weibull \
-                   distribution of modulus M, or `normal DEVIATION SEED` (below 1/3; what is farther off than three deviations is moved to there), \
-                   both of mean 1; each belongs to the ID of its particle and the seed. With `correlated L` behind it the numbers form a field over the \
-                   places that particles have now, with the correlation exp(−r²/2L²) of its underlying normal numbers: two keywords with one \
-                   seed and L have the same field, and it repeats with the box. Neither depends on threads or on the order of particles. The scatter is that of a particle, whatever its size: with finer \
-                   lattices a body has more weak places unless L holds them together. Particles not chosen keep theirs, 1 at first. \
-                   Restart files keep factors, data files do not; `compute property/atom peri/strength` shows them. \
-                   `peri/stiffness` comes before the first run; strengths may change between runs.",
+            text: "Particles are chosen once for the whole line. A value is a number or an atom-style variable `v_name`. Of a `fix \
+                   property/atom` any property can be set by its name (`i_NAME`, `d_NAME`, `temperature`).\n\n\
+                   `density` comes after `diameter`, `peri/radius` after `volume`. `peri/stiffness` comes before the first run; \
+                   strengths may change between runs. Restart files keep the factors of `peri/strength` and `peri/stiffness`, data \
+                   files do not; `compute property/atom peri/strength` shows them. Particles not chosen keep theirs, 1 at first.\n\n\
+                   Each random factor belongs to the ID of its particle and the seed. With `correlated L` the numbers form a field \
+                   over the places that particles have now, with the correlation exp(−r²/2L²) of its underlying normal numbers: two \
+                   keywords with one seed and L have the same field, and it repeats with the box. Neither depends on threads or on \
+                   the order of particles. The scatter is that of a particle, whatever its size: with finer lattices a body has \
+                   more weak places unless L holds them together.",
             example: "set group plate density 2235.0 volume 1.25e-10",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "particles")]
+    choice: At<Choice>,
+    #[word(flatten)]
+    _changes: Each<Change>,
 }
 
 /// Which particles are set.
+#[derive(Words)]
+#[word(what = "keyword of set")]
 enum Choice {
-    Tags(i64, i64),
-    Kinds(u16, u16),
-    Molecules(i64, i64),
-    Group(GroupId),
-    Region(Box<Region>),
+    /// Those with these ids.
+    Atom(#[word(name = "A*B")] Ids),
+    /// Those of these types.
+    Type(#[word(name = "A*B")] Types),
+    /// Those of these molecules.
+    Mol(#[word(name = "A*B")] Molecules),
+    /// Those of a group.
+    Group(#[word(name = "ID")] GroupId),
+    /// Those inside a region.
+    Region(#[word(name = "ID")] Region),
+}
+
+/// A range of ids.
+struct Ids(i64, i64);
+
+impl Value for Ids {
+    const KIND: Kind = Kind::Text;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        id_range(args.expect("an id")?, i64::MAX).map(|(lo, hi)| Self(lo, hi))
+    }
+}
+
+/// A range of molecules.
+struct Molecules(i64, i64);
+
+impl Value for Molecules {
+    const KIND: Kind = Kind::Text;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        common::range_from(args.expect("a molecule")?, 0, i64::MAX).map(|(lo, hi)| Self(lo, hi))
+    }
 }
 
 impl CommandStyle for Set {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let choice = choice(a, cx)?;
-        let mut items = vec![];
+        let choice = Line::begin(a, cx)?.choice;
+        if matches!(choice.value, Choice::Mol(_)) && !cx.world.particles.style.molecules {
+            return fail(Code::CONFLICT, choice.span, "particles of this atom_style belong to no molecules");
+        }
+        let (choice, mut items) = (choice.value, vec![]);
         let mut word = Some(a.expect("a keyword")?);
         while let Some(keyword) = word {
-            let start = a.here();
-            let change = change(keyword, a, cx)?;
-            let span = keyword.span.to(start);
-            items.push(Item { keyword: keyword.text.clone(), span, change });
+            let span = keyword.span.to(a.here());
+            let change = match Change::keyword(keyword, a, cx)? {
+                Some(change) => change,
+                None => custom(keyword, a, cx)?,
+            };
+            change.check(keyword, cx)?;
+            items.push(Said { word: keyword.clone(), span, value: change });
             word = a.next();
         }
-        let settles = items.iter().filter_map(|i| i.change.settles()).collect();
+        let settles = items.iter().filter_map(|i| i.value.settles()).collect();
         let at = cx.span;
         Ok(on_particles(settles, move |cx| {
             common::populated(cx.world, "set", at)?;
@@ -130,166 +116,32 @@ impl CommandStyle for Set {
     }
 }
 
-fn choice(a: &mut Args, cx: &BuildCx) -> Result<Choice> {
-    let style = a.expect("atom, type, group or region")?;
-    match style.text.as_str() {
-        "atom" => {
-            let (lo, hi) = id_range(a.expect("an id")?, i64::MAX)?;
-            Ok(Choice::Tags(lo, hi))
-        }
-        "type" => a.type_range(cx.world.types).map(|(lo, hi)| Choice::Kinds(lo, hi)),
-        "mol" if cx.world.particles.style.molecules => {
-            let (lo, hi) = common::range_from(a.expect("a molecule")?, 0, i64::MAX)?;
-            Ok(Choice::Molecules(lo, hi))
-        }
-        "mol" => fail(Code::CONFLICT, style.span, "particles of this atom_style belong to no molecules"),
-        "group" => cx.group(a.expect("a group")?).map(Choice::Group),
-        "region" => Ok(Choice::Region(Box::new(cx.region(a.expect("a region")?)?.clone()))),
-        _ => Err(bad_keyword(a, style, &["atom", "type", "mol", "group", "region"], &[])),
+/// A property of fix property/atom.
+fn custom(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
+    let name = keyword.text.as_str();
+    if name == HEATFLOW.text() {
+        let text = "the heat flow is computed anew in each step: it cannot be set";
+        return fail(Code::CONFLICT, keyword.span, text);
     }
-}
-
-fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
-    let AtomStyle { sphere, oriented, peri, charged, dipole, .. } = cx.world.particles.style;
-    let needs = |there: bool| match there {
-        true => Ok(()),
-        false => {
-            let text = format!("particles of this atom_style have no {}", keyword.text);
-            fail(Code::CONFLICT, keyword.span, text)
-        }
+    if name == TEMPERATURE.text() && cx.world.columns.property(*TEMPERATURE).is_none() {
+        let d = Diagnostic::error(Code::INCOMPLETE, keyword.span, "these particles have no temperature");
+        return Err(d.help("`fix ID all property/atom temperature` gives them one").into());
+    }
+    let Some(column) = cx.world.columns.custom(name) else {
+        let known = Line::GRAMMAR.keywords();
+        return Err(bad_keyword(a, keyword, &known, Change::GRAMMAR.refused));
     };
-    match keyword.text.as_str() {
-        "type" => value(a, cx, "the type", Some(Limit::Kind)).map(Change::Kind),
-        "type/fraction" => fraction(a, cx),
-        "type/ratio" => some(a, cx, true),
-        "type/subset" => some(a, cx, false),
-        "image" => image(a, cx),
-        "mass" => {
-            needs(sphere || peri)?;
-            value(a, cx, "the mass", Some(Limit::Positive)).map(Change::Mass)
-        }
-        "density" => {
-            needs(sphere || peri)?;
-            value(a, cx, "the density", Some(Limit::Positive)).map(Change::Density)
-        }
-        "density/disc" => {
-            needs(sphere)?;
-            if !cx.world.settings.two_dimensional {
-                let text = "`density/disc` belongs to flat scenes (`dimension 2`)";
-                return fail(Code::CONFLICT, keyword.span, text);
-            }
-            value(a, cx, "the density", Some(Limit::Positive)).map(Change::Disc)
-        }
-        "diameter" => {
-            needs(sphere)?;
-            value(a, cx, "the diameter", Some(Limit::NotNegative)).map(Change::Diameter)
-        }
-        "peri/radius" => {
-            needs(sphere && peri)?;
-            if a.eat("quasi") {
-                // The sphere of the same volume (Hartmann et al. 2022, section 3.1).
-                return Ok(Change::OfVolume(0.75 / std::f64::consts::PI));
-            }
-            if a.eat("half") {
-                return Ok(Change::OfVolume(0.125));
-            }
-            let radius = value(a, cx, "the radius (quasi, half or a number)", Some(Limit::Positive))?;
-            Ok(Change::Radius(radius))
-        }
-        "peri/strength" | "peri/stiffness" => {
-            needs(peri)?;
-            scatter::read(keyword, a, cx)
-        }
-        "volume" => {
-            needs(peri)?;
-            value(a, cx, "the volume", Some(Limit::Positive)).map(Change::Volume)
-        }
-        "omega" => {
-            needs(sphere)?;
-            let mut next = || value(a, cx, "the angular velocity", None);
-            Ok(Change::Omega([next()?, next()?, next()?]))
-        }
-        "quat" => {
-            needs(oriented)?;
-            let (start, mut end) = (a.here(), a.here());
-            let axis: [Param; 3] = {
-                let mut next = || {
-                    end = a.here();
-                    value(a, cx, "the axis", None)
-                };
-                [next()?, next()?, next()?]
-            };
-            let span = start.to(end);
-            let angle = value(a, cx, "the angle [degrees]", None)?;
-            let constants: Option<Vec<f64>> =
-                axis.iter().map(|p| if let Param::Number(x) = p { Some(*x) } else { None }).collect();
-            if let Some([x, y, z]) = constants.as_deref() {
-                orientation::check_axis([*x, *y, *z], cx.world).map_err(|e| e.at(span))?;
-            }
-            Ok(Change::Quat { axis, angle })
-        }
-        "quat/random" => {
-            needs(oriented)?;
-            seed(a).map(Change::AnyQuat)
-        }
-        "charge" => {
-            needs(charged)?;
-            value(a, cx, "the charge", None).map(Change::Charge)
-        }
-        "dipole" => {
-            needs(dipole)?;
-            let mut next = || value(a, cx, "the dipole moment", None);
-            Ok(Change::Moment([next()?, next()?, next()?]))
-        }
-        "dipole/random" => {
-            needs(dipole)?;
-            Ok(Change::AnyMoment(seed(a)?, a.positive("the dipole moment")?))
-        }
-        "mol" => {
-            needs(cx.world.particles.style.molecules)?;
-            value(a, cx, "the molecule", Some(Limit::NotNegative)).map(Change::Molecule)
-        }
-        "bond" => {
-            needs(cx.world.particles.style.bonded)?;
-            common::bond_type(a, cx.world.bonds.types).map(Change::Bond)
-        }
-        "x" | "y" | "z" => {
-            let d = usize::from(keyword.text.as_bytes()[0] - b'x');
-            value(a, cx, "the coordinate", None).map(|p| Change::Place(d, p))
-        }
-        "vx" | "vy" | "vz" => {
-            let d = usize::from(keyword.text.as_bytes()[1] - b'x');
-            value(a, cx, "the velocity", None).map(|p| Change::Velocity(d, p))
-        }
-        custom if custom == HEATFLOW.text() => {
-            let text = "the heat flow is computed anew in each step: it cannot be set";
-            fail(Code::CONFLICT, keyword.span, text)
-        }
-        custom if custom == TEMPERATURE.text() && cx.world.columns.property(*TEMPERATURE).is_none() => {
-            let d = Diagnostic::error(Code::INCOMPLETE, keyword.span, "these particles have no temperature");
-            Err(d.help("`fix ID all property/atom temperature` gives them one").into())
-        }
-        custom => match cx.world.columns.custom(custom) {
-            Some(column) => {
-                let limit = (custom == TEMPERATURE.text()).then_some(Limit::NotNegative);
-                let (at, known) = (a.here(), a.peek().is_some_and(|w| !w.unknown));
-                let p = value(a, cx, if limit.is_some() { "the temperature" } else { "the value" }, limit)?;
-                let whole = custom.starts_with('i');
-                if let (true, true, &Param::Number(x)) = (whole, known, &p)
-                    && x.fract() != 0.0
-                {
-                    let d = Diagnostic::error(
-                        Code::BAD_VALUE,
-                        at,
-                        format!("`{custom}` holds whole numbers, not {x}"),
-                    );
-                    return Err(d.help("a property `d_NAME` holds any number").into());
-                }
-                Ok(Change::Custom { column, whole, value: p })
-            }
-            None => Err(bad_keyword(a, keyword, &KEYWORDS, &ELSEWHERE)),
-        },
+    let limit = (name == TEMPERATURE.text()).then_some(Limit::NotNegative);
+    let (at, known) = (a.here(), a.peek().is_some_and(|w| !w.unknown));
+    let value = value(a, cx, if limit.is_some() { "the temperature" } else { "the value" }, limit)?;
+    let whole = name.starts_with('i');
+    if let (true, true, &Param::Number(x)) = (whole, known, &value)
+        && x.fract() != 0.0
+    {
+        let d = Diagnostic::error(Code::BAD_VALUE, at, format!("`{name}` holds whole numbers, not {x}"));
+        return Err(d.help("a property `d_NAME` holds any number").into());
     }
+    Ok(Change::Custom { column, whole, value })
 }
 
 fn value(a: &mut Args, cx: &BuildCx, what: &str, limit: Option<Limit>) -> Result<Param> {
@@ -302,46 +154,21 @@ fn value(a: &mut Args, cx: &BuildCx, what: &str, limit: Option<Limit>) -> Result
     Ok(p)
 }
 
-fn fraction(a: &mut Args, cx: &BuildCx) -> Result<Change> {
-    let kind = one_type(a, cx)?;
-    Ok(Change::Fraction { kind, fraction: common::fraction(a)?, seed: seed(a)? })
+/// Reads a value that keeps to a limit.
+fn limited(what: &'static str, limit: Option<Limit>) -> impl Fn(&mut Args, &BuildCx) -> Result<Param> {
+    move |a, cx| value(a, cx, what, limit)
 }
 
-/// `type/ratio` and `type/subset`: an exact number of the chosen ones.
-fn some(a: &mut Args, cx: &BuildCx, ratio: bool) -> Result<Change> {
-    let kind = one_type(a, cx)?;
-    let amount = match ratio {
-        true => Amount::Ratio(common::fraction(a)?),
-        false => Amount::Count(a.integer_from(0, "the number of particles")?),
-    };
-    Ok(Change::Some { kind, amount, seed: common::marsaglia_seed(a)? })
-}
+/// A type that there is, as a number.
+struct Kinds(u16);
 
-fn one_type(a: &mut Args, cx: &BuildCx) -> Result<u16> {
-    let (kind, _) = a.clone().type_range(cx.world.types)?;
-    a.integer("the type")?;
-    Ok(kind)
-}
-
-/// `image`: counts along periodic dimensions, `NULL` for those that stay.
-fn image(a: &mut Args, cx: &BuildCx) -> Result<Change> {
-    let domain = common::domain(cx)?;
-    let mut counts = [None, None, None];
-    for (d, count) in counts.iter_mut().enumerate() {
-        let span = a.here();
-        let value = common::param_or_null(a, "the image count")?;
-        let Some(param) = value else { continue };
-        cx.param(&param, true)?;
-        if !domain.boundary.periodic(d) && !matches!(param, Param::Number(0.0)) {
-            let text = format!("the box does not repeat along {}: write 0 or NULL", ["x", "y", "z"][d]);
-            return fail(Code::CONFLICT, span, text);
-        }
-        if matches!(param, Param::Number(x) if x.fract() != 0.0) {
-            return fail(Code::BAD_NUMBER, span, "an image count must be a whole number");
-        }
-        *count = Some(param);
+impl Value for Kinds {
+    const KIND: Kind = Kind::Types;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let (kind, _) = args.clone().type_range(cx.world.types)?;
+        args.integer("the type")?;
+        Ok(Self(kind))
     }
-    Ok(Change::Image(counts))
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! `special_bonds`: how much pair forces count between bonded particles.
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{Each, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::bonds::Weights;
 
@@ -17,42 +18,104 @@ impl Style for SpecialBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "special_bonds lj|coul|lj/coul W12 W13 W14 … | amber | charmm | dreiding | fene",
+            syntax: "",
             summary: "Says whether pair forces act between particles that are one, two or three bonds apart.",
-            text: "The weights belong to particles one, two and three bonds apart; each line begins anew from 0 0 0 for both \
-                   kinds. A weight `lj` of 0 leaves the pairs out of all pair forces. One between 0 and 1 is a factor on forces and energies of `soft` and `bpm/spring`; \
-                   granular styles know no half contacts, as in LAMMPS. `coul` belongs to electric forces; here only `create_bonds` looks at it. \
-                   Peridynamic bonds are a matter of their own and have no such weights. `angle yes` and `dihedral yes` belong to \
-                   interactions that perigrain does not have and are refused.",
+            text: "Each line begins anew from 0 0 0 for both kinds of weights. Peridynamic bonds are a matter of their own and have \
+                   no such weights.\n\n\
+                   A weight `lj` of 0 leaves the pairs out of all pair forces. One between 0 and 1 is a factor on forces and \
+                   energies of `soft` and `bpm/spring`; granular styles know no half contacts, as in LAMMPS. `coul` belongs to \
+                   electric forces; here only `create_bonds` looks at it.",
             example: "special_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(least = 1)]
+struct Line {
+    #[word(flatten)]
+    weights: Each<Kinds>,
+}
+
+/// What weights are set.
+#[derive(Words)]
+#[word(keywords)]
+enum Kinds {
+    /// The weights of both kinds for particles one, two and three bonds apart.
+    #[word("lj/coul")]
+    Both(Three),
+    /// Those of forces that are not electric.
+    Lj(Three),
+    /// Those of electric forces.
+    Coul(Three),
+    /// As `lj 0 0 0.5 coul 0 0 0.8333`.
+    Amber,
+    /// All weights are 0.
+    Charmm,
+    /// All weights are 0, but for 1 of particles three bonds apart.
+    Dreiding,
+    /// All weights are 1, but for 0 of particles one bond apart.
+    Fene,
+    /// `yes` belongs to interactions that perigrain does not have, and is refused.
+    Angle(#[word(what = "angle")] bool),
+    /// As `angle`.
+    Dihedral(#[word(what = "dihedral")] bool),
+}
+
+/// The weights of one kind.
+#[derive(Clone, Copy, Words)]
+struct Three {
+    #[word(name = "W12", what = "the weight of particles one bond apart")]
+    one: Weight,
+    #[word(name = "W13", what = "the weight of particles two bonds apart")]
+    two: Weight,
+    #[word(name = "W14", what = "the weight of particles three bonds apart")]
+    three: Weight,
+}
+
+impl From<Three> for [f64; 3] {
+    fn from(Three { one, two, three }: Three) -> Self {
+        [one.0, two.0, three.0]
+    }
+}
+
+/// A weight from 0 to 1.
+#[derive(Clone, Copy)]
+struct Weight(f64);
+
+impl Value for Weight {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let weight = args.number(what)?;
+        match (0.0..=1.0).contains(&weight) {
+            true => Ok(Self(weight)),
+            false => fail(Code::BAD_VALUE, span, format!("a weight must lie between 0 and 1: {weight}")),
         }
     }
 }
 
 impl CommandStyle for SpecialBonds {
-    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let line: Line = read(a, cx)?;
         let mut weights = Weights::default();
-        let known = ["lj/coul", "lj", "coul", "amber", "charmm", "dreiding", "fene", "angle", "dihedral"];
-        let mut first = true;
-        while first || !a.is_empty() {
-            first = false;
-            let span = a.here();
-            let key = a.choice("kind of weights", &known)?;
-            match key {
-                "lj/coul" => {
-                    weights.lj = three(a)?;
-                    weights.coul = weights.lj;
-                }
-                "lj" => weights.lj = three(a)?,
-                "coul" => weights.coul = three(a)?,
-                "amber" => weights = Weights { lj: [0.0, 0.0, 0.5], coul: [0.0, 0.0, 5.0 / 6.0] },
-                "charmm" => weights = Weights::default(),
-                "dreiding" => weights = Weights { lj: [0.0, 0.0, 1.0], coul: [0.0, 0.0, 1.0] },
-                "fene" => weights = Weights { lj: [0.0, 1.0, 1.0], coul: [0.0, 1.0, 1.0] },
-                _ => {
-                    if a.flag(key)? {
+        for kind in line.weights.0 {
+            match kind.value {
+                Kinds::Both(three) => weights = Weights { lj: three.into(), coul: three.into() },
+                Kinds::Lj(three) => weights.lj = three.into(),
+                Kinds::Coul(three) => weights.coul = three.into(),
+                Kinds::Amber => weights = Weights { lj: [0.0, 0.0, 0.5], coul: [0.0, 0.0, 5.0 / 6.0] },
+                Kinds::Charmm => weights = Weights::default(),
+                Kinds::Dreiding => weights = Weights { lj: [0.0, 0.0, 1.0], coul: [0.0, 0.0, 1.0] },
+                Kinds::Fene => weights = Weights { lj: [0.0, 1.0, 1.0], coul: [0.0, 1.0, 1.0] },
+                Kinds::Angle(yes) | Kinds::Dihedral(yes) => {
+                    if yes {
+                        let key = kind.word.text;
                         let text = format!("special_bonds {key} yes: perigrain has no {key} interactions");
-                        return fail(Code::NOT_SUPPORTED, span, text);
+                        return fail(Code::NOT_SUPPORTED, kind.word.span, text);
                     }
                 }
             }
@@ -64,17 +127,4 @@ impl CommandStyle for SpecialBonds {
             Ok(())
         }))
     }
-}
-
-fn three(a: &mut Args) -> Result<[f64; 3]> {
-    let mut weights = [0.0; 3];
-    for (w, apart) in weights.iter_mut().zip(["one", "two", "three"]) {
-        let span = a.here();
-        *w = a.number(&format!("the weight of particles {apart} bonds apart"))?;
-        if !(0.0..=1.0).contains(w) {
-            let text = format!("a weight must lie between 0 and 1: {w}");
-            return Err(Diagnostic::error(Code::BAD_VALUE, span, text).into());
-        }
-    }
-    Ok(weights)
 }

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -16,19 +17,28 @@ impl Style for Timestep {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "timestep DT",
+            syntax: "",
             summary: "Sets the step size [time].",
-            text: "Holds from the next step on; elapsed time is kept. Default by units: lj 0.005, real 1, metal 0.001, \
-                   si and cgs 1e-8, electron 0.001, micro 2, nano 0.00045.",
+            text: "Holds from the next step on; elapsed time is kept. Default by units: lj 0.005, real 1, metal 0.001, si and cgs \
+                   1e-8, electron 0.001, micro 2, nano 0.00045.",
             example: "timestep 1.0e-8",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The time step [time].
+    #[word(name = "DT")]
+    dt: At<f64>,
 }
 
 impl CommandStyle for Timestep {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let span = a.here();
-        let dt = a.number("the time step")?;
+        let Line { dt: At { value: dt, span, .. } } = read(a, cx)?;
         if dt <= 0.0 {
             let text = format!("a time step of {dt} leads nowhere, or back");
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text));

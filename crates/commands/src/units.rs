@@ -2,9 +2,10 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::Result;
-use perigrain_base::units::{NAMES, UnitSystem};
+use perigrain_base::units::UnitSystem;
 use perigrain_lang::Args;
 use perigrain_styles::common::{before_box, setting};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -17,20 +18,42 @@ impl Style for Units {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "units lj|real|metal|si|cgs|electron|micro|nano",
+            syntax: "",
             summary: "Says in which units all numbers of the deck are.",
             text: "Sets the constants of LAMMPS' unit system (Boltzmann's constant, conversion factors) and with them \
                    the default time step and neighbour skin. Must come before the box. Default: `lj`.",
             example: "units si",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    system: System,
+}
+
+/// The unit systems.
+#[derive(Words)]
+#[word(what = "unit system", of = UnitSystem)]
+enum System {
+    Lj,
+    Real,
+    Metal,
+    Si,
+    Cgs,
+    Electron,
+    Micro,
+    Nano,
 }
 
 impl CommandStyle for Units {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         before_box(cx, "units")?;
-        let name = a.choice("unit system", &NAMES)?;
-        let system = UnitSystem::from_name(name).unwrap_or_default();
+        let Line { system } = read(a, cx)?;
+        let system = UnitSystem::from(system);
         Ok(setting(move |cx| {
             let constants = system.constants();
             cx.world.settings.units = system;

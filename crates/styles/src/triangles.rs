@@ -7,13 +7,16 @@ use perigrain_base::gate;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
 use perigrain_mesh::{Surface, Triangle};
+use perigrain_words::Words;
 
 /// How a file's numbers become places.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Words)]
 pub struct Placing {
-    /// Factor of all numbers.
+    /// The scale, a factor on the numbers of the file.
+    #[word(keyword, name = "S", positive, default = 1.0)]
     pub scale: f64,
-    /// Added then.
+    /// The shift, which is added then [length].
+    #[word(keyword, name = "X Y Z", what = "a component of the shift", shown = "0 0 0")]
     pub shift: [f64; 3],
 }
 

@@ -22,12 +22,24 @@ pub struct Said {
     pub positive: bool,
     pub non_negative: bool,
     pub from: Option<LitInt>,
-    pub with: Option<Path>,
+    pub with: Option<Expr>,
     pub kind: Option<Expr>,
     pub flatten: bool,
     pub skip: bool,
     /// A place is that of the keyword.
     pub placed: bool,
+    /// A type that is read as this one.
+    pub like: Option<Path>,
+    /// The type whose variants an enum names.
+    pub of: Option<Path>,
+    /// Unknown words are unknown styles.
+    pub style: bool,
+    /// The words of an enum are keywords of a line.
+    pub keywords: bool,
+    /// The variants of an enum are forms of a line; what stands before them.
+    pub forms: Option<String>,
+    /// What refuses keywords of other forms.
+    pub foreign: Option<Path>,
     pub refused: Vec<String>,
 }
 
@@ -85,6 +97,12 @@ impl Said {
                 "flatten" => self.flatten = true,
                 "skip" => self.skip = true,
                 "placed" => self.placed = true,
+                "style" => self.style = true,
+                "keywords" => self.keywords = true,
+                "like" => self.like = Some(meta.value()?.parse()?),
+                "of" => self.of = Some(meta.value()?.parse()?),
+                "forms" => self.forms = Some(text(&meta)?),
+                "foreign" => self.foreign = Some(meta.value()?.parse()?),
                 _ => return Err(meta.error("unknown here: see the page of `perigrain_words`")),
             }
             Ok(())
@@ -138,8 +156,8 @@ pub fn imports() -> TokenStream {
     quote::quote! {
         #[allow(unused_imports)]
         use ::perigrain_styles::words::{
-            Alternative, Args, At, BuildCx, Grammar, Keyword, Kind, Part, Placeholder, Result, Value, Whole, Word,
-            Words, inner, lacking, one_of,
+            Alternative, Args, At, BuildCx, Form, Forms, Grammar, Keyword, Keywords, Kind, Part, Placeholder, Result,
+            Value, Whole, Word, Words, inner, lacking, nothing, one_of, read_or, style_of,
         };
     }
 }

@@ -1,49 +1,164 @@
 //! An enum: one of several words, each with words of its own behind it.
 
-use super::attributes::{Said, imports, literals};
+use super::attributes::{Said, imports, literals, wrong};
 use super::parts::Field;
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{DataEnum, DeriveInput, Fields, Variant};
 
+/// The variants, each with its word.
+#[derive(Default)]
+struct Built {
+    words: Vec<String>,
+    abouts: Vec<String>,
+    parts: Vec<Vec<TokenStream>>,
+    /// The expressions that read the words behind a variant's.
+    reads: Vec<TokenStream>,
+}
+
 pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> {
-    let ident = &input.ident;
     let own = Said::read(&input.attrs)?;
-    let (mut words, mut alternatives, mut arms) = (vec![], vec![], vec![]);
+    if let Some(head) = &own.forms {
+        return forms(input, data, &own, head);
+    }
+    let mut built = Built::default();
     for variant in &data.variants {
         let said = Said::read(&variant.attrs)?;
         if said.skip {
             continue;
         }
-        let word = said.word.clone().unwrap_or_else(|| variant.ident.to_string().to_lowercase());
         let (parts, read) = fields(variant)?;
-        let about = &said.about;
-        alternatives.push(quote!(Alternative { word: #word, about: #about, parts: &[#(#parts),*] }));
-        arms.push(quote!(#word => #read,));
-        words.push(word);
+        built.words.push(word(&said, variant));
+        built.abouts.push(said.about);
+        built.parts.push(parts);
+        built.reads.push(read);
     }
-    let known = literals(&words);
-    let refused = literals(&own.refused);
+    let body = if own.keywords { keywords(input, &own, &built) } else { choice(input, &own, &built) };
+    let (of, imports) = (of(input, data, &own), imports());
+    Ok(quote! {
+        const _: () = {
+            #imports
+            #body
+            #of
+        };
+    })
+}
+
+/// A variant's word.
+fn word(said: &Said, variant: &Variant) -> String {
+    said.word.clone().unwrap_or_else(|| variant.ident.to_string().to_lowercase())
+}
+
+/// The call that takes one of the words.
+fn taken(own: &Said, words: &[String]) -> TokenStream {
+    let (known, refused) = (literals(words), literals(&own.refused));
     let what = match own.own_what() {
         Some(what) => quote!(#what),
         None => quote!(what),
     };
-    let imports = imports();
+    match own.style {
+        true => quote!(style_of(#what, args, #known, #refused)?),
+        false => quote!(one_of(#what, args, #known, #refused)?),
+    }
+}
+
+/// One of several words.
+fn choice(input: &DeriveInput, own: &Said, built: &Built) -> TokenStream {
+    let (ident, Built { words, abouts, parts, reads }) = (&input.ident, built);
+    let (known, refused, taken) = (literals(words), literals(&own.refused), taken(own, words));
+    quote! {
+        impl Value for #ident {
+            const KIND: Kind =
+                Kind::Choice(&[#(Alternative { word: #words, about: #abouts, parts: &[#(#parts),*] }),*]);
+            #[allow(unreachable_code)]
+            fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+                Ok(match #taken {
+                    #(#words => #reads,)*
+                    _ => unreachable!("none but these words are taken"),
+                })
+            }
+            fn begins(word: &Word) -> bool {
+                let (known, refused): (&[&str], &[&str]) = (#known, #refused);
+                known.iter().chain(refused).any(|k| *k == word.text)
+            }
+        }
+    }
+}
+
+/// Keywords of a line, of which each counts.
+fn keywords(input: &DeriveInput, own: &Said, built: &Built) -> TokenStream {
+    let (ident, Built { words, abouts, parts, reads }) = (&input.ident, built);
+    let refused = literals(&own.refused);
+    quote! {
+        impl Keywords for #ident {
+            const GRAMMAR: &'static Grammar = &Grammar {
+                parts: &[],
+                keywords: &[#(Keyword {
+                    word: #words, values: &[#(#parts),*], about: #abouts, default: "", repeats: true
+                }),*],
+                refused: #refused,
+            };
+            fn keyword(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Option<Self>> {
+                Ok(Some(match word.text.as_str() {
+                    #(#words => #reads,)*
+                    _ => return Ok(None),
+                }))
+            }
+        }
+    }
+}
+
+/// The variant of another type that each variant names.
+fn of(input: &DeriveInput, data: &DataEnum, own: &Said) -> TokenStream {
+    let (Some(of), ident) = (&own.of, &input.ident) else { return quote!() };
+    let variants: Vec<_> = data.variants.iter().map(|v| &v.ident).collect();
+    quote! {
+        impl From<#ident> for #of {
+            fn from(named: #ident) -> Self {
+                match named {
+                    #(#ident::#variants => Self::#variants,)*
+                }
+            }
+        }
+    }
+}
+
+/// Forms of a line: a word says which words and keywords stand behind it.
+fn forms(input: &DeriveInput, data: &DataEnum, own: &Said, head: &str) -> syn::Result<TokenStream> {
+    let ident = &input.ident;
+    let (mut words, mut forms, mut reads) = (vec![], vec![], vec![]);
+    for variant in &data.variants {
+        let (said, name) = (Said::read(&variant.attrs)?, &variant.ident);
+        let word = word(&said, variant);
+        let (head, about) = (format!("{head} {word}").trim().to_string(), &said.about);
+        let foreign = match &own.foreign {
+            Some(foreign) => quote!(|w| #foreign(#word, w)),
+            None => quote!(|_| None),
+        };
+        let (grammar, read) = match &variant.fields {
+            Fields::Unit => (quote!(Grammar::NONE), quote!({ nothing(args, #foreign)?; Self::#name })),
+            Fields::Unnamed(one) if one.unnamed.len() == 1 => {
+                let ty = &one.unnamed[0].ty;
+                (quote!(<#ty as Words>::GRAMMAR), quote!(Self::#name(read_or(args, cx, #foreign)?)))
+            }
+            _ => return wrong(name.span(), "a form has one struct, which declares its words"),
+        };
+        forms.push(quote!(Form { head: #head, about: #about, grammar: #grammar }));
+        words.push(word);
+        reads.push(read);
+    }
+    let (taken, imports) = (taken(own, &words), imports());
     Ok(quote! {
         const _: () = {
             #imports
-            impl Value for #ident {
-                const KIND: Kind = Kind::Choice(&[#(#alternatives),*]);
+            impl Forms for #ident {
+                const FORMS: &'static [Form] = &[#(#forms),*];
                 #[allow(unreachable_code)]
-                fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-                    Ok(match one_of(#what, args, #known, #refused)? {
-                        #(#arms)*
-                        _ => unreachable!("`one_of` takes none but these words"),
+                fn form(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+                    Ok(match #taken {
+                        #(#words => #reads,)*
+                        _ => unreachable!("none but these words are taken"),
                     })
-                }
-                fn begins(word: &Word) -> bool {
-                    let (known, refused): (&[&str], &[&str]) = (#known, #refused);
-                    known.iter().chain(refused).any(|k| *k == word.text)
                 }
             }
         };

@@ -20,12 +20,23 @@
 //! | `least = 1` | how many of a list must be there |
 //! | `positive`, `non_negative`, `from = 1` | bounds of numbers |
 //! | `placed` | the place of an `At` is that of the keyword; a `flag` is an `Option<Span>` then |
-//! | `with = path, kind = Kind::Number` | a reading function of its own, and what it reads |
+//! | `like = Type` | it is read as this type, from which it can be made |
+//! | `with = path, kind = Kind::Number` | a reading function of its own (or a call that makes one), and what it reads |
 //! | `flatten` | the words and keywords of another struct stand here |
 //! | `skip` | no word at all: `Default::default()` |
 //!
+//! A struct may say `#[word(least = 1)]`: one of its keywords must be there. A default may look at the scene: `cx` is at hand.
+//!
 //! An enum says `#[word(what = "direction")]`, its variants `#[word("word")]` where the word is not the variant's name in small
 //! letters. Both may list words of LAMMPS that are refused by name: `#[word(refused = "gradient")]`.
+//!
+//! | in `#[word(…)]` of an enum | meaning |
+//! |---|---|
+//! | `style` | other words are unknown styles, not unknown keywords |
+//! | `of = Type` | each variant names that of another type, which is made from it: for `like` |
+//! | `keywords` | the words are keywords, of which each counts, in their order: the line has an `Each` of it, flattened |
+//! | `forms = "head"` | the words are forms of a line, with the words before them; each has a struct with its words and keywords |
+//! | `foreign = path` | what refuses keywords of other forms: from the form's word and the keyword to an error, if it has one |
 //!
 //! Types of fields: what has `Value`; `Option` (may be left out), `Vec` (several), tuples, arrays and `At` (with its place) of
 //! those.

@@ -110,9 +110,10 @@ impl Field {
             return wrong(ty.span(), "say in `name` how each word is called");
         };
         let (about, unit) = (&self.said.about, &self.said.unit);
-        let kind = match &self.said.kind {
-            Some(kind) => quote!(#kind),
-            None => quote!(<#ty as Value>::KIND),
+        let kind = match (&self.said.kind, &self.said.like) {
+            (Some(kind), _) => quote!(#kind),
+            (None, Some(like)) => quote!(<#like as Value>::KIND),
+            (None, None) => quote!(<#ty as Value>::KIND),
         };
         Ok(vec![quote!(Part::Word(Placeholder { name: #name, kind: #kind, about: #about, unit: #unit }))])
     }
@@ -199,9 +200,10 @@ impl Field {
             }
             _ if self.said.positive => quote!(args.positive(#what)?),
             _ if self.said.non_negative => quote!(args.non_negative(#what)?),
-            _ => match &self.said.from {
-                Some(least) => quote!(<#ty as Whole>::from(args, #least, #what)?),
-                None => quote!(<#ty as Value>::value(#what, args, cx)?),
+            _ => match (&self.said.from, &self.said.like) {
+                (Some(least), _) => quote!(<#ty as Whole>::from(args, #least, #what)?),
+                (None, Some(like)) => quote!(<#ty>::from(<#like as Value>::value(#what, args, cx)?)),
+                (None, None) => quote!(<#ty as Value>::value(#what, args, cx)?),
             },
         })
     }

@@ -34,6 +34,12 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
     let Built { parts, keywords, begin, arms, nested, fields } = built;
     let refused = literals(&own.refused);
     let imports = imports();
+    let some = match own.least {
+        0 => quote!(),
+        _ => quote!(if args.is_empty() {
+            args.expect("a keyword")?;
+        }),
+    };
     Ok(quote! {
         const _: () = {
             #imports
@@ -42,6 +48,7 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
                     &Grammar { parts: &[#(#parts),*], keywords: &[#(#keywords),*], refused: #refused };
                 fn begin(args: &mut Args, cx: &BuildCx) -> Result<Self> {
                     #(#begin)*
+                    #some
                     Ok(Self { #(#fields),* })
                 }
                 fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
@@ -73,7 +80,7 @@ impl Built {
         if said.flatten {
             self.parts.push(quote!(Part::All(<#ty as Words>::GRAMMAR)));
             self.begin.push(quote!(let #ident = <#ty as Words>::begin(args, cx)?;));
-            self.nested.push(quote!(self.#ident.keyword(word, args, cx)?));
+            self.nested.push(quote!(Words::keyword(&mut self.#ident, word, args, cx)?));
             return Ok(());
         }
         let name = ident.to_string();

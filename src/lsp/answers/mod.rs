@@ -11,7 +11,7 @@ use crate::manual::Page;
 /// A page as editors show it beside the cursor: syntax first.
 pub fn page_markdown(page: &Page) -> String {
     let doc = page.doc;
-    let mut text = format!("```perigrain\n{}\n```\n\n{}\n{}", page.syntax(), doc.summary, page.tables());
+    let mut text = format!("```perigrain\n{}\n```\n\n{}\n{}", page.syntax(), doc.summary, page.table());
     if !doc.text.is_empty() {
         text += &format!("\n{}\n", doc.text.trim());
     }

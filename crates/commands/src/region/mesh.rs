@@ -1,18 +1,17 @@
 //! `region … mesh`: the body within a closed surface of triangles from a file.
 
+use super::shapes::Mesh;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
-use perigrain_lang::Args;
 use perigrain_mesh::Solid;
 use perigrain_styles::BuildCx;
-use perigrain_styles::triangles::{self, Placing};
+use perigrain_styles::triangles;
 
-/// Takes the name of a file and reads the body in it; the body, and lines for the log about it.
-pub fn read(a: &mut Args, cx: &BuildCx, placing: Placing, unit: [f64; 3]) -> Result<(Solid, Vec<String>)> {
-    let file = a.expect("the name of a file of triangles")?;
+/// Reads the body in the file of a line; the body, and lines for the log about it.
+pub fn read(Mesh { file, placing, options }: &Mesh, cx: &BuildCx) -> Result<(Solid, Vec<String>)> {
     let Some(surface) = triangles::read_faces(file, cx)? else { return Ok((Solid::default(), vec![])) };
     let mut placed = surface.triangles.clone();
-    placing.apply(&mut placed, unit);
+    placing.apply(&mut placed, options.units.scales(cx.world));
     triangles::doubt_size(file, &placed, cx);
     let solid = Solid::new(placed).map_err(|fault| {
         let text = format!("`{}` is no surface of a body: {}", file.text, fault.text(&surface));

@@ -1,85 +1,108 @@
 //! `set … peri/strength` and `peri/stiffness`: factors of particles on what their bonds bear and on how stiff these are.
 
-use super::change::{Change, Limit};
+use super::change::Limit;
 use super::value;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::scatter::{Distribution, Field, gaussian};
 use perigrain_base::par;
-use perigrain_lang::{Args, Param, Word};
+use perigrain_lang::{Args, Param};
 use perigrain_styles::BuildCx;
 use perigrain_styles::common::orthogonal;
-use perigrain_world::columns::BOND_FACTORS;
+use perigrain_styles::words::{At, Kind, Or, Value, Words};
 use perigrain_world::{Numbers, World};
 
-/// Where factors come from.
-pub enum Factors {
-    /// A number, or one for each particle.
-    Given(Param),
-    /// Drawn at random.
-    Drawn(Drawn),
+/// Where factors come from: a number, or one for each particle, or drawn at random.
+pub type Factors = Or<Drawn, Given>;
+
+/// A factor, or a variable that gives it.
+pub struct Given(pub Param);
+
+impl Value for Given {
+    const KIND: Kind = Kind::Param;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let what = "the factor (a number, weibull or normal)";
+        value(args, cx, what, Some(Limit::Positive)).map(Self)
+    }
 }
 
 /// Random factors.
-pub struct Drawn {
-    distribution: Distribution,
-    seed: u64,
-    /// How far they are correlated in space.
-    length: Option<f64>,
+#[derive(Words)]
+#[word(what = "distribution")]
+pub enum Drawn {
+    /// Numbers of a Weibull distribution of modulus M and mean 1.
+    Weibull(Weibull),
+    /// Numbers of a normal distribution of mean 1; what is farther off than three deviations is moved to there.
+    Normal(Normal),
 }
 
-/// Reads the words behind the keyword.
+/// A Weibull distribution.
+#[derive(Words)]
+pub struct Weibull {
+    #[word(name = "M", what = "the modulus of the distribution", positive)]
+    modulus: f64,
+    #[word(flatten)]
+    field: Correlated,
+}
+
+/// A normal distribution.
+#[derive(Words)]
+pub struct Normal {
+    #[word(name = "DEVIATION", what = "the standard deviation", positive)]
+    deviation: At<f64>,
+    #[word(flatten)]
+    field: Correlated,
+}
+
+/// Where random numbers come from.
+#[derive(Words)]
+pub struct Correlated {
+    #[word(name = "SEED", what = "the seed", from = 1)]
+    seed: u64,
+    #[word(keyword = "correlated", name = "L", what = "the correlation length", positive, placed)]
+    length: Option<At<f64>>,
+}
+
+/// Refuses deviations that would make factors negative, and fields over boxes that lean.
 ///
 /// # Errors
-/// Every mistake in them.
-pub fn read(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
-    let [strength, stiffness] = &BOND_FACTORS;
-    let column = if keyword.text == strength.text() { **strength } else { **stiffness };
-    let distribution = match a.peek_text() {
-        "weibull" => {
-            a.next();
-            Distribution::Weibull(a.positive("the modulus of the distribution")?)
+/// Those.
+pub fn check(factors: &Factors, cx: &BuildCx) -> Result<()> {
+    let Or::Word(drawn) = factors else { return Ok(()) };
+    if let Drawn::Normal(Normal { deviation, .. }) = drawn
+        && deviation.value >= 1.0 / 3.0
+    {
+        let text = "factors three standard deviations below 1 must be positive: a number below 1/3";
+        return fail(Code::BAD_VALUE, deviation.span, text);
+    }
+    match drawn.parts().1.length {
+        Some(length) if cx.world.domain.as_ref().is_some_and(|d| d.tilted()) => {
+            Err(orthogonal("a correlated field of factors").at(length.span))
         }
-        "normal" => {
-            a.next();
-            let at = a.here();
-            let deviation = a.positive("the standard deviation")?;
-            if deviation >= 1.0 / 3.0 {
-                let text = "factors three standard deviations below 1 must be positive: a number below 1/3";
-                return fail(Code::BAD_VALUE, at, text);
-            }
-            Distribution::Normal(deviation)
-        }
-        _ => {
-            let what = "the factor (a number, weibull or normal)";
-            let given = value(a, cx, what, Some(Limit::Positive))?;
-            return Ok(Change::Factors { column, factors: Factors::Given(given) });
-        }
-    };
-    let seed = a.integer_from(1, "the seed")? as u64;
-    let at = a.here();
-    let length = match a.eat("correlated") {
-        true if cx.world.domain.as_ref().is_some_and(|d| d.tilted()) => {
-            return Err(orthogonal("a correlated field of factors").at(at));
-        }
-        true => Some(a.positive("the correlation length")?),
-        false => None,
-    };
-    Ok(Change::Factors { column, factors: Factors::Drawn(Drawn { distribution, seed, length }) })
+        _ => Ok(()),
+    }
 }
 
 impl Drawn {
+    fn parts(&self) -> (Distribution, &Correlated) {
+        match self {
+            Self::Weibull(w) => (Distribution::Weibull(w.modulus), &w.field),
+            Self::Normal(n) => (Distribution::Normal(n.deviation.value), &n.field),
+        }
+    }
+
     /// The factors of some particles.
     pub fn of(&self, w: &World, chosen: &[usize]) -> Vec<f64> {
         let p = &w.particles;
         let mut factors = vec![0.0; chosen.len()];
-        let field = self.length.map(|length| Field::new(self.seed, length, w.periods().length.map(endless)));
+        let (distribution, Correlated { seed, length }) = self.parts();
+        let field = length.map(|l| Field::new(*seed, l.value, w.periods().length.map(endless)));
         par::each(&mut factors[..], |start, factors| {
             for (factor, &i) in factors.iter_mut().zip(&chosen[start..]) {
                 let normal = match &field {
                     Some(field) => field.at(p.x[i]),
-                    None => gaussian(self.seed, u64::from(p.tag[i])),
+                    None => gaussian(*seed, u64::from(p.tag[i])),
                 };
-                *factor = self.distribution.factor(normal);
+                *factor = distribution.factor(normal);
             }
         });
         factors
@@ -92,12 +115,12 @@ fn endless(period: f64) -> f64 {
 }
 
 /// Sets the factors of the chosen particles; those of all others are 1 unless set before.
-pub fn set(w: &mut World, chosen: &[usize], column: Numbers, factors: impl Fn(usize) -> f64) {
+pub fn set(w: &mut World, chosen: &[usize], column: Numbers, factors: &[f64]) {
     let n = w.n();
     let values = w.columns.scalar(column, n);
     values.resize(n, 0.0);
     values.iter_mut().filter(|f| **f == 0.0).for_each(|f| *f = 1.0);
-    chosen.iter().enumerate().for_each(|(k, &i)| values[i] = factors(k));
+    chosen.iter().enumerate().for_each(|(k, &i)| values[i] = factors[k]);
 }
 
 #[cfg(test)]

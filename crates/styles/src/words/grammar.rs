@@ -149,6 +149,8 @@ pub struct Grammar {
 pub struct Form {
     /// What stands before, as `pair_coeff I J`; empty for what always stands before a style of this kind.
     pub head: &'static str,
+    /// A sentence about this form of the line; empty if there is no other.
+    pub about: &'static str,
     /// What stands behind.
     pub grammar: &'static Grammar,
 }
@@ -156,7 +158,7 @@ pub struct Form {
 impl Form {
     /// Words behind what always stands before a style of its kind.
     pub const fn behind(grammar: &'static Grammar) -> Self {
-        Self { head: "", grammar }
+        Self { head: "", about: "", grammar }
     }
 }
 
@@ -229,8 +231,8 @@ impl Grammar {
         words.join(" ")
     }
 
-    /// The table of words as Markdown; empty where no word has a sentence.
-    pub fn table(&'static self) -> String {
+    /// The rows of the table: word, meaning, unit, default.
+    fn rows(&'static self) -> Vec<[String; 4]> {
         let mut rows = vec![];
         for part in self.in_order() {
             part.rows(&mut rows);
@@ -243,6 +245,20 @@ impl Grammar {
             if keyword.about.is_empty() && rows.len() > start + 1 {
                 rows.remove(start);
                 rows[start][3] = keyword.default.into();
+            }
+        }
+        rows
+    }
+}
+
+impl Form {
+    /// The table of the words of all forms of a line as Markdown; empty where no word has a sentence.
+    pub fn table(forms: &[Self]) -> String {
+        let mut rows: Vec<[String; 4]> = vec![];
+        for form in forms {
+            let own = [form.short(), form.about.into(), String::new(), String::new()];
+            for row in std::iter::once(own).chain(form.grammar.rows()) {
+                join(&mut rows, row);
             }
         }
         rows.retain(|[_, about, ..]| !about.is_empty());
@@ -266,6 +282,13 @@ impl Grammar {
             line(columns.iter().map(cell).collect());
         }
         table
+    }
+
+    /// The word that chooses this form, and what stands in order behind it.
+    fn short(&self) -> String {
+        let word = self.head.split(' ').next_back().unwrap_or_default();
+        let parts = self.grammar.in_order().into_iter().map(Part::shown);
+        std::iter::once(word.to_string()).chain(parts).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -379,5 +402,26 @@ impl Placeholder {
             }
             _ => self.shown(),
         }
+    }
+}
+
+/// Adds a row of a table, unless it is there; one that differs in its first word alone shares a row: `x|y|z final LO HI`.
+fn join(rows: &mut Vec<[String; 4]>, row: [String; 4]) {
+    if rows.contains(&row) {
+        return;
+    }
+    let rest = |words: &str| words.split_once(' ').map(|(_, rest)| rest.to_string());
+    let alike = |other: &&mut [String; 4]| {
+        !row[1].is_empty()
+            && other[1..] == row[1..]
+            && rest(&other[0]).is_some()
+            && rest(&other[0]) == rest(&row[0])
+    };
+    match (rows.iter_mut().find(alike), row[0].split_once(' ')) {
+        (Some(other), Some((word, rest))) => {
+            let first = other[0].split(' ').next().unwrap_or_default();
+            other[0] = format!("{first}|{word} {rest}");
+        }
+        _ => rows.push(row),
     }
 }

@@ -12,12 +12,12 @@ pub use perigrain_base::diag::Result;
 pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
 pub use values::{
-    At, Axis, BondType, Fraction, GlobalValue, MarsagliaSeed, Nullable, OneType, Or, PerAtom, Seed, Types,
-    Units, Value, VelocityAxis, Whole,
+    At, AtomVariable, Axis, BondType, Fraction, GlobalValue, MarsagliaSeed, Nullable, OneType, Or, PerAtom,
+    Positive, Seed, Types, Units, Value, VelocityAxis, Whole,
 };
 
-use crate::common::choice_or_refuse;
-use perigrain_base::diag::{Code, fail};
+use crate::common::{choice_or_refuse, left_over, not_here, unknown_style};
+use perigrain_base::diag::{Code, Diagnostics, Span, fail};
 
 /// A line, or a part of one, as words in order and keywords.
 pub trait Words: Sized {
@@ -42,11 +42,23 @@ pub trait Words: Sized {
 /// # Errors
 /// Every mistake in its words; unknown keywords, with the nearest one.
 pub fn read<T: Words>(args: &mut Args, cx: &BuildCx) -> Result<T> {
+    read_or(args, cx, |_| None)
+}
+
+/// As [`read`]; `foreign` refuses words that it knows where none of the line's keywords stands.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_or<T: Words>(
+    args: &mut Args,
+    cx: &BuildCx,
+    foreign: impl Fn(&Word) -> Option<Diagnostics>,
+) -> Result<T> {
     args.keywords(|text| T::GRAMMAR.has(text));
     let mut line = T::begin(args, cx)?;
     while let Some(word) = args.next() {
         if !line.keyword(word, args, cx)? {
-            return Err(unexpected::<T>(word, args));
+            return Err(foreign(word).unwrap_or_else(|| unexpected::<T>(word, args)));
         }
     }
     Ok(line)
@@ -66,13 +78,13 @@ pub fn inner<T: Words>(args: &mut Args, cx: &BuildCx) -> Result<T> {
 }
 
 /// The refusal of a word where a keyword should stand.
-fn unexpected<T: Words>(word: &Word, args: &Args) -> perigrain_base::diag::Diagnostics {
+fn unexpected<T: Words>(word: &Word, args: &Args) -> Diagnostics {
     let known = T::GRAMMAR.known();
     if T::GRAMMAR.refuses(&word.text) {
-        return crate::common::not_here(word, &format!("keyword of {}", args.command()));
+        return not_here(word, &format!("keyword of {}", args.command()));
     }
     if known.is_empty() {
-        return crate::common::left_over(word, args);
+        return left_over(word, args);
     }
     args.unknown(word, &known)
 }
@@ -105,4 +117,87 @@ pub fn lacking<T>(what: &str, args: &Args) -> Result<T> {
 /// Any other word, with the nearest known one.
 pub fn one_of(what: &str, args: &mut Args, known: &[&'static str], refused: &[&str]) -> Result<&'static str> {
     choice_or_refuse(args, what, known, refused)
+}
+
+/// As [`one_of`], where the words are styles.
+///
+/// # Errors
+/// Any other word, with the nearest known one.
+pub fn style_of(
+    what: &str,
+    args: &mut Args,
+    known: &[&'static str],
+    refused: &[&str],
+) -> Result<&'static str> {
+    let word = args.expect(what)?;
+    if refused.contains(&word.text.as_str()) {
+        return Err(not_here(word, what));
+    }
+    known.iter().find(|k| **k == word.text).copied().ok_or_else(|| unknown_style(word, what, known))
+}
+
+/// One of several forms of a line: its first word says which words and keywords stand behind it.
+pub trait Forms: Sized {
+    /// The declaration as data.
+    const FORMS: &'static [Form];
+
+    /// Takes the word and the whole line behind it apart.
+    ///
+    /// # Errors
+    /// Every mistake in its words.
+    fn form(args: &mut Args, cx: &BuildCx) -> Result<Self>;
+}
+
+/// Takes the end of a line: nothing stands there.
+///
+/// # Errors
+/// Words left over.
+pub fn nothing(args: &mut Args, foreign: impl Fn(&Word) -> Option<Diagnostics>) -> Result<()> {
+    match args.peek().and_then(foreign) {
+        Some(refusal) => Err(refusal),
+        None => args.finish(),
+    }
+}
+
+/// Keywords of which each counts, in their order.
+pub trait Keywords: Sized {
+    /// The declaration as data.
+    const GRAMMAR: &'static Grammar;
+
+    /// Takes what stands behind a keyword; nothing if it is none of these.
+    ///
+    /// # Errors
+    /// Every mistake in the words behind it.
+    fn keyword(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Option<Self>>;
+}
+
+/// All [`Keywords`] of a line.
+#[derive(Clone, Debug)]
+pub struct Each<T>(pub Vec<Said<T>>);
+
+/// What a keyword says.
+#[derive(Clone, Debug)]
+pub struct Said<T> {
+    /// The keyword.
+    pub word: Word,
+    /// The place of the keyword and the first word behind it.
+    pub span: Span,
+    /// What it says.
+    pub value: T,
+}
+
+impl<T: Keywords> Words for Each<T> {
+    const GRAMMAR: &'static Grammar = T::GRAMMAR;
+
+    fn begin(_: &mut Args, _: &BuildCx) -> Result<Self> {
+        Ok(Self(vec![]))
+    }
+
+    fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
+        let span = word.span.to(args.here());
+        let said = T::keyword(word, args, cx)?;
+        let found = said.is_some();
+        self.0.extend(said.map(|value| Said { word: word.clone(), span, value }));
+        Ok(found)
+    }
 }

@@ -4,7 +4,7 @@ use super::Kind;
 use crate::BuildCx;
 use crate::common::{self, variable_param};
 use perigrain_base::diag::{Code, Result, Span, fail};
-use perigrain_lang::{Args, Param, Word};
+use perigrain_lang::{Args, Param, ValueRef, Word};
 use perigrain_world::{GroupId, Key, Region, World};
 use std::path::PathBuf;
 
@@ -74,6 +74,13 @@ impl Value for u32 {
     }
 }
 
+impl Value for u64 {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        <Self as Whole>::from(args, 0, what)
+    }
+}
+
 impl Value for bool {
     const KIND: Kind = Kind::Switch;
     fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
@@ -128,6 +135,28 @@ impl Value for PerAtom {
         let param = variable_param(args, what)?;
         cx.param(&param, true)?;
         Ok(Self(param))
+    }
+}
+
+/// The name of an atom-style variable, without `v_`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtomVariable(pub ValueRef);
+
+impl Value for AtomVariable {
+    const KIND: Kind = Kind::Variable;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        common::atom_variable(cx, args.expect("a variable")?).map(Self)
+    }
+}
+
+/// A number above zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Positive(pub f64);
+
+impl Value for Positive {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive(what).map(Self)
     }
 }
 
