@@ -352,7 +352,7 @@ mod tests {
         assert!(passes("in") && passes("new") && passes("."));
         assert!(!passes("../out") && !passes("../new") && !passes("..") && !passes("/dev/null"));
         assert!(passes("../deck/in") && !passes("no/such"));
-        // Of what is outside, nothing tells whether it is there.
+        // The refusal does not reveal whether a file outside exists.
         let refusal = |name: &str| inside(&gate, &folder.join(name)).unwrap_err().to_string();
         assert!(
             refusal("../out/x") == refusal("../out") && refusal("../no/such/folder") == refusal("../out")

@@ -4,7 +4,7 @@
 //! rank. [`Alone`] is a single rank, [`Local`] connects ranks on one machine by sockets, [`Mpi`] uses any MPI
 //! library, loaded at run time. A program selects the communicator of the current thread by [`run_as`]; other
 //! code uses [`present`], [`several`] and [`is_first`], and takes values that must be equal on all ranks
-//! (times, files, the environment) from [`told`].
+//! (times, files, the environment) from [`broadcast`].
 //!
 //! All ranks call the same functions in the same order, except for letters ([`Comm::post`]), which a rank
 //! takes when it polls for them. A rank that ends unexpectedly ends the others; if a letter cannot arrive any

@@ -19,7 +19,7 @@ pub struct Hook(Mutex<State>);
 struct State {
     function: Option<Py<PyAny>>,
     values: HostValues,
-    /// What was said of each particle and nobody has asked for yet.
+    /// Per-particle values that Python has set and no step has fetched yet.
     each: Each,
     /// The exception raised by the function.
     raised: Option<PyErr>,

@@ -101,10 +101,10 @@ def test_an_exception_ends_the_run_and_is_raised(make):
 def test_what_a_function_may_not_do(make):
     lmp = make(FREE + "fix pull all external pf/callback 1 1\n")
 
-    def asks(caller, step, n, ids, x, f):
+    def reads(caller, step, n, ids, x, f):
         lmp.get_thermo("step")
 
-    lmp.set_fix_external_callback("pull", asks)
+    lmp.set_fix_external_callback("pull", reads)
     with pytest.raises(perigrain.BusyError):
         lmp.command("run 1")
 

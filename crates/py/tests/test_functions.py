@@ -39,11 +39,11 @@ def test_texts_whole_numbers_and_functions_of_the_program(make):
     import __main__
 
     said = []
-    __main__.told = lambda k, text: said.append((k, text)) or f"{text}-{k}"
-    lmp = make("variable k index 7\npython told input 2 v_k grain return v_name format iss exists\nvariable name python told")
+    __main__.label = lambda k, text: said.append((k, text)) or f"{text}-{k}"
+    lmp = make("variable k index 7\npython label input 2 v_k grain return v_name format iss exists\nvariable name python label")
     assert lmp.expand("file.${name}.txt") == "file.grain-7.txt"
     assert said == [(7, "grain")]
-    lmp.command("python told invoke")
+    lmp.command("python label invoke")
     assert len(said) == 2
     lmp.command("python source here 'known = 5'")
     assert __main__.known == 5

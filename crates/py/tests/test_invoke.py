@@ -132,7 +132,7 @@ def test_what_a_function_may_not_do(make, known):
     def after(ptr):
         inside = kept["scene"] = perigrain.lammps(ptr=ptr)
         kept["x"] = inside.numpy.extract_atom("x")
-        for asks in (
+        for attempt in (
             lambda: inside.command("run 1"),
             lambda: inside.get_thermo("pe"),
             lambda: inside.extract_compute("thermo_temp", 0, 0),
@@ -141,7 +141,7 @@ def test_what_a_function_may_not_do(make, known):
             lambda: lmp.get_natoms(),
         ):
             with pytest.raises(perigrain.BusyError):
-                asks()
+                attempt()
         assert inside.is_running
         # An invalid type: the run ends, and the particle keeps its type.
         if inside.extract_global("ntimestep") == 2:

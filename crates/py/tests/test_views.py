@@ -71,7 +71,7 @@ def test_stale_arrays_say_so(spheres, line):
             use()
     assert x.stale and np.isnan(np.asarray(x.view(np.ndarray))).all() and math.isnan(p[1][2])
     assert own[1, 2] == pytest.approx(0.7, rel=1e-4), "a copy is one's own"
-    spheres.command("print 'goes on'")
+    spheres.command("print 'still usable'")
 
 
 def test_results_look_at_nothing(spheres):

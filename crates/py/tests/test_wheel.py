@@ -21,10 +21,10 @@ def test_files_and_metadata():
     except importlib.metadata.PackageNotFoundError:
         pytest.skip("it is not installed")
     assert wheel.version == perigrain.__version__ == _core.VERSION
-    told = wheel.metadata
-    assert told["Requires-Python"] == ">=3.9" and told.get_all("Requires-Dist") == ["numpy"]
-    assert told["License-Expression"] == "MIT OR Apache-2.0" and "fracture" in told["Summary"]
-    assert told["Description-Content-Type"].startswith("text/markdown") and "perigrain" in told.get_payload()
+    metadata = wheel.metadata
+    assert metadata["Requires-Python"] == ">=3.9" and metadata.get_all("Requires-Dist") == ["numpy"]
+    assert metadata["License-Expression"] == "MIT OR Apache-2.0" and "fracture" in metadata["Summary"]
+    assert metadata["Description-Content-Type"].startswith("text/markdown") and "perigrain" in metadata.get_payload()
     files = {str(f) for f in wheel.files or []}
     assert {"perigrain/__init__.py", "perigrain/__main__.py", "perigrain/py.typed", "perigrain/_core.pyi"} <= files
     assert [f for f in files if f.startswith("perigrain/_core.") and ".abi3." in f]
@@ -34,8 +34,8 @@ def test_files_and_metadata():
     assert commands == {"perigrain": "perigrain.__main__:main"}
     script = Path(sys.executable).with_name("perigrain")
     if script.exists():
-        told = subprocess.run([str(script), "-version"], capture_output=True, text=True)
-        assert told.returncode == 0 and perigrain.__version__ in told.stdout
+        ended = subprocess.run([str(script), "-version"], capture_output=True, text=True)
+        assert ended.returncode == 0 and perigrain.__version__ in ended.stdout
     assert "cp39-abi3" in (wheel.read_text("WHEEL") or "")
     # the imported package is the installed one
     assert Path(perigrain.__file__).resolve() == Path(str(wheel.locate_file("perigrain/__init__.py"))).resolve()
@@ -45,12 +45,12 @@ def _words(function):
     return [a.arg for a in function.args.posonlyargs + function.args.args]
 
 
-def test_stubs_tell_what_there_is():
+def test_stubs_declare_what_there_is():
     tree = ast.parse(STUBS.read_text())
-    told = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    declared = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     public = {name for name in vars(_core) if not name.startswith("_")} - {"VERSION"}
-    assert set(told) == public
-    for name, node in told.items():
+    assert set(declared) == public
+    for name, node in declared.items():
         there = getattr(_core, name)
         if isinstance(node, ast.FunctionDef):
             assert _words(node) == list(inspect.signature(there).parameters), name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-_LISTS = "neighbour lists are not handed out: `compute pair/local` and `property/local` tell pairs, `compute coord/atom` how many there are"
+_LISTS = "neighbour lists are not handed out: `compute pair/local` and `property/local` list pairs, `compute coord/atom` counts them"
 _PAIRS = "coefficients of pair styles are those that the deck says; they cannot be read back"
 
 _INSTEAD = {
