@@ -8,7 +8,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_computes::COMPUTES;
 use perigrain_fixes::FIXES;
 use perigrain_lang::{Args, Command, Word};
-use perigrain_styles::{Style, UseKind};
+use perigrain_styles::UseKind;
 use perigrain_world::{GroupId, World};
 use std::cell::RefCell;
 

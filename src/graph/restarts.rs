@@ -5,8 +5,7 @@ pub mod writing;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_output::file::Pattern;
-use perigrain_plan::Op;
-use perigrain_styles::{BuildCx, SealCx};
+use perigrain_styles::BuildCx;
 use std::path::PathBuf;
 
 /// At which steps restart files are written.
