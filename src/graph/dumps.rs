@@ -80,7 +80,9 @@ pub fn once_dump(
     let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;
     let style = style(DUMPS, "dump", args)?;
     let build = cx.build(graph, w, "WRITE_DUMP", group);
-    let mut dump = style.build(args, &build)?;
+    let mut line = args.until(|word| word == "modify");
+    let mut dump = style.build(&mut line, &build)?;
+    line.finish()?;
     if args.eat("modify") {
         dump.modify(args, &build)?;
     }

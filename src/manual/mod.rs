@@ -50,6 +50,7 @@ impl Page {
     pub fn declared(&self) -> Vec<walk::Declared> {
         let head = match self.kind {
             "fix" | "compute" => format!("{} ID group {}", self.kind, self.name),
+            "dump" => format!("dump ID group {} N", self.name),
             "command" => self.name.to_string(),
             kind => format!("{kind} {}", self.name),
         };

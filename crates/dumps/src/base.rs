@@ -11,7 +11,7 @@ use super::attribute::{Attribute, Bound, Frame};
 use clock::Clock;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::args::blame;
-use perigrain_lang::{Args, ValueRef};
+use perigrain_lang::{ValueRef, Word};
 use perigrain_output::dump::{Data, Target, sort_rows};
 use perigrain_output::file::{Pattern, trouble};
 use perigrain_output::image::View;
@@ -19,9 +19,10 @@ use perigrain_output::movie::Movie;
 use perigrain_output::vtu::Series;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::Words;
 use perigrain_styles::{BuildCx, SealCx, Wants};
 
-pub use keywords::{column, unknown};
+pub use keywords::{Common, OfParticles, column, foreign};
 use perigrain_world::field::{
     BOX, CHARGE, COLUMNS, F, FACTS, Fields, IMAGE, KIND, MASK, MASS, MU, OMEGA, RADIUS, REGIONS, SLOTS, TAG,
     TORQUE, V, VOLUME, X,
@@ -134,10 +135,38 @@ const BINARY: [&str; 2] = ["atom", "custom"];
 /// Further styles that allow `%` in file names, as in LAMMPS.
 const SHARED: [&str; 2] = ["cfg", "local"];
 
+/// The files of a style.
+#[derive(Clone, Copy)]
+pub struct Files {
+    /// The style.
+    pub style: &'static str,
+    /// The extensions that it can write (empty: any).
+    pub endings: &'static [&'static str],
+    /// Its compression level, if it always compresses.
+    pub level: Option<i64>,
+}
+
+impl Files {
+    /// Files of any name.
+    pub const fn any(style: &'static str) -> Self {
+        Self { style, endings: &[], level: None }
+    }
+}
+
+/// The line of a dump that needs no other words than its file.
+#[derive(Words)]
+pub struct OfFile {
+    /// The file's name; a `*` in it becomes the step, and each snapshot has a file of its own.
+    #[word(name = "FILE", what = "the file name", kind = Kind::File)]
+    pub file: Word,
+}
+
 impl Base {
-    /// Reads the file name; `endings` are the extensions the style can write (empty: any).
-    pub fn new(style: &'static str, args: &mut Args, cx: &BuildCx, endings: &[&str]) -> Result<Self> {
-        let word = args.expect("the file name")?;
+    /// A dump into the file of this name.
+    ///
+    /// # Errors
+    /// Names that the style cannot write.
+    pub fn new(Files { style, endings, level }: Files, word: &Word, cx: &BuildCx) -> Result<Self> {
         let binary = BINARY.contains(&style);
         let pattern = match binary || SHARED.contains(&style) {
             true => Pattern::shared(&word.text, binary),
@@ -164,7 +193,7 @@ impl Base {
             group: cx.group,
             shared: word.text.contains('%'),
             append: false,
-            level: None,
+            level,
             pad: 0,
             every: None,
             rhythm: Rhythm::Steps,
@@ -183,12 +212,12 @@ impl Base {
     }
 
     /// Refuses a name without `*` if every snapshot is a separate file; `write_dump` needs no `*`.
-    pub fn needs_star(&self, args: &Args, cx: &BuildCx) -> Result<()> {
+    pub fn needs_star(&self, file: &Word, cx: &BuildCx) -> Result<()> {
         if self.state().target.pattern.many() || cx.id == "WRITE_DUMP" {
             return Ok(());
         }
         let message = format!("dump {} writes one file per snapshot", self.style);
-        let d = Diagnostic::error(Code::BAD_VALUE, args.here(), message);
+        let d = Diagnostic::error(Code::BAD_VALUE, file.span, message);
         Err(d.help("put a `*` into the file name: it becomes the step").into())
     }
 

@@ -1,11 +1,12 @@
 //! Dumps `xyz`, `yaml` and `cfg`: like `dump custom` in other formats.
 
 use super::attribute::{Attribute, Core, Source};
-use super::base::Base;
-use super::text::{Form, Layout, Text, attributes};
-use super::{Dump, DumpStyle};
+use super::base::{Base, Files, OfFile};
+use super::text::{Columns, Form, Formatted, Layout, OfYaml, Text, Timed};
+use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form as Line, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// `dump … xyz`.
@@ -23,14 +24,16 @@ impl Style for Xyz {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group xyz N file",
+            syntax: "",
             summary: "Writes the group's particles every N steps as an XYZ file.",
             text: "Each snapshot is the number of particles, a line of comment with the step, and a row `name x y z` per \
                    particle. The name is the type's number unless `dump_modify ID element A B …` names types. \
-                   `dump_modify` understands what all dumps do (see `dump custom`), `format line \"%s %g %g %g\"` and \
-                   `time yes` (the time in the comment). Rows are sorted by id unless set otherwise.",
+                   The only format is `format line \"%s %g %g %g\"`; the time stands in the comment. Rows are sorted by id unless set otherwise.",
             example: "dump 1 all xyz 100 grains.xyz",
         }
+    }
+    fn words(&self) -> Vec<Line> {
+        vec![Line::behind(OfFile::GRAMMAR), Line::headed(MODIFY, Timed::GRAMMAR)]
     }
 }
 
@@ -40,14 +43,15 @@ impl Style for Yaml {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group yaml N file attribute …",
+            syntax: "",
             summary: "Writes chosen attributes of the group's particles every N steps as YAML documents.",
-            text: "Attributes and `dump_modify` are those of `dump custom`; each snapshot is a YAML document that any YAML \
-                   reader takes. `dump_modify ID thermo yes` puts the row of the step table into snapshots of steps that have \
-                   one, each number with all its digits and under its usual name. In the first snapshot of a second run \
+            text: "Each snapshot is a YAML document that any YAML reader takes. With `thermo yes`, in the first snapshot of a second run \
                    LAMMPS repeats the last run's row; here it is that run's own.",
             example: "dump 1 all yaml 100 flow.yaml id type x y z",
         }
+    }
+    fn words(&self) -> Vec<Line> {
+        vec![Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, OfYaml::GRAMMAR)]
     }
 }
 
@@ -57,55 +61,61 @@ impl Style for Cfg {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group cfg N file mass type xs|xsu ys|ysu zs|zsu attribute …",
+            syntax: "",
             summary: "Writes the group's particles every N steps in the extended CFG format of AtomEye, one file each.",
             text: "The file name needs a `*`. The first five attributes are `mass type xs ys zs` or `mass type xsu ysu zsu`; \
                    all others of `dump custom` may follow as auxiliary properties. Types are written by name: `C` unless \
                    `dump_modify ID element A B …` names them. With unwrapped positions the cell is ten times larger, as \
-                   in LAMMPS. `dump_modify` understands what all dumps do (see `dump custom`), and `format`.",
+                   in LAMMPS.",
             example: "dump 1 all cfg 100 flow.*.cfg mass type xs ys zs vx",
         }
+    }
+    fn words(&self) -> Vec<Line> {
+        vec![Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, Formatted::GRAMMAR)]
     }
 }
 
 impl DumpStyle for Xyz {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        xyz(Base::new(self.name(), args, cx, &[])?, args, cx)
+        xyz(Files::any(self.name()), args, cx)
     }
 }
 
 impl DumpStyle for Yaml {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new(self.name(), args, cx, &[])?;
-        Ok(Box::new(Text::new(base, Form::Yaml, Layout::Custom(attributes(args, cx)?))))
+        let line: Columns = read(args, cx)?;
+        let base = Base::new(Files::any(self.name()), &line.target.file, cx)?;
+        Ok(Box::new(Text::new(base, Form::Yaml, Layout::Custom(line.attributes(cx)?))))
     }
 }
 
 impl DumpStyle for Cfg {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        cfg(Base::new(self.name(), args, cx, &[])?, args, cx)
+        cfg(Files::any(self.name()), args, cx)
     }
 }
 
-/// A dump of style `xyz` into this file.
-pub(super) fn xyz(mut base: Base, _: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+/// A dump of style `xyz` into these files.
+pub(super) fn xyz(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    let mut base = Base::new(files, &read::<OfFile>(args, cx)?.file, cx)?;
     base.elements = (1..=cx.world.types).map(|k| k.to_string()).collect();
     let mut columns = vec![Attribute::core("element", Core::Element)];
     columns.extend((0..3).map(|k| Attribute::core(["x", "y", "z"][k], Core::X(k))));
     Ok(Box::new(Text::new(base, Form::Xyz, Layout::Custom(columns))))
 }
 
-/// A dump of style `cfg` into this file; parses its attributes.
-pub(super) fn cfg(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-    base.needs_star(args, cx)?;
-    let span = args.here();
-    let mut columns = attributes(args, cx)?;
+/// A dump of style `cfg` into these files.
+pub(super) fn cfg(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    let line: Columns = read(args, cx)?;
+    let base = Base::new(files, &line.target.file, cx)?;
+    base.needs_star(&line.target.file, cx)?;
+    let mut columns = line.attributes(cx)?;
     let begins =
         |names: [&str; 5]| columns.len() >= 5 && columns.iter().zip(names).all(|(c, name)| c.word == name);
     let unwrapped = begins(["mass", "type", "xsu", "ysu", "zsu"]);
     if !unwrapped && !begins(["mass", "type", "xs", "ys", "zs"]) {
         let text = "the attributes of dump cfg begin with `mass type xs ys zs` or `mass type xsu ysu zsu`";
-        return Err(Diagnostic::error(Code::BAD_VALUE, span, text).into());
+        return Err(Diagnostic::error(Code::BAD_VALUE, line.attributes[0].span, text).into());
     }
     columns[1].source = Source::Core(Core::Element);
     for c in &mut columns {

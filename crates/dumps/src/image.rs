@@ -1,18 +1,20 @@
 //! Dump `image`: pictures of the particles.
 
 use super::attribute::{Attribute, Core, Source, attribute};
-use super::base::{Base, Shot, unknown};
-use super::picture::{self, Options};
-use super::{Dump, DumpStyle};
+use super::base::{self, Base, Common, Files, OfFile, OfParticles, Shot};
+use super::movie::Paces;
+use super::picture::{self, Here, Later, Options, foreign};
+use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, Word};
 use perigrain_output::dump::Data;
-use perigrain_output::image::{Colour, ENDINGS, Legend, ScaleBar, Scene, by_kind, edges, render};
+use perigrain_output::image::{self, Colour, Legend, ScaleBar, Scene, by_kind, edges, render};
 use perigrain_output::movie::{Movie, Pace};
 use perigrain_plan::Op;
 use perigrain_styles::common::about;
+use perigrain_styles::words::{Form, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{World, outline};
 
@@ -25,55 +27,71 @@ impl Style for Image {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group image N file.*.png colour diameter keyword value …",
+            syntax: "",
             summary: "Draws the group's particles as shaded spheres every N steps.",
             text: PAGE,
             example: "dump cut all image 200 cut_*.png c_damage auto view 70 -60 map damage range 0 1\n\
                       dump_modify cut region half title \"brittle plate\"",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Later::GRAMMAR)]
+    }
 }
 
 /// The page text.
-const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diameter` is a number [length], `type`, an \
-    attribute, or `auto`: the diameter of spheres, the edge of a peridynamic particle's cube of volume times √2 (so \
-    that no light falls through a body), else 1.\n\n\
-    Keywords, here and in `dump_modify`:\n\n\
-    * `size W H` pixels (1280 960), `view theta phi` degrees from the z axis and around it (60 30), `up x y z`, `zoom f`, \
-      `perspective degrees` (0: orthographic), `center s x y z` as fractions of the box, `frame first|each|box`: what the \
-      picture shows when no centre is given: what was drawn first (kept; the box if that was nothing), what is drawn each time, or the box;\n\
-    * `map NAME` (damage viridis plasma inferno coolwarm grey), `range lo hi` (numbers, `min`, `max`), \
-      `acolor TYPE COLOUR` (a fixed colour for a type, also beside values), `adiam d` (here) or `adiam TYPE d` (in \
-      `dump_modify`), colours by name or `\"#rrggbb\"` (in quotes: `#` starts a comment);\n\
-    * `legend yes|no|text`, `title text` (in quotes, or with `_` for blanks where variables are to be put in), \
-      `time yes|no` and `scalebar yes|no` (the line below the picture), `box yes|no d`, `walls yes|no` (walls of grains, through which \
-      one sees), \
-      `backcolor C`, `backcolor2 C`, `boxcolor C` (lines and text), `shiny 0…1`, `ssao yes|no seed 0…1` (shade in gaps), \
-      `depthcue yes|no 0…1`, `fsaa yes|no`, `atom yes`.\n\n\
-    `dump_modify … region ID` cuts, `thresh` hides, as for `dump custom`. The ending of the name says what is written: `.png`, `.jpg` or \
-    `.jpeg` (quality 85, as LAMMPS' pictures; there is nothing to choose there either), or `.ppm`; LAMMPS writes PPM under any other name, too.";
+const PAGE: &str = "The keywords stand here or in `dump_modify`. `dump_modify … region ID` cuts, `thresh` hides, as for \
+    `dump custom`. If the box is drawn, it is framed.\n\n\
+    The ending of the name says what is written: `.png`, `.jpg` or `.jpeg` (quality 85, as LAMMPS' pictures; there is nothing to \
+    choose there either), or `.ppm`; LAMMPS writes PPM under any other name, too.";
+
+/// What the names of pictures end in.
+const ENDINGS: [&str; image::ENDINGS.len()] = {
+    let (mut all, mut k) = ([""; image::ENDINGS.len()], 0);
+    while k < all.len() {
+        all[k] = image::ENDINGS[k].0;
+        k += 1;
+    }
+    all
+};
+
+/// The line of a dump of pictures.
+#[derive(Words)]
+pub struct Line {
+    #[word(flatten)]
+    pub target: OfFile,
+    /// `type` or any attribute of `dump custom`.
+    #[word(name = "colour", what = "the colour: `type` or an attribute", kind = Kind::Attribute)]
+    colour: Word,
+    /// A number [length], `type`, an attribute, or `auto`: the diameter of spheres, the edge of a peridynamic particle's cube of volume
+    /// times √2 (so that no light falls through a body), else 1.
+    #[word(name = "diameter", what = "the diameter: a number, `auto`, `type` or an attribute", kind = Kind::Attribute)]
+    diameter: Word,
+    #[word(flatten)]
+    settings: Here,
+}
 
 impl DumpStyle for Image {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let endings: Vec<&str> = ENDINGS.iter().map(|(ending, _)| *ending).collect();
-        let base = Base::new("image", args, cx, &endings)?;
-        base.needs_star(args, cx)?;
-        Ok(Box::new(Declared::read(base, None, args, cx)?))
+        let line: Line = read_or(args, cx, foreign)?;
+        let base = Base::new(Files { endings: &ENDINGS, ..Files::any("image") }, &line.target.file, cx)?;
+        base.needs_star(&line.target.file, cx)?;
+        Ok(Box::new(Declared::new(base, None, line, cx)?))
     }
 }
 
 impl Declared {
-    /// Reads the words after the file name.
+    /// A dump of what its line says.
     ///
     /// # Errors
-    /// Every mistake in them.
-    pub fn read(base: Base, pace: Option<Pace>, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let word = args.expect("the colour: `type` or an attribute")?;
+    /// Unknown attributes and colours.
+    pub fn new(base: Base, pace: Option<Pace>, line: Line, cx: &BuildCx) -> Result<Self> {
+        let word = &line.colour;
         let colour = match word.text.as_str() {
             "element" => return Err(blame(word, Code::NOT_SUPPORTED, "colours by element").into()),
             _ => attribute(word, cx)?,
         };
-        let word = args.expect("the diameter: a number, `auto`, `type` or an attribute")?;
+        let word = &line.diameter;
         let size = match word.text.as_str() {
             "element" => return Err(blame(word, Code::NOT_SUPPORTED, "diameters by element").into()),
             "auto" => Size::Auto,
@@ -83,25 +101,9 @@ impl Declared {
             }
             _ => Size::Attribute(attribute(word, cx)?),
         };
-        let mut dump = Declared { base, colour, size, options: Options::default(), pace };
-        while let Some(word) = args.peek().filter(|w| w.text != "modify") {
-            args.next();
-            if !dump.paces(word, args)? && !dump.options.read(word, args, cx, false)? {
-                return Err(args.unknown(word, picture::KEYWORDS));
-            }
-        }
-        Ok(dump)
-    }
-
-    /// Reads a keyword of movies only.
-    fn paces(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
-        let Some(pace) = &mut self.pace else { return Ok(false) };
-        match word.text.as_str() {
-            "framerate" => pace.rate = args.positive("the number of pictures a second")?,
-            "bitrate" => pace.bits = args.integer_from(1, "kilobits a second")?,
-            _ => return Ok(false),
-        }
-        Ok(true)
+        let mut options = Options::default();
+        options.begin(line.settings)?;
+        Ok(Declared { base, colour, size, options, pace })
     }
 }
 
@@ -154,16 +156,21 @@ impl Dump for Declared {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        while let Some(word) = args.next() {
-            let known = self.paces(word, args)?
-                || self.base.modify(word, args, cx)?
-                || self.options.read(word, args, cx, true)?;
-            if !known {
-                return Err(unknown(word, args, picture::KEYWORDS));
+        type Shared = (Common, OfParticles);
+        let other = |word: &Word| picture::foreign(word).or_else(|| base::foreign(word));
+        let ((common, particles), later) = match &mut self.pace {
+            Some(pace) => {
+                let (shared, (later, own)): (Shared, (Later, Paces)) = read_or(args, cx, other)?;
+                *pace = own.of(*pace);
+                (shared, later)
             }
-            if picture::MOVES.contains(&word.text.as_str()) {
-                self.base.state().view = None;
-            }
+            None => read_or::<(Shared, Later)>(args, cx, other)?,
+        };
+        let moves = particles.region.is_some() || !particles.thresh.is_empty();
+        self.base.modify(common, cx)?;
+        self.base.select(particles, cx)?;
+        if self.options.modify(later)? || moves {
+            self.base.state().view = None;
         }
         Ok(())
     }

@@ -16,6 +16,14 @@ mod vtk;
 
 pub use image::auto_diameter;
 pub use perigrain_styles::dump::{Dump, DumpStyle};
+use perigrain_styles::words::{Form, Words};
+
+/// What stands before the keywords of `dump_modify`.
+const MODIFY: &str = "dump_modify ID";
+
+/// The keywords of `dump_modify` that all dumps have, and those that dumps of particles have.
+pub const MODIFIED: [Form; 2] =
+    [Form::headed(MODIFY, base::Common::GRAMMAR), Form::headed(MODIFY, base::OfParticles::GRAMMAR)];
 
 /// Every dump style.
 #[rustfmt::skip]

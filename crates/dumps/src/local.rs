@@ -1,13 +1,15 @@
 //! Dump `local`: values of pairs, bonds and other local data as text.
 
-use super::base::{Base, Sort, column, unknown};
-use super::{Dump, DumpStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use super::base::{Base, Common, Files, OfFile, OfParticles, Sort, column, foreign};
+use super::text::{ColumnFormat, OfColumn, OfColumns, Renamed, Table, Usual};
+use super::{Dump, DumpStyle, MODIFY};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use perigrain_lang::args::blame;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_output::dump::{Data, Field, Snapshot, sort_rows};
 use perigrain_output::formats::{Formats, Kind};
 use perigrain_plan::{Op, Stage};
+use perigrain_styles::words::{self, Form, Or, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style, Wants};
 
 /// `dump … local`.
@@ -19,15 +21,16 @@ impl Style for Local {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group local N file index|c_ID|c_ID[k]|f_ID|f_ID[k] …",
+            syntax: "",
             summary: "Writes local values (of pairs, bonds …) every N steps as text.",
             text: "One row per local value, in the order of the compute or fix that makes them; all columns must have the same \
-                   number of rows. `index` counts rows from 1. The group decides nothing: the compute does. `dump_modify` \
-                   understands what all dumps do (see `dump custom`) but what concerns particles, and `colname N name`, `format`, `header \
-                   yes|no`, `label NAME` (for `ENTRIES` in the header), `time yes` and `units yes`; `sort N` sorts by a \
-                   column.",
+                   number of rows. The group decides nothing: the compute does. The keywords of \
+                   `dump_modify` that concern particles are refused.",
             example: "compute b all property/local batom1 batom2\ndump 1 all local 100 bonds.*.txt index c_b[1] c_b[2]",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Own::GRAMMAR)]
     }
 }
 
@@ -54,16 +57,32 @@ struct Declared {
 
 impl DumpStyle for Local {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        local(Base::new(self.name(), args, cx, &[])?, args, cx)
+        local(Files::any(self.name()), args, cx)
     }
 }
 
-/// A dump of style `local` into this file; parses its values.
-pub(super) fn local(mut base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+/// The line of a dump of local values.
+#[derive(Words)]
+pub(super) struct Line {
+    #[word(flatten)]
+    target: OfFile,
+    /// `index`, which counts rows from 1, or a local value: `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`.
+    #[word(name = "value", what = "a local value such as index or c_ID", kind = INDEX_OR_VALUE, least = 1)]
+    values: Vec<Word>,
+}
+
+const INDEX_OR_VALUE: words::Kind = words::Kind::Or(
+    &words::Kind::Choice(&[words::Alternative { word: "index", about: "", parts: &[] }]),
+    &words::Kind::Value,
+);
+
+/// A dump of style `local` into these files.
+pub(super) fn local(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    let Line { target, values } = read(args, cx)?;
+    let mut base = Base::new(files, &target.file, cx)?;
     base.sort = Sort::Off;
     let (mut columns, mut names) = (vec![], vec![]);
-    while let Some(word) = args.peek().filter(|w| w.text != "modify") {
-        args.next();
+    for word in &values {
         if word.text == "index" {
             columns.push(Column::Index);
             names.push(word.text.clone());
@@ -75,9 +94,6 @@ pub(super) fn local(mut base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box
         }
     }
     if !columns.iter().any(|c| matches!(c, Column::Value(_))) {
-        if columns.is_empty() {
-            args.expect("a local value such as index or c_ID")?;
-        }
         return fail(
             Code::MISSING_ARGUMENT,
             args.here(),
@@ -111,10 +127,24 @@ fn reference(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
     }
 }
 
-/// Keywords of dumps that apply to particles only.
-const OF_PARTICLES: &[&str] = &["element", "pbc", "refresh", "region", "thresh"];
+/// The keywords of `dump_modify` that this dump has beside those of all.
+#[derive(Words)]
+struct Own {
+    #[word(flatten)]
+    table: Table,
+    /// What stands for `ENTRIES` in the header.
+    #[word(keyword, name = "NAME", what = "the name of the rows")]
+    label: Option<String>,
+}
 
-const OWN: &[&str] = &["colname", "format", "header", "label", "time", "units"];
+/// Refuses keywords that other dumps have.
+fn foreign_here(word: &Word) -> Option<Diagnostics> {
+    if !OfParticles::GRAMMAR.has(&word.text) {
+        return foreign(word);
+    }
+    let text = format!("dump_modify {} concerns particles, and dump local writes none", word.text);
+    Some(Diagnostic::error(Code::CONFLICT, word.span, text).into())
+}
 
 impl Dump for Declared {
     fn op(&self, cx: &mut dyn SealCx, every: i64) -> Result<Box<dyn Op>> {
@@ -179,27 +209,24 @@ impl Dump for Declared {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        while let Some(word) = args.next() {
-            let text = word.text.as_str();
-            if OF_PARTICLES.contains(&text) {
-                let message = format!("dump_modify {text} concerns particles, and dump local writes none");
-                return fail(Code::CONFLICT, word.span, message);
-            }
-            match text {
-                "header" => self.header = args.flag("header")?,
-                "label" => self.label = args.expect("the name of the rows")?.text.clone(),
-                "time" => self.time = args.flag("time")?,
-                "units" => self.units = args.flag("units")?,
-                "format" => self.format(args)?,
-                "colname" => self.rename(args)?,
-                "sort" if args.peek_text() == "id" => {
-                    return fail(Code::CONFLICT, args.here(), "local values have no id: sort by a column");
+        let (common, Own { table, label }): (Common, Own) = read_or(args, cx, foreign_here)?;
+        if let Some(span) = common.by_id() {
+            return fail(Code::CONFLICT, span, "local values have no id: sort by a column");
+        }
+        self.base.modify(common, cx)?;
+        self.header = table.header.unwrap_or(self.header);
+        self.units = table.units.unwrap_or(self.units);
+        self.time = table.timed.time.unwrap_or(self.time);
+        self.label = label.unwrap_or_else(|| std::mem::take(&mut self.label));
+        for name in table.colname {
+            match name {
+                Or::Word(Usual::Default) => self.renamed.clear(),
+                Or::Else(Renamed { column: word, name }) => {
+                    self.renamed.push((column(&word, self.names.iter().map(String::as_str))?, name));
                 }
-                _ if self.base.modify(word, args, cx)? => {}
-                _ => return Err(unknown(word, args, OWN)),
             }
         }
-        Ok(())
+        table.timed.formatted.format.into_iter().try_for_each(|format| self.format(format.value))
     }
 
     fn every(&self) -> Option<i64> {
@@ -222,39 +249,26 @@ impl Declared {
         new.map_or(&self.names[column], |(_, name)| name)
     }
 
-    fn rename(&mut self, args: &mut Args) -> Result<()> {
-        let which = args.expect("a column or default")?;
-        if which.text == "default" {
-            self.renamed.clear();
-            return Ok(());
-        }
-        let column = column(which, self.names.iter().map(String::as_str))?;
-        self.renamed.push((column, args.expect("the column's new name")?.text.clone()));
-        Ok(())
-    }
-
-    fn format(&mut self, args: &mut Args) -> Result<()> {
-        let which = args.expect("line, int, float, a column or none")?;
-        if which.text == "none" {
-            self.formats.clear();
-            return Ok(());
-        }
-        let word = args.expect("a format such as %g")?;
+    fn format(&mut self, format: ColumnFormat) -> Result<()> {
         let kinds: Vec<Kind> = (0..self.columns.len()).map(|k| self.kind(k)).collect();
-        let outcome = match which.text.as_str() {
-            "line" => self.formats.set_line(&word.text, &kinds),
-            "int" => self.formats.set_int(&word.text),
-            "float" => self.formats.set_float(&word.text),
-            text => match text.parse::<usize>() {
+        let (span, outcome) = match format {
+            Or::Word(OfColumns::None) => {
+                self.formats.clear();
+                return Ok(());
+            }
+            Or::Word(OfColumns::Line(word)) => (word.span, self.formats.set_line(&word.text, &kinds)),
+            Or::Word(OfColumns::Int(word)) => (word.span, self.formats.set_int(&word.text)),
+            Or::Word(OfColumns::Float(word)) => (word.span, self.formats.set_float(&word.text)),
+            Or::Else(OfColumn { column, format }) => match column.text.parse::<usize>() {
                 Ok(k) if k >= 1 && k <= kinds.len() => {
-                    self.formats.set_column(k - 1, kinds[k - 1], &word.text)
+                    (format.span, self.formats.set_column(k - 1, kinds[k - 1], &format.text))
                 }
                 _ => {
                     let text = format!("this dump has columns 1 to {}", kinds.len());
-                    return fail(Code::BAD_VALUE, which.span, text);
+                    return fail(Code::BAD_VALUE, column.span, text);
                 }
             },
         };
-        outcome.map_err(|e| e.at(word.span))
+        outcome.map_err(|e| e.at(span))
     }
 }

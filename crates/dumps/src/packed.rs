@@ -1,24 +1,27 @@
 //! Dumps `atom/gz`, `custom/gz`, `cfg/gz`, `xyz/gz` and `local/gz`: compressed files with a selectable level.
 
-use super::base::Base;
+use super::base::{Files, OfFile};
+use super::local::Line;
+use super::text::Columns;
 use super::{Dump, DumpStyle, forms, local, text};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form, Grammar, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// A style whose files are always compressed.
 pub struct Packed {
     name: &'static str,
-    syntax: &'static str,
+    grammar: &'static Grammar,
     example: &'static str,
-    /// Reads the words after the file name.
-    build: fn(Base, &mut Args, &BuildCx) -> Result<Box<dyn Dump>>,
+    /// Reads its line.
+    build: fn(Files, &mut Args, &BuildCx) -> Result<Box<dyn Dump>>,
 }
 
 /// `dump … atom/gz`.
 pub const ATOM: Packed = Packed {
     name: "atom/gz",
-    syntax: "dump ID group atom/gz N file",
+    grammar: OfFile::GRAMMAR,
     example: "dump 1 all atom/gz 100 flow.dump.gz",
     build: text::atom,
 };
@@ -26,7 +29,7 @@ pub const ATOM: Packed = Packed {
 /// `dump … custom/gz`.
 pub const CUSTOM: Packed = Packed {
     name: "custom/gz",
-    syntax: "dump ID group custom/gz N file attribute …",
+    grammar: Columns::GRAMMAR,
     example: "dump 1 all custom/gz 100 plate.*.dump.gz id type x y z\ndump_modify 1 compression_level 9",
     build: text::custom,
 };
@@ -34,7 +37,7 @@ pub const CUSTOM: Packed = Packed {
 /// `dump … cfg/gz`.
 pub const CFG: Packed = Packed {
     name: "cfg/gz",
-    syntax: "dump ID group cfg/gz N file mass type xs|xsu ys|ysu zs|zsu attribute …",
+    grammar: Columns::GRAMMAR,
     example: "dump 1 all cfg/gz 100 flow.*.cfg.gz mass type xs ys zs",
     build: forms::cfg,
 };
@@ -42,7 +45,7 @@ pub const CFG: Packed = Packed {
 /// `dump … xyz/gz`.
 pub const XYZ: Packed = Packed {
     name: "xyz/gz",
-    syntax: "dump ID group xyz/gz N file",
+    grammar: OfFile::GRAMMAR,
     example: "dump 1 all xyz/gz 100 grains.xyz.gz",
     build: forms::xyz,
 };
@@ -50,7 +53,7 @@ pub const XYZ: Packed = Packed {
 /// `dump … local/gz`.
 pub const LOCAL: Packed = Packed {
     name: "local/gz",
-    syntax: "dump ID group local/gz N file index|c_ID|c_ID[k]|f_ID|f_ID[k] …",
+    grammar: Line::GRAMMAR,
     example: "compute b all property/local batom1 batom2\ndump 1 all local/gz 100 bonds.*.gz index c_b[1] c_b[2]",
     build: local::local,
 };
@@ -61,7 +64,7 @@ impl Style for Packed {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: self.syntax,
+            syntax: "",
             summary: "The dump of the same name without `/gz`, compressed.",
             text: "The file name must end in `.gz`. `dump_modify ID compression_level N` says how tightly: from 0 (not at \
                    all) and 1 (fast) to 9, or -1 for the usual one, 6. All else is as without `/gz`, whose files are \
@@ -69,12 +72,13 @@ impl Style for Packed {
             example: self.example,
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(self.grammar)]
+    }
 }
 
 impl DumpStyle for Packed {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let mut base = Base::new(self.name, args, cx, &[".gz"])?;
-        base.level = Some(-1);
-        (self.build)(base, args, cx)
+        (self.build)(Files { style: self.name, endings: &[".gz"], level: Some(-1) }, args, cx)
     }
 }

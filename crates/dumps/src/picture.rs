@@ -1,48 +1,15 @@
 //! Options of `dump image`, and their translation into camera, colours and text.
 
-use perigrain_base::diag::{Code, Result, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostics, Result, fail, nearest};
 use perigrain_base::gate;
 use perigrain_base::math::cformat::general;
-use perigrain_lang::args::{blame, parse_number};
+use perigrain_lang::args::blame;
 use perigrain_lang::{Args, Word};
 use perigrain_output::image::{Camera, Colour, Look, MAPS, Map, View, colour_by_name};
 use perigrain_styles::BuildCx;
+use perigrain_styles::words::{At, Kind, Or, Types, Value, Words};
 use perigrain_world::memory;
 use perigrain_world::{Domain, World};
-
-/// All keywords.
-pub const KEYWORDS: &[&str] = &[
-    "acolor",
-    "adiam",
-    "atom",
-    "axes",
-    "backcolor",
-    "backcolor2",
-    "box",
-    "boxcolor",
-    "center",
-    "depthcue",
-    "frame",
-    "fsaa",
-    "legend",
-    "map",
-    "perspective",
-    "range",
-    "scalebar",
-    "shiny",
-    "size",
-    "ssao",
-    "time",
-    "title",
-    "up",
-    "view",
-    "walls",
-    "zoom",
-];
-
-/// Keywords that reset the framing of the picture.
-pub const MOVES: &[&str] =
-    &["view", "up", "zoom", "center", "perspective", "frame", "region", "thresh", "adiam", "size"];
 
 /// LAMMPS' keywords that are refused by name.
 const ELSEWHERE: &[&str] = &[
@@ -70,10 +37,14 @@ const ELSEWHERE: &[&str] = &[
 ];
 
 /// What is framed if no centre is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+#[word(what = "frame")]
 enum Framing {
+    /// Without a centre the picture shows what was drawn first, the box if that was nothing.
     First,
+    /// It shows what is drawn each time.
     Each,
+    /// It shows the box.
     Box,
 }
 
@@ -148,112 +119,313 @@ const BYTES_PER_PIXEL: f64 = 46.0;
 /// The longest side of a picture: viewers and memory set this limit.
 const LONGEST: i64 = 16384;
 
-fn pixels(args: &mut Args, what: &str) -> Result<usize> {
-    let span = args.here();
-    let n = args.integer_from(16, what)?;
-    if n > LONGEST {
-        return fail(Code::BAD_VALUE, span, format!("{what} is at most {LONGEST}, not {n}"));
+/// A side of a picture.
+#[derive(Clone, Copy)]
+struct Pixels(usize);
+
+impl Value for Pixels {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let (span, n) = (args.here(), args.integer_from(16, what)?);
+        match n > LONGEST {
+            true => fail(Code::BAD_VALUE, span, format!("{what} is at most {LONGEST}, not {n}")),
+            false => Ok(Self(n as usize)),
+        }
     }
-    Ok(n as usize)
+}
+
+/// The keywords of pictures, here and in `dump_modify`.
+#[derive(Words)]
+pub struct Settings {
+    /// A fixed colour for a type, also beside values.
+    #[word(keyword, name = "TYPE COLOUR")]
+    acolor: Vec<(Types, Tint)>,
+    /// `yes` alone: there is nothing else to draw.
+    #[word(keyword, what = "atom", placed)]
+    atom: Option<At<bool>>,
+    /// `no` alone.
+    #[word(keyword, name = "no", placed)]
+    axes: Option<At<Axes>>,
+    /// The background, by name or as `"#rrggbb"` in quotes.
+    #[word(keyword, name = "C")]
+    backcolor: Option<At<Tint>>,
+    /// The lower end of a background that changes from top to bottom.
+    #[word(keyword, name = "C")]
+    backcolor2: Option<At<Tint>>,
+    /// Whether the box is drawn; the width of its lines has no effect.
+    #[word(keyword = "box", name = "yes|no d", what = "box")]
+    box_edges: Option<(bool, Breadth)>,
+    /// Lines and text.
+    #[word(keyword, name = "C")]
+    boxcolor: Option<Tint>,
+    /// The centre of the picture in fractions of the box.
+    #[word(keyword)]
+    center: Option<Anchor>,
+    /// How much fades with distance, from 0 to 1.
+    #[word(keyword, name = "yes|no strength", what = "the switch")]
+    depthcue: Option<(bool, Strength)>,
+    #[word(keyword, shown = "first")]
+    frame: Option<Framing>,
+    /// Edges are smoothed.
+    #[word(keyword, what = "fsaa")]
+    fsaa: Option<bool>,
+    /// Whether there is a legend, or its text.
+    #[word(keyword, name = "text", what = "yes, no or a text", shown = "yes")]
+    legend: Option<Or<YesNo, Spoken>>,
+    /// The colours of values: damage viridis plasma inferno coolwarm grey.
+    #[word(keyword, name = "NAME", with = map, kind = Kind::Text, shown = "viridis")]
+    map: Option<&'static Map>,
+    /// The opening angle, 0 for parallel rays [degrees].
+    #[word(keyword, name = "angle", what = "the opening angle", non_negative)]
+    perspective: Option<f64>,
+    /// The ends of the colours.
+    #[word(keyword, name = "lo hi", what = "an end of the range", shown = "min max")]
+    range: Option<(Or<Min, f64>, Or<Max, f64>)>,
+    /// Whether a scale bar is shown below the picture.
+    #[word(keyword, what = "scalebar", shown = "yes")]
+    scalebar: Option<bool>,
+    /// How much spheres shine, from 0 to 1.
+    #[word(keyword, name = "strength", what = "shiny", non_negative)]
+    shiny: Option<f64>,
+    /// Width and height [pixels].
+    #[word(keyword, name = "width height", what = "the {} in pixels", placed, shown = "1280 960")]
+    size: Option<At<[Pixels; 2]>>,
+    /// Shade in gaps, from 0 to 1; the seed has no effect.
+    #[word(keyword, name = "yes|no seed strength", what = "the {}")]
+    ssao: Option<(Switch, i64, Strength)>,
+    /// Whether the time stands below the picture.
+    #[word(keyword, what = "time", shown = "yes")]
+    time: Option<bool>,
+    /// Text at the top, in quotes, or with `_` for blanks where variables are to be put in.
+    #[word(keyword, name = "text", what = "the title")]
+    title: Option<Spoken>,
+    /// The upward direction.
+    #[word(keyword, name = "x y z", what = "a component of the upward direction")]
+    up: Option<At<[f64; 3]>>,
+    /// Angles from the z axis and around it [degrees].
+    #[word(keyword, name = "theta phi", what = "the angle {}", shown = "60 30")]
+    view: Option<[f64; 2]>,
+    /// Whether walls of grains are drawn, through which one sees.
+    #[word(keyword, what = "walls", shown = "yes")]
+    walls: Option<bool>,
+    #[word(keyword, name = "f", what = "zoom", positive)]
+    zoom: Option<f64>,
+}
+
+/// The same as they stand in a line that declares a dump.
+#[derive(Words)]
+pub struct Here {
+    #[word(flatten)]
+    settings: Settings,
+    /// The diameter of all spheres [length].
+    #[word(keyword, name = "d", what = "the diameter", positive)]
+    adiam: Option<f64>,
+}
+
+/// The same as they stand in `dump_modify`.
+#[derive(Words)]
+pub struct Later {
+    #[word(flatten)]
+    settings: Settings,
+    /// The diameter of a type [length].
+    #[word(keyword, name = "TYPE d", what = "the diameter")]
+    adiam: Vec<(Types, Diameter)>,
+}
+
+/// Where the centre is: LAMMPS' two words for a fixed and a moving one do the same here.
+#[derive(Words)]
+#[word(what = "center")]
+enum Anchor {
+    S(#[word(name = "x y z", what = "a fraction of the box")] [f64; 3]),
+    D(#[word(name = "x y z", what = "a fraction of the box")] [f64; 3]),
+}
+
+/// `yes` or `no`.
+#[derive(Words)]
+enum YesNo {
+    Yes,
+    No,
+}
+
+/// The smallest value.
+#[derive(Words)]
+enum Min {
+    Min,
+}
+
+/// The largest value.
+#[derive(Words)]
+enum Max {
+    Max,
+}
+
+macro_rules! words {
+    ($($(#[$about:meta])* $name:ident($ty:ty), $kind:expr, $read:expr;)*) => {$(
+        $(#[$about])*
+        struct $name($ty);
+
+        impl Value for $name {
+            const KIND: Kind = $kind;
+            fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+                let read: fn(&str, &mut Args) -> Result<$ty> = $read;
+                read(what, args).map(Self)
+            }
+        }
+    )*};
+}
+words! {
+    /// Text for the picture.
+    Spoken(String), Kind::Text, |what, args| args.expect(what).map(spoken);
+    /// A colour.
+    Tint(Colour), Kind::Text, |_, args| colour(args);
+    /// A share of the most that there can be.
+    Strength(f64), Kind::Number, |_, args| args.non_negative("the strength");
+    /// A diameter.
+    Diameter(f64), Kind::Number, |what, args| args.positive(what);
+    /// `yes` or `no`.
+    Switch(bool), Kind::Switch, |_, args| args.flag("the switch");
+    /// Whether there are axes; numbers behind it have no effect.
+    Axes(bool), Kind::Switch, |_, args| {
+        let axes = args.flag("axes")?;
+        while args.peek().is_some_and(|w| w.text.parse::<f64>().is_ok()) {
+            args.next();
+        }
+        Ok(axes)
+    };
+}
+
+/// A width without effect.
+struct Breadth;
+
+impl Value for Breadth {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.non_negative("the width of the box lines").map(|_| Self)
+    }
+}
+
+impl Settings {
+    /// Whether a picture that keeps its view is framed anew.
+    fn moves(&self) -> bool {
+        self.view.is_some()
+            || self.up.is_some()
+            || self.zoom.is_some()
+            || self.center.is_some()
+            || self.perspective.is_some()
+            || self.frame.is_some()
+            || self.size.is_some()
+    }
+}
+
+/// Refuses LAMMPS' keywords of pictures by name.
+pub fn foreign(word: &Word) -> Option<Diagnostics> {
+    ELSEWHERE.contains(&word.text.as_str()).then(|| {
+        let d = blame(word, Code::NOT_SUPPORTED, format!("dump image keyword `{}`", word.text));
+        d.help("colours by value: `map NAME` and `range lo hi`").into()
+    })
 }
 
 impl Options {
-    /// Reads one keyword with its values; `modify` distinguishes `dump_modify` from the dump line.
-    pub fn read(&mut self, word: &Word, args: &mut Args, cx: &BuildCx, modify: bool) -> Result<bool> {
-        match word.text.as_str() {
-            "size" => {
-                self.look.width = pixels(args, "the width in pixels")?;
-                self.look.height = pixels(args, "the height in pixels")?;
-                let all = self.look.width as f64 * self.look.height as f64;
-                let allowed = gate::beyond(all, |l| l.pixels, "pixels", &format!("a picture of {all}"));
-                let fits = || memory::lacking(BYTES_PER_PIXEL * all, "a picture of this size");
-                if let Some(d) = allowed.or_else(fits) {
-                    return Err(d.at(word.span).into());
-                }
-            }
-            "view" => {
-                self.camera.theta = args.number("the angle from the z axis")?;
-                self.camera.phi = args.number("the angle around the z axis")?;
-            }
-            "up" => self.camera.up = up(args)?,
-            "zoom" => self.camera.zoom = args.positive("zoom")?,
-            "perspective" => self.camera.perspective = args.non_negative("the opening angle")?.min(150.0),
-            "center" => {
-                args.choice("center", &["s", "d"])?;
-                self.centre = Some(three(args, "a fraction of the box")?);
-            }
-            "frame" => {
-                self.framing = match args.choice("frame", &["first", "each", "box"])? {
-                    "first" => Framing::First,
-                    "each" => Framing::Each,
-                    _ => Framing::Box,
-                }
-            }
-            "map" => self.map = map(args)?,
-            "range" => self.range = [end(args, "min")?, end(args, "max")?],
-            "acolor" => {
-                let (lo, hi) = args.type_range(cx.world.types)?;
-                let colour = colour(args)?;
-                self.colours.extend((lo..=hi).map(|k| (k, colour)));
-            }
-            "adiam" if modify => {
-                let (lo, hi) = args.type_range(cx.world.types)?;
-                let d = args.positive("the diameter")?;
-                self.diameters.extend((lo..=hi).map(|k| (k, d)));
-            }
-            "adiam" => self.diameter = Some(args.positive("the diameter")?),
-            _ => return self.dress(word, args),
-        }
-        Ok(true)
+    /// Takes the keywords of the line that declares a dump.
+    ///
+    /// # Errors
+    /// What there is not.
+    pub fn begin(&mut self, here: Here) -> Result<()> {
+        self.diameter = here.adiam.or(self.diameter);
+        self.set(here.settings)
     }
 
-    /// Keywords for appearance, not content.
-    fn dress(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
-        match word.text.as_str() {
-            "legend" => match args.expect("yes, no or a text")? {
-                w if w.text == "yes" => self.legend = true,
-                w if w.text == "no" => self.legend = false,
-                w => (self.legend, self.legend_text) = (true, Some(spoken(w))),
-            },
-            "title" => self.title = spoken(args.expect("the title")?),
-            "time" => self.time = args.flag("time")?,
-            "walls" => self.walls = args.flag("walls")?,
-            "scalebar" => self.scale_bar = args.flag("scalebar")?,
-            "box" => {
-                self.box_edges = args.flag("box")?;
-                args.non_negative("the width of the box lines")?;
-            }
-            "backcolor" => self.look.background = [colour(args)?; 2],
-            "backcolor2" => self.look.background[1] = colour(args)?,
-            "boxcolor" => self.look.ink = colour(args)?,
-            "shiny" => self.look.shiny = fraction(args, "shiny")?,
-            "depthcue" => self.look.haze = switched(args, false)?,
-            "ssao" => self.look.occlusion = switched(args, true)?,
-            "fsaa" => self.look.samples = if args.flag("fsaa")? { 2 } else { 1 },
-            "atom" => {
-                if !args.flag("atom")? {
-                    return fail(
-                        Code::NOT_SUPPORTED,
-                        word.span,
-                        "dump image atom no: there is nothing else to draw",
-                    );
-                }
-            }
-            "axes" => {
-                if args.flag("axes")? {
-                    return fail(Code::NOT_SUPPORTED, word.span, "dump image axes yes");
-                }
-                while args.peek().is_some_and(|w| w.text.parse::<f64>().is_ok()) {
-                    args.next();
-                }
-            }
-            text if ELSEWHERE.contains(&text) => {
-                let d = blame(word, Code::NOT_SUPPORTED, format!("dump image keyword `{text}`"));
-                return Err(d.help("colours by value: `map NAME` and `range lo hi`").into());
-            }
-            _ => return Ok(false),
+    /// Takes the keywords of `dump_modify`; whether the picture is framed anew.
+    ///
+    /// # Errors
+    /// What there is not.
+    pub fn modify(&mut self, later: Later) -> Result<bool> {
+        let moves = later.settings.moves() || !later.adiam.is_empty();
+        for (Types(lo, hi), Diameter(d)) in later.adiam {
+            self.diameters.extend((lo..=hi).map(|k| (k, d)));
         }
-        Ok(true)
+        self.set(later.settings)?;
+        Ok(moves)
+    }
+
+    fn set(&mut self, said: Settings) -> Result<()> {
+        if let Some(At { span, .. }) = said.atom.filter(|a| !a.value) {
+            return fail(Code::NOT_SUPPORTED, span, "dump image atom no: there is nothing else to draw");
+        }
+        if let Some(At { span, .. }) = said.axes.as_ref().filter(|a| a.value.0) {
+            return fail(Code::NOT_SUPPORTED, *span, "dump image axes yes");
+        }
+        self.place(&said)?;
+        self.dress(&said);
+        for (Types(lo, hi), Tint(colour)) in said.acolor {
+            self.colours.extend((lo..=hi).map(|k| (k, colour)));
+        }
+        match said.legend {
+            Some(Or::Word(YesNo::Yes)) => self.legend = true,
+            Some(Or::Word(YesNo::No)) => self.legend = false,
+            Some(Or::Else(Spoken(text))) => (self.legend, self.legend_text) = (true, Some(text)),
+            None => {}
+        }
+        self.title = said.title.map_or_else(|| std::mem::take(&mut self.title), |t| t.0);
+        if let Some((lo, hi)) = said.range {
+            self.range = [
+                if let Or::Else(lo) = lo { End::Number(lo) } else { End::Extreme },
+                if let Or::Else(hi) = hi { End::Number(hi) } else { End::Extreme },
+            ];
+        }
+        Ok(())
+    }
+
+    /// Takes what decides where the camera stands, and how large pictures are.
+    fn place(&mut self, said: &Settings) -> Result<()> {
+        if let Some(At { value: [Pixels(width), Pixels(height)], span, .. }) = said.size {
+            let all = width as f64 * height as f64;
+            let allowed = gate::beyond(all, |l| l.pixels, "pixels", &format!("a picture of {all}"));
+            let fits = || memory::lacking(BYTES_PER_PIXEL * all, "a picture of this size");
+            if let Some(d) = allowed.or_else(fits) {
+                return Err(d.at(span).into());
+            }
+            (self.look.width, self.look.height) = (width, height);
+        }
+        if let Some(At { value: up, span, unknown }) = said.up {
+            if up == [0.0; 3] && !unknown {
+                return fail(Code::BAD_VALUE, span, "0 0 0 is no direction");
+            }
+            self.camera.up = up;
+        }
+        if let Some([theta, phi]) = said.view {
+            (self.camera.theta, self.camera.phi) = (theta, phi);
+        }
+        self.camera.zoom = said.zoom.unwrap_or(self.camera.zoom);
+        self.camera.perspective = said.perspective.map_or(self.camera.perspective, |angle| angle.min(150.0));
+        if let Some(Anchor::S(centre) | Anchor::D(centre)) = said.center {
+            self.centre = Some(centre);
+        }
+        self.framing = said.frame.unwrap_or(self.framing);
+        Ok(())
+    }
+
+    /// Takes what decides about appearance, not content.
+    fn dress(&mut self, said: &Settings) {
+        let look = &mut self.look;
+        if let Some(At { value: Tint(colour), .. }) = said.backcolor {
+            look.background = [colour; 2];
+        }
+        let later = |b: &&At<Tint>| said.backcolor.as_ref().is_none_or(|a| a.span.start < b.span.start);
+        if let Some(At { value: Tint(colour), .. }) = said.backcolor2.as_ref().filter(later) {
+            look.background[1] = *colour;
+        }
+        look.ink = said.boxcolor.as_ref().map_or(look.ink, |c| c.0);
+        look.shiny = said.shiny.map_or(look.shiny, share);
+        look.samples = said.fsaa.map_or(look.samples, |smooth| if smooth { 2 } else { 1 });
+        let part = |on: bool, strength: f64| if on { share(strength) } else { 0.0 };
+        look.haze = said.depthcue.as_ref().map_or(look.haze, |(on, s)| part(*on, s.0));
+        look.occlusion = said.ssao.as_ref().map_or(look.occlusion, |(on, _, s)| part(on.0, s.0));
+        self.map = said.map.unwrap_or(self.map);
+        self.time = said.time.unwrap_or(self.time);
+        self.walls = said.walls.unwrap_or(self.walls);
+        self.scale_bar = said.scalebar.unwrap_or(self.scale_bar);
+        self.box_edges = said.box_edges.as_ref().map_or(self.box_edges, |b| b.0);
     }
 
     /// The title of the legend.
@@ -346,42 +518,12 @@ fn spoken(word: &Word) -> String {
     if word.quoted { word.text.clone() } else { word.text.replace('_', " ") }
 }
 
-fn three(args: &mut Args, what: &str) -> Result<[f64; 3]> {
-    Ok([args.number(what)?, args.number(what)?, args.number(what)?])
+/// A number as a share of the most that there can be.
+fn share(strength: f64) -> f32 {
+    strength.min(1.0) as f32
 }
 
-fn up(args: &mut Args) -> Result<[f64; 3]> {
-    let span = args.here();
-    let up = three(args, "a component of the upward direction")?;
-    if up == [0.0; 3] {
-        return fail(Code::BAD_VALUE, span, "0 0 0 is no direction");
-    }
-    Ok(up)
-}
-
-fn fraction(args: &mut Args, what: &str) -> Result<f32> {
-    Ok(args.non_negative(what)?.min(1.0) as f32)
-}
-
-/// `yes|no [seed] strength` of LAMMPS' `ssao` and `depthcue`; only the strength has an effect here.
-fn switched(args: &mut Args, seed: bool) -> Result<f32> {
-    let on = args.flag("the switch")?;
-    if seed {
-        args.integer("the seed")?;
-    }
-    let strength = fraction(args, "the strength")?;
-    Ok(if on { strength } else { 0.0 })
-}
-
-fn end(args: &mut Args, extreme: &str) -> Result<End> {
-    if args.eat(extreme) {
-        return Ok(End::Extreme);
-    }
-    let word = args.expect("an end of the range")?;
-    parse_number(word, &format!("an end of the range (or `{extreme}`)")).map(End::Number)
-}
-
-fn map(args: &mut Args) -> Result<&'static Map> {
+fn map(args: &mut Args, _: &BuildCx) -> Result<&'static Map> {
     let word = args.expect("a colour map")?;
     if let Some(map) = Map::by_name(&word.text) {
         return Ok(map);

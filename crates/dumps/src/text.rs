@@ -1,8 +1,8 @@
 //! Dumps `atom` and `custom`: LAMMPS' text format.
 
 use super::attribute::{Attribute, Core, expand};
-use super::base::{Base, Sort, column, unknown};
-use super::{Dump, DumpStyle};
+use super::base::{Base, Common, Files, OfFile, OfParticles, Sort, column, foreign};
+use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_output::binary::Binary;
@@ -10,6 +10,7 @@ use perigrain_output::dump::{Field, Snapshot};
 use perigrain_output::formats::{Formats, Kind};
 use perigrain_output::forms;
 use perigrain_plan::Op;
+use perigrain_styles::words::{At, Form as Line, Or, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 
 /// `dump … atom`.
@@ -23,24 +24,13 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     with box crossings undone `xu yu zu xsu ysu zsu`, box crossings `ix iy iz`, velocities `vx vy vz`, forces \
     `fx fy fz`, the type's name `element`, for spheres `radius diameter omegax omegay omegaz tqx tqy tqz`, for peridynamic particles `volume`, and \
     per-atom values `c_ID c_ID[k] c_ID[*] f_ID f_ID[k] v_name`.\n\n\
-    `dump_modify ID keyword value …` understands, for every text dump: `append yes|no` (append to an existing file), \
-    `delay N` (nothing before step N), `element A B …` (one name per type, for the attribute `element`), `every N` or \
-    `every v_name` (a variable that names the next step), `every/time T|v_name` (multiples of a time, or a variable that names the next time when a run begins and after each snapshot), `first yes|no` (also the \
-    first step of the first run), `maxfiles N` (keep the last N of the files of single snapshots), `pad N` (digits of the \
-    step in file names), `pbc yes|no` (wrap positions into the box first), `refresh c_ID` (see compute displace/atom), \
-    `region ID|none`, `skip v_name` (no snapshot while the variable is not zero), `sort id|off|N|-N`, \
-    `thresh attribute < <= > >= == != |^ value|LAST` (several must all hold; LAST is the particle's value at the last \
-    snapshot; `thresh none`). This style adds `colname N name`, `format line \"…\"`, `format int %d`, `format float %g`, \
-    `format N %…` (one column), `format none`, `header yes|no`, `time yes|no` and `units yes|no` (further header lines). \
-    `balance buffer flush` and `types numeric` are read and without effect; `at sfactor tfactor precision \
-    unwrap triclinic/general` are refused by name.\n\n\
+    The keywords of `dump_modify` that all dumps have stand on its page.\n\n\
     Of a triclinic box the header has the faces of the upright box around it, with a tilt behind each pair (`BOX BOUNDS xy xz yz …`).\n\n\
     Rows are sorted by id unless set otherwise (LAMMPS: unsorted). The file is made, or emptied, when the first run begins. \
-    A `*` in the file name becomes the step, and each \
-    snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed \
-    (`dump custom/gz` and its kin also know `compression_level N`). One that ends in `.bin` or `.lammpsbin` is LAMMPS' binary form, here and for `dump atom`, \
+    Files of single snapshots appear only when they are complete.\n\n\
+    A name that ends in `.gz` is compressed (`dump custom/gz` and its kin also know how tightly). One that ends in `.bin` or `.lammpsbin` is LAMMPS' binary form, here and for `dump atom`, \
     for which formats have no meaning; `read_dump` and `rerun` read it, too. A `%` in the name becomes the number of the process, \
-    0, as there is one; `nfile N` and `fileper N` then make no difference.";
+    0, as there is one.";
 
 impl Style for Atom {
     fn name(&self) -> &'static str {
@@ -48,13 +38,15 @@ impl Style for Atom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group atom N file",
+            syntax: "",
             summary: "Writes id, type and position of the group's particles every N steps.",
             text: "Columns `id type xs ys zs`: positions are fractions of the box, 0 at the lower and 1 at the upper \
-                   face. `dump_modify ID scale no` writes plain coordinates `x y z`, `image yes` adds the box \
-                   crossings `ix iy iz`. Everything else is as for `dump custom`.",
+                   face. Everything else is as for `dump custom`.",
             example: "dump 1 all atom 100 flow.dump",
         }
+    }
+    fn words(&self) -> Vec<Line> {
+        vec![Line::behind(OfFile::GRAMMAR), Line::headed(MODIFY, OfAtom::GRAMMAR)]
     }
 }
 
@@ -64,50 +56,158 @@ impl Style for Custom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group custom N file attribute …",
+            syntax: "",
             summary: "Writes chosen attributes of the group's particles every N steps as text.",
             text: PAGE,
             example: "dump 1 all custom 100 plate.*.dump id type x y z c_damage\ndump_modify 1 thresh c_damage > 0.1",
         }
     }
+    fn words(&self) -> Vec<Line> {
+        vec![Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, Table::GRAMMAR)]
+    }
 }
 
 impl DumpStyle for Atom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        atom(Base::new(self.name(), args, cx, &[])?, args, cx)
+        atom(Files::any(self.name()), args, cx)
     }
 }
 
 impl DumpStyle for Custom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        custom(Base::new(self.name(), args, cx, &[])?, args, cx)
+        custom(Files::any(self.name()), args, cx)
     }
 }
 
-/// A dump of style `atom` into this file.
-pub(super) fn atom(base: Base, _: &mut Args, _: &BuildCx) -> Result<Box<dyn Dump>> {
+/// The line of a dump of attributes.
+#[derive(Words)]
+pub(super) struct Columns {
+    #[word(flatten)]
+    pub target: OfFile,
+    /// The attributes of `dump custom`.
+    #[word(name = "attribute", what = "a particle attribute such as id or x", kind = Kind::Attribute, least = 1)]
+    pub attributes: Vec<Word>,
+}
+
+impl Columns {
+    /// What each column holds.
+    ///
+    /// # Errors
+    /// Unknown attributes.
+    pub fn attributes(&self, cx: &BuildCx) -> Result<Vec<Attribute>> {
+        let all = self.attributes.iter().map(|word| expand(word, cx)).collect::<Result<Vec<_>>>()?;
+        Ok(all.concat())
+    }
+}
+
+/// A dump of style `atom` into these files.
+pub(super) fn atom(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    let base = Base::new(files, &read::<OfFile>(args, cx)?.file, cx)?;
     Ok(Box::new(Text::new(base, Form::Native, Layout::Atom { scaled: true, image: false })))
 }
 
-/// A dump of style `custom` into this file; parses its attributes.
-pub(super) fn custom(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-    let attributes = attributes(args, cx)?;
-    Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(attributes))))
+/// A dump of style `custom` into these files.
+pub(super) fn custom(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    let line: Columns = read(args, cx)?;
+    let base = Base::new(files, &line.target.file, cx)?;
+    Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(line.attributes(cx)?))))
 }
 
-/// The attributes of a dump.
-pub(super) fn attributes(args: &mut Args, cx: &BuildCx) -> Result<Vec<Attribute>> {
-    let mut attributes = vec![];
-    // `modify` ends the attributes of write_dump.
-    while let Some(word) = args.peek().filter(|w| w.text != "modify") {
-        args.next();
-        attributes.extend(expand(word, cx)?);
-    }
-    if attributes.is_empty() {
-        args.expect("a particle attribute such as id or x")?;
-        return fail(Code::MISSING_ARGUMENT, args.here(), "this dump needs an attribute such as id or x");
-    }
-    Ok(attributes)
+/// The format of a column, or of several.
+pub(super) type ColumnFormat = Or<OfColumns, OfColumn>;
+
+/// The format of several columns.
+#[derive(Words)]
+pub(super) enum OfColumns {
+    /// One conversion for each column, in quotes.
+    Line(#[word(name = "\"…\"", what = "a format such as %g")] Word),
+    /// Of all columns with whole numbers.
+    Int(#[word(name = "%d", what = "a format such as %g")] Word),
+    /// Of all columns with other numbers.
+    Float(#[word(name = "%g", what = "a format such as %g")] Word),
+    /// As without any `format`.
+    None,
+}
+
+/// The format of one column.
+#[derive(Words)]
+pub(super) struct OfColumn {
+    #[word(name = "N", what = "line, int, float, a column or none")]
+    pub column: Word,
+    #[word(name = "%…", what = "a format such as %g")]
+    pub format: Word,
+}
+
+/// The keywords of `dump_modify` that this dump has beside those of all.
+#[derive(Words)]
+pub(super) struct Formatted {
+    /// How numbers are written.
+    #[word(keyword, name = "format", what = "line, int, float, a column or none")]
+    pub format: Vec<At<ColumnFormat>>,
+}
+
+/// The same, with the time.
+#[derive(Words)]
+pub(super) struct Timed {
+    #[word(flatten)]
+    pub formatted: Formatted,
+    /// The time stands at the head of each snapshot.
+    #[word(keyword, what = "time")]
+    pub time: Option<bool>,
+}
+
+/// The same, with titles.
+#[derive(Words)]
+pub(super) struct Table {
+    #[word(flatten)]
+    pub timed: Timed,
+    /// The name of a column; `default` gives all columns their own names again.
+    #[word(keyword, name = "title", what = "a column or default")]
+    pub colname: Vec<Or<Usual, Renamed>>,
+    /// Snapshots have a header.
+    #[word(keyword, what = "header")]
+    pub header: Option<bool>,
+    /// The unit system stands in the first header.
+    #[word(keyword, what = "units")]
+    pub units: Option<bool>,
+}
+
+/// As without the keyword.
+#[derive(Words)]
+pub(super) enum Usual {
+    Default,
+}
+
+/// A column's new name.
+#[derive(Words)]
+pub(super) struct Renamed {
+    #[word(name = "N", what = "a column or default")]
+    pub column: Word,
+    #[word(what = "the column's new name")]
+    pub name: String,
+}
+
+/// The keywords of `dump_modify` that dump atom has beside those of all.
+#[derive(Words)]
+struct OfAtom {
+    #[word(flatten)]
+    own: Table,
+    /// `no` writes plain coordinates `x y z`.
+    #[word(keyword, what = "scale")]
+    scale: Option<bool>,
+    /// Adds the box crossings `ix iy iz`.
+    #[word(keyword, what = "image")]
+    image: Option<bool>,
+}
+
+/// The keywords of `dump_modify` that dump yaml has beside those of all.
+#[derive(Words)]
+pub(super) struct OfYaml {
+    #[word(flatten)]
+    own: Table,
+    /// Puts the row of the step table into snapshots of steps that have one, each number with all its digits and under its usual name.
+    #[word(keyword, what = "thermo")]
+    thermo: Option<bool>,
 }
 
 /// Output format of a snapshot.
@@ -121,19 +221,6 @@ pub(super) enum Form {
     Xyz,
     /// AtomEye's CFG, with its length scale.
     Cfg(f64),
-}
-
-impl Form {
-    /// Additional keywords of `dump_modify`.
-    fn keywords(self, atom: bool) -> &'static [&'static str] {
-        match self {
-            Form::Native if atom => &["colname", "format", "header", "image", "scale", "time", "units"],
-            Form::Native => &["colname", "format", "header", "time", "units"],
-            Form::Yaml => &["colname", "format", "header", "thermo", "time", "units"],
-            Form::Xyz => &["format", "time"],
-            Form::Cfg(_) => &["format"],
-        }
-    }
 }
 
 /// Selection of columns.
@@ -253,16 +340,37 @@ impl Dump for Text {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        while let Some(word) = args.next() {
-            if word.text == "format" && self.base.state().target.pattern.binary() {
-                let text = "without effect: binary dumps have numbers whole";
-                cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+        type Shared = (Common, OfParticles);
+        let (shared, formats) = match (self.form, &self.layout) {
+            (Form::Native, Layout::Atom { .. }) => {
+                let (shared, OfAtom { own, scale, image }): (Shared, OfAtom) = read_or(args, cx, foreign)?;
+                if let Layout::Atom { scaled, image: shown } = &mut self.layout {
+                    (*scaled, *shown) = (scale.unwrap_or(*scaled), image.unwrap_or(*shown));
+                }
+                (shared, self.table(own)?)
             }
-            if !self.base.modify(word, args, cx)? && !self.own(word, args)? {
-                return Err(unknown(word, args, self.own_keywords()));
+            (Form::Native, _) => {
+                let (shared, own): (Shared, Table) = read_or(args, cx, foreign)?;
+                (shared, self.table(own)?)
             }
-        }
-        Ok(())
+            (Form::Yaml, _) => {
+                let (shared, OfYaml { own, thermo }): (Shared, OfYaml) = read_or(args, cx, foreign)?;
+                self.thermo = thermo.unwrap_or(self.thermo);
+                (shared, self.table(own)?)
+            }
+            (Form::Xyz, _) => {
+                let (shared, own): (Shared, Timed) = read_or(args, cx, foreign)?;
+                (shared, self.timed(own))
+            }
+            (Form::Cfg(_), _) => {
+                let (shared, Formatted { format }): (Shared, Formatted) = read_or(args, cx, foreign)?;
+                (shared, format)
+            }
+        };
+        let (common, particles) = shared;
+        self.base.modify(common, cx)?;
+        self.base.select(particles, cx)?;
+        formats.into_iter().try_for_each(|format| self.format(format, cx))
     }
 
     fn every(&self) -> Option<i64> {
@@ -308,67 +416,52 @@ impl Text {
         }
     }
 
-    fn own_keywords(&self) -> &'static [&'static str] {
-        self.form.keywords(matches!(self.layout, Layout::Atom { .. }))
+    /// Takes all but formats of a table's keywords.
+    fn table(&mut self, own: Table) -> Result<Vec<At<ColumnFormat>>> {
+        self.header = own.header.unwrap_or(self.header);
+        self.units = own.units.unwrap_or(self.units);
+        for name in own.colname {
+            match name {
+                Or::Word(Usual::Default) => self.names.clear(),
+                Or::Else(Renamed { column, name }) => self.names.push((self.column(&column)?, name)),
+            }
+        }
+        Ok(self.timed(own.timed))
     }
 
-    /// Reads one keyword of these styles.
-    fn own(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
-        if !self.own_keywords().contains(&word.text.as_str()) {
-            return Ok(false);
-        }
-        match (word.text.as_str(), &mut self.layout) {
-            ("header", _) => self.header = args.flag("header")?,
-            ("time", _) => self.time = args.flag("time")?,
-            ("units", _) => self.units = args.flag("units")?,
-            ("thermo", _) => self.thermo = args.flag("thermo")?,
-            ("format", _) => self.format(args)?,
-            ("colname", _) => self.rename(args)?,
-            ("scale", Layout::Atom { scaled, .. }) => *scaled = args.flag("scale")?,
-            ("image", Layout::Atom { image, .. }) => *image = args.flag("image")?,
-            _ => return Ok(false),
-        }
-        Ok(true)
+    fn timed(&mut self, own: Timed) -> Vec<At<ColumnFormat>> {
+        self.time = own.time.unwrap_or(self.time);
+        own.formatted.format
     }
 
-    fn format(&mut self, args: &mut Args) -> Result<()> {
-        let which = args.expect("line, int, float, a column or none")?;
-        if which.text == "none" {
-            self.formats.clear();
-            return Ok(());
+    fn format(&mut self, At { value: format, span, .. }: At<ColumnFormat>, cx: &BuildCx) -> Result<()> {
+        if self.base.state().target.pattern.binary() {
+            let text = "without effect: binary dumps have numbers whole";
+            cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
         }
         let mut kinds: Vec<Kind> = self.layout.attributes().iter().map(Attribute::kind).collect();
         if let (Form::Cfg(_), Some(kind)) = (self.form, kinds.get_mut(1)) {
             // The deck gives a type; the output is its name, in any format.
             *kind = Kind::Int;
         }
-        if self.form == Form::Xyz && which.text != "line" {
-            return fail(Code::NOT_SUPPORTED, which.span, "the only format of dump xyz is `format line`");
+        let line = matches!(format, Or::Word(OfColumns::Line(_) | OfColumns::None));
+        if self.form == Form::Xyz && !line {
+            return fail(Code::NOT_SUPPORTED, span, "the only format of dump xyz is `format line`");
         }
-        let column = match which.text.as_str() {
-            "line" | "int" | "float" => None,
-            _ => Some(self.column(which)?),
+        let (word, outcome) = match format {
+            Or::Word(OfColumns::None) => {
+                self.formats.clear();
+                return Ok(());
+            }
+            Or::Word(OfColumns::Line(word)) => (word.span, self.formats.set_line(&word.text, &kinds)),
+            Or::Word(OfColumns::Int(word)) => (word.span, self.formats.set_int(&word.text)),
+            Or::Word(OfColumns::Float(word)) => (word.span, self.formats.set_float(&word.text)),
+            Or::Else(OfColumn { column, format }) => {
+                let k = self.column(&column)?;
+                (format.span, self.formats.set_column(k, kinds[k], &format.text))
+            }
         };
-        let word = args.expect("a format such as %g")?;
-        let outcome = match column {
-            Some(k) => self.formats.set_column(k, kinds[k], &word.text),
-            None if which.text == "line" => self.formats.set_line(&word.text, &kinds),
-            None if which.text == "int" => self.formats.set_int(&word.text),
-            None => self.formats.set_float(&word.text),
-        };
-        outcome.map_err(|e| e.at(word.span))
-    }
-
-    fn rename(&mut self, args: &mut Args) -> Result<()> {
-        let which = args.expect("a column or default")?;
-        if which.text == "default" {
-            self.names.clear();
-            return Ok(());
-        }
-        let column = self.column(which)?;
-        let name = args.expect("the column's new name")?;
-        self.names.push((column, name.text.clone()));
-        Ok(())
+        outcome.map_err(|e| e.at(word))
     }
 
     /// Parses a column, counted from 0.

@@ -1,16 +1,16 @@
 //! Dump `vtk`: `.vtu` files with a `.pvd` time series, for ParaView and PyVista.
 
 use super::attribute::{Attribute, Core, Source, expand};
-use super::base::{Base, Shot, unknown};
-use super::{Dump, DumpStyle};
-use perigrain_base::diag::{Code, Result, fail};
+use super::base::{Base, Common, Files, OfFile, OfParticles, Shot, foreign};
+use super::{Dump, DumpStyle, MODIFY};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::par;
-use perigrain_lang::args::blame;
 use perigrain_lang::{Args, Word};
 use perigrain_output::dump::Data;
 use perigrain_output::formats::Kind;
 use perigrain_output::vtu::{self, Array, Series, Storage, Values};
 use perigrain_plan::Op;
+use perigrain_styles::words::{self, At, Form, Value, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 
 /// The style.
@@ -22,30 +22,37 @@ impl Style for Vtk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dump ID group vtk N file.*.vtu attribute …",
+            syntax: "",
             summary: "Writes points with data for ParaView every N steps, compressed, with a time series.",
-            text: "Attributes are those of `dump custom`. Positions are the points and need not be named. Three \
+            text: "Positions are the points. Three \
                    neighbouring attributes that differ in x, y, z become one vector: `vx vy vz` is `v`, `fx fy fz` is \
                    `f`, `omegax …` is `omega`, `tqx …` is `tq`, `ix …` is `i`, `xu …` is `unwrapped`, and `c_ID[1] c_ID[2] \
                    c_ID[3]` is `c_ID`. Every point is a vertex cell; the field `TIME` holds the simulated time. Beside the \
                    snapshots stands a list `NAME.pvd` with their times, rewritten after each snapshot; open that one in \
-                   ParaView. Only `.vtu` is written (appended raw data, zlib blocks made on all threads).\n\n\
-                   `dump_modify` understands what all dumps do (see `dump custom`) and `compress yes|no|1…9` (3), \
-                   `precision double|single` for positions and numbers, `binary yes`.",
+                   ParaView. Only `.vtu` is written (appended raw data, zlib blocks made on all threads).",
             example: "dump v all vtk 500 plate_*.vtu id type vx vy vz c_damage",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Own::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    target: OfFile,
+    /// The attributes of `dump custom`; positions need not be named.
+    #[word(name = "attribute", kind = Kind::Attribute)]
+    attributes: Vec<Word>,
 }
 
 impl DumpStyle for Vtk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new("vtk", args, cx, &[".vtu"])?;
-        base.needs_star(args, cx)?;
-        let mut attributes = vec![];
-        while let Some(word) = args.peek().filter(|w| w.text != "modify") {
-            args.next();
-            attributes.extend(expand(word, cx)?);
-        }
+        let Line { target: OfFile { file }, attributes } = read(args, cx)?;
+        let base = Base::new(Files { endings: &[".vtu"], ..Files::any("vtk") }, &file, cx)?;
+        base.needs_star(&file, cx)?;
+        let attributes = attributes.iter().map(|word| expand(word, cx)).collect::<Result<Vec<_>>>()?.concat();
         Ok(Box::new(Declared { base, attributes, storage: Storage::default(), single: false }))
     }
 }
@@ -66,20 +73,16 @@ impl Dump for Declared {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        while let Some(word) = args.next() {
-            if self.base.modify(word, args, cx)? {
-                continue;
-            }
-            match word.text.as_str() {
-                "compress" => self.storage = compress(args)?,
-                "precision" => {
-                    self.single = args.choice("precision", &["double", "single"])? == "single";
-                }
-                "binary" => binary(word, args)?,
-                _ => return Err(unknown(word, args, &["binary", "compress", "precision"])),
-            }
+        let ((common, particles), own): ((Common, OfParticles), Own) = read_or(args, cx, foreign)?;
+        if let Some(At { span, .. }) = own.binary.filter(|b| !b.value) {
+            let text = "dump_modify binary no: .vtu files are always binary";
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+            return Err(d.help("use `dump custom` for text").into());
         }
-        Ok(())
+        self.storage = own.compress.map_or(self.storage, |c| c.0);
+        self.single = own.precision.map_or(self.single, |p| p == Precision::Single);
+        self.base.modify(common, cx)?;
+        self.base.select(particles, cx)
     }
 
     fn every(&self) -> Option<i64> {
@@ -87,25 +90,46 @@ impl Dump for Declared {
     }
 }
 
-fn compress(args: &mut Args) -> Result<Storage> {
-    let word = args.expect("yes, no or a level from 1 to 9")?;
-    let level = match word.text.as_str() {
-        "yes" => 3,
-        "no" => return Ok(Storage { compress: false, ..Storage::default() }),
-        text => text.parse().unwrap_or(0),
-    };
-    if !(1..=9).contains(&level) {
-        return fail(Code::BAD_VALUE, word.span, "compress takes yes, no or a level from 1 to 9");
-    }
-    Ok(Storage { compress: true, level })
+/// The keywords of `dump_modify` that this dump has beside those of all.
+#[derive(Words)]
+struct Own {
+    /// `yes` alone: files are always binary.
+    #[word(keyword, what = "binary", placed)]
+    binary: Option<At<bool>>,
+    /// `yes`, `no`, or how tightly, from 1 to 9.
+    #[word(keyword, name = "yes|no|1…9", shown = "3")]
+    compress: Option<Compress>,
+    #[word(keyword, shown = "double")]
+    precision: Option<Precision>,
 }
 
-fn binary(word: &Word, args: &mut Args) -> Result<()> {
-    if args.flag("binary")? {
-        return Ok(());
+/// How positions and numbers are written.
+#[derive(PartialEq, Words)]
+#[word(what = "precision")]
+enum Precision {
+    /// Positions and numbers have all their digits.
+    Double,
+    /// They have half of them.
+    Single,
+}
+
+/// How arrays are stored.
+struct Compress(Storage);
+
+impl Value for Compress {
+    const KIND: words::Kind = words::Kind::Text;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let word = args.expect("yes, no or a level from 1 to 9")?;
+        let level = match word.text.as_str() {
+            "yes" => 3,
+            "no" => return Ok(Self(Storage { compress: false, ..Storage::default() })),
+            text => text.parse().unwrap_or(0),
+        };
+        if !(1..=9).contains(&level) {
+            return fail(Code::BAD_VALUE, word.span, "compress takes yes, no or a level from 1 to 9");
+        }
+        Ok(Self(Storage { compress: true, level }))
     }
-    let d = blame(word, Code::NOT_SUPPORTED, "dump_modify binary no: .vtu files are always binary");
-    Err(d.help("use `dump custom` for text").into())
 }
 
 /// An array of the file: its name and its attributes, one or three.

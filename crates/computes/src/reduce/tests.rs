@@ -2,6 +2,7 @@
 
 use super::*;
 use perigrain_styles::testing::Bench;
+use perigrain_styles::words::Value;
 use perigrain_world::{AtomStyle, Compat};
 
 fn scene() -> Bench {
@@ -23,7 +24,7 @@ fn all_modes() {
     let mut b = scene();
     // From 1, -2.5, 4 by hand.
     let expected = [2.5, -2.5, 4.0, 2.5 / 3.0, 23.25, 23.25 / 3.0, 7.5, 2.5, 1.0, 4.0];
-    for (mode, a) in MODES.iter().zip(expected) {
+    for (mode, a) in Mode::KIND.choices().iter().map(|m| m.word).zip(expected) {
         assert_eq!(value(&mut b, &format!("{mode} x")), a, "{mode}");
     }
     // Oracle: LAMMPS 22Jul2025 prints the sum for aveabs of several inputs, and 1e20 for minabs.

@@ -2,35 +2,12 @@
 
 use super::{Base, Rhythm, Sort, Threshold};
 use crate::attribute::attribute;
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::args::{blame, parse_number};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
+use perigrain_lang::args::blame;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
+use perigrain_styles::words::{Alternative, At, Kind, Or, Value, Words, alternatives};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::{Key, Region};
-
-/// Keywords of `dump_modify` that every style accepts.
-pub const KEYWORDS: &[&str] = &[
-    "append",
-    "balance",
-    "buffer",
-    "delay",
-    "element",
-    "every",
-    "every/time",
-    "fileper",
-    "first",
-    "flush",
-    "maxfiles",
-    "nfile",
-    "pad",
-    "pbc",
-    "refresh",
-    "region",
-    "skip",
-    "sort",
-    "thresh",
-    "types",
-];
 
 /// LAMMPS' keywords that no style here accepts, with the reason.
 const ELSEWHERE: &[(&str, &str)] = &[
@@ -46,111 +23,344 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("label", "is for dump local"),
 ];
 
-impl Base {
-    /// Reads one keyword of `dump_modify` if it is shared by all dumps.
-    pub fn modify(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
-        match word.text.as_str() {
-            "append" => self.append = args.flag("append")?,
-            "every" => self.read_every(args, cx)?,
-            "every/time" if args.peek_text().starts_with("v_") => {
-                self.rhythm = Rhythm::NamedTime(number_variable(args, cx)?);
-            }
-            "every/time" => self.rhythm = Rhythm::Time(args.positive("the time between snapshots")?),
-            "delay" => self.delay = args.integer("the first step to write")?,
-            "element" => self.elements = names(args, cx)?,
-            "maxfiles" => {
-                self.maxfiles = maxfiles(args)?;
-                if self.maxfiles.is_some() && !self.state().target.pattern.many() {
-                    let text = "maxfiles counts files of single snapshots, and this dump writes all into one";
-                    let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-                    return Err(d.help("put a `*` into the dump's file name: it becomes the step").into());
-                }
-            }
-            "triclinic/general" if args.peek_text() == "no" => drop(args.next()),
-            "refresh" => self.refresh = Some(refresh(args, cx)?),
-            "skip" => self.skip = Some(number_variable(args, cx)?),
-            "compression_level" if self.level.is_some() => {
-                let span = args.here();
-                let level = args.integer("how tightly to pack")?;
-                if !(-1..=9).contains(&level) {
-                    return fail(Code::BAD_VALUE, span, format!("the level goes from -1 to 9, not {level}"));
-                }
-                self.level = Some(level);
-            }
-            "balance" => {
-                args.flag("balance")?;
-                let text = "without effect: one process writes the file";
-                cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
-            }
-            "types" => {
-                let kind = args.expect("`numeric`")?;
-                if kind.text != "numeric" {
-                    let d = blame(kind, Code::NOT_SUPPORTED, "types have no labels in perigrain");
-                    return Err(d.help("write `types numeric`, or name types with `element`").into());
-                }
-            }
-            "fileper" | "nfile" => self.share(word, args, cx)?,
-            "first" => self.first = args.flag("first")?,
-            "pad" => self.pad = args.integer_from(0, "the number of digits")?.min(40) as usize,
-            "region" => self.region = region(args, cx)?,
-            "sort" => self.sort = sort(args)?,
-            "thresh" => self.thresh(args, cx)?,
-            // Snapshots are always flushed whole, which is what these keywords request.
-            "flush" | "buffer" => {
-                args.flag(&word.text)?;
-            }
-            "pbc" => self.pbc = args.flag("pbc")?,
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
+/// The keywords of `dump_modify` that every dump has: files and times.
+#[derive(Words)]
+pub struct Common {
+    /// Snapshots stand behind what an existing file holds.
+    #[word(keyword)]
+    append: Option<bool>,
+    /// Read and without effect: one process writes the file.
+    #[word(keyword, what = "balance", placed)]
+    balance: Option<At<bool>>,
+    /// Read and without effect: snapshots are handed over whole.
+    #[word(keyword, what = "buffer")]
+    buffer: Option<bool>,
+    /// How tightly a style `…/gz` packs: from 0 (not at all) and 1 (fast) to 9, or −1 for the usual one, 6.
+    #[word(keyword, name = "N", placed)]
+    compression_level: Option<At<Level>>,
+    /// Nothing is written before this step.
+    #[word(keyword, name = "N", what = "the first step to write")]
+    delay: Option<i64>,
+    /// The interval in steps, or a variable that names the next step.
+    #[word(keyword, name = "N", what = "the dump's interval", placed)]
+    every: Option<At<Or<Named, Interval>>>,
+    /// Snapshots at multiples of a time, or a variable that names the next time when a run begins and after each snapshot.
+    #[word(keyword = "every/time", name = "T", what = "the time between snapshots", placed)]
+    every_time: Option<At<Or<Named, Period>>>,
+    /// Without effect: one process writes one file; needs a `%` in the file name.
+    #[word(keyword, name = "N", what = "the number of files or processes", from = 1, placed)]
+    fileper: Option<At<i64>>,
+    /// Also the first step of the first run is written.
+    #[word(keyword, what = "first")]
+    first: Option<bool>,
+    /// Read and without effect: snapshots are handed over whole.
+    #[word(keyword, what = "flush")]
+    flush: Option<bool>,
+    /// The last N of the files of single snapshots are kept; −1 keeps all.
+    #[word(keyword, name = "N", placed)]
+    maxfiles: Option<At<MaxFiles>>,
+    /// Without effect: one process writes one file; needs a `%` in the file name.
+    #[word(keyword, name = "N", what = "the number of files or processes", from = 1, placed)]
+    nfile: Option<At<i64>>,
+    /// Digits of the step in file names.
+    #[word(keyword, name = "N", what = "the number of digits", from = 0)]
+    pad: Option<usize>,
+    /// No snapshot while this variable is not zero.
+    #[word(keyword, name = "v_name")]
+    skip: Option<Named>,
+    /// Rows by id, in the order of storage, or by a column, with −N in descending order.
+    #[word(keyword, name = "N", what = "`off`, `id` or a column")]
+    sort: Option<At<Or<Order, Column>>>,
+    /// `no` alone: boxes are never general triclinic ones.
+    #[word(keyword = "triclinic/general")]
+    general: Option<Upright>,
+    /// `numeric` alone: types have no labels.
+    #[word(keyword, name = "numeric")]
+    types: Option<Numeric>,
+}
 
-    /// `nfile N` or `fileper N`: one process has one file, for any N.
-    fn share(&self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if !self.shared {
-            let text = format!("dump_modify {} needs a `%` in the dump's file name", word.text);
-            return fail(Code::CONFLICT, word.span, text);
-        }
-        args.integer_from(1, "the number of files or processes")?;
-        let text = "without effect: one process writes one file";
-        cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
-        Ok(())
-    }
+/// The keywords of `dump_modify` that dumps of particles have.
+#[derive(Words)]
+pub struct OfParticles {
+    /// One name for each type, for the attribute `element`.
+    #[word(keyword, name = "A…", with = names, kind = Kind::Text)]
+    element: Option<Vec<String>>,
+    /// Positions are wrapped into the box first.
+    #[word(keyword, what = "pbc")]
+    pbc: Option<bool>,
+    /// See compute displace/atom.
+    #[word(keyword, name = "c_ID", with = refresh, kind = Kind::Value)]
+    refresh: Option<String>,
+    /// Only particles in this region are written.
+    #[word(keyword, name = "ID")]
+    pub region: Option<Or<Nothing, Key<Region>>>,
+    /// Only particles whose attribute passes are written; several must all hold. LAST is the particle's value at the last snapshot.
+    #[word(keyword, name = "test")]
+    pub thresh: Vec<Or<Nothing, Test>>,
+}
 
-    fn thresh(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if args.eat("none") {
-            self.thresholds.clear();
-            return Ok(());
-        }
-        let attribute = attribute(args.expect("a particle attribute or `none`")?, cx)?;
+/// What is taken back.
+#[derive(Words)]
+pub enum Nothing {
+    None,
+}
+
+/// A condition on particles.
+#[derive(Words)]
+pub struct Test {
+    #[word(name = "attribute", what = "a particle attribute or `none`", kind = Kind::Attribute)]
+    attribute: Word,
+    operator: Operator,
+    #[word(name = "value", what = "the threshold")]
+    value: Or<Last, f64>,
+}
+
+/// The value at the last snapshot.
+#[derive(Words)]
+enum Last {
+    #[word("LAST")]
+    Last,
+}
+
+/// A comparison.
+struct Operator(fn(f64, f64) -> bool);
+
+const OPERATORS: [(&str, fn(f64, f64) -> bool); 7] = [
+    ("<", |a, b| a < b),
+    ("<=", |a, b| a <= b),
+    (">", |a, b| a > b),
+    (">=", |a, b| a >= b),
+    ("==", |a, b| a == b),
+    ("!=", |a, b| a != b),
+    ("|^", |a, b| (a != 0.0) != (b != 0.0)),
+];
+
+const SIGNS: &[Alternative] = &alternatives(&OPERATORS);
+
+impl Value for Operator {
+    const KIND: Kind = Kind::Choice(SIGNS);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
         let word = args.expect("an operator: < <= > >= == !=")?;
-        let compare: fn(f64, f64) -> bool = match word.text.as_str() {
-            "<" => |a, b| a < b,
-            "<=" => |a, b| a <= b,
-            ">" => |a, b| a > b,
-            ">=" => |a, b| a >= b,
-            "==" => |a, b| a == b,
-            "!=" => |a, b| a != b,
-            "|^" => |a, b| (a != 0.0) != (b != 0.0),
-            _ => {
+        match OPERATORS.iter().find(|o| o.0 == word.text) {
+            Some((_, compare)) => Ok(Self(*compare)),
+            None => {
                 let d = blame(word, Code::BAD_VALUE, format!("`{}` compares nothing", word.text));
-                return Err(d.help("use one of < <= > >= == !=").into());
+                Err(d.help("use one of < <= > >= == !=").into())
             }
-        };
-        let word = args.expect("a number to compare with")?;
-        let value = if word.text == "LAST" { None } else { Some(parse_number(word, "the threshold")?) };
-        self.thresholds.push(Threshold { attribute, compare, value });
+        }
+    }
+}
+
+/// `v_name` of a variable with a numeric value.
+struct Named(ValueRef);
+
+impl Value for Named {
+    const KIND: Kind = Kind::Reference;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("an equal-style variable, as `v_name`")?;
+        match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {
+            Some(r) => cx.value(&r, false).map(|()| Self(r)),
+            None => {
+                Err(blame(word, Code::BAD_VALUE, "this must be an equal-style variable, as `v_name`").into())
+            }
+        }
+    }
+    fn begins(word: &Word) -> bool {
+        word.text.starts_with("v_")
+    }
+}
+
+/// A number of steps.
+struct Interval(i64);
+
+impl Value for Interval {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer_from(1, what).map(Self)
+    }
+}
+
+/// A time.
+struct Period(f64);
+
+impl Value for Period {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive(what).map(Self)
+    }
+}
+
+/// How tightly files are packed.
+struct Level(i64);
+
+impl Value for Level {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let (span, level) = (args.here(), args.integer("how tightly to pack")?);
+        match (-1..=9).contains(&level) {
+            true => Ok(Self(level)),
+            false => fail(Code::BAD_VALUE, span, format!("the level goes from -1 to 9, not {level}")),
+        }
+    }
+}
+
+/// How many files are kept.
+struct MaxFiles(Option<usize>);
+
+impl Value for MaxFiles {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        match args.integer("the number of files")? {
+            -1 => Ok(Self(None)),
+            n if n >= 1 => Ok(Self(Some(n as usize))),
+            n => fail(Code::BAD_VALUE, span, format!("maxfiles must be at least 1, or -1 for all, not {n}")),
+        }
+    }
+}
+
+/// The order of rows.
+#[derive(Words)]
+enum Order {
+    Off,
+    Id,
+}
+
+/// A column, counted from 0, and whether values descend.
+struct Column(usize, bool);
+
+impl Value for Column {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        match args.integer(what)? {
+            0 => fail(Code::BAD_VALUE, span, "columns are counted from 1"),
+            n => Ok(Self(n.unsigned_abs() as usize - 1, n < 0)),
+        }
+    }
+}
+
+/// Boxes are no general triclinic ones.
+#[derive(Words)]
+#[word(refused = "yes on true")]
+enum Upright {
+    No,
+}
+
+/// Types are shown by their numbers.
+struct Numeric;
+
+impl Value for Numeric {
+    const KIND: Kind = Kind::Text;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let word = args.expect("`numeric`")?;
+        if word.text == "numeric" {
+            return Ok(Self);
+        }
+        let d = blame(word, Code::NOT_SUPPORTED, "types have no labels in perigrain");
+        Err(d.help("write `types numeric`, or name types with `element`").into())
+    }
+}
+
+impl Common {
+    /// The place of `sort id`.
+    pub fn by_id(&self) -> Option<Span> {
+        let by_id = |s: &&At<Or<Order, Column>>| matches!(s.value, Or::Word(Order::Id));
+        self.sort.as_ref().filter(by_id).map(|s| s.span)
+    }
+
+    /// The rhythm, of which the later of `every` and `every/time` decides.
+    fn rhythm(&self) -> Option<Rhythm> {
+        let later =
+            |t: &&At<Or<Named, Period>>| self.every.as_ref().is_none_or(|e| t.span.start > e.span.start);
+        if let Some(time) = self.every_time.as_ref().filter(later) {
+            return Some(match &time.value {
+                Or::Word(Named(r)) => Rhythm::NamedTime(r.clone()),
+                Or::Else(Period(every)) => Rhythm::Time(*every),
+            });
+        }
+        self.every.as_ref().map(|every| match &every.value {
+            Or::Word(Named(r)) => Rhythm::Named(r.clone()),
+            Or::Else(_) => Rhythm::Steps,
+        })
+    }
+
+    /// Refuses what a dump cannot do, and notes what has no effect.
+    fn check(&self, base: &Base, cx: &BuildCx) -> Result<()> {
+        if let (Some(At { span, .. }), None) = (&self.compression_level, base.level) {
+            return Err(elsewhere("compression_level", *span));
+        }
+        if let Some(At { value: MaxFiles(Some(_)), span, .. }) = &self.maxfiles
+            && !base.state().target.pattern.many()
+        {
+            let text = "maxfiles counts files of single snapshots, and this dump writes all into one";
+            let d = Diagnostic::error(Code::CONFLICT, *span, text);
+            return Err(d.help("put a `*` into the dump's file name: it becomes the step").into());
+        }
+        let without = |span: Span, text: &str| cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
+        if let Some(At { span, .. }) = self.balance {
+            without(span, "without effect: one process writes the file");
+        }
+        for (word, shared) in [("fileper", &self.fileper), ("nfile", &self.nfile)] {
+            let Some(At { span, .. }) = shared else { continue };
+            if !base.shared {
+                let text = format!("dump_modify {word} needs a `%` in the dump's file name");
+                return fail(Code::CONFLICT, *span, text);
+            }
+            without(*span, "without effect: one process writes one file");
+        }
+        Ok(())
+    }
+}
+
+impl Base {
+    /// Takes what `dump_modify` says of files and times.
+    ///
+    /// # Errors
+    /// What this dump cannot do.
+    pub fn modify(&mut self, said: Common, cx: &BuildCx) -> Result<()> {
+        said.check(self, cx)?;
+        self.rhythm = said.rhythm().unwrap_or_else(|| self.rhythm.clone());
+        if let Some(Or::Else(Interval(every))) = said.every.map(|e| e.value) {
+            self.every = Some(every);
+        }
+        self.append = said.append.unwrap_or(self.append);
+        self.level = said.compression_level.map(|l| l.value.0).or(self.level);
+        self.delay = said.delay.unwrap_or(self.delay);
+        self.first = said.first.unwrap_or(self.first);
+        self.maxfiles = said.maxfiles.map_or(self.maxfiles, |m| m.value.0);
+        self.pad = said.pad.map_or(self.pad, |digits| digits.min(40));
+        self.skip = said.skip.map(|v| v.0).or(self.skip.take());
+        self.sort = said.sort.map_or(self.sort, |s| match s.value {
+            Or::Word(Order::Off) => Sort::Off,
+            Or::Word(Order::Id) => Sort::Id,
+            Or::Else(Column(column, descending)) => Sort::Column(column, descending),
+        });
         Ok(())
     }
 
-    /// `every N` or `every v_name`.
-    fn read_every(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if args.peek().is_some_and(|w| w.text.starts_with("v_")) {
-            self.rhythm = Rhythm::Named(number_variable(args, cx)?);
-            return Ok(());
+    /// Takes what `dump_modify` says of particles.
+    ///
+    /// # Errors
+    /// Unknown attributes.
+    pub fn select(&mut self, said: OfParticles, cx: &BuildCx) -> Result<()> {
+        self.elements = said.element.unwrap_or_else(|| std::mem::take(&mut self.elements));
+        self.pbc = said.pbc.unwrap_or(self.pbc);
+        self.refresh = said.refresh.or(self.refresh.take());
+        match said.region {
+            Some(Or::Word(Nothing::None)) => self.region = None,
+            Some(Or::Else(region)) => self.region = Some(region),
+            None => {}
         }
-        self.every = Some(args.integer_from(1, "the dump's interval")?);
-        self.rhythm = Rhythm::Steps;
+        for test in said.thresh {
+            match test {
+                Or::Word(Nothing::None) => self.thresholds.clear(),
+                Or::Else(Test { attribute: word, operator: Operator(compare), value }) => {
+                    let value = if let Or::Else(number) = value { Some(number) } else { None };
+                    self.thresholds.push(Threshold { attribute: attribute(&word, cx)?, compare, value });
+                }
+            }
+        }
         Ok(())
     }
 }
@@ -173,22 +383,16 @@ pub fn column<'a>(word: &Word, mut names: impl ExactSizeIterator<Item = &'a str>
     }
 }
 
-/// Refuses a keyword that neither the style nor all dumps have.
-pub fn unknown(word: &Word, args: &Args, own: &[&'static str]) -> perigrain_base::diag::Diagnostics {
-    if let Some((name, why)) = ELSEWHERE.iter().find(|(name, _)| *name == word.text) {
-        return blame(word, Code::NOT_SUPPORTED, format!("dump_modify {name} {why}")).into();
-    }
-    let known: Vec<&'static str> = KEYWORDS.iter().chain(own).copied().collect();
-    args.unknown(word, &known)
+/// The refusal of a keyword that other dumps have.
+fn elsewhere(name: &str, span: Span) -> Diagnostics {
+    let why = ELSEWHERE.iter().find(|(n, _)| *n == name).map_or("", |(_, why)| why);
+    Diagnostic::error(Code::NOT_SUPPORTED, span, format!("dump_modify {name} {why}")).into()
 }
 
-/// `v_name` of a variable with a numeric value.
-fn number_variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
-    let word = args.expect("an equal-style variable, as `v_name`")?;
-    match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {
-        Some(r) => cx.value(&r, false).map(|()| r),
-        None => Err(blame(word, Code::BAD_VALUE, "this must be an equal-style variable, as `v_name`").into()),
-    }
+/// Refuses keywords that other dumps have.
+pub fn foreign(word: &Word) -> Option<Diagnostics> {
+    let known = ELSEWHERE.iter().any(|(name, _)| *name == word.text);
+    known.then(|| elsewhere(&word.text, word.span))
 }
 
 /// One name for each type.
@@ -196,16 +400,6 @@ fn names(args: &mut Args, cx: &BuildCx) -> Result<Vec<String>> {
     (0..cx.world.types)
         .map(|k| Ok(args.expect(&format!("the name of type {}", k + 1))?.text.clone()))
         .collect()
-}
-
-/// `maxfiles N`; -1 keeps all.
-fn maxfiles(args: &mut Args) -> Result<Option<usize>> {
-    let span = args.here();
-    match args.integer("the number of files")? {
-        -1 => Ok(None),
-        n if n >= 1 => Ok(Some(n as usize)),
-        n => fail(Code::BAD_VALUE, span, format!("maxfiles must be at least 1, or -1 for all, not {n}")),
-    }
 }
 
 /// `refresh c_ID`.
@@ -220,29 +414,5 @@ fn refresh(args: &mut Args, cx: &BuildCx) -> Result<String> {
             Ok(r.name)
         }
         _ => Err(blame(word, Code::BAD_VALUE, "refresh takes a compute, as `c_ID`").into()),
-    }
-}
-
-fn region(args: &mut Args, cx: &BuildCx) -> Result<Option<Key<Region>>> {
-    if args.eat("none") {
-        return Ok(None);
-    }
-    let word = args.expect("a region or `none`")?;
-    cx.region(word)?;
-    cx.uses(UseKind::Region, &word.text);
-    Ok(Some(Key::new(&word.text)))
-}
-
-fn sort(args: &mut Args) -> Result<Sort> {
-    if args.eat("off") {
-        return Ok(Sort::Off);
-    }
-    if args.eat("id") {
-        return Ok(Sort::Id);
-    }
-    let span = args.here();
-    match args.integer("`off`, `id` or a column")? {
-        0 => fail(Code::BAD_VALUE, span, "columns are counted from 1"),
-        n => Ok(Sort::Column(n.unsigned_abs() as usize - 1, n < 0)),
     }
 }

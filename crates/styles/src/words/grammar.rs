@@ -158,7 +158,12 @@ pub struct Form {
 impl Form {
     /// Words behind what always stands before a style of its kind.
     pub const fn behind(grammar: &'static Grammar) -> Self {
-        Self { head: "", about: "", grammar }
+        Self::headed("", grammar)
+    }
+
+    /// Words behind these.
+    pub const fn headed(head: &'static str, grammar: &'static Grammar) -> Self {
+        Self { head, about: "", grammar }
     }
 }
 

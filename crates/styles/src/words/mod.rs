@@ -37,6 +37,20 @@ pub trait Words: Sized {
     fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool>;
 }
 
+/// Two declarations side by side.
+impl<A: Words, B: Words> Words for (A, B) {
+    const GRAMMAR: &'static Grammar =
+        &Grammar { parts: &[Part::All(A::GRAMMAR), Part::All(B::GRAMMAR)], keywords: &[], refused: &[] };
+
+    fn begin(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        Ok((A::begin(args, cx)?, B::begin(args, cx)?))
+    }
+
+    fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
+        Ok(self.0.keyword(word, args, cx)? || self.1.keyword(word, args, cx)?)
+    }
+}
+
 /// Takes a whole line apart.
 ///
 /// # Errors
