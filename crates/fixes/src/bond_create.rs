@@ -2,7 +2,7 @@
 
 mod choice;
 
-use super::{BondType, Fix, FixStyle};
+use super::{Fix, FixStyle};
 use choice::{Count, chosen};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
@@ -10,7 +10,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Fraction, Kind, MarsagliaSeed, Value, Words, read};
+use perigrain_styles::words::{At, BondType, Form, Fraction, Kind, MarsagliaSeed, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, COLUMNS, KIND, LISTS, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
 use perigrain_world::{Bond, GroupId, Key, Numbers, World};

@@ -79,7 +79,6 @@ mod window;
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_styles::common::bond_type;
 pub use perigrain_styles::fix::{Facts, Fix, FixStyle, Minimizing, Moves, no_option};
 use perigrain_styles::words::{Kind, Value};
 use perigrain_styles::{BuildCx, Shape};
@@ -200,16 +199,6 @@ impl Value for RegionId {
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the region's ID")?;
         cx.region(word).map(|_| Self(word.text.clone()))
-    }
-}
-
-/// A bond type.
-struct BondType(u16);
-
-impl Value for BondType {
-    const KIND: Kind = Kind::Types;
-    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        bond_type(args, cx.world.bonds.types).map(Self)
     }
 }
 
