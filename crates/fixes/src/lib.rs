@@ -203,9 +203,9 @@ impl Value for RegionId {
 }
 
 /// An atom-style variable with its `v_`.
-struct AtomVariable(ValueRef);
+struct AtomReference(ValueRef);
 
-impl Value for AtomVariable {
+impl Value for AtomReference {
     const KIND: Kind = Kind::Reference;
     fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect(&format!("the variable after {what}"))?;

@@ -139,9 +139,6 @@ fn not_of_a_box(word: &Word) -> Option<Diagnostics> {
     Some(d.help("steer x, y and z by `pressure` or `pressure/mean`, with `couple xyz`").into())
 }
 
-/// Motions in addition to those of fix deform.
-pub const STYLES: [&str; 2] = ["pressure", "pressure/mean"];
-
 impl FixStyle for DeformPressure {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let line: Line = read_or(args, cx, not_of_a_box)?;
