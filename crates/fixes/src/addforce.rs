@@ -1,6 +1,6 @@
 //! fix addforce: a force added to each particle.
 
-use super::{AtomVariable, Facts, Fix, FixStyle, Minimizing, RegionId};
+use super::{AtomReference, Facts, Fix, FixStyle, Minimizing, RegionId};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -49,7 +49,7 @@ struct Line {
     region: Option<RegionId>,
     /// An atom-style variable with the energy of each particle; refused for constant forces, as in LAMMPS.
     #[word(keyword, name = "v_name", what = "`energy`")]
-    energy: Option<At<AtomVariable>>,
+    energy: Option<At<AtomReference>>,
 }
 
 impl FixStyle for AddForce {

@@ -1,6 +1,6 @@
 //! fix bond/break: deletes bonds that have become too long.
 
-use super::{BondType, Fix, FixStyle};
+use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{dot, sub};
@@ -10,7 +10,7 @@ use perigrain_styles::bond::BondForce;
 use perigrain_styles::matter::publish;
 use perigrain_styles::pull::{Stretched, apart, find, periods};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Fraction, MarsagliaSeed, Words, read};
+use perigrain_styles::words::{BondType, Form, Fraction, MarsagliaSeed, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::bonds::ascending;
 use perigrain_world::field::{BONDS, BOX, LISTS, MASK, MEMO, SLOTS, TAG, V, X};

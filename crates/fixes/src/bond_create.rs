@@ -2,15 +2,15 @@
 
 mod choice;
 
-use super::{BondType, Fix, FixStyle};
+use super::{Fix, FixStyle};
 use choice::{Count, chosen};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Fraction, Kind, MarsagliaSeed, Value, Words, read};
+use perigrain_styles::words::{At, BondType, Form, Fraction, Kind, MarsagliaSeed, Value, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, COLUMNS, KIND, LISTS, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
 use perigrain_world::{Bond, GroupId, Key, Numbers, World};
@@ -83,8 +83,16 @@ struct Line {
     molecule: Option<At<Molecules>>,
 }
 
-/// Keywords of LAMMPS for angles and dihedrals.
-const ANGLES: [&str; 4] = ["atype", "dtype", "itype", "aconstrain"];
+/// The refusal of LAMMPS' keywords for angles and dihedrals.
+fn angles(word: &Word) -> Option<Diagnostics> {
+    if !["atype", "dtype", "itype", "aconstrain"].contains(&word.text.as_str()) {
+        return None;
+    }
+    let text = format!("`{}` makes angles or dihedrals, which this fix does not", word.text);
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+    let help = "leave it out: they would exert nothing; bonds of `bpm/rotational` and `bpm/beam` bend";
+    Some(d.help(help).into())
+}
 
 impl FixStyle for BondCreate {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
@@ -93,14 +101,7 @@ impl FixStyle for BondCreate {
             let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        if let Some(word) = args.clone().rest().iter().find(|w| ANGLES.contains(&w.text.as_str())) {
-            let text = format!("`{}` makes angles or dihedrals, which this fix does not", word.text);
-            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
-            return Err(d
-                .help("leave it out: they would exert nothing; bonds of `bpm/rotational` and `bpm/beam` bend")
-                .into());
-        }
-        let line: Line = read(args, cx)?;
+        let line: Line = read_or(args, cx, angles)?;
         let (types, kind) = (line.types.map(|t| t.0), line.kind.0);
         let mut limits = types.map(|becomes| Limit { most: 0, becomes });
         for (limit, given) in limits.iter_mut().zip([line.iparam, line.jparam]) {

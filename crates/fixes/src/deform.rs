@@ -9,10 +9,10 @@ pub use pressure::DeformPressure;
 
 use super::{Facts, Fix, FixStyle};
 use op::{Move, Shape, store_streaming};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, RefKind, ValueRef, Word};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Tick, When};
-use perigrain_styles::common::{scales, units_lattice};
+use perigrain_styles::words::{self, At, Form, Units, Words};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
 use pressure::{Controls, Pressed};
@@ -27,126 +27,173 @@ impl Style for Deform {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group deform N x|y|z|xy|xz|yz STYLE … [x|y|z|xy|xz|yz STYLE …] [remap x|v|none] [flip yes|no] [units lattice|box]",
+            syntax: "",
             summary: "Changes the lengths and tilts of the box during a run.",
-            text: "Every N steps, at the end of the step. The styles of a dimension, of which the start is the box at the run's \
-                   beginning (with `run … start`, that at this line):\n\n\
-                   - `final lo hi`: these faces at the end of the run; `delta dlo dhi`: faces moved by this much at its end; \
-                   `scale F`: F times as long at its end. Linear in time.\n\
-                   - `vel V`: the length grows by V per time; `erate R`: by R times the first length per time; `trate R`: as \
-                   exp(R t).\n\
-                   - `volume`: follows the other dimensions so that the box keeps its volume; two such dimensions share it.\n\
-                   - `wiggle A T`: length + A sin(2π t/T).\n\
-                   - `variable v_change v_rate`: the change of the length and its rate in time, both equal-style, in the units of \
-                   the box.\n\n\
-                   All but `final` and `delta` move both faces alike. The tilts `xy`, `xz` and `yz` of a triclinic box \
-                   (`region prism`) have the same styles but for `scale` and `volume`, with one number for `final` and `delta`; \
-                   `erate R` is R times the first length of y (`xy`) or z (`xz`, `yz`) per time. Where a tilt passes half the \
-                   length of x (`xy`, `xz`) or y (`yz`), with `flip yes` (default) the box is put in the place of the one a whole \
-                   edge less, at the next rebuild of lists: another box of the same lattice, in which all particles are where they were. `remap x` (default) stretches the positions of the group's \
-                   particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
-                   of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
-                   In a flat scene `z` changes the length that the box has along z, and no particle; it must still hold the plane z = 0. (LAMMPS, \
-                   and perigrain under `-compat lammps`, lets `remap x` move particles out of the plane where its faces do not lie alike on both sides of it.) \
-                   A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Where peridynamic bonds \
-                   cross a periodic face, its edge may change with `remap x` and `flip no` alone: the body is strained evenly with the box, \
-                   from the state at the first run. \
-                   Under `-compat lammps` particles that cross a face just before a flip keep their velocity with `remap v`, as in \
+            text: "Every N steps, at the end of the step, lengths and tilts are changed. The start of a dimension is \
+                   the box at the run's beginning (with `run … start`, that at this line). All styles but `final` and \
+                   `delta` move both faces alike. The tilts `xy`, `xz` and `yz` are those of a triclinic box (`region \
+                   prism`).\n\n\
+                   A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. In a flat scene `z` \
+                   changes the length that the box has along z, and no particle; it must still hold the plane z = 0. \
+                   (LAMMPS, and perigrain under `-compat lammps`, lets `remap x` move particles out of the plane where \
+                   its faces do not lie alike on both sides of it.)\n\n\
+                   Where peridynamic bonds cross a periodic face, its edge may change with `remap x` and `flip no` \
+                   alone: the body is strained evenly with the box, from the state at the first run. Under `-compat \
+                   lammps` particles that cross a face just before a flip keep their velocity with `remap v`, as in \
                    LAMMPS.",
             example: "fix squeeze all deform 1 x scale 0.9999 remap x",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Acts at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    #[word(keyword, name = "style", placed)]
+    x: Option<At<Motion>>,
+    #[word(keyword, name = "style", placed)]
+    y: Option<At<Motion>>,
+    #[word(keyword, name = "style", placed)]
+    z: Option<At<Motion>>,
+    #[word(keyword, name = "style", placed)]
+    xy: Option<At<lean::Motion>>,
+    #[word(keyword, name = "style", placed)]
+    xz: Option<At<lean::Motion>>,
+    #[word(keyword, name = "style", placed)]
+    yz: Option<At<lean::Motion>>,
+    #[word(flatten)]
+    handling: Handling,
+}
+
+/// Words of all deforming boxes.
+#[derive(Words)]
+struct Handling {
+    #[word(keyword, shown = "x")]
+    remap: Remap,
+    /// Whether the box is put in the place of the one a whole edge less where a tilt passes half the length of x (`xy`, `xz`) or y
+    /// (`yz`), at the next rebuild of lists: another box of the same lattice, in which all particles are where they were.
+    #[word(keyword, default = true)]
+    flip: bool,
+    #[word(keyword, shown = "lattice")]
+    units: Units,
 }
 
 /// Motion of a dimension.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Words)]
+#[word(what = "style of a deformation")]
 enum Motion {
-    Final(f64, f64),
-    Delta(f64, f64),
-    Scale(f64),
-    Velocity(f64),
-    Rate(f64),
-    TrueRate(f64),
+    /// These faces at the end of the run; linear in time.
+    Final(
+        #[word(name = "lo", what = "the lower face")] f64,
+        #[word(name = "hi", what = "the upper face")] f64,
+    ),
+    /// Faces moved by this much at the end of the run; linear in time.
+    Delta(
+        #[word(name = "dlo", what = "the way of the lower face")] f64,
+        #[word(name = "dhi", what = "the way of the upper face")] f64,
+    ),
+    /// F times as long at the end of the run; linear in time.
+    Scale(#[word(name = "F", what = "the factor of the length", positive)] f64),
+    /// The length grows by V per time.
+    #[word("vel")]
+    Velocity(#[word(name = "V", what = "the velocity")] f64),
+    /// The length grows by R times the first length per time.
+    #[word("erate")]
+    Rate(#[word(name = "R", what = "the strain rate")] f64),
+    /// The length grows as exp(R t).
+    #[word("trate")]
+    TrueRate(#[word(name = "R", what = "the true strain rate")] f64),
+    /// Follows the other dimensions so that the box keeps its volume; two such dimensions share it.
     Volume,
-    Wiggle(f64, f64),
-    Variable(ValueRef, ValueRef),
+    /// Length + A sin(2π t/T).
+    Wiggle(
+        #[word(name = "A", what = "the amplitude")] f64,
+        #[word(name = "T", what = "the period", positive)] f64,
+    ),
+    /// The change of the length and its rate in time, both equal-style, in the units of the box.
+    Variable(
+        #[word(name = "v_change", with = variable, kind = Kind::Reference)] ValueRef,
+        #[word(name = "v_rate", with = variable, kind = Kind::Reference)] ValueRef,
+    ),
+    #[word(skip)]
     Pressed(Pressed),
 }
 
 /// What happens to the particles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+#[word(what = "value of remap")]
 enum Remap {
+    /// The positions of the group's particles are stretched with the box.
+    #[default]
+    #[word("x")]
     Positions,
+    /// Particles that cross a periodic face get the velocity of that face.
+    #[word("v")]
     Velocities,
+    /// Nothing.
     None,
 }
 
-const STYLES: [&str; 9] =
-    ["final", "delta", "scale", "vel", "erate", "trate", "volume", "wiggle", "variable"];
-
-impl FixStyle for Deform {
-    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        Ok(Box::new(read(args, cx, None)?))
+fn variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("a variable v_name")?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if r.kind == RefKind::Variable => cx.value(&r, false).map(|()| r),
+        _ => fail(Code::WRONG_KIND, word.span, format!("a variable v_name is needed, not `{}`", word.text)),
     }
 }
 
-/// Reads the words of a line; with `controls`, the words of pressure control are allowed.
+impl FixStyle for Deform {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let Line { every, x, y, z, xy, xz, yz, handling } = words::read(args, cx)?;
+        Ok(Box::new(declared(every, ([x, y, z], [xy, xz, yz]), handling, None, cx)?))
+    }
+}
+
+/// Lengths along x, y, z and tilts xy, xz, yz that change.
+type Changes = ([Option<At<Motion>>; 3], [Option<At<lean::Motion>>; 3]);
+
+/// The fix of a line; with `controls`, pressures may steer it.
 ///
 /// # Errors
-/// Every mistake in them.
-fn read(args: &mut Args, cx: &BuildCx, controls: Option<Controls>) -> Result<Declared> {
-    let every = args.integer_from(1, "the number of steps N")?;
+/// Dimensions that the box cannot change, and words that do not go together.
+fn declared(
+    every: i64,
+    (lengths, tilts): Changes,
+    handling: Handling,
+    controls: Option<Controls>,
+    cx: &BuildCx,
+) -> Result<Declared> {
+    for (d, length) in lengths.iter().enumerate() {
+        let Some(At { value, span, .. }) = length else { continue };
+        check_faces(cx, *span, d)?;
+        if d == 2 && cx.world.settings.two_dimensional && matches!(value, Motion::Pressed(_)) {
+            return fail(Code::CONFLICT, *span, "no pressure steers a flat scene along z");
+        }
+    }
+    for (k, tilt) in tilts.iter().enumerate() {
+        tilt.as_ref().map_or(Ok(()), |tilt| check_tilt(cx, tilt.span, k))?;
+    }
+    let any = lengths.iter().any(Option::is_some) || tilts.iter().any(Option::is_some);
     let mut fix = Declared {
         id: cx.id.to_string(),
         group: cx.group,
         every,
-        motions: [const { None }; 3],
-        leans: [const { None }; 3],
-        flips: true,
-        remap: Remap::Positions,
-        scales: [1.0; 3],
+        motions: lengths.map(|length| length.map(|at| at.value)),
+        leans: tilts.map(|tilt| tilt.map(|at| at.value)),
+        flips: handling.flip,
+        remap: handling.remap,
+        scales: handling.units.scales(cx.world),
         controls,
     };
-    let (mut lattice, mut any) = (true, false);
-    while let Some(word) = args.next() {
-        match word.text.as_str() {
-            "x" | "y" | "z" => {
-                let d = ["x", "y", "z"].iter().position(|n| *n == word.text).unwrap_or(0);
-                check_faces(cx, word, d)?;
-                let span = args.here();
-                let motion = motion(args, cx, fix.controls.is_some())?;
-                if d == 2 && cx.world.settings.two_dimensional && matches!(motion, Motion::Pressed(_)) {
-                    return fail(Code::CONFLICT, span, "no pressure steers a flat scene along z");
-                }
-                fix.motions[d] = Some(motion);
-                any = true;
-            }
-            "xy" | "xz" | "yz" => {
-                let k = lean::NAMES.iter().position(|n| *n == word.text).unwrap_or(0);
-                check_tilt(cx, word, k)?;
-                fix.leans[k] = Some(lean::motion(args, cx, fix.controls.is_some())?);
-                any = true;
-            }
-            "flip" => fix.flips = args.flag("flip")?,
-            "remap" => {
-                fix.remap = match args.choice("value of remap", &["x", "v", "none"])? {
-                    "x" => Remap::Positions,
-                    "v" => Remap::Velocities,
-                    _ => Remap::None,
-                }
-            }
-            "units" => lattice = units_lattice(args)?,
-            _ => match &mut fix.controls {
-                Some(controls) => controls.keyword(word, args)?,
-                None => return Err(args.unknown(word, &WORDS)),
-            },
-        }
-    }
     if !any {
         let text = format!("fix {} needs a length or tilt: x, y, z, xy, xz or yz", fix.style());
         return fail(Code::MISSING_ARGUMENT, cx.span, text);
     }
-    fix.scales = scales(cx.world, lattice);
     fix.couple(cx)?;
     fix.check_volume(cx)?;
     let keeps_volume = fix.motions.iter().any(|m| matches!(m, Some(Motion::Volume)));
@@ -156,15 +203,13 @@ fn read(args: &mut Args, cx: &BuildCx, controls: Option<Controls>) -> Result<Dec
     Ok(fix)
 }
 
-/// The words that begin a section of the line.
-const WORDS: [&str; 9] = ["x", "y", "z", "xy", "xz", "yz", "remap", "flip", "units"];
-
 /// Refuses dimensions whose faces are shrink-wrapped.
-fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
+fn check_faces(cx: &BuildCx, span: Span, d: usize) -> Result<()> {
     let Some(domain) = &*cx.world.domain else { return Ok(()) };
     if domain.boundary.0[d].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
-        let text = format!("the faces of `{}` follow the particles: no fix can move them", word.text);
-        return Err(Diagnostic::error(Code::CONFLICT, word.span, text)
+        let text =
+            format!("the faces of `{}` follow the particles: no fix can move them", ["x", "y", "z"][d]);
+        return Err(Diagnostic::error(Code::CONFLICT, span, text)
             .help("use `boundary` p or f for this dimension")
             .into());
     }
@@ -172,66 +217,25 @@ fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
 }
 
 /// Refuses tilts that the box cannot have.
-fn check_tilt(cx: &BuildCx, word: &Word, k: usize) -> Result<()> {
+fn check_tilt(cx: &BuildCx, span: Span, k: usize) -> Result<()> {
     let Some(domain) = &*cx.world.domain else { return Ok(()) };
     if cx.world.settings.two_dimensional && k > 0 {
-        let text = format!("the tilt {} of a flat scene must stay 0", word.text);
-        return fail(Code::CONFLICT, word.span, text);
+        let text = format!("the tilt {} of a flat scene must stay 0", lean::NAMES[k]);
+        return fail(Code::CONFLICT, span, text);
     }
     if domain.tilt.is_none() {
-        let d = Diagnostic::error(Code::CONFLICT, word.span, "an orthogonal box cannot lean");
+        let d = Diagnostic::error(Code::CONFLICT, span, "an orthogonal box cannot lean");
         return Err(d
             .help("make it triclinic: `change_box all triclinic`, or `create_box` with a `region prism`")
             .into());
     }
     if domain.boundary.0[lean::ACROSS[k]].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin)) {
         let axis = ["x", "y", "z"][lean::ACROSS[k]];
-        let text = format!("the faces of `{axis}`, which {} tilts, follow the particles", word.text);
-        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+        let text = format!("the faces of `{axis}`, which {} tilts, follow the particles", lean::NAMES[k]);
+        let d = Diagnostic::error(Code::CONFLICT, span, text);
         return Err(d.help("use `boundary` p or f for this dimension").into());
     }
     Ok(())
-}
-
-fn motion(args: &mut Args, cx: &BuildCx, steered: bool) -> Result<Motion> {
-    let two = |args: &mut Args, a: &str, b: &str| {
-        Ok::<_, perigrain_base::diag::Diagnostics>((args.number(a)?, args.number(b)?))
-    };
-    let styles = [&STYLES[..], if steered { &pressure::STYLES } else { &[] }].concat();
-    Ok(match args.choice("style of a deformation", &styles)? {
-        style @ ("pressure" | "pressure/mean") => {
-            Motion::Pressed(Pressed::read(args, cx, style == "pressure/mean")?)
-        }
-        "final" => {
-            let (lo, hi) = two(args, "the lower face", "the upper face")?;
-            Motion::Final(lo, hi)
-        }
-        "delta" => {
-            let (lo, hi) = two(args, "the way of the lower face", "the way of the upper face")?;
-            Motion::Delta(lo, hi)
-        }
-        "scale" => Motion::Scale(args.positive("the factor of the length")?),
-        "vel" => Motion::Velocity(args.number("the velocity")?),
-        "erate" => Motion::Rate(args.number("the strain rate")?),
-        "trate" => Motion::TrueRate(args.number("the true strain rate")?),
-        "volume" => Motion::Volume,
-        "wiggle" => {
-            let amplitude = args.number("the amplitude")?;
-            Motion::Wiggle(amplitude, args.positive("the period")?)
-        }
-        _ => {
-            let change = variable(args, cx, "the variable of the change in length")?;
-            Motion::Variable(change, variable(args, cx, "the variable of its rate")?)
-        }
-    })
-}
-
-fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
-    let word = args.expect(what)?;
-    match ValueRef::parse(&word.text, word.span)? {
-        Some(r) if r.kind == RefKind::Variable => cx.value(&r, false).map(|()| r),
-        _ => fail(Code::WRONG_KIND, word.span, format!("a variable v_name is needed, not `{}`", word.text)),
-    }
 }
 
 #[derive(Clone)]

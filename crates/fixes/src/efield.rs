@@ -1,6 +1,6 @@
 //! fix efield: an electric field that acts on charges and dipole moments.
 
-use super::{AtomVariable, Facts, Fix, FixStyle, Minimizing, RegionId};
+use super::{AtomReference, Facts, Fix, FixStyle, Minimizing, RegionId};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{add, cross, dot, scale};
 use perigrain_lang::{Args, Param, ValueRef};
@@ -50,10 +50,10 @@ struct Line {
     region: Option<RegionId>,
     /// An atom-style variable with the energy of each particle, where the field has variables.
     #[word(keyword, name = "v_name", what = "`energy`", placed)]
-    energy: Option<At<AtomVariable>>,
+    energy: Option<At<AtomReference>>,
     /// An atom-style variable with the potential at each charge, where the field has variables; it counts before `energy`.
     #[word(keyword, name = "v_name", what = "`potential`", placed)]
-    potential: Option<At<AtomVariable>>,
+    potential: Option<At<AtomReference>>,
 }
 
 /// Reads the components of the field.

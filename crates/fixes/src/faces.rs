@@ -76,8 +76,9 @@ const PLACE: Part = Part::Word(Placeholder {
     unit: "length",
 });
 
-/// A keyword that names a wall.
-const fn wall(word: &'static str, values: &'static [Part], about: &'static str) -> Keyword {
+/// A keyword that names a wall by the face on whose side it stands.
+const fn wall(word: &'static str, values: &'static [Part]) -> Keyword {
+    let about = "A wall at this place: `lo` has the particles above it, `hi` below.";
     Keyword { word, values, about, default: "", repeats: false }
 }
 
@@ -89,12 +90,12 @@ impl<T: Words> Words for Walls<T> {
     const GRAMMAR: &'static Grammar = &Grammar {
         parts: &[],
         keywords: &[
-            wall("xlo", Self::VALUES, "A wall with the particles above it along x."),
-            wall("xhi", Self::VALUES, "A wall with the particles below it along x."),
-            wall("ylo", Self::VALUES, "A wall with the particles above it along y."),
-            wall("yhi", Self::VALUES, "A wall with the particles below it along y."),
-            wall("zlo", Self::VALUES, "A wall with the particles above it along z."),
-            wall("zhi", Self::VALUES, "A wall with the particles below it along z."),
+            wall("xlo", Self::VALUES),
+            wall("xhi", Self::VALUES),
+            wall("ylo", Self::VALUES),
+            wall("yhi", Self::VALUES),
+            wall("zlo", Self::VALUES),
+            wall("zhi", Self::VALUES),
         ],
         refused: &[],
     };

@@ -7,7 +7,7 @@ use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Alternative, At, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{CLOCK, SLOTS};
 use perigrain_world::{Halt, World};
@@ -38,8 +38,7 @@ struct Line {
     /// Looks at multiples of N [steps].
     #[word(name = "N", what = "the number of steps N", from = 1)]
     every: i64,
-    /// What is compared: `v_name` of an equal-style variable, `tlimit` (seconds since the steps of this run began), `diskfree`
-    /// (free megabytes where `path` lies) or `bondmax` (longest bond of a bond_style, 0 where there is none).
+    /// What is compared: one of these words, or `v_name` of an equal-style variable.
     attribute: Attribute,
     operator: Operator,
     /// The value to compare with.
@@ -113,8 +112,19 @@ enum Attribute {
     Variable(ValueRef),
 }
 
+const fn named(word: &'static str, about: &'static str) -> Alternative {
+    Alternative { word, about, parts: &[] }
+}
+
 impl Value for Attribute {
-    const KIND: Kind = Kind::Reference;
+    const KIND: Kind = Kind::Or(
+        &Kind::Choice(&[
+            named("bondmax", "The longest bond of a bond_style, 0 where there is none."),
+            named("tlimit", "Seconds since the steps of this run began."),
+            named("diskfree", "Free megabytes where `path` lies."),
+        ]),
+        &Kind::Reference,
+    );
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the quantity to check")?;
         Ok(match (word.text.as_str(), ValueRef::parse(&word.text, word.span)?) {

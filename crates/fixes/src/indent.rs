@@ -1,23 +1,23 @@
 //! fix indent: a sphere, cylinder, cone or plane that repels particles.
 
 mod form;
+mod words;
 
 use super::{Facts, Fix, FixStyle, Minimizing};
-use form::{Form, check_ends};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, Param, Word};
+use form::Form;
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
-use perigrain_styles::common::{axis, scales, units_lattice, variable_param};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{Form as Declaration, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
 use perigrain_world::{GroupId, World};
+use words::Indenter;
 
 /// The style.
 pub struct Indent;
-
-const KEYWORDS: &[&str] = &["sphere", "cylinder", "cone", "plane", "side", "units"];
 
 impl Style for Indent {
     fn name(&self) -> &'static str {
@@ -25,40 +25,51 @@ impl Style for Indent {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group indent K sphere x y z R | cylinder dim c1 c2 R | cone dim c1 c2 radlo radhi lo hi | \
-                     plane dim pos lo|hi [side in|out] [units lattice|box]",
+            syntax: "",
             summary: "Pushes particles out of a sphere, cylinder, cone or half-space.",
-            text: "A particle at distance r < R from the sphere's centre or the cylinder's axis feels the force \
-                   K (r − R)² away from it; `side in` keeps particles inside instead (r > R, force towards the centre). \
-                   `cone` stands \
-                   between discs of the radii radlo and radhi at the places lo and hi on its axis, one of which may be a \
-                   point; the depth is that below the nearest face, end faces included, and the force is across it (LAMMPS 22Jul2025's \
-                   goes away from the cone's middle and its energies are negative: `-compat lammps`; with `side in` \
-                   and a point its forces are wrong or no numbers, which is not reproduced). `plane dim pos lo` pushes what is below pos upwards, `hi` what is above downwards. K is in \
-                   force/distance² units; peridynamic particles in LAMMPS' convention take it as force density. Places \
-                   and radius are numbers or `v_name` of an equal-style variable, evaluated each step; numbers are in \
-                   lattice spacings (the radius in those of x, a cone's in those of its axis) unless `units box`; variables are not scaled. Across \
-                   periodic faces the nearest image counts. Scalar (extensive): the energy Σ K/3 |r − R|³; `fix_modify \
-                   ID energy yes` adds it to the potential energy. Vector of 3 (extensive): the force on the indenter.",
+            text: "Across periodic faces the nearest image counts. Variables are evaluated each step. LAMMPS \
+                   22Jul2025's forces of a cone go away from its middle and its energies are negative: so it is under \
+                   `-compat lammps`; with `side in` and a point its forces are wrong or no numbers, which is not \
+                   reproduced.\n\n\
+                   Scalar (extensive): the energy Σ K/3 |r − R|³; `fix_modify ID energy yes` adds it to the potential \
+                   energy. Vector of 3 (extensive): the force on the indenter.",
             example: "fix ball all indent 4.0e20 sphere 0.0 0.0 v_z 0.003 units box",
         }
     }
+    fn words(&self) -> Vec<Declaration> {
+        vec![Declaration::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The force constant K [force/length²]: a particle deeper than the surface by d feels the force K d² out of it;
+    /// peridynamic particles in LAMMPS' convention take it as a force density.
+    #[word(name = "K", non_negative)]
+    stiffness: f64,
+    #[word(flatten)]
+    indenter: Indenter,
+    #[word(keyword, shown = "out")]
+    side: Side,
+    /// Places and radii, but for variables, are in these units: the radius in spacings of x, a cone's in those of its axis.
+    #[word(keyword)]
+    units: Units,
+}
+
+/// On which side of the surface particles are kept.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "side")]
+enum Side {
+    /// Particles are kept inside.
+    In,
+    /// Particles are kept outside.
+    #[default]
+    Out,
 }
 
 impl FixStyle for Indent {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let stiffness = args.non_negative("the force constant K")?;
-        let (mut form, mut inside, mut lattice) = (None, false, true);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "side" => inside = args.choice("side", &["in", "out"])? == "in",
-                "units" => lattice = units_lattice(args)?,
-                _ if form.is_some() && KEYWORDS.contains(&word.text.as_str()) => {
-                    return fail(Code::CONFLICT, word.span, "an indenter has one shape; use a second fix");
-                }
-                _ => form = Some(read_form(word, args, cx)?),
-            }
-        }
+        let Line { stiffness, indenter: Indenter(form), side, units } = read(args, cx)?;
         let Some(form) = form else {
             return Err(Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "the indenter has no shape")
                 .help(
@@ -70,52 +81,8 @@ impl FixStyle for Indent {
         if let Form::Cone { .. } = &form {
             cx.fault(cx.span, "a cone pushes away from its middle, with negative energies", false);
         }
-        let form = scaled(&form, scales(cx.world, lattice))?;
+        let (form, inside) = (scaled(&form, units.scales(cx.world))?, side == Side::In);
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, form, inside }))
-    }
-}
-
-fn read_form(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Form<Param>> {
-    let param = |args: &mut Args, what: &str| {
-        let p = variable_param(args, what)?;
-        cx.param(&p, false).map(|()| p)
-    };
-    let radius = |args: &mut Args| {
-        let span = args.here();
-        match param(args, "the radius")? {
-            Param::Number(r) if r < 0.0 => fail(Code::BAD_VALUE, span, "the radius must not be negative"),
-            p => Ok(p),
-        }
-    };
-    match word.text.as_str() {
-        "sphere" => {
-            let center = [param(args, "x")?, param(args, "y")?, param(args, "z")?];
-            Ok(Form::Sphere { center, radius: radius(args)? })
-        }
-        "cylinder" => {
-            let axis = axis(args, "axis of the cylinder")?;
-            let center = [param(args, "c1")?, param(args, "c2")?];
-            Ok(Form::Cylinder { axis, center, radius: radius(args)? })
-        }
-        "cone" => {
-            let axis = axis(args, "axis of the cone")?;
-            let center = [param(args, "c1")?, param(args, "c2")?];
-            let radii = [radius(args)?, radius(args)?];
-            let from = args.here();
-            let low = param(args, "the cone's lower end")?;
-            let span = from.to(args.here());
-            let ends = [low, param(args, "the cone's upper end")?];
-            if let [Param::Number(lo), Param::Number(hi)] = ends {
-                check_ends(lo, hi).map_err(|e| e.at(span))?;
-            }
-            Ok(Form::Cone { axis, center, radii, ends })
-        }
-        "plane" => {
-            let axis = axis(args, "direction of the plane")?;
-            let place = param(args, "the plane's position")?;
-            Ok(Form::Plane { axis, place, high: args.choice("side of the plane", &["lo", "hi"])? == "hi" })
-        }
-        _ => Err(args.unknown(word, KEYWORDS)),
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Form, Kind, PerAtom, Types, Value, Words, read};
+use perigrain_styles::words::{Alternative, At, Form, Kind, PerAtom, Positive, Types, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
     COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, RANK, SLOTS, TORQUE, TYPE_MASS, V,
@@ -65,7 +65,7 @@ struct Line {
     omega: Option<At<bool>>,
     /// The time of damping is damp·ratio for a type or range of types.
     #[word(keyword, name = "type ratio", what = "the ratio of times of damping")]
-    scale: Vec<(Types, Ratio)>,
+    scale: Vec<(Types, Positive)>,
     /// Whether the energy taken is counted.
     #[word(keyword, what = "tally", default = false)]
     tally: bool,
@@ -92,16 +92,6 @@ impl Value for No {
             args.next();
         }
         Ok(Self(no))
-    }
-}
-
-/// A factor greater than zero.
-struct Ratio(f64);
-
-impl Value for Ratio {
-    const KIND: Kind = Kind::Number;
-    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
-        args.positive(what).map(Self)
     }
 }
 

@@ -79,7 +79,6 @@ mod window;
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_styles::common::bond_type;
 pub use perigrain_styles::fix::{Facts, Fix, FixStyle, Minimizing, Moves, no_option};
 use perigrain_styles::words::{Kind, Value};
 use perigrain_styles::{BuildCx, Shape};
@@ -203,20 +202,10 @@ impl Value for RegionId {
     }
 }
 
-/// A bond type.
-struct BondType(u16);
-
-impl Value for BondType {
-    const KIND: Kind = Kind::Types;
-    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        bond_type(args, cx.world.bonds.types).map(Self)
-    }
-}
-
 /// An atom-style variable with its `v_`.
-struct AtomVariable(ValueRef);
+struct AtomReference(ValueRef);
 
-impl Value for AtomVariable {
+impl Value for AtomReference {
     const KIND: Kind = Kind::Reference;
     fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect(&format!("the variable after {what}"))?;

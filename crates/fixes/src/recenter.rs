@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::scales;
 use perigrain_styles::matter::{Whole, centre, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Alternative, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -63,7 +63,13 @@ enum Scale {
 }
 
 impl Value for Hold {
-    const KIND: Kind = Kind::OrNull(&Kind::Number);
+    const KIND: Kind = Kind::Or(
+        &Kind::Choice(&[
+            Alternative { word: "NULL", about: "", parts: &[] },
+            Alternative { word: "INIT", about: "", parts: &[] },
+        ]),
+        &Kind::Number,
+    );
     fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
         if args.eat("NULL") {
             return Ok(Hold::Free);

@@ -10,6 +10,7 @@ mod motion;
 mod nve;
 mod pass;
 mod ranks;
+mod words;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
@@ -21,18 +22,18 @@ use motion::Crew;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::range_from;
 use perigrain_styles::matter::check_masses;
-use perigrain_styles::molecules::named;
 use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
+use perigrain_styles::words::{At, Form, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
     self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, RIGID, SLOTS, TAG, TALLY,
     TORQUE, TRAVEL, TYPE_MASS, V, X,
 };
 use perigrain_world::share::Halo;
-use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, Template, Vectors, World};
+use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, Vectors, World};
+use words::{Any, Chosen, Common, Groups, Large, Many, Property, Small, baths};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
 const COLUMNS: usize = 15;
@@ -49,32 +50,38 @@ impl Style for Rigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group rigid single | molecule | custom i_NAME | group N ID1 … IDN  [force M x y z] [torque M x y z] \
-                     [reinit yes|no] [infile FILE] [gravity ID]",
+            syntax: "",
             summary: "Lets groups of particles move as rigid bodies.",
-            text: "One body of the whole group (`single`), one for each molecule ID or value of a property of `fix property/atom`, in \
-                   ascending order, or one for each of N groups; each needs two particles at least. Mass, centre and moments of inertia are \
-                   those of the particles, spheres being solid; overlaps count twice. Forces and torques on a body are the \
-                   sums of those on its particles. The centre moves by velocity Verlet, the orientation by Richardson's \
-                   steps of the quaternion at constant angular momentum (bodies in space whose smallest moment is less than a thousandth \
-                   of the largest by the exact rotations of `fix rigid/nve`: Richardson's steps let them tumble, as they do in LAMMPS); places, velocities, spins and orientations of the particles follow. \
-                   No other fix may move them, and contacts inside a body are left out with `neigh_modify exclude`.\n\n\
-                   `force M off off on` and `torque M …` turn components of the sum off for bodies M (a number or range, `1*3`). Bodies are set up from their particles \
-                   when a run begins after something has changed; with `reinit no` only once, so that what was done to the particles \
-                   between runs is undone. `infile` gives mass, centre, inertia xx yy zz xy xz yz, velocity, angular momentum and image \
-                   counts of some bodies, one line each behind the number of lines, and means `reinit no`.\n\n\
-                   Spheres that overlap weigh too much, and the middle of their masses is not that of the body: `infile` (or, with \
-                   `rigid/small … mol`, a molecule template) gives the true mass, centre and inertia. `fix gravity` then acts on such a body by M g at its \
-                   centre, if all its particles are in the group of that fix; LAMMPS pulls the particles, so that the body falls at another rate and \
-                   turns about its centre. `gravity ID` here with `disable` at the end of that `fix gravity` gives the right motion in both. Computes of particles (`com`, `ke`, \
-                   `vcm` …, the pressure) keep the particles' masses; `ke/rigid`, `erotate/rigid`, `rigid/local` and `energy/ledger` know the body's.\n\n\
-                   Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) of components that are on, over as many degrees of freedom and Boltzmann's constant (torques by the body's own axes). Array, a row for each body: centre, \
-                   velocity, force, torque, image counts (3 columns each). The forces that hold bodies together count in \
-                   pressures, unless `fix_modify ID virial no`. In the setup of a run LAMMPS leaves out the forces of fixes that stand below this \
-                   one, so that its first half kick lacks them; perigrain does so under `compat lammps` only. Temperatures count the freedom of single particles; LAMMPS \
-                   takes away what bodies have lost. `langevin`, thermostats and barostats are refused.",
+            text: "Each body needs two particles at least. Mass, centre and moments of inertia are those of the \
+                   particles, spheres being solid; overlaps count twice. Forces and torques on a body are the sums of \
+                   those on its particles. No other fix may move them, and contacts inside a body are left out with \
+                   `neigh_modify exclude`.\n\n\
+                   The centre moves by velocity Verlet, the orientation by Richardson's steps of the quaternion at \
+                   constant angular momentum (bodies in space whose smallest moment is less than a thousandth of the \
+                   largest by the exact rotations of `fix rigid/nve`: Richardson's steps let them tumble, as they do in \
+                   LAMMPS); places, velocities, spins and orientations of the particles follow. Bodies are set up from \
+                   their particles when a run begins after something has changed.\n\n\
+                   Spheres that overlap weigh too much, and the middle of their masses is not that of the body: \
+                   `infile` (or, with `rigid/small … mol`, a molecule template) gives the true mass, centre and \
+                   inertia. `fix gravity` then acts on such a body by M g at its centre, if all its particles are in \
+                   the group of that fix; LAMMPS pulls the particles, so that the body falls at another rate and turns \
+                   about its centre. `gravity ID` here with `disable` at the end of that `fix gravity` gives the right \
+                   motion in both.\n\n\
+                   Computes of particles (`com`, `ke`, `vcm` …, the pressure) keep the particles' masses; `ke/rigid`, \
+                   `erotate/rigid`, `rigid/local` and `energy/ledger` know the body's. Temperatures count the freedom \
+                   of single particles; LAMMPS takes away what bodies have lost. The forces that hold bodies together \
+                   count in pressures, unless `fix_modify ID virial no`.\n\n\
+                   Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) of components that are on, over as many degrees \
+                   of freedom and Boltzmann's constant (torques by the body's own axes). Array, a row for each body: \
+                   centre, velocity, force, torque, image counts (3 columns each).\n\n\
+                   In the setup of a run LAMMPS leaves out the forces of fixes that stand below this one, so that its \
+                   first half kick lacks them; perigrain does so under `compat lammps` only. `langevin`, thermostats \
+                   and barostats are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single torque * off off on",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Large::GRAMMAR)]
     }
 }
 
@@ -84,19 +91,23 @@ impl Style for RigidSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group rigid/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE] [gravity ID]",
+            syntax: "",
             summary: "Lets molecules move as rigid bodies, as many as there are.",
-            text: "As `fix rigid`, without its array and its keywords `force` and `torque`. Particles that join the group during a run become \
-                   bodies of their own, molecule by molecule, with the next rebuild of neighbour lists; `mol` names the template they come \
-                   from. Where its file gives `mass`, `com` or `inertia` of the whole, bodies that are copies of it have these instead of the sums over their \
-                   particles, however they came: by `create_atoms`, `fix pour` or `fix deposit`, and in later runs too. LAMMPS takes them for bodies that come during a run \
-                   only, forgets them when the next run sets bodies up (unless `reinit no`), takes Ixy for Iyz and the other way round, and divides Σ m x by the mass \
-                   that the file gives where it gives no `com`; `compat lammps` does so too. In `infile` the number of a body is its molecule ID.",
+            text: "As `fix rigid`, without its array. Particles that join the group during a run become bodies of their \
+                   own, molecule by molecule, with the next rebuild of neighbour lists. In `infile` the number of a \
+                   body is its molecule ID.\n\n\
+                   LAMMPS takes the mass, centre and inertia of a template for bodies that come during a run only, \
+                   forgets them when the next run sets bodies up (unless `reinit no`), takes Ixy for Iyz and the other \
+                   way round, and divides Σ m x by the mass that the file gives where it gives no `com`; `compat \
+                   lammps` does so too.",
             example: "units si\natom_style sphere\nregion b block 0 0.1 0 0.1 0 0.1\ncreate_box 1 b\nfix m all property/atom mol\n\
                       create_atoms 1 single 0.05 0.05 0.05\ncreate_atoms 1 single 0.055 0.05 0.05\nset group all diameter 0.01 density 2500.0 \
                       mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
                       fix 1 all rigid/small molecule\nthermo_style custom step f_1\nrun 10",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Small::GRAMMAR)]
     }
 }
 
@@ -114,22 +125,32 @@ impl FixStyle for RigidSmall {
 
 /// A style for few bodies of any kind.
 fn large(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-    let split = match args.choice("kind of bodies", &["single", "molecule", "group", "custom"])? {
-        "single" => Split::Single,
-        "group" => groups(args, cx)?,
-        "custom" => custom(args, cx)?,
-        _ => molecules(cx)?,
+    let line: Large = read_or(args, cx, |word| baths(style, word))?;
+    let split = match line.bodies {
+        Any::Single => Split::Single,
+        Any::Molecule => molecules(cx)?,
+        Any::Group(Groups(list)) => Split::Groups(list),
+        Any::Custom(Property(column)) => Split::Custom(column),
     };
-    build(style, true, split, args, cx)
+    let switch = |torque: bool| {
+        move |(at, x, y, z): (At<Chosen>, bool, bool, bool)| {
+            let Chosen(first, last) = at.value;
+            Switch { torque, bodies: (first, last), on: [x, y, z], span: at.span }
+        }
+    };
+    let torques = line.torque.into_iter().map(switch(true));
+    let switches = line.force.into_iter().map(switch(false)).chain(torques).collect();
+    Ok(Box::new(Declared { switches, ..declared(style, true, split, line.common, cx) }))
 }
 
 /// A style for many bodies, one per molecule.
 fn small(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-    let split = match args.choice("kind of bodies", &["molecule", "custom"])? {
-        "custom" => custom(args, cx)?,
-        _ => molecules(cx)?,
+    let line: Small = read_or(args, cx, |word| baths(style, word))?;
+    let split = match line.bodies {
+        Many::Molecule => molecules(cx)?,
+        Many::Custom(Property(column)) => Split::Custom(column),
     };
-    build(style, false, split, args, cx)
+    Ok(Box::new(Declared { mold: line.mol, ..declared(style, false, split, line.common, cx) }))
 }
 
 fn molecules(cx: &BuildCx) -> Result<Split> {
@@ -138,26 +159,6 @@ fn molecules(cx: &BuildCx) -> Result<Split> {
     }
     let d = Diagnostic::error(Code::CONFLICT, cx.span, "particles of this atom_style belong to no molecules");
     Err(d.help("`fix ID all property/atom mol` gives them molecule IDs").into())
-}
-
-fn custom(args: &mut Args, cx: &BuildCx) -> Result<Split> {
-    let word = args.expect("a property i_NAME")?;
-    match cx.world.columns.custom(&word.text) {
-        Some(column) if word.text.starts_with("i_") => Ok(Split::Custom(column)),
-        _ => {
-            let text = format!("`{}` is no whole-number property i_NAME", word.text);
-            let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, text);
-            Err(d
-                .help("values of a variable become one by `fix p all property/atom i_body` and `set group all i_body v_NAME`")
-                .into())
-        }
-    }
-}
-
-fn groups(args: &mut Args, cx: &BuildCx) -> Result<Split> {
-    let count = args.integer_from(1, "the number of groups")?;
-    let list: Result<Vec<GroupId>> = (0..count.min(32)).map(|_| cx.group(args.expect("a group")?)).collect();
-    Ok(Split::Groups(list?))
 }
 
 /// Force or torque components that are switched off for some bodies.
@@ -169,14 +170,10 @@ struct Switch {
     span: Span,
 }
 
-fn build(
-    style: &'static str,
-    whole: bool,
-    split: Split,
-    args: &mut Args,
-    cx: &BuildCx,
-) -> Result<Box<dyn Fix>> {
-    let mut me = Declared {
+/// A fix without switches and template.
+fn declared(style: &'static str, whole: bool, split: Split, common: Common, cx: &BuildCx) -> Declared {
+    let Common { reinit, infile, gravity } = common;
+    Declared {
         style,
         whole,
         id: cx.id.to_string(),
@@ -184,52 +181,12 @@ fn build(
         group: cx.group,
         split,
         switches: vec![],
-        reinit: true,
-        infile: None,
+        reinit: reinit && infile.is_none(),
+        infile,
         mold: None,
-        gravity: None,
+        gravity,
         virial: true,
-    };
-    while let Some(word) = args.next() {
-        match word.text.as_str() {
-            "force" | "torque" if whole => me.switches.push(switch(word, args)?),
-            "reinit" => me.reinit = args.flag("reinit")?,
-            "infile" => me.infile = Some(args.expect("a file name")?.clone()),
-            "mol" if !whole => me.mold = Some(mold(args, cx)?),
-            "gravity" => me.gravity = Some(args.expect("the ID of a fix gravity")?.clone()),
-            "langevin" | "temp" | "iso" | "aniso" | "x" | "y" | "z" | "couple" | "tparam" | "pchain"
-            | "dilate" => {
-                let text = format!("fix {style}: `{}` is not in perigrain", word.text);
-                return fail(Code::NOT_SUPPORTED, word.span, text);
-            }
-            _ if whole => return Err(args.unknown(word, &["force", "torque", "reinit", "infile", "gravity"])),
-            _ => return Err(args.unknown(word, &["reinit", "infile", "mol", "gravity"])),
-        }
     }
-    me.reinit &= me.infile.is_none();
-    Ok(Box::new(me))
-}
-
-fn switch(word: &Word, args: &mut Args) -> Result<Switch> {
-    let at = args.expect("a body or a range of bodies")?;
-    let bodies = range_from(at, 1, i64::MAX)?;
-    let on = [args.flag("x")?, args.flag("y")?, args.flag("z")?];
-    Ok(Switch { torque: word.text == "torque", bodies, on, span: at.span })
-}
-
-/// Parses the template of the bodies.
-fn mold(args: &mut Args, cx: &BuildCx) -> Result<Mold> {
-    let word = args.expect("a molecule template")?;
-    let set = named(word, cx)?;
-    let beside = |t: &Template| t.com.is_some_and(|x| x[2] != 0.0);
-    if cx.world.settings.two_dimensional && set.iter().any(beside) {
-        return fail(
-            Code::BAD_VALUE,
-            word.span,
-            "in a flat scene the `com` of a molecule file has the z of 0",
-        );
-    }
-    Ok(Mold { name: word.text.clone(), set })
 }
 
 /// Keys of the state in the world.

@@ -3,9 +3,10 @@
 use super::pressure::{Aim, Pressed, Steering};
 use super::{Declared, variable};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::{Args, ValueRef};
+use perigrain_lang::ValueRef;
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_styles::words::Words;
+use perigrain_styles::{Reading, SealCx};
 use perigrain_world::World;
 use perigrain_world::domain::{Domain, Flip};
 use std::f64::consts::TAU;
@@ -19,43 +20,35 @@ const ALONG: [usize; 3] = [0, 0, 1];
 /// The edge that each tilt shifts.
 pub const ACROSS: [usize; 3] = [1, 2, 2];
 
-const STYLES: [&str; 7] = ["final", "delta", "vel", "erate", "trate", "wiggle", "variable"];
-
 /// Motion of a tilt.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Words)]
+#[word(what = "style of a tilt")]
 pub enum Motion {
-    Final(f64),
-    Delta(f64),
-    Velocity(f64),
-    Rate(f64),
-    TrueRate(f64),
-    Wiggle(f64, f64),
-    Variable(ValueRef, ValueRef),
+    /// This tilt at the end of the run; linear in time.
+    Final(#[word(name = "tilt", what = "the tilt")] f64),
+    /// The tilt changed by this much at the end of the run; linear in time.
+    Delta(#[word(name = "change", what = "the change of the tilt")] f64),
+    /// The tilt grows by V per time.
+    #[word("vel")]
+    Velocity(#[word(name = "V", what = "the velocity")] f64),
+    /// The tilt grows by R times the first length of y (`xy`) or z (`xz`, `yz`) per time.
+    #[word("erate")]
+    Rate(#[word(name = "R", what = "the shear rate")] f64),
+    /// The tilt grows as exp(R t).
+    #[word("trate")]
+    TrueRate(#[word(name = "R", what = "the true shear rate")] f64),
+    /// Tilt + A sin(2π t/T).
+    Wiggle(
+        #[word(name = "A", what = "the amplitude")] f64,
+        #[word(name = "T", what = "the period", positive)] f64,
+    ),
+    /// The change of the tilt and its rate in time, both equal-style, in the units of the box.
+    Variable(
+        #[word(name = "v_change", with = variable, kind = Kind::Reference)] ValueRef,
+        #[word(name = "v_rate", with = variable, kind = Kind::Reference)] ValueRef,
+    ),
+    #[word(skip)]
     Pressed(Pressed),
-}
-
-/// Parses the motion of a tilt.
-///
-/// # Errors
-/// Other words, and invalid numbers.
-pub fn motion(args: &mut Args, cx: &BuildCx, steered: bool) -> Result<Motion> {
-    let styles = [&STYLES[..], if steered { &["pressure"] } else { &[] }].concat();
-    Ok(match args.choice("style of a tilt", &styles)? {
-        "pressure" => Motion::Pressed(Pressed::read(args, cx, false)?),
-        "final" => Motion::Final(args.number("the tilt")?),
-        "delta" => Motion::Delta(args.number("the change of the tilt")?),
-        "vel" => Motion::Velocity(args.number("the velocity")?),
-        "erate" => Motion::Rate(args.number("the shear rate")?),
-        "trate" => Motion::TrueRate(args.number("the true shear rate")?),
-        "wiggle" => {
-            let amplitude = args.number("the amplitude")?;
-            Motion::Wiggle(amplitude, args.positive("the period")?)
-        }
-        _ => {
-            let change = variable(args, cx, "the variable of the change of the tilt")?;
-            Motion::Variable(change, variable(args, cx, "the variable of its rate")?)
-        }
-    })
 }
 
 /// The course of one tilt through a run.

@@ -1,10 +1,10 @@
 //! fix deform/pressure: a deforming box whose lengths and tilts are controlled by pressures.
 
-use super::{Declared, Fix, FixStyle, Motion, WORDS, lean, read};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use super::{Declared, Fix, FixStyle, Handling, Motion, declared, lean};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::common::variable_param;
+use perigrain_styles::words::{At, Form, Or, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::World;
 
@@ -17,30 +17,151 @@ impl Style for DeformPressure {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group deform/pressure N x|y|z|xy|xz|yz STYLE … [couple none|xyz|xy|yz|xz] [max/rate R] [normalize/pressure yes|no] and words of fix deform",
+            syntax: "",
             summary: "A deforming box of which pressures steer lengths and tilts.",
-            text: "As `fix deform`, with two more styles of `x`, `y`, `z` and one of `xy`, `xz`, `yz`:\n\n\
-                   - `pressure P K`: the length L changes as dL/dt = L K (p − P) with the component p of the pressure along it: it grows while \
-                   that is above P and shrinks while it is below; a tilt as dT/dt = L K (p − P) with the off-diagonal component p and the length L across which it leads.\n\
-                   - `pressure/mean P K`: the same with the mean pressure.\n\n\
-                   P is a number or an equal-style `v_name`, K a rate over a pressure, or with `normalize/pressure yes` a rate: (p − P)/|P| is taken. \
-                   `max/rate R` keeps every such rate of strain between −R and R. `couple xy` takes the mean of both components and changes both lengths by \
-                   the same factor; of a length without a style it takes that of the other. N steps lie between two changes; the pressure \
-                   is the one at the end of the step.\n\
-                   The fix brings its own computes `ID_temp` (temp) and `ID_press` (pressure), which other lines may read; `fix_modify ID press C` takes \
-                   another one. Choose K so that 1/(K · bulk modulus) is some ten times what a wave needs to cross the box: above that the box swings.\n\
-                   Under `-compat lammps` a change takes the time of one step whatever N is, and under `-compat lammps/2025` particles that cross a face of a steered length with `remap v` get the rate of strain as their velocity, as in LAMMPS. `box` and `vol/balance/p` are not here: they are refused.",
+            text: "As [fix deform](fix_deform.md), with pressures that steer lengths and tilts. N steps lie between two \
+                   changes; the pressure is the one at the end of the step.\n\n\
+                   The fix brings its own computes `ID_temp` (temp) and `ID_press` (pressure), which other lines may \
+                   read; `fix_modify ID press C` takes another one. Choose K so that 1/(K · bulk modulus) is some ten \
+                   times what a wave needs to cross the box: above that the box swings.\n\n\
+                   Under `-compat lammps` a change takes the time of one step whatever N is, and under `-compat \
+                   lammps/2025` particles that cross a face of a steered length with `remap v` get the rate of strain \
+                   as their velocity, as in LAMMPS. `box` and `vol/balance/p` are not here: they are refused.",
             example: "fix hold all deform/pressure 1 x pressure 0.0 1e-3 max/rate 0.1 remap x",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Acts at multiples of N [steps].
+    #[word(name = "N", what = "the number of steps N", from = 1)]
+    every: i64,
+    #[word(keyword, name = "style", placed)]
+    x: Option<At<Length>>,
+    #[word(keyword, name = "style", placed)]
+    y: Option<At<Length>>,
+    #[word(keyword, name = "style", placed)]
+    z: Option<At<Length>>,
+    #[word(keyword, name = "style", placed)]
+    xy: Option<At<Tilt>>,
+    #[word(keyword, name = "style", placed)]
+    xz: Option<At<Tilt>>,
+    #[word(keyword, name = "style", placed)]
+    yz: Option<At<Tilt>>,
+    #[word(flatten)]
+    handling: Handling,
+    #[word(keyword, shown = "none")]
+    couple: Coupled,
+    /// Keeps every rate of strain by pressure between −R and R.
+    #[word(keyword = "max/rate", name = "R", what = "the largest rate of strain", positive)]
+    most: Option<f64>,
+    /// Whether (p − P)/|P| is taken in the place of p − P, K being a rate.
+    #[word(keyword = "normalize/pressure", default = false)]
+    normalized: bool,
+}
+
+type Length = Or<Pressing, Motion>;
+type Tilt = Or<Shearing, lean::Motion>;
+
+/// Pressures that steer a length.
+#[derive(Words)]
+#[word(what = "style of a deformation")]
+enum Pressing {
+    /// The length L changes as dL/dt = L K (p − P) with the component p of the pressure along it: it grows while that is above P and
+    /// shrinks while it is below.
+    Pressure(Goal),
+    /// The same with the mean pressure.
+    #[word("pressure/mean")]
+    Mean(Goal),
+}
+
+/// A pressure that steers a tilt.
+#[derive(Words)]
+#[word(what = "style of a tilt")]
+enum Shearing {
+    /// The tilt T changes as dT/dt = L K (p − P) with the off-diagonal component p and the length L across which it leads.
+    Pressure(Goal),
+}
+
+/// A pressure, a number or an equal-style variable, and a gain, a rate over a pressure.
+#[derive(Words)]
+struct Goal {
+    #[word(name = "P", what = "the pressure")]
+    target: At<Param>,
+    #[word(name = "K", what = "the gain")]
+    gain: f64,
+}
+
+impl Goal {
+    fn pressed(self, mean: bool) -> Pressed {
+        Pressed { target: self.target.value, gain: self.gain, mean, span: self.target.span }
+    }
+}
+
+/// Lengths that go together.
+#[derive(Clone, Copy, Default, PartialEq, Words)]
+#[word(what = "lengths that go together")]
+enum Coupled {
+    /// Each length by itself.
+    #[default]
+    None,
+    /// The mean of the components changes these lengths by the same factor; of a length without a style it takes that of another.
+    Xyz,
+    Xy,
+    Yz,
+    Xz,
+}
+
+impl Coupled {
+    /// Which of x, y, z it names.
+    fn axes(self) -> [bool; 3] {
+        match self {
+            Self::None => [false; 3],
+            Self::Xyz => [true; 3],
+            Self::Xy => [true, true, false],
+            Self::Yz => [false, true, true],
+            Self::Xz => [true, false, true],
         }
     }
 }
 
-/// Motions in addition to those of fix deform.
-pub const STYLES: [&str; 2] = ["pressure", "pressure/mean"];
+/// The refusal of LAMMPS' words that change all lengths together.
+fn not_of_a_box(word: &Word) -> Option<Diagnostics> {
+    if !["box", "vol/balance/p"].contains(&word.text.as_str()) {
+        return None;
+    }
+    let text = format!("`{}` of fix deform/pressure is not in perigrain", word.text);
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+    Some(d.help("steer x, y and z by `pressure` or `pressure/mean`, with `couple xyz`").into())
+}
 
 impl FixStyle for DeformPressure {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        Ok(Box::new(read(args, cx, Some(Controls::default()))?))
+        let line: Line = read_or(args, cx, not_of_a_box)?;
+        let length = |length: At<Length>| {
+            let value = match length.value {
+                Or::Word(Pressing::Pressure(goal)) => Motion::Pressed(goal.pressed(false)),
+                Or::Word(Pressing::Mean(goal)) => Motion::Pressed(goal.pressed(true)),
+                Or::Else(motion) => motion,
+            };
+            At { value, span: length.span, unknown: length.unknown }
+        };
+        let tilt = |tilt: At<Tilt>| {
+            let value = match tilt.value {
+                Or::Word(Shearing::Pressure(goal)) => lean::Motion::Pressed(goal.pressed(false)),
+                Or::Else(motion) => motion,
+            };
+            At { value, span: tilt.span, unknown: tilt.unknown }
+        };
+        let lengths = [line.x, line.y, line.z].map(|x| x.map(length));
+        let tilts = [line.xy, line.xz, line.yz].map(|xy| xy.map(tilt));
+        let (together, most, normalized) = (line.couple.axes(), line.most, line.normalized);
+        let controls = Controls { together, most, normalized, press: None };
+        Ok(Box::new(declared(line.every, (lengths, tilts), line.handling, Some(controls), cx)?))
     }
 }
 
@@ -52,19 +173,6 @@ pub struct Pressed {
     gain: f64,
     mean: bool,
     span: Span,
-}
-
-impl Pressed {
-    /// Reads target pressure and gain.
-    ///
-    /// # Errors
-    /// Arguments that are neither numbers nor equal-style variables.
-    pub fn read(args: &mut Args, cx: &BuildCx, mean: bool) -> Result<Self> {
-        let span = args.here();
-        let target = variable_param(args, "the pressure")?;
-        cx.param(&target, false)?;
-        Ok(Self { target, gain: args.number("the gain")?, mean, span })
-    }
 }
 
 /// Settings of the pressure control.
@@ -83,33 +191,6 @@ impl Controls {
     fn axes(&self, w: &World) -> Vec<usize> {
         let flat = w.settings.two_dimensional;
         (0..3).filter(|d| self.together[*d] && !(flat && *d == 2)).collect()
-    }
-
-    /// Reads the arguments of one of its keywords.
-    ///
-    /// # Errors
-    /// Mistakes in the arguments, other words, and LAMMPS' options that perigrain does not have.
-    pub fn keyword(&mut self, word: &Word, args: &mut Args) -> Result<()> {
-        match word.text.as_str() {
-            "couple" => {
-                let name = args.choice("lengths that go together", &["none", "xyz", "xy", "yz", "xz"])?;
-                self.together = ["x", "y", "z"].map(|axis| name != "none" && name.contains(axis));
-            }
-            "max/rate" => self.most = Some(args.positive("the largest rate of strain")?),
-            "normalize/pressure" => self.normalized = args.flag("normalize/pressure")?,
-            "box" | "vol/balance/p" => {
-                let text = format!("`{}` of fix deform/pressure is not in perigrain", word.text);
-                let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
-                return Err(d
-                    .help("steer x, y and z by `pressure` or `pressure/mean`, with `couple xyz`")
-                    .into());
-            }
-            _ => {
-                let own = ["couple", "max/rate", "normalize/pressure"];
-                return Err(args.unknown(word, &[&WORDS[..], &own].concat()));
-            }
-        }
-        Ok(())
     }
 
     /// `fix_modify ID press C`.

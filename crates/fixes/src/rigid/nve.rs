@@ -1,9 +1,11 @@
 //! fix rigid/nve, rigid/nve/small: rigid bodies with orientations integrated by NO_SQUISH.
 
+use super::words::{Large, Small};
 use super::{large, small};
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::words::{Form, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// `fix rigid/nve`.
@@ -18,8 +20,7 @@ impl Style for RigidNve {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group rigid/nve single | molecule | custom i_NAME | group N ID1 … IDN  [force M x y z] [torque M x y z] \
-                     [reinit yes|no] [infile FILE] [gravity ID]",
+            syntax: "",
             summary: "Rigid bodies as fix rigid, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid` in everything, but for how orientations move: a step is split into exact rotations about the principal axes \
                    (Miller et al., J. Chem. Phys. 116, 2002, 8649). It is symplectic, so that energy does not drift in long runs; \
@@ -27,6 +28,9 @@ impl Style for RigidNve {
                    LAMMPS takes others, and its numbers differ by the error of a step. The ensembles nvt, npt and nph are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid/nve single torque * off off on",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Large::GRAMMAR)]
     }
 }
 
@@ -36,7 +40,7 @@ impl Style for RigidNveSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group rigid/nve/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE] [gravity ID]",
+            syntax: "",
             summary: "Molecules as rigid bodies as fix rigid/small, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid/small`, with the rotations of `fix rigid/nve`. The scalar is the temperature here too, where LAMMPS \
                    (and `compat lammps`) gives an energy.",
@@ -45,6 +49,9 @@ impl Style for RigidNveSmall {
                       mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
                       fix 1 all rigid/nve/small molecule\nthermo_style custom step f_1\nrun 10",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Small::GRAMMAR)]
     }
 }
 

@@ -1,15 +1,15 @@
 //! fix wall/gran: planes normal to an axis, or a cylinder about z, as walls for grains.
 
 use super::planes::{Followed, Pair};
-use super::words::{self, KEYWORDS};
+use super::words::{self, Material, Rest};
 use super::{Common, Declared, Form, Surface, needs_spheres, not_across_periodic};
 use crate::elapsed::Elapsed;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::walls::{Planes, Tube, Wall};
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Param};
 use perigrain_plan::{Stage, Tick};
-use perigrain_styles::common::axis;
+use perigrain_styles::words::{At, Axis, Each, Form as Declaration, Kind, Nullable, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{INFINITE, Region, Shape};
 use perigrain_world::{Face, Key, Numbers, Outline, World};
@@ -18,8 +18,6 @@ use std::f64::consts::PI;
 /// The style.
 pub struct WallGran;
 
-const WALLS: [&str; 5] = ["xplane", "yplane", "zplane", "zcylinder", "region"];
-
 impl Style for WallGran {
     fn name(&self) -> &'static str {
         "wall/gran"
@@ -27,73 +25,118 @@ impl Style for WallGran {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group wall/gran granular MODELS … | hooke Kn Kt gamma_n gamma_t xmu dampflag [limit_damping] | \
-                     hooke/history … | hertz/history …  xplane lo hi | yplane lo hi | zplane lo hi | zcylinder R \
-                     [wiggle x|y|z A period | shear x|y|z V] [contacts] [temperature T|v_name] [material E nu] [about x y z]",
+            syntax: "",
             summary: "Flat walls across an axis, or a cylinder about z, on which grains lean.",
-            text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r the \
-                distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and + outside. \
-                MODELS are those of `pair_coeff … granular` and describe a grain on this wall (for `hertz/material` two \
-                bodies of that material). `lo` and `hi` are numbers or equal-style variables `v_name`, or one of them `NULL` where there is one plane only; with two, a grain that is \
-                larger than the gap feels both (LAMMPS, and perigrain under `-compat lammps`: only the nearer one). Places \
-                are in box units; the box may not be periodic across a wall.\n\n\
-                `wiggle`: the wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared. `shear`: it \
-                moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.\n\n\
-                A plane whose place is a variable stands where its value says in each step, for a piston that moves as it likes. Its \
-                velocity, which damping and friction see, is the change since the step before over the time step, none in the \
-                first step; each of two planes has its own. `shear` and `wiggle` in the plane come on top; `wiggle` across it is refused. A lower \
-                plane that does not stay below the upper one ends the run. LAMMPS has this since July 2026.\n\n\
-                `contacts` offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, \
-                its radius, and with a model of heat the heat that flows into the particle as a ninth. `temperature` is that of the wall, a number or an \
-                equal-style variable, and belongs to a model of heat: h π a² (T_wall − T) flows into a grain (`heat area h`), or 2 k a (T_wall − T).\n\n\
-                LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history`, \
-                `hertz/history` and the `…_classic` models on walls depend on the contact radius and lose it when they slide (until 2026); \
-                a cylinder with `shear x` or `y` also flies along that axis; sticky grains hold on to hollow walls and regions \
-                no longer than they touch.\n\n\
-                Not in LAMMPS: `material E nu` gives the wall elastic constants of its own, for 1/E* and 1/G* of two \
-                unlike bodies; the global vector is the force on the wall (1–3), the torque on it (4–6) about the \
-                origin or the point `about`, and the heat that flows into it (7). Only grains near the wall are looked at, so that a wall far from most costs \
-                nothing. The particle deepest in the wall when one is first pressed in by more than a tenth of its radius is reported after the run.\n\n\
-                Springs of sliding contacts are kept in restart files; a run cut in two has the bits of one.",
+            text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r \
+                   the distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and \
+                   + outside. With two planes a grain that is larger than the gap feels both (LAMMPS, and perigrain \
+                   under `-compat lammps`: only the nearer one). Places are in box units; the box may not be periodic \
+                   across a wall.\n\n\
+                   A plane whose place is a variable stands where its value says in each step, for a piston that moves \
+                   as it likes. Its velocity, which damping and friction see, is the change since the step before over \
+                   the time step, none in the first step; each of two planes has its own. `shear` and `wiggle` in the \
+                   plane come on top; `wiggle` across it is refused. A lower plane that does not stay below the upper \
+                   one ends the run. LAMMPS has this since July 2026.\n\n\
+                   LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of \
+                   `hooke/history`, `hertz/history` and the `…_classic` models on walls depend on the contact radius \
+                   and lose it when they slide (until 2026); a cylinder with `shear x` or `y` also flies along that \
+                   axis; sticky grains hold on to hollow walls and regions no longer than they touch.\n\n\
+                   Not in LAMMPS: the global vector is the force on the wall (1–3), the torque on it (4–6) about the \
+                   origin or the point `about`, and the heat that flows into it (7). Only grains near the wall are \
+                   looked at, so that a wall far from most costs nothing. The particle deepest in the wall when one is \
+                   first pressed in by more than a tenth of its radius is reported after the run.\n\n\
+                   Springs of sliding contacts are kept in restart files; a run cut in two has the bits of one.",
             example: "fix floor grains wall/gran granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
                       NULL 1.0 0.5 zplane -0.002 NULL",
         }
     }
+    fn words(&self) -> Vec<Declaration> {
+        vec![Declaration::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "force", with = force, kind = words::FORCE)]
+    force: Material,
+    #[word(name = "wall")]
+    wall: At<Named>,
+    #[word(flatten)]
+    motions: Each<Moving>,
+    #[word(flatten)]
+    rest: Rest,
+}
+
+/// The wall.
+#[derive(Words)]
+#[word(what = "wall")]
+enum Standing {
+    /// Planes across x at two places: numbers, `v_name` of equal-style variables, or one of them `NULL` where there is one plane.
+    Xplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
+    /// Planes across y.
+    Yplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
+    /// Planes across z.
+    Zplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
+    /// A cylinder about z.
+    Zcylinder(#[word(name = "R", what = "the radius of the cylinder", positive)] f64),
+}
+
+/// The wall; a region is that of another fix.
+struct Named(Standing);
+
+impl Value for Named {
+    const KIND: Kind = <Standing as Value>::KIND;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        if args.peek_text() == "region" {
+            let d = Diagnostic::error(Code::UNKNOWN_STYLE, args.here(), "a region is a wall of another fix");
+            return Err(d.help("write `fix … wall/gran/region … region ID`").into());
+        }
+        Standing::value(what, args, cx).map(Self)
+    }
+}
+
+/// A motion of the wall, of which there is one at most.
+#[derive(Words)]
+#[word(keywords)]
+enum Moving {
+    /// The wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared.
+    Wiggle {
+        #[word(name = "x|y|z", what = "direction of the motion")]
+        axis: At<Axis>,
+        #[word(name = "A", what = "the amplitude")]
+        amplitude: f64,
+        #[word(positive, what = "the period")]
+        period: f64,
+    },
+    /// The wall moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.
+    Shear {
+        #[word(name = "x|y|z", what = "direction of the motion")]
+        axis: At<Axis>,
+        #[word(name = "V", what = "the velocity")]
+        speed: f64,
+    },
+}
+
+/// The words that begin what stands behind the force.
+const WALLS: [&str; 5] = ["xplane", "yplane", "zplane", "zcylinder", "region"];
+
+fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
+    words::force(args, cx, &WALLS)
 }
 
 impl FixStyle for WallGran {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/gran")?;
-        let material = words::force(args, cx, &WALLS)?;
-        let mut common = words::common(cx, material);
-        let (mut form, span) = wall(args, cx)?;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "wiggle" | "shear" if form.motion.is_some() => {
-                    return fail(Code::CONFLICT, word.span, "a wall has one motion: `wiggle` or `shear`");
-                }
-                "wiggle" => {
-                    let at = args.here();
-                    let axis = axis(args, "direction of the motion")?;
-                    form.may_wiggle(axis, at)?;
-                    let amplitude = args.number("the amplitude")?;
-                    form.motion =
-                        Some(Motion::Wiggle(axis, amplitude, 2.0 * PI / args.positive("the period")?));
-                }
-                "shear" => {
-                    let at = args.here();
-                    let axis = axis(args, "direction of the motion")?;
-                    if matches!(&form.place, Place::Planes(pair) if pair.axis == axis) {
-                        return fail(Code::BAD_VALUE, at, "a plane cannot shear along its normal");
-                    }
-                    form.motion = Some(Motion::Shear(axis, args.number("the velocity")?));
-                }
-                _ if words::keyword(word, args, cx, &mut common)? => {}
-                _ => return Err(args.unknown(word, &[&["wiggle", "shear"], &KEYWORDS[..]].concat())),
-            }
+        let Line { force, wall, motions: Each(motions), rest } = read(args, cx)?;
+        let common = rest.common(force, [0.0; 3], cx)?;
+        let mut form = Flat { place: place(wall.value.0, wall.span, cx)?, motion: None };
+        if let [_, second, ..] = &motions[..] {
+            return fail(Code::CONFLICT, second.word.span, "a wall has one motion: `wiggle` or `shear`");
         }
-        words::check_heat(&common)?;
-        form.warn(cx, span);
+        if let Some(moving) = motions.into_iter().next() {
+            form.motion = Some(form.moved(moving.value)?);
+        }
+        form.warn(cx, wall.span);
         Ok(Box::new(Declared { common, form }))
     }
 }
@@ -122,24 +165,35 @@ struct Flat {
     motion: Option<Motion>,
 }
 
-fn wall(args: &mut Args, cx: &BuildCx) -> Result<(Flat, Span)> {
-    let word = args.expect("the wall: xplane yplane zplane or zcylinder")?;
-    let (place, axes): (_, &[usize]) = match word.text.as_str() {
-        "xplane" => (Place::Planes(Pair::read(0, args, cx)?), &[0]),
-        "yplane" => (Place::Planes(Pair::read(1, args, cx)?), &[1]),
-        "zplane" => (Place::Planes(Pair::read(2, args, cx)?), &[2]),
-        "zcylinder" => (Place::Tube(args.positive("the radius of the cylinder")?), &[0, 1]),
-        "region" => {
-            let d = Diagnostic::error(Code::UNKNOWN_STYLE, word.span, "a region is a wall of another fix");
-            return Err(d.help("write `fix … wall/gran/region … region ID`").into());
-        }
-        _ => return Err(args.unknown(word, &WALLS[..4])),
+/// The place of a wall; refuses one across a direction that repeats.
+fn place(wall: Standing, span: Span, cx: &BuildCx) -> Result<Place> {
+    let (place, axes): (_, &[usize]) = match wall {
+        Standing::Xplane(places) => (Place::Planes(Pair::new(0, places)?), &[0]),
+        Standing::Yplane(places) => (Place::Planes(Pair::new(1, places)?), &[1]),
+        Standing::Zplane(places) => (Place::Planes(Pair::new(2, places)?), &[2]),
+        Standing::Zcylinder(radius) => (Place::Tube(radius), &[0, 1]),
     };
-    not_across_periodic(cx, axes, word.span)?;
-    Ok((Flat { place, motion: None }, word.span))
+    not_across_periodic(cx, axes, span)?;
+    Ok(place)
 }
 
 impl Flat {
+    /// The motion of the wall; refuses those that it cannot have.
+    fn moved(&self, moving: Moving) -> Result<Motion> {
+        match moving {
+            Moving::Wiggle { axis, amplitude, period } => {
+                self.may_wiggle(axis.value.0, axis.span)?;
+                Ok(Motion::Wiggle(axis.value.0, amplitude, 2.0 * PI / period))
+            }
+            Moving::Shear { axis, speed } => {
+                if matches!(&self.place, Place::Planes(pair) if pair.axis == axis.value.0) {
+                    return fail(Code::BAD_VALUE, axis.span, "a plane cannot shear along its normal");
+                }
+                Ok(Motion::Shear(axis.value.0, speed))
+            }
+        }
+    }
+
     /// Refuses to wiggle along an axis that this wall does not allow.
     fn may_wiggle(&self, axis: usize, at: Span) -> Result<()> {
         match &self.place {

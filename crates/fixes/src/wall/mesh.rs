@@ -2,11 +2,11 @@
 
 mod moving;
 
-use super::words::{self, KEYWORDS};
+use super::words::{self, Material, Rest};
 use super::{Common, Declared, Form, Surface, needs_spheres};
 use crate::elapsed::Elapsed;
 use crate::{Fix, FixStyle};
-use moving::{Motion, Placed, Running};
+use moving::{Motion, Moving, Placed, Running};
 use perigrain_base::comm::rows;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
@@ -15,6 +15,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_mesh::Facets;
 use perigrain_plan::Tick;
 use perigrain_styles::triangles::{self, Placing};
+use perigrain_styles::words::{At, Form as Declaration, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Key, Numbers, Outline, World};
 use std::sync::Arc;
@@ -29,68 +30,72 @@ impl Style for WallMesh {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group wall/mesh granular MODELS … | hooke … | hooke/history … | hertz/history …  mesh FILE \
-                     [scale S] [shift X Y Z] [move linear Vx Vy Vz | move wiggle Ax Ay Az period | \
-                     move rotate Px Py Pz Rx Ry Rz period | move variable v_dx|NULL v_dy|NULL v_dz|NULL] [contacts] \
-                     [material E nu] [about x y z]",
+            syntax: "",
             summary: "A surface of triangles from a file as a wall on which grains lean, at rest or moving.",
-            text: "Not in LAMMPS. Forces as those of `fix wall/gran` on a plane, with the nearest point of the surface: from \
-                both sides, whatever the order of corners. A face counts where it is the nearest of its surroundings, an \
-                edge or corner that several triangles share once, and only where no neighbour is nearer. Neighbours whose \
-                normals differ by less than 30° make one smooth patch: of places on one patch that look alike (normals \
-                within 45°) the nearest one counts, and the springs of friction pass from triangle to triangle. So a plane \
-                cut into triangles is a plane: a ball that rolls across feels no kick.\n\n\
-                FILE is STL (text or binary), OBJ, PLY or VTP, as for `region mesh`. Its numbers are multiplied by `scale`, then shifted, into box units; corners are shared where their \
-                numbers are the same. Corners on the edge of another triangle, corners that miss each other by less than a \
-                millionth of the mesh and faces that lie on each other make no seams either. Triangles without area are left out with a warning; edges \
-                that border one triangle only (holes, or the rim of a plate) are counted in another one.\n\n\
-                `move`: with t the time since the fix was declared, `linear` is a shift V t, `wiggle` A sin ω t with \
-                ω = 2π/period, `rotate` a turn about the axis R through P, right-handed, one in a period; `variable` shifts \
-                by equal-style variables, and the wall has the velocity of the change since the step before.\n\n\
-                Global vector: force (1–3) and torque (4–6) on the wall, about the origin, the axis' point or `about`. \
-                Local values, a row for each triangle: its number in the file, the force on it (3), the work of sliding \
-                Σ F_n |v_t| Δt since the fix was declared, that work by area; `dump local` writes them. By Archard's law \
-                the depth worn off is the last column times k/H.",
+            text: "Not in LAMMPS. Forces as those of `fix wall/gran` on a plane, with the nearest point of the surface: \
+                   from both sides, whatever the order of corners. A face counts where it is the nearest of its \
+                   surroundings, an edge or corner that several triangles share once, and only where no neighbour is \
+                   nearer. Neighbours whose normals differ by less than 30° make one smooth patch: of places on one \
+                   patch that look alike (normals within 45°) the nearest one counts, and the springs of friction pass \
+                   from triangle to triangle. So a plane cut into triangles is a plane: a ball that rolls across feels \
+                   no kick.\n\n\
+                   Corners are shared where their numbers are the same. Corners on the edge of another triangle, \
+                   corners that miss each other by less than a millionth of the mesh and faces that lie on each other \
+                   make no seams either. Triangles without area are left out with a warning; edges that border one \
+                   triangle only (holes, or the rim of a plate) are counted in another one.\n\n\
+                   Global vector: force (1–3) and torque (4–6) on the wall, about the origin, the axis' point or \
+                   `about`. Local values, a row for each triangle: its number in the file, the force on it (3), the \
+                   work of sliding Σ F_n |v_t| Δt since the fix was declared, that work by area; `dump local` writes \
+                   them. By Archard's law the depth worn off is the last column times k/H.",
             example: "fix blade grains wall/mesh granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
                       NULL 1.0 0.5 mesh blade.stl scale 0.001 shift 0 0 -0.0025 move rotate 0 0 0 0 0 1 0.5",
         }
     }
+    fn words(&self) -> Vec<Declaration> {
+        vec![Declaration::behind(Line::GRAMMAR)]
+    }
 }
 
-/// Keywords of meshes only.
-const OWN: [&str; 3] = [Placing::KEYWORDS[0], Placing::KEYWORDS[1], "move"];
+#[derive(Words)]
+struct Line {
+    #[word(name = "force", with = force, kind = words::FORCE)]
+    force: Material,
+    #[word(name = "wall")]
+    wall: Solid,
+    /// The factor on the numbers of the file.
+    #[word(keyword, name = "S", what = "the scale", positive, default = 1.0)]
+    scale: f64,
+    /// What is added to them then, in box units [length].
+    #[word(keyword, name = "X Y Z", what = "{}", shown = "0 0 0")]
+    shift: [f64; 3],
+    #[word(keyword = "move", placed)]
+    motions: Vec<At<Moving>>,
+    #[word(flatten)]
+    rest: Rest,
+}
+
+/// The wall.
+#[derive(Words)]
+#[word(what = "wall")]
+enum Solid {
+    /// A file of triangles, STL (text or binary), OBJ, PLY or VTP, as for `region mesh`.
+    Mesh(#[word(name = "FILE", what = "the name of a file of triangles", kind = Kind::File)] Word),
+}
+
+fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
+    words::force(args, cx, &["mesh"])
+}
 
 impl FixStyle for WallMesh {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/mesh")?;
-        let material = words::force(args, cx, &["mesh"])?;
-        let mut common = words::common(cx, material);
-        let word = args.expect("the word `mesh`")?;
-        if word.text != "mesh" {
-            return Err(args.unknown(word, &["mesh"]));
+        let Line { force, wall: Solid::Mesh(file), scale, shift, mut motions, rest } = read(args, cx)?;
+        if let Some(second) = motions.get(1) {
+            return fail(Code::CONFLICT, second.span, "a wall has one motion");
         }
-        let file = args.expect("the name of a file of triangles")?;
-        let (mut placing, mut motion) = (Placing::default(), Motion::Rest);
-        let (mut about, own_center) = (None, common.center);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "move" if !matches!(motion, Motion::Rest) => {
-                    return fail(Code::CONFLICT, word.span, "a wall has one motion");
-                }
-                "move" => {
-                    motion = Motion::read(args, cx)?;
-                    about = motion.point();
-                }
-                _ if placing.keyword(word, args)? => {}
-                _ if words::keyword(word, args, cx, &mut common)? => {}
-                _ => return Err(args.unknown(word, &[&OWN[..], &KEYWORDS[..]].concat())),
-            }
-        }
-        if let (Some(point), true) = (about, common.center == own_center) {
-            common.center = point;
-        }
-        words::check_heat(&common)?;
-        let (mesh, numbers) = surface(file, placing, cx)?;
+        let motion = motions.pop().map_or(Motion::Rest, |at| at.value.motion());
+        let common = rest.common(force, motion.point().unwrap_or_default(), cx)?;
+        let (mesh, numbers) = surface(&file, Placing { scale, shift }, cx)?;
         Ok(Box::new(Declared {
             common,
             form: Triangles { mesh: Arc::new(mesh), numbers: numbers.into(), motion },

@@ -1,10 +1,10 @@
 //! Planes of fix wall/gran: their positions, fixed or given by variables.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::{Args, Param};
+use perigrain_lang::Param;
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::common::param_or_null;
-use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_styles::words::{At, Nullable};
+use perigrain_styles::{Reading, SealCx};
 use perigrain_world::region::{Region, Shape};
 use perigrain_world::{Numbers, Outline, World};
 
@@ -22,20 +22,12 @@ pub struct Pair {
 const NAMES: [&str; 2] = ["lower", "upper"];
 
 impl Pair {
-    /// Parses `lo hi`: numbers, variables, or NULL for one of them.
+    /// Planes at two places, of which one may be missing.
     ///
     /// # Errors
-    /// Two NULLs, planes in the wrong order, unknown variables.
-    pub fn read(axis: usize, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let span = args.here();
-        let mut places = [None, None];
-        for (place, name) in places.iter_mut().zip(NAMES) {
-            *place = param_or_null(args, &format!("the {name} plane"))?;
-            if let Some(place) = place {
-                cx.param(place, false)?;
-            }
-        }
-        let pair = Self { axis, places, span };
+    /// No place, and planes in the wrong order.
+    pub fn new(axis: usize, At { value: places, span, .. }: At<[Nullable<Param>; 2]>) -> Result<Self> {
+        let pair = Self { axis, places: places.map(|place| place.0), span };
         match (&pair.places, pair.fixed()) {
             ([None, None], _) => fail(Code::BAD_VALUE, span, "one of the two planes must have a place"),
             (_, [Some(a), Some(b)]) if a >= b => fail(Code::BAD_VALUE, span, disordered(a, b)),

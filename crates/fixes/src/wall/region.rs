@@ -1,12 +1,13 @@
 //! fix wall/gran/region: the surface of a region as a wall, at rest or moving with it.
 
-use super::words::{self, KEYWORDS};
+use super::words::{self, Material, Rest};
 use super::{Common, Declared, Form, Surface, needs_spheres};
-use crate::{Fix, FixStyle};
+use crate::{Fix, FixStyle, RegionId};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::walls::{Near, Wall};
 use perigrain_lang::Args;
 use perigrain_plan::Tick;
+use perigrain_styles::words::{At, Form as Declaration, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{Look, Shape};
 use perigrain_world::{Key, Numbers, Outline, Region, World};
@@ -21,54 +22,66 @@ impl Style for WallGranRegion {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group wall/gran/region granular MODELS … | hooke … | hooke/history … | hertz/history …  \
-                     region regionID [contacts] [temperature T|v_name] [material E nu] [about x y z]",
+            syntax: "",
             summary: "The surface of a region as a wall on which grains lean, at rest or moving.",
-            text: "As `fix wall/gran`, with the surface of a region of any shape. Grains inside feel every face they touch, \
-                grains outside (`side out`) the nearest point; a region with `open` faces is a shell that is felt from \
-                both sides. R̄ counts the wall's curvature, 1/R̄ = 1/R + 1/R_w: R_w = −R_s inside a sphere of radius R_s, \
-                −2 R_c inside a cylinder or cone of radius R_c there, the same with + from outside, flat for everything \
-                else (ellipsoids too, as in LAMMPS); where the wall is too hollow for the grain, R̄ = R.\n\n\
-                Of a `union` those places count that lie in no other part, of an `intersect` those that lie in all; parts \
-                with open faces hide nothing. Edges that such a combination makes towards the grains are not rounded: \
-                avoid them.\n\n\
-                A region that follows variables moves the wall, and its surface has the velocity of that motion (the \
-                change since the step before, zero in the first). `region ID delete` and a new `region ID` of the same \
-                name between runs change the wall.\n\n\
-                LAMMPS takes cones for hollow from outside, open cylinders for flat from outside, feels nothing of a \
-                union's outside, misses contacts beside the ends of an ellipsoid's axes, takes moving parts of unions and \
-                intersections for resting ones, gives a turning wall a speed in proportion to the length of the axis that the \
-                deck names, and lets only cylinders and spheres push while they change their size; \
-                perigrain does the same under `-compat lammps` alone. Keywords and values as those of `fix wall/gran`.",
+            text: "As `fix wall/gran`, with the surface of a region of any shape. Grains inside feel every face they \
+                   touch, grains outside (`side out`) the nearest point; a region with `open` faces is a shell that is \
+                   felt from both sides. R̄ counts the wall's curvature, 1/R̄ = 1/R + 1/R_w: R_w = −R_s inside a sphere \
+                   of radius R_s, −2 R_c inside a cylinder or cone of radius R_c there, the same with + from outside, \
+                   flat for everything else (ellipsoids too, as in LAMMPS); where the wall is too hollow for the grain, \
+                   R̄ = R.\n\n\
+                   Of a `union` those places count that lie in no other part, of an `intersect` those that lie in all; \
+                   parts with open faces hide nothing. Edges that such a combination makes towards the grains are not \
+                   rounded: avoid them.\n\n\
+                   A region that follows variables moves the wall, and its surface has the velocity of that motion (the \
+                   change since the step before, zero in the first). `region ID delete` and a new `region ID` of the \
+                   same name between runs change the wall.\n\n\
+                   LAMMPS takes cones for hollow from outside, open cylinders for flat from outside, feels nothing of a \
+                   union's outside, misses contacts beside the ends of an ellipsoid's axes, takes moving parts of \
+                   unions and intersections for resting ones, gives a turning wall a speed in proportion to the length \
+                   of the axis that the deck names, and lets only cylinders and spheres push while they change their \
+                   size; perigrain does the same under `-compat lammps` alone. Values as those of `fix wall/gran`.",
             example: "region funnel cone z 0.0 0.0 0.001 0.005 -0.001 0.006 units box open 1 open 2\n\
                       fix funnel grains wall/gran/region granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential \
                       mindlin NULL 1.0 0.5 region funnel",
         }
     }
+    fn words(&self) -> Vec<Declaration> {
+        vec![Declaration::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    #[word(name = "force", with = force, kind = words::FORCE)]
+    force: Material,
+    #[word(name = "wall")]
+    wall: Surround,
+    #[word(flatten)]
+    rest: Rest,
+}
+
+/// The wall.
+#[derive(Words)]
+#[word(what = "wall")]
+enum Surround {
+    /// The surface of this region.
+    Region(#[word(name = "regionID")] At<RegionId>),
+}
+
+fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
+    words::force(args, cx, &["region"])
 }
 
 impl FixStyle for WallGranRegion {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/gran/region")?;
-        let material = words::force(args, cx, &["region"])?;
-        let mut common = words::common(cx, material);
-        let word = args.expect("the word `region`")?;
-        if word.text != "region" {
-            return Err(args.unknown(word, &["region"]));
-        }
-        let word = args.expect("the region's ID")?;
-        let region = cx.region(word)?;
-        let span = word.span;
-        if let Some(turn) = region.motion.as_ref().and_then(|m| m.turn.as_ref()) {
-            common.center = turn.point;
-        }
-        while let Some(word) = args.next() {
-            if !words::keyword(word, args, cx, &mut common)? {
-                return Err(args.unknown(word, &KEYWORDS));
-            }
-        }
-        words::check_heat(&common)?;
-        Ok(Box::new(Declared { common, form: Shaped { region: word.text.clone(), span } }))
+        let Line { force, wall: Surround::Region(wall), rest } = read(args, cx)?;
+        let (span, RegionId(region)) = (wall.span, wall.value);
+        let known = cx.world.regions.find(&region).and_then(|key| cx.world.regions.get(key));
+        let turn = known.and_then(|region| region.motion.as_ref()?.turn.as_ref());
+        let common = rest.common(force, turn.map_or([0.0; 3], |turn| turn.point), cx)?;
+        Ok(Box::new(Declared { common, form: Shaped { region, span } }))
     }
 }
 

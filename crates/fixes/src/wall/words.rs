@@ -4,17 +4,120 @@ use super::Common;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_contact::driver::{Average, Curvature};
 use perigrain_contact::{Arm, Damping, Drag, Granular, Heat, Model, normal};
-use perigrain_lang::{Args, Word};
+use perigrain_lang::{Args, Param, Word};
 use perigrain_pairs::contact::{classic, words};
 use perigrain_styles::BuildCx;
-use perigrain_styles::common::variable_param;
+use perigrain_styles::words::{Alternative, At, Kind, Part, Placeholder, Value, Words};
 use perigrain_world::Compat;
 
 /// Force styles of walls.
 const STYLES: [&str; 4] = ["granular", "hooke", "hooke/history", "hertz/history"];
 
+/// The numbers of a classic force.
+const CLASSIC: &[Part] = &[
+    number("Kn"),
+    number("Kt"),
+    number("gamma_n"),
+    number("gamma_t"),
+    number("xmu"),
+    Part::Word(Placeholder { name: "dampflag", kind: Kind::Whole, about: "", unit: "" }),
+    Part::Maybe(&[Part::Word(Placeholder {
+        name: "limit_damping",
+        kind: Kind::Choice(&[Alternative { word: "limit_damping", about: "", parts: &[] }]),
+        about: "",
+        unit: "",
+    })]),
+];
+
+const fn number(name: &'static str) -> Part {
+    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
+}
+
+const fn style(word: &'static str, about: &'static str, parts: &'static [Part]) -> Alternative {
+    Alternative { word, about, parts }
+}
+
+/// The force style of a wall with its parameters.
+pub const FORCE: Kind = Kind::Choice(&[
+    style(
+        "granular",
+        "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
+        &[Part::Many(
+            &[Part::Word(Placeholder { name: "MODELS", kind: Kind::Text, about: "", unit: "" })],
+            1,
+        )],
+    ),
+    style("hooke", "The force of `pair_style gran/hooke`.", CLASSIC),
+    style("hooke/history", "The force of `pair_style gran/hooke/history`.", CLASSIC),
+    style("hertz/history", "The force of `pair_style gran/hertz/history`.", CLASSIC),
+]);
+
 /// Keywords of every wall.
-pub const KEYWORDS: [&str; 4] = ["contacts", "temperature", "material", "about"];
+#[derive(Words)]
+pub struct Rest {
+    /// Offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, its radius, and with a model
+    /// of heat the heat that flows into the particle as a ninth.
+    #[word(flag)]
+    contacts: bool,
+    /// The temperature of the wall [temperature], a number or an equal-style variable, for a model of heat: h π a² (T_wall − T)
+    /// flows into a grain (`heat area h`), or 2 k a (T_wall − T).
+    #[word(keyword, name = "T", placed)]
+    temperature: Option<At<Param>>,
+    /// Elastic constants of the wall's own, for 1/E* and 1/G* of two unlike bodies; not in LAMMPS.
+    #[word(keyword, name = "E nu", placed)]
+    material: Option<At<(Young, Poisson)>>,
+    /// The point about which the torque on the wall is taken [length].
+    #[word(keyword, name = "x y z", what = "{}")]
+    about: Option<[f64; 3]>,
+}
+
+/// Young's modulus of a wall.
+struct Young(f64);
+
+impl Value for Young {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive("Young's modulus of the wall").map(Self)
+    }
+}
+
+/// Poisson's ratio of a wall.
+struct Poisson(f64);
+
+impl Value for Poisson {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let at = args.here();
+        let poisson = args.number("Poisson's ratio of the wall")?;
+        if (-1.0..=0.5).contains(&poisson) {
+            return Ok(Self(poisson));
+        }
+        fail(Code::BAD_VALUE, at, format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not"))
+    }
+}
+
+impl Rest {
+    /// The data of a wall with this force, whose torque is taken about `center` unless the line says another point.
+    ///
+    /// # Errors
+    /// A material that the force cannot have, and heat without a temperature, or the reverse.
+    pub fn common(self, material: Material, center: [f64; 3], cx: &BuildCx) -> Result<Common> {
+        let own = match self.material {
+            Some(At { value: (Young(young), Poisson(poisson)), span, .. }) => {
+                Some(own_material(span, [young, poisson], &material.model)?)
+            }
+            None => None,
+        };
+        let common = Common {
+            contacts: self.contacts,
+            temperature: self.temperature.map(|at| (at.value, at.span)),
+            center: self.about.unwrap_or(center),
+            ..common(cx, Material { own, ..material })
+        };
+        check_heat(&common)?;
+        Ok(common)
+    }
+}
 
 /// Materials of a wall and of the grains on it.
 #[derive(Clone, Copy)]
@@ -81,7 +184,7 @@ fn unknown_force(word: &Word, ends: &[&str]) -> Diagnostic {
             word.text
         ));
     }
-    let about_the_wall = |text: &str| ends.contains(&text) || KEYWORDS.contains(&text) || text == "file";
+    let about_the_wall = |text: &str| ends.contains(&text) || Rest::GRAMMAR.has(text) || text == "file";
     if about_the_wall(&word.text) || word.text.contains('.') {
         let example = "granular hertz/material E e nu tangential mindlin NULL x_gamma mu";
         return d.help(format!("write the force first: `{example} {} …`", ends[0]));
@@ -108,29 +211,8 @@ fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
     fail(Code::CONFLICT, c.span, format!("{wrong}: a wall has no use for it"))
 }
 
-/// Reads one of the keywords of all walls; returns whether the word is one.
-///
-/// # Errors
-/// Mistakes in its arguments.
-pub fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, common: &mut Common) -> Result<bool> {
-    match word.text.as_str() {
-        "contacts" => common.contacts = true,
-        "material" => common.material.own = Some(own_material(word, args, &common.material.model)?),
-        "about" => {
-            common.center = [args.number("x")?, args.number("y")?, args.number("z")?];
-        }
-        "temperature" => {
-            let warmth = variable_param(args, "the temperature of the wall")?;
-            cx.param(&warmth, false)?;
-            common.temperature = Some((warmth, word.span));
-        }
-        _ => return Ok(false),
-    }
-    Ok(true)
-}
-
 /// Refuses heat without a wall temperature, and the reverse.
-pub fn check_heat(common: &Common) -> Result<()> {
+fn check_heat(common: &Common) -> Result<()> {
     let conducts = common.material.model.heat != Heat::None;
     let (span, text, help) = match &common.temperature {
         Some((_, span)) if !conducts => {
@@ -147,25 +229,18 @@ pub fn check_heat(common: &Common) -> Result<()> {
 }
 
 /// `material E nu`: the wall's own elastic constants; the other parameters are those of the model.
-fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
-    let young = args.positive("Young's modulus of the wall")?;
-    let at = args.here();
-    let poisson = args.number("Poisson's ratio of the wall")?;
-    if !(-1.0..=0.5).contains(&poisson) {
-        let text = format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not");
-        return fail(Code::BAD_VALUE, at, text);
-    }
+fn own_material(span: Span, [young, poisson]: [f64; 2], model: &Model) -> Result<Model> {
     let Some(normal) = model.normal.with_material(young, poisson) else {
         let name = model.normal.name();
         let text = format!("a wall of another material needs a normal model with one, not {name}");
-        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+        let d = Diagnostic::error(Code::CONFLICT, span, text);
         return Err(d.help("take `granular hertz/material E eta nu …`").into());
     };
     Ok(Model { normal, ..*model })
 }
 
 /// The common data of a wall before its keywords are read.
-pub fn common(cx: &BuildCx, material: Material) -> Common {
+fn common(cx: &BuildCx, material: Material) -> Common {
     if material.model.damping == Damping::Tsuji {
         cx.fault(material.span, "damping tsuji without its factor √2", true);
     }

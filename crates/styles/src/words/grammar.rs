@@ -226,12 +226,27 @@ impl Grammar {
         all
     }
 
+    /// All keywords; neighbours that differ in their words alone together.
+    fn together(&'static self) -> Vec<(String, &'static Keyword)> {
+        let mut all: Vec<(String, &Keyword)> = vec![];
+        for keyword in self.every() {
+            let same = |other: &Keyword| {
+                !other.values.is_empty() && Keyword { word: keyword.word, ..*other } == *keyword
+            };
+            match all.last_mut() {
+                Some((names, last)) if same(last) => *names = format!("{names}|{}", keyword.word),
+                _ => all.push((keyword.word.to_string(), keyword)),
+            }
+        }
+        all
+    }
+
     /// The syntax line, without its head.
     pub fn line(&'static self) -> String {
         let mut words: Vec<String> = self.in_order().into_iter().map(|part| part.shown()).collect();
-        for keyword in self.every() {
+        for (names, keyword) in self.together() {
             let again = if keyword.repeats { "…" } else { "" };
-            words.push(format!("[{}]{again}", keyword.shown()));
+            words.push(format!("[{}]{again}", keyword.shown_as(&names)));
         }
         words.join(" ")
     }
@@ -242,10 +257,15 @@ impl Grammar {
         for part in self.in_order() {
             part.rows(&mut rows);
         }
-        for keyword in self.every() {
+        for (names, keyword) in self.together() {
             let start = rows.len();
-            rows.push([keyword.shown(), keyword.about.into(), keyword.unit().into(), keyword.default.into()]);
-            keyword.values.iter().for_each(|part| part.choices(keyword.word, &mut rows));
+            rows.push([
+                keyword.shown_as(&names),
+                keyword.about.into(),
+                keyword.unit().into(),
+                keyword.default.into(),
+            ]);
+            keyword.values.iter().for_each(|part| part.choices(&names, &mut rows));
             // What each choice means says what the keyword is about.
             if keyword.about.is_empty() && rows.len() > start + 1 {
                 rows.remove(start);
@@ -300,8 +320,13 @@ impl Form {
 impl Keyword {
     /// The keyword with what stands behind it.
     pub fn shown(&self) -> String {
+        self.shown_as(self.word)
+    }
+
+    /// The same by another name.
+    fn shown_as(&self, name: &str) -> String {
         let values = self.values.iter().map(Part::shown).filter(|shown| !shown.is_empty());
-        std::iter::once(self.word.to_string()).chain(values).collect::<Vec<_>>().join(" ")
+        std::iter::once(name.to_string()).chain(values).collect::<Vec<_>>().join(" ")
     }
 
     fn unit(&self) -> &'static str {

@@ -8,7 +8,7 @@ use perigrain_contact::walls::{FacetNear, Near, Wall};
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_mesh::Facets;
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::common::param_or_null;
+use perigrain_styles::words::{Kind, Nullable, Value, Words};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::outline::Pose;
 use perigrain_world::region::turned;
@@ -31,49 +31,75 @@ pub enum Motion {
     Variable([Option<ValueRef>; 3]),
 }
 
-impl Motion {
-    /// Reads the words after `move`.
-    ///
-    /// # Errors
-    /// Every mistake in them.
-    pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let three = |args: &mut Args, what: &str| -> Result<Vec3> {
-            let mut number = |axis: &str| args.number(&format!("{what}{axis}"));
-            Ok([number("x")?, number("y")?, number("z")?])
-        };
-        Ok(match args.choice("motion", &["linear", "wiggle", "rotate", "variable"])? {
-            "linear" => Self::Linear(three(args, "V")?),
-            "wiggle" => {
-                let amplitude = three(args, "A")?;
-                Self::Wiggle(amplitude, 2.0 * PI / args.positive("the period")?)
-            }
-            "rotate" => {
-                let point = three(args, "P")?;
-                let axis = direction(args, cx)?;
-                let span = args.here();
-                let period = args.number("the period")?;
-                if period == 0.0 {
-                    return fail(Code::BAD_VALUE, span, "the period must not be zero");
-                }
-                Self::Rotate(point, axis, 2.0 * PI / period)
-            }
-            _ => {
-                let mut one =
-                    |name: &str| match param_or_null(args, &format!("the displacement along {name}"))? {
-                        None => Ok(None),
-                        Some(Param::Ref(r)) => cx.value(&r, false).map(|()| Some(r)),
-                        Some(Param::Number(_)) => {
-                            let text = format!(
-                                "the displacement along {name} is an equal-style variable v_name, or NULL"
-                            );
-                            fail(Code::WRONG_KIND, cx.span, text)
-                        }
-                    };
-                Self::Variable([one("x")?, one("y")?, one("z")?])
-            }
-        })
-    }
+/// How a mesh moves, with t the time since the fix was declared.
+#[derive(Words)]
+#[word(what = "motion")]
+pub enum Moving {
+    /// A shift V t.
+    Linear(#[word(name = "Vx Vy Vz", what = "{}")] [f64; 3]),
+    /// A shift A sin ω t with ω = 2π/period.
+    Wiggle {
+        #[word(name = "Ax Ay Az", what = "{}")]
+        amplitude: [f64; 3],
+        #[word(positive, what = "the period")]
+        period: f64,
+    },
+    /// A turn about the axis R through P, right-handed, one in a period.
+    Rotate {
+        #[word(name = "Px Py Pz", what = "{}")]
+        point: [f64; 3],
+        #[word(name = "Rx Ry Rz", with = direction, kind = Kind::Number)]
+        axis: [f64; 3],
+        #[word(name = "period")]
+        period: Period,
+    },
+    /// Shifts by equal-style variables; the wall has the velocity of the change since the step before.
+    Variable(#[word(name = "v_dx v_dy v_dz", what = "the displacement {}")] [Nullable<Shift>; 3]),
+}
 
+/// A time that is not zero.
+pub struct Period(f64);
+
+impl Value for Period {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        match args.number("the period")? {
+            0.0 => fail(Code::BAD_VALUE, span, "the period must not be zero"),
+            period => Ok(Self(period)),
+        }
+    }
+}
+
+/// An equal-style variable.
+pub struct Shift(ValueRef);
+
+impl Value for Shift {
+    const KIND: Kind = Kind::Reference;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        match Param::value(what, args, cx)? {
+            Param::Ref(r) => Ok(Self(r)),
+            Param::Number(_) => {
+                let text = format!("{what} is an equal-style variable v_name, or NULL");
+                fail(Code::WRONG_KIND, cx.span, text)
+            }
+        }
+    }
+}
+
+impl Moving {
+    /// The motion.
+    pub fn motion(self) -> Motion {
+        match self {
+            Self::Linear(velocity) => Motion::Linear(velocity),
+            Self::Wiggle { amplitude, period } => Motion::Wiggle(amplitude, 2.0 * PI / period),
+            Self::Rotate { point, axis, period } => Motion::Rotate(point, axis, 2.0 * PI / period.0),
+            Self::Variable(names) => Motion::Variable(names.map(|name| name.0.map(|shift| shift.0))),
+        }
+    }
+}
+
+impl Motion {
     /// A point of the axis, where there is one.
     pub fn point(&self) -> Option<Vec3> {
         match self {
