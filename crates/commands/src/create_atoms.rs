@@ -7,26 +7,25 @@ mod packing;
 mod places;
 pub(super) mod subset;
 mod volumes;
+mod words;
 
 use super::{Act, CommandStyle};
 use molecules::Copies;
-use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
-use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_styles::common::{
-    self, bad_keyword, in_group, orthogonal, scales, seed, units_lattice, unknown_style,
-};
+use pack::Pack;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, in_group, orthogonal, scales};
+use perigrain_styles::words::{At, Form, Forms, OneType, Units, Value};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
-use perigrain_world::{Particles, World, memory};
+use perigrain_world::{Particles, Region, World, memory};
 use places::{Maker, New, Place, Test};
 use subset::{Amount, Subset};
+use words::{
+    Also, Basis, Copied, Decision, InRegion, Joined, Named, Number, Random, Shared, Single, Sites, Way,
+};
 
 /// The command.
 pub struct CreateAtoms;
-
-const KEYWORDS: [&str; 18] = [
-    "basis", "ratio", "subset", "units", "remap", "overlap", "maxtry", "var", "set", "group", "meshmode",
-    "radscale", "mol", "rotate", "sizes", "rounds", "axis", "volumes",
-];
 
 impl Style for CreateAtoms {
     fn name(&self) -> &'static str {
@@ -35,74 +34,36 @@ impl Style for CreateAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_atoms TYPE box | region ID | single X Y Z | random N SEED ID|NULL | mesh FILE  \
-                     [basis M TYPE] [ratio P SEED] [subset N SEED] [var NAME] [set x|y|z NAME] … [group ID] \
-                     [units lattice|box] [remap yes|no] [overlap D] [maxtry N] [meshmode bisect R|qrand D] [radscale S] \
-                     [mol ID SEED] [rotate ANGLE X Y Z] [volumes cut]\n\
-                     create_atoms TYPE pack REGION SHARE|number N SEED \
-                     [sizes mono D|uniform D1 D2|lognormal D S|mix number|mass D1 P1 D2 P2 … [types T1 T2 …]] [overlap O] \
-                     [rounds N] [group ID]\n\
-                     create_atoms TYPE opal REGION PORE S SHARE|number N SEED [sizes mono D] [axis 111|100] [overlap O] [rounds N] \
-                     [group ID]\n\
-                     create_atoms TYPE aggregate REGION SHARE SEED POROSITY LAMBDA [sizes mono D] [overlap O] [rounds N] \
-                     [group ID]",
+            syntax: "",
             summary: "Creates particles on lattice sites, at one place, at random places, on a surface, or densely packed.",
-            text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in \
-                   lo ≤ x < hi of the box; along periodic dimensions both faces move down by about 1e-6 of the edge \
-                   length, so that exactly one of two equivalent sites is taken. `region` also tests the region. `single` \
-                   takes lattice spacings unless `units box` is given; `remap yes` wraps its place into a periodic box. \
-                   `random` draws from LAMMPS' Park–Miller stream; `overlap D` keeps new particles D away from all \
-                   others, in lattice spacings (along x) unless `units box` is given, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
-                   cell another type. `ratio` and `subset` take a random part of the sites, exact in number, the sites \
-                   that LAMMPS takes.\n\n\
-                   `var` names an equal-style variable that decides about each place of `box`, `region` and `random`: no \
-                   particle where it is zero. `set x NAME` gives the internal-style variable NAME the coordinate before \
-                   it is asked.\n\n\
-                   `mesh` reads triangles from an STL, OBJ, PLY or VTP file (`region mesh` says what of them) in box units (`units box` must be said). \
-                   `meshmode bisect R` (default, with R = 1) halves triangles at their longest side \
-                   until their corners are on average no farther than R from the centre, and puts a particle there; \
-                   `qrand D` puts D particles per area at places of a quasi-random sequence. Spheres take their radius \
-                   from the triangle, times `radscale`.\n\n\
-                   New ids follow the largest one in use; `group` puts the new particles into a group, made if it is not \
-                   there. A sphere starts with diameter 1 and density 1, a peridynamic particle with volume 1 and mass \
-                   1.\n\n\
-                   `volumes cut` (not in LAMMPS; `region` and peridynamic particles alone) gives each particle the part of its \
-                   lattice cell that lies inside region and box as its volume, so that they add up to the volume of the body, \
-                   whatever its shape. The cell of a site is the unit cell around it or, on a lattice of several basis points, \
-                   what is nearer to it than to other sites. Cells that the surface passes are cut exactly where the \
-                   region is a mesh at rest and the lattice has one basis point, and by 1021 places in each \
-                   of them otherwise: 0.2 % of a cell (root mean square), and of the sum 2·10⁻⁴ at worst for twenty bodies of 10 to 20 cells across. \
-                   What lies in the cell of a site outside goes to the nearest particle, in equal parts where several are as \
-                   near, so that volumes may be larger than a cell; how much that is stands in the log, and where more than a thousandth goes \
-                   farther than 1.8 spacings (a body thinner than the lattice) a warning. Masses are densities for these particles and \
-                   need no change. Not with `ratio`, `subset`, `var` and `mol`, which leave sites out.\n\n\
-                   `mol ID SEED` puts a copy of a `molecule` template in each place, its centre there, turned at random or as \
-                   `rotate ANGLE X Y Z` [degrees, axis] says; TYPE, which may be 0, is added to the types of the template. Copies \
-                   get molecule IDs behind the largest one. LAMMPS' random turns; with `overlap` D all its particles keep D away from all others. Not with `basis`.\n\n\
+            text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in lo ≤ x < hi \
+                   of the box; along periodic dimensions both faces move down by about 1e-6 of the edge length, so that exactly one \
+                   of two equivalent sites is taken. New ids follow the largest one in use. A sphere starts with diameter 1 and \
+                   density 1, a peridynamic particle with volume 1 and mass 1.\n\n\
+                   Molecules: copies get molecule IDs behind the largest one, LAMMPS' random turns, and with `overlap` D all their \
+                   particles keep D away from all others. Not with `basis`.\n\n\
+                   `volumes cut` (not in LAMMPS; peridynamic particles alone) makes volumes add up to the volume of the body, \
+                   whatever its shape. The cell of a site is the unit cell around it or, on a lattice of several basis points, what \
+                   is nearer to it than to other sites. Cells that the surface passes are cut exactly where the region is a mesh at \
+                   rest and the lattice has one basis point, and by 1021 places in each of them otherwise: 0.2 % of a cell (root \
+                   mean square), and of the sum 2·10⁻⁴ at worst for twenty bodies of 10 to 20 cells across.\n\n\
+                   What lies in the cell of a site outside goes to the nearest particle, in equal parts where several are as near, \
+                   so that volumes may be larger than a cell; how much that is stands in the log, and where more than a thousandth \
+                   goes farther than 1.8 spacings (a body thinner than the lattice) a warning. Masses are densities for these \
+                   particles and need no change. Not with `ratio`, `subset`, `var` and `mol`, which leave sites out.\n\n\
                    `pack`, `opal` and `aggregate` are perigrain's own, and so are their random numbers. They need spheres, and take \
-                   lengths in box units. `pack` fills a part SHARE of the volume of a region (what the box holds of it) with \
-                   spheres at random places, which then push each other away until they overlap by less than a thousandth of \
-                   their diameters on average, or by `overlap` O at most, a part of the distance of touching spheres; in at \
-                   most `rounds` N (1000). Shares up to 0.6 come out easily, 0.63 nearly. `overlap 0` makes all diameters \
-                   smaller in the end, by what is needed for no overlap at all. The log has the number, the share, the \
+                   lengths in box units. Shares up to 0.6 come out easily, 0.63 nearly. The log has the number, the share, the \
                    overlaps and the rounds; what was not reached is a warning. Same seed, same bits for any number of threads. \
-                   Diameters are all alike (`mono`, 1 by default), uniform between two, `lognormal` with median D and \
-                   standard deviation S of the logarithm (up to 0.5), cut at 2.5 deviations, or a `mix` of two and more with their parts \
-                   of the number or of the mass, however these add up; behind `types` each of them has a type of its own. In the place of SHARE \
-                   `number N` sets the number of spheres, of all sizes together. Boxes may lean: a region that is the whole box continues through \
-                   faces that repeat, any other has walls all round there. Spheres keep inside of the region \
-                   by their radius; along periodic edges that a region spans they lie across the face. The region may be \
-                   any shape at rest, inside or outside, or an intersection. Density is 1, as for all spheres: `set` changes it. \
-                   Particles that are there already are not seen.\n\n\
-                   `opal` packs the walls of an inverse opal: pores of diameter PORE on a face-centred cubic lattice, beside \
-                   each other S diameters apart (below 1 windows open between them), one in the lower corner of the region; \
-                   SHARE is that of spheres in what is left between the pores. Along z lies the direction [111] of the lattice, x \
-                   along a row of pores, or [100]. `aggregate` packs the region to SHARE and takes spheres away to POROSITY \
-                   where a random field of wavelength LAMBDA (64 plane waves) is lowest; of what is left only the largest part \
-                   stays that hangs together over gaps of up to 0.1 mean diameters and comes within a diameter of both ends \
-                   of the region, along its longest edge. `create_bonds gap` bonds packings.",
+                   Density is 1, as for all spheres: `set` changes it. Particles that are there already are not seen.\n\n\
+                   Boxes may lean: a region that is the whole box continues through faces that repeat, any other has walls all \
+                   round there. Spheres keep inside of the region by their radius; along periodic edges that a region spans they \
+                   lie across the face. The region may be any shape at rest, inside or outside, or an intersection. `create_bonds \
+                   gap` bonds packings.",
             example: "create_atoms 1 region disc subset 20 4711",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        Way::FORMS.to_vec()
     }
 }
 
@@ -127,22 +88,9 @@ impl CommandStyle for CreateAtoms {
         common::domain(cx)?;
         let types = cx.world.types;
         let first = a.here();
-        let kind = type_or_zero(a, types)?;
-        let style = a.expect("box, region, single, random, mesh, pack, opal or aggregate")?;
-        let (place, note) = place(style, a, cx)?;
-        let basis = vec![kind; cx.world.lattice.basis.len()];
-        let mut c = Creation {
-            kind,
-            place,
-            basis,
-            lattice_units: true,
-            test: None,
-            mol: None,
-            group: None,
-            cut: None,
-            note,
-        };
-        keywords(a, cx, style, &mut c)?;
+        let kind = type_or_zero(a, cx)?;
+        let style = a.clone().expect("a style of create_atoms")?.clone();
+        let mut c = creation(Way::form(a, cx)?, kind, &style, cx)?;
         match &c.mol {
             Some(mol) => mol.check_types(kind, types)?,
             None if kind == 0 => {
@@ -173,96 +121,113 @@ impl CommandStyle for CreateAtoms {
     }
 }
 
-/// Where particles are made, and the lines for the log about it.
-fn place(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
-    let place = match style.text.as_str() {
-        "box" => Place::Lattice { region: None, subset: None },
-        "region" => {
-            let region = Some(cx.region(a.expect("a region")?)?.clone());
-            Place::Lattice { region, subset: None }
+/// What a line asks for.
+fn creation(way: Way, kind: u16, style: &Word, cx: &BuildCx) -> Result<Creation> {
+    let mut note = vec![];
+    let (place, also) = match way {
+        Way::Box(sites) => on_sites(sites, None),
+        Way::Region(InRegion { region, sites, volumes }) => {
+            let (place, also) = on_sites(sites, Some(region));
+            (place, Also { cut: volumes.map(|v| v.span), ..also })
         }
-        "single" => Place::Single { x: [a.number("x")?, a.number("y")?, a.number("z")?], remap: false },
-        "random" => random(a, cx)?,
-        "mesh" => return mesh::parse(a, cx).map(|(mesh, note)| (Place::Mesh(mesh), note)),
-        "pack" | "opal" | "aggregate" => Place::Pack(Box::new(pack::parse(style, a, cx)?)),
-        _ => {
-            const KNOWN: [&str; 8] =
-                ["box", "region", "single", "random", "mesh", "pack", "opal", "aggregate"];
-            return Err(unknown_style(style, "style of create_atoms", &KNOWN));
+        Way::Single(Single { x, remap, shared, copied }) => {
+            (Place::Single { x, remap }, Also { shared, copied, ..Also::default() })
         }
+        Way::Random(Random { count, seed, region, overlap, maxtry, decision, shared, copied }) => {
+            let place = Place::Random { count, seed: seed.0, region: region.0, overlap, tries: maxtry };
+            (place, Also { decision, shared, copied, ..Also::default() })
+        }
+        Way::Mesh(line) => {
+            let (mesh, lines) = mesh::read(&line, cx)?;
+            note = lines;
+            (Place::Mesh(mesh), Also { shared: line.shared, ..Also::default() })
+        }
+        Way::Pack(line) => packed(line.read(style, cx)?),
+        Way::Opal(line) => packed(line.read(style, cx)?),
+        Way::Aggregate(line) => packed(line.read(style, cx)?),
     };
     if matches!(place, Place::Lattice { .. }) && cx.world.lattice.basis.is_empty() {
         let text = "there is no lattice to create particles on";
         let d = Diagnostic::error(Code::WRONG_ORDER, style.span, text);
         return Err(d.help("write for example `lattice sc 0.5` before this line").into());
     }
-    Ok((place, vec![]))
-}
-
-fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Result<()> {
-    let (mut variable, mut sets) = (None, [None, None, None]);
-    let mut start = style.span;
-    let mut rotate = None;
-    while let Some(word) = a.next() {
-        match (word.text.as_str(), &mut c.place) {
-            ("basis", Place::Lattice { .. }) => basis_type(a, &mut c.basis, cx.world.types)?,
-            ("ratio" | "subset", Place::Lattice { subset, .. }) => *subset = Some(some_sites(word, a)?),
-            ("sizes" | "rounds" | "axis" | "overlap", Place::Pack(pack)) => {
-                if !pack.keyword(word, a, cx.world.types)? {
-                    return Err(does_not_go(word, style));
-                }
-            }
-            ("units", place) if !matches!(place, Place::Pack(_)) => c.lattice_units = units_lattice(a)?,
-            ("remap", Place::Single { remap, .. }) => *remap = a.flag("remap")?,
-            ("overlap", Place::Random { overlap, .. }) => *overlap = a.positive("the distance")?,
-            ("maxtry", Place::Random { tries, .. }) => *tries = a.integer_from(1, "maxtry")?,
-            ("meshmode", Place::Mesh(mesh)) => mesh.mode = mesh::mode(a)?,
-            ("radscale", Place::Mesh(mesh)) => mesh.radius_scale = a.positive("the factor of radii")?,
-            ("var", Place::Lattice { .. } | Place::Random { .. }) => {
-                start = word.span;
-                variable = Some(deciding(a, cx, "an equal-style variable")?);
-            }
-            ("set", Place::Lattice { .. } | Place::Random { .. }) => {
-                start = word.span;
-                let d = common::axis(a, "the coordinate")?;
-                sets[d] = Some(deciding(a, cx, "an internal-style variable")?);
-            }
-            ("volumes", Place::Lattice { region: Some(_), .. }) => {
-                a.choice("volumes", &["cut"])?;
-                c.cut = Some(word.span);
-            }
-            ("group", _) => c.group = Some(group(a, cx)?),
-            ("mol", Place::Lattice { .. } | Place::Single { .. } | Place::Random { .. }) => {
-                c.mol = Some(molecules::copies(a, cx)?);
-            }
-            ("rotate", _) => rotate = Some((word, molecules::rotate(a)?)),
-            (name, _) if KEYWORDS.contains(&name) => return Err(does_not_go(word, style)),
-            _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
-        }
-    }
-    match (&mut c.mol, rotate) {
-        (Some(mol), Some((_, q))) => mol.turned = Some(q),
-        (None, Some((word, _))) => {
-            return fail(Code::CONFLICT, word.span, "`rotate` turns molecules: `mol` is missing");
-        }
-        _ => {}
-    }
-    if c.mol.is_some() && c.basis.iter().any(|k| *k != c.kind) {
+    let mol = turned(also.copied)?;
+    let basis = basis_types(&also.basis, kind, cx)?;
+    if mol.is_some() && !also.basis.is_empty() && basis.iter().any(|k| *k != kind) {
         return fail(Code::CONFLICT, style.span, "`basis` gives types to particles, not to molecules");
     }
-    if let Some(span) = c.cut {
-        let some = matches!(c.place, Place::Lattice { subset: Some(_), .. }) || variable.is_some();
-        refuse_cut(cx, span, some || c.mol.is_some())?;
+    if let Some(span) = also.cut {
+        let some = matches!(place, Place::Lattice { subset: Some(_), .. }) || also.decision.var.is_some();
+        refuse_cut(cx, span, some || mol.is_some())?;
     }
-    c.test = match (variable, sets.iter().any(Option::is_some)) {
-        (None, false) => None,
-        (Some(variable), true) => Some(Test { variable, sets }),
+    let (test, group) = (test(also.decision)?, also.shared.joined.group);
+    let lattice_units = also.shared.units == Units::Lattice;
+    Ok(Creation { kind, place, basis, lattice_units, test, mol, group, cut: also.cut, note })
+}
+
+/// Lattice sites: of `ratio` and `subset` the later one counts.
+fn on_sites(sites: Sites, region: Option<Region>) -> (Place, Also) {
+    let Sites { basis, ratio, subset, decision, shared, copied } = sites;
+    let part = ratio.map(|At { value: (part, seed), span, .. }| Subset {
+        amount: Amount::Ratio(part.0),
+        seed: seed.0,
+        span,
+    });
+    let number = subset.map(|At { value: Number { count, seed }, span, .. }| Subset {
+        amount: Amount::Count(count),
+        seed: seed.0,
+        span,
+    });
+    let subset = [part, number].into_iter().flatten().max_by_key(|s| s.span.start);
+    (Place::Lattice { region, subset }, Also { basis, decision, shared, copied, cut: None })
+}
+
+/// A packing.
+fn packed((pack, joined): (Pack, Joined)) -> (Place, Also) {
+    let shared = Shared { joined, ..Shared::default() };
+    (Place::Pack(Box::new(pack)), Also { shared, ..Also::default() })
+}
+
+/// The molecule of which copies are made, turned as `rotate` says.
+fn turned(Copied { mol, rotate }: Copied) -> Result<Option<Copies>> {
+    let turned = rotate.as_ref().map(|turn| turn.value.quat()).transpose()?;
+    match (mol, rotate) {
+        (None, Some(turn)) => fail(Code::CONFLICT, turn.span, "`rotate` turns molecules: `mol` is missing"),
+        (mol, _) => Ok(mol.map(|mol| mol.turned(turned))),
+    }
+}
+
+/// The type of each point of the unit cell.
+fn basis_types(points: &[Basis], kind: u16, cx: &BuildCx) -> Result<Vec<u16>> {
+    let mut basis = vec![kind; cx.world.lattice.basis.len()];
+    for Basis { point: At { value: m, span, .. }, kind } in points {
+        match usize::try_from(m - 1).ok().and_then(|k| basis.get_mut(k)) {
+            Some(slot) => *slot = kind.0,
+            None => {
+                let text = format!("the lattice has basis points 1 to {}, not {m}", basis.len());
+                return fail(Code::BAD_VALUE, *span, text);
+            }
+        }
+    }
+    Ok(basis)
+}
+
+/// What decides about each place.
+fn test(Decision { var, set }: Decision) -> Result<Option<Test>> {
+    let mut sets = [None, None, None];
+    let mut start = var.as_ref().map(|v| v.span);
+    for At { value: (axis, Named(variable)), span, .. } in set {
+        start = start.or(Some(span));
+        sets[axis.0] = Some(variable);
+    }
+    match (var, sets.iter().any(Option::is_some)) {
+        (None, false) => Ok(None),
+        (Some(At { value: Named(variable), .. }), true) => Ok(Some(Test { variable, sets })),
         _ => {
             let d = Diagnostic::error(Code::INCOMPLETE, start, "`var` and `set` belong together");
-            return Err(d.help("write for example `var test set x xx`").into());
+            Err(d.help("write for example `var test set x xx`").into())
         }
-    };
-    Ok(())
+    }
 }
 
 /// Refuses `volumes cut` where particles have no volume, or where sites are left out.
@@ -285,20 +250,6 @@ fn refuse_cut(cx: &BuildCx, span: Span, some: bool) -> Result<()> {
     Ok(())
 }
 
-/// The refusal of a keyword of other forms.
-fn does_not_go(word: &Word, style: &Word) -> Diagnostics {
-    let text = format!("`{}` does not go with create_atoms {}", word.text, style.text);
-    Diagnostic::error(Code::CONFLICT, word.span, text).into()
-}
-
-/// A variable with one number, by its name.
-fn deciding(a: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
-    let word = a.expect(what)?;
-    let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
-    cx.value(&r, false)?;
-    Ok(r)
-}
-
 /// A group that is there or can be made.
 fn group(a: &mut Args, cx: &BuildCx) -> Result<String> {
     let word = a.expect("a group")?;
@@ -316,54 +267,8 @@ fn group(a: &mut Args, cx: &BuildCx) -> Result<String> {
 }
 
 /// A type, or 0 where that of a molecule template counts.
-fn type_or_zero(a: &mut Args, types: usize) -> Result<u16> {
-    if a.peek_text() != "0" {
-        return one_type(a, types);
-    }
-    a.next();
-    Ok(0)
-}
-
-fn one_type(a: &mut Args, types: usize) -> Result<u16> {
-    let span = a.here();
-    let k = a.integer("the type")?;
-    match u16::try_from(k) {
-        Ok(t) if k >= 1 && k as usize <= types => Ok(t),
-        _ => fail(Code::BAD_VALUE, span, format!("there are types 1 to {types}, not {k}")),
-    }
-}
-
-fn basis_type(a: &mut Args, basis: &mut [u16], types: usize) -> Result<()> {
-    let span = a.here();
-    let m = a.integer("the basis point")?;
-    let kind = one_type(a, types)?;
-    match usize::try_from(m - 1).ok().and_then(|k| basis.get_mut(k)) {
-        Some(slot) => *slot = kind,
-        None => {
-            let text = format!("the lattice has basis points 1 to {}, not {m}", basis.len());
-            return fail(Code::BAD_VALUE, span, text);
-        }
-    }
-    Ok(())
-}
-
-fn some_sites(word: &Word, a: &mut Args) -> Result<Subset> {
-    let amount = match word.text.as_str() {
-        "ratio" => Amount::Ratio(common::fraction(a)?),
-        _ => Amount::Count(a.integer_from(1, "the number of sites")?),
-    };
-    Ok(Subset { amount, seed: common::marsaglia_seed(a)?, span: word.span })
-}
-
-fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
-    let count = a.integer_from(0, "the number of particles")?;
-    let seed = seed(a)?;
-    let word = a.expect("a region or NULL")?;
-    let region = match word.text.as_str() {
-        "NULL" => None,
-        _ => Some(cx.region(word)?.clone()),
-    };
-    Ok(Place::Random { count, seed, region, overlap: 0.0, tries: 1000 })
+fn type_or_zero(a: &mut Args, cx: &BuildCx) -> Result<u16> {
+    if a.eat("0") { Ok(0) } else { OneType::value("the type", a, cx).map(|kind| kind.0) }
 }
 
 fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {

@@ -1,22 +1,16 @@
 //! `create_box`: the simulation box and the number of types.
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::Args;
-use perigrain_styles::common::{self, bad_keyword, setting};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, setting};
+use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::region::{INFINITE, Shape};
 use perigrain_world::{Domain, Region, memory};
 
 /// The command.
 pub struct CreateBox;
-
-const KEYWORDS: [&str; 5] =
-    ["bond/types", "angle/types", "extra/bond/per/atom", "extra/angle/per/atom", "extra/special/per/atom"];
-
-/// Keywords LAMMPS has: room for dihedrals and the like.
-const ELSEWHERE: [&str; 4] =
-    ["dihedral/types", "improper/types", "extra/dihedral/per/atom", "extra/improper/per/atom"];
 
 impl Style for CreateBox {
     fn name(&self) -> &'static str {
@@ -25,15 +19,69 @@ impl Style for CreateBox {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_box N REGION [bond/types N] [angle/types N] [extra/bond/per/atom N] [extra/angle/per/atom N] [extra/special/per/atom N]",
+            syntax: "",
             summary: "Creates the simulation box from a bounded region, for N particle types.",
-            text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and \
-                   `side in`. A prism becomes a triclinic box: its edges lean as those of the prism (tilts xy, xz and yz), and may lean \
-                   otherwise later (`change_box`, `fix deform`). Where a tilt is more than half of the length along which it leads, a \
-                   warning says so. General triclinic boxes (`NULL`) are refused. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS. `bond/types` \
-                   gives the number of bond types, for atom styles with bonds, `angle/types` that of angle types; room for bonds per particle is not limited, \
-                   `extra/…` only has to be said for LAMMPS.",
+            text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and `side in`. A \
+                   prism becomes a triclinic box: its edges lean as those of the prism (tilts xy, xz and yz), and may lean \
+                   otherwise later (`change_box`, `fix deform`). Where a tilt is more than half of the length along which it leads, \
+                   a warning says so. General triclinic boxes (`NULL`) are refused. Shrink-wrapped faces start 1e-4 of the edge \
+                   length outside it, as in LAMMPS.\n\n\
+                   Room for bonds per particle is not limited.",
             example: "create_box 3 world",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of types.
+    #[word(name = "N", from = 1)]
+    types: At<i64>,
+    #[word(name = "REGION", what = "a region", kind = Kind::Region)]
+    region: Word,
+    #[word(flatten)]
+    topology: Topology,
+}
+
+/// Room for bonds and angles: their types count, lists grow as they must.
+#[derive(Words)]
+#[word(refused = "dihedral/types improper/types extra/dihedral/per/atom extra/improper/per/atom")]
+struct Topology {
+    /// The number of bond types, for atom styles with bonds.
+    #[word(keyword = "bond/types", name = "N", placed)]
+    bonds: Option<At<Number>>,
+    /// The number of angle types, for atom styles with angles.
+    #[word(keyword = "angle/types", name = "N", placed)]
+    angles: Option<At<Number>>,
+    /// LAMMPS' room for bonds; without effect.
+    #[word(keyword = "extra/bond/per/atom", name = "N", what = "the number", from = 0, placed)]
+    more_bonds: Option<At<i64>>,
+    /// LAMMPS' room for angles; without effect.
+    #[word(keyword = "extra/angle/per/atom", name = "N", what = "the number", from = 0, placed)]
+    more_angles: Option<At<i64>>,
+    /// LAMMPS' room for what is bonded; without effect.
+    #[word(keyword = "extra/special/per/atom", name = "N", what = "the number", from = 0, placed)]
+    more_special: Option<At<i64>>,
+}
+
+/// A number of types of bonds or angles.
+#[derive(Clone, Copy)]
+struct Number(usize);
+
+impl Value for Number {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let number = args.integer_from(0, "the number")?;
+        match u16::try_from(number) {
+            Ok(number) => Ok(Self(usize::from(number))),
+            Err(_) => {
+                let text = format!("at most {} types of bonds or angles are possible", u16::MAX);
+                fail(Code::BAD_VALUE, span, text)
+            }
         }
     }
 }
@@ -43,21 +91,19 @@ impl CommandStyle for CreateBox {
         if cx.world.domain.is_some() {
             return fail(Code::WRONG_ORDER, a.name_span(), "the simulation box is defined already");
         }
-        let span = a.here();
-        let types = a.integer_from(1, "the number of types")?;
+        let Line { types: At { value: types, span, .. }, region: word, topology } = read(a, cx)?;
         if types > i64::from(u16::MAX) {
             return fail(Code::BAD_VALUE, span, format!("at most {} types are possible", u16::MAX));
         }
         if let Some(d) = memory::lacking_for_types(types as usize) {
             return Err(d.help("forces have a table of all pairs of types").at(span).into());
         }
-        let word = a.expect("a region")?;
         if word.text == "NULL" {
-            return Err(common::not_here(word, "a general triclinic box: create_box"));
+            return Err(common::not_here(&word, "a general triclinic box: create_box"));
         }
-        let region = cx.region(word)?;
+        let region = cx.region(&word)?;
         if cx.checking && region.motion.is_none() && region.follows() && !region.outside {
-            return Ok(guessed_box(region, types as usize, topology(a, cx)?));
+            return Ok(guessed_box(region, types as usize, topology.types(cx)?));
         }
         if region.motion.is_some() || region.outside {
             return fail(
@@ -81,7 +127,7 @@ impl CommandStyle for CreateBox {
         }) {
             return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
         }
-        let [bond_types, angle_types] = topology(a, cx)?;
+        let [bond_types, angle_types] = topology.types(cx)?;
         let flat = cx.world.settings.two_dimensional;
         common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
         common::check_volume([0, 1, 2].map(|d| hi[d] - lo[d])).map_err(|e| e.at(word.span))?;
@@ -127,31 +173,26 @@ fn guessed_box(region: &Region, types: usize, [bond_types, angle_types]: [usize;
     })
 }
 
-/// Room for bonds and angles: their types count, lists grow as they must.
-fn topology(a: &mut Args, cx: &BuildCx) -> Result<[usize; 2]> {
-    let (mut types, style) = ([0; 2], cx.world.particles.style);
-    while let Some(word) = a.next() {
-        let (span, name) = (a.here(), word.text.as_str());
-        if !KEYWORDS.contains(&name) {
-            return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE));
-        }
-        let angles = name.contains("angle");
-        if !style.bonded || (angles && !style.angled) {
-            let (what, other) = if angles { ("angles", "angle") } else { ("bonds", "bond") };
+impl Topology {
+    /// The numbers of types of bonds and angles.
+    fn types(&self, cx: &BuildCx) -> Result<[usize; 2]> {
+        let style = cx.world.particles.style;
+        let of_bonds =
+            [self.bonds.map(|n| n.span), self.more_bonds.map(|n| n.span), self.more_special.map(|n| n.span)];
+        let of_angles = [self.angles.map(|n| n.span), self.more_angles.map(|n| n.span)];
+        let missing = |spans: &[Option<Span>], there: bool| spans.iter().flatten().copied().find(|_| !there);
+        let refused = [
+            (missing(&of_bonds, style.bonded), "bonds", "bond"),
+            (missing(&of_angles, style.bonded && style.angled), "angles", "angle"),
+        ];
+        for (span, what, other) in refused {
+            let Some(span) = span else { continue };
             let text = format!("particles of atom_style {} have no {what}", style.name());
-            let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+            let d = Diagnostic::error(Code::CONFLICT, span, text);
             return Err(d.help(format!("`atom_style {other}`, alone or in a hybrid, has them")).into());
         }
-        let number = a.integer_from(0, "the number")?;
-        if name.ends_with("/types") {
-            let Ok(number) = u16::try_from(number) else {
-                let text = format!("at most {} types of bonds or angles are possible", u16::MAX);
-                return fail(Code::BAD_VALUE, span, text);
-            };
-            types[usize::from(angles)] = usize::from(number);
-        }
+        Ok([self.bonds, self.angles].map(|n| n.map_or(0, |n| n.value.0)))
     }
-    Ok(types)
 }
 
 #[cfg(test)]

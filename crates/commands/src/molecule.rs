@@ -3,10 +3,12 @@
 mod file;
 
 use super::data::text::find;
+use super::data::words::{Offset, Offsets};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, not_here};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::Template;
 
@@ -20,21 +22,23 @@ impl Style for Molecule {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "molecule ID FILE [toff T] [boff B] [aoff A] [offset T B A D I] [scale S] [FILE …] …",
+            syntax: "",
             summary: "Reads templates of molecules and clumps of spheres from files.",
-            text: "Each file describes one molecule: a title line, then `N atoms`, `N bonds`, `N angles` and, if wanted, `M mass`, `X Y Z com`, \
-                   `XX YY ZZ XY XZ YZ inertia`, then sections, each with a blank line after its name and one line per particle or \
-                   bond: Coords (`number x y z`), Types (`number type`), Molecules (`number molecule`), Diameters, Masses, Bonds (`number type \
-                   a b`), Angles (`number type a b c`). Files are looked for in the working folder, then beside the deck.\n\n\
-                   `toff`, `boff` and `aoff` add to the types of particles, bonds and angles of the file before them, `offset` gives all three and \
-                   two numbers for dihedrals and impropers; `scale` multiplies coordinates, diameters and `com` by S, masses by S³, \
-                   `inertia` by S⁵. Which pairs count as bonded follows from the bonds: Special Bond Counts and Special Bonds are \
-                   read past, with a note. Charges, dipoles, dihedrals, bodies, fragments and SHAKE data are refused. A restart file \
-                   does not hold templates, as in LAMMPS.",
+            text: "Each file describes one molecule: a title line, then `N atoms`, `N bonds`, `N angles` and, if wanted, `M mass`, \
+                   `X Y Z com`, `XX YY ZZ XY XZ YZ inertia`, then sections, each with a blank line after its name and one line per \
+                   particle or bond: Coords (`number x y z`), Types (`number type`), Molecules (`number molecule`), Diameters, \
+                   Masses, Bonds (`number type a b`), Angles (`number type a b c`). Files are looked for in the working folder, \
+                   then beside the deck.\n\n\
+                   Keywords belong to the file before them. Which pairs count as bonded follows from the bonds: Special Bond Counts \
+                   and Special Bonds are read past, with a note. Charges, dipoles, dihedrals, bodies, fragments and SHAKE data are \
+                   refused. A restart file does not hold templates, as in LAMMPS.",
             example: "print \"\"\"Two touching spheres\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 0.0009 0 0\n\nTypes\n\n1 2\n2 2\n\nDiameters\n\n\
                       1 0.001\n2 0.001\n\"\"\" file pair.txt screen no\nmolecule pair pair.txt\n\
                       create_atoms 0 single 0 0 0.006 mol pair 4928 units box",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -53,68 +57,77 @@ struct Reading {
     files: Vec<FileWords>,
 }
 
-impl CommandStyle for Molecule {
-    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let word = a.expect("the ID of a template")?;
-        let id = common::id(word, "the template's ID")?;
-        if cx.world.templates.contains_key(&id) {
-            let text = format!("there is a molecule template `{id}` already");
-            return fail(Code::DUPLICATE_NAME, word.span, text);
-        }
-        let mut files: Vec<FileWords> = vec![];
-        while files.is_empty() || !a.is_empty() {
-            let file = a.expect("a file name")?.clone();
-            if file.text.ends_with(".json") {
-                return Err(not_here(&file, "a molecule file in JSON:"));
-            }
-            let mut words = FileWords { file, kind: 0, bond: 0, angle: 0, scale: 1.0 };
-            while keyword(a, &mut words)? {}
-            files.push(words);
-        }
-        Ok(Box::new(Reading { id, files }))
+#[derive(Words)]
+struct Line {
+    /// The template's ID.
+    #[word(name = "ID", what = "the ID of a template")]
+    id: Word,
+    #[word(name = "file", least = 1)]
+    files: Vec<Described>,
+}
+
+/// A file and its keywords.
+#[derive(Words)]
+struct Described {
+    /// The file.
+    #[word(name = "FILE", what = "a file name", kind = Kind::File)]
+    file: Word,
+    /// Added to the types of particles.
+    #[word(keyword = "toff", name = "T", what = "the offset of types")]
+    kind: Option<At<Offset>>,
+    /// Added to the types of bonds.
+    #[word(keyword = "boff", name = "B", what = "the offset of bond types")]
+    bond: Option<At<Offset>>,
+    /// Added to the types of angles.
+    #[word(keyword = "aoff", name = "A", what = "the offset of angle types")]
+    angle: Option<At<Offset>>,
+    /// For dihedrals; without effect.
+    #[word(keyword = "doff", name = "D", what = "the offset")]
+    _dihedral: Option<Offset>,
+    /// For impropers; without effect.
+    #[word(keyword = "ioff", name = "I", what = "the offset")]
+    _improper: Option<Offset>,
+    /// All five.
+    #[word(keyword, name = "types")]
+    offset: Option<At<Offsets>>,
+    /// The scale: coordinates, diameters and `com` are multiplied by it, masses by its third power, `inertia` by its fifth.
+    #[word(keyword, name = "S", positive, default = 1.0)]
+    scale: f64,
+}
+
+impl Described {
+    /// What is added to types of particles, bonds and angles: of `offset` and the keyword of one the later one counts.
+    fn offsets(&self) -> [u16; 3] {
+        let own = [&self.kind, &self.bond, &self.angle];
+        let all = self.offset.as_ref().map(|all| (all.span.start, all.value.used()));
+        [0, 1, 2].map(|k| match (own[k], &all) {
+            (Some(own), Some((at, _))) if own.span.start > *at => own.value.0,
+            (_, Some((_, all))) => all[k],
+            (Some(own), None) => own.value.0,
+            (None, None) => 0,
+        })
     }
 }
 
-/// Takes a keyword of the file before it; `false` if another file follows.
-fn keyword(a: &mut Args, words: &mut FileWords) -> Result<bool> {
-    let offset = |a: &mut Args, what: &str| -> Result<u16> {
-        let span = a.here();
-        let k = a.integer_from(0, what)?;
-        u16::try_from(k).or_else(|_| fail(Code::BAD_VALUE, span, format!("there are no {k} types")))
-    };
-    match a.peek_text() {
-        "toff" => {
-            a.next();
-            words.kind = offset(a, "the offset of types")?;
+impl CommandStyle for Molecule {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let line: Line = read(a, cx)?;
+        let id = common::id(&line.id, "the template's ID")?;
+        if cx.world.templates.contains_key(&id) {
+            let text = format!("there is a molecule template `{id}` already");
+            return fail(Code::DUPLICATE_NAME, line.id.span, text);
         }
-        "boff" => {
-            a.next();
-            words.bond = offset(a, "the offset of bond types")?;
-        }
-        "aoff" => {
-            a.next();
-            words.angle = offset(a, "the offset of angle types")?;
-        }
-        "doff" | "ioff" => {
-            a.next();
-            offset(a, "the offset")?;
-        }
-        "offset" => {
-            a.next();
-            words.kind = offset(a, "the offset of types")?;
-            words.bond = offset(a, "the offset of bond types")?;
-            words.angle = offset(a, "the offset of angle types")?;
-            for what in ["dihedral", "improper"] {
-                offset(a, &format!("the offset of {what} types"))?;
+        let mut files = vec![];
+        for described in line.files {
+            let [kind, bond, angle] = described.offsets();
+            let Described { file, scale, .. } = described;
+            if file.text.ends_with(".json") {
+                return Err(not_here(&file, "a molecule file in JSON:"));
             }
+            files.push(FileWords { file, kind, bond, angle, scale });
         }
-        "scale" => {
-            a.next();
-            words.scale = a.positive("the scale")?;
-        }
-        _ => return Ok(false),
+        Ok(Box::new(Reading { id, files }))
     }
-    Ok(true)
 }
 
 impl Act for Reading {

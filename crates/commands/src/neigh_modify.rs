@@ -1,29 +1,15 @@
 //! `neigh_modify`: when neighbour lists are rebuilt and which pairs they leave out.
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::common::{not_here, setting};
+use perigrain_styles::words::{At, Form, Grammar, Kind, OneType, Part, Placeholder, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
-use perigrain_world::NeighborSettings;
+use perigrain_world::{GroupId, NeighborSettings};
 
 /// The command.
 pub struct NeighModify;
-
-const KEYWORDS: [&str; 12] = [
-    "delay",
-    "every",
-    "check",
-    "once",
-    "exclude",
-    "include",
-    "cluster",
-    "page",
-    "one",
-    "binsize",
-    "collection/type",
-    "collection/interval",
-];
 
 impl Style for NeighModify {
     fn name(&self) -> &'static str {
@@ -32,31 +18,151 @@ impl Style for NeighModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "neigh_modify [every N] [delay N] [check yes|no] [once yes|no] [exclude type I J | group A B | molecule/intra G | molecule/inter G | none] [collection/type N LIST …] [collection/interval N CUTOFF …] …",
+            syntax: "",
             summary: "Says when neighbour lists are rebuilt and which pairs they leave out.",
-            text: "A rebuild is considered every N steps, not before `delay` steps after the last one, and with `check yes` \
-                   only if some particle has moved half the skin; the delay must be a multiple of N. Wrapping into the box, shrink-wrapping and the test for \
-                   lost particles happen then too. Lists of grains that flow side by side outlast rebuilds, which the log counts all \
-                   the same. `exclude type I J` and `exclude group A B` leave pairs out, `exclude molecule/intra G` (or `molecule G`) those within a molecule of the group, `molecule/inter G` \
-                   those across molecules, `exclude \
-                   none` forgets all such rules. Peridynamic particles excluded from each other get no bonds if the rule stands when families are found, at the first \
-                   run; later it takes short-range contact away and leaves bonds. `page`, `one`, `binsize` and `cluster` are accepted without effect, and so are \
-                   `collection/type N TYPES …` (each type in one of N lists such as `1*2,5`) and `collection/interval N CUTOFF …` of `neighbor … multi`: types and sizes are searched \
-                   class by class here in any case. \
-                   Defaults: every 1 delay 0 check yes once no.",
+            text: "A rebuild is considered every N steps, not before `delay` steps after the last one; the delay must be a multiple \
+                   of N. Wrapping into the box, shrink-wrapping and the test for lost particles happen then too. Lists of grains \
+                   that flow side by side outlast rebuilds, which the log counts all the same.\n\n\
+                   Peridynamic particles excluded from each other get no bonds if the rule stands when families are found, at the \
+                   first run; later it takes short-range contact away and leaves bonds. `collection/…` belong to `neighbor … \
+                   multi`; types and sizes are searched class by class here in any case.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+/// The words; those that are not there stay as they are.
+#[derive(Words)]
+#[word(least = 1)]
+struct Line {
+    /// The interval of rebuilds [steps].
+    #[word(keyword, name = "N", from = 1, default = cx.world.settings.neighbor.every, shown = "1")]
+    every: i64,
+    /// The delay after the last rebuild [steps].
+    #[word(keyword, name = "N", from = 0, default = cx.world.settings.neighbor.delay, shown = "0")]
+    delay: i64,
+    /// Whether lists are rebuilt only if some particle has moved half the skin.
+    #[word(keyword, default = cx.world.settings.neighbor.check, shown = "yes")]
+    check: bool,
+    /// Whether lists are never rebuilt.
+    #[word(keyword, default = cx.world.settings.neighbor.once, shown = "no")]
+    once: bool,
+    #[word(keyword)]
+    exclude: Vec<At<Exclude>>,
+    /// LAMMPS' restriction to a group, which may be `all` only.
+    #[word(keyword, name = "ID", what = "a group", kind = Kind::Group)]
+    include: Option<Word>,
+    /// Accepted without effect.
+    #[word(keyword)]
+    cluster: Option<bool>,
+    /// Accepted without effect.
+    #[word(keyword, name = "N", what = "the size", from = 1, placed)]
+    page: Option<At<i64>>,
+    /// Accepted without effect.
+    #[word(keyword, name = "N", what = "the size", from = 1, placed)]
+    one: Option<At<i64>>,
+    /// Accepted without effect.
+    #[word(keyword, name = "SIZE", what = "the bin size", non_negative, placed)]
+    binsize: Option<At<f64>>,
+    /// Each type in one of N lists such as `1*2,5`; without effect.
+    #[word(keyword = "collection/type", name = "lists", placed)]
+    by_type: Option<At<TypeLists>>,
+    /// The upper cutoffs of N collections; without effect.
+    #[word(keyword = "collection/interval", name = "cutoffs", placed)]
+    by_size: Option<At<Cutoffs>>,
+}
+
+/// Which pairs lists leave out.
+#[derive(Words)]
+#[word(what = "kind of exclusion")]
+enum Exclude {
+    /// Pairs of two types.
+    Type(#[word(name = "I", what = "the type")] OneType, #[word(name = "J", what = "the type")] OneType),
+    /// Pairs of particles of two groups.
+    Group(#[word(name = "A")] GroupId, #[word(name = "B")] GroupId),
+    /// Those within a molecule of the group.
+    #[word("molecule/intra")]
+    Intra(#[word(name = "G")] GroupId),
+    /// Those across molecules of the group.
+    #[word("molecule/inter")]
+    Inter(#[word(name = "G")] GroupId),
+    /// As `molecule/intra`.
+    Molecule(#[word(name = "G")] GroupId),
+    /// Forgets all such rules.
+    None,
+}
+
+/// How many lists or numbers, and these.
+const fn counted(name: &'static str, kind: Kind) -> [Part; 2] {
+    [
+        Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
+        Part::Word(Placeholder { name, kind, about: "", unit: "" }),
+    ]
+}
+
+/// Lists of types.
+struct TypeLists;
+
+impl Value for TypeLists {
+    const KIND: Kind = Kind::Words(&Grammar { parts: &counted("LIST", Kind::Text), ..*Grammar::NONE });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let count = args.integer_from(1, "the number of collections N")?;
+        collections_of_types(count, args, cx).map(|()| Self)
+    }
+}
+
+/// Cutoffs, from the smallest on.
+struct Cutoffs;
+
+impl Value for Cutoffs {
+    const KIND: Kind = Kind::Words(&Grammar { parts: &counted("CUTOFF", Kind::Number), ..*Grammar::NONE });
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let count = args.integer_from(1, "the number of collections N")?;
+        let mut last = f64::NEG_INFINITY;
+        for _ in 0..count {
+            let span = args.here();
+            let cutoff = args.number("the upper cutoff of a collection")?;
+            if cutoff <= last {
+                let text = format!("cutoffs of collections must grow: {cutoff} follows {last}");
+                return fail(Code::BAD_VALUE, span, text);
+            }
+            last = cutoff;
+        }
+        Ok(Self)
     }
 }
 
 impl CommandStyle for NeighModify {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let line: Line = read(a, cx)?;
         let mut set = cx.world.settings.neighbor.clone();
-        let first = a.expect("a keyword")?;
-        let mut word = Some(first);
-        while let Some(keyword) = word {
-            option(&mut set, keyword, a, cx)?;
-            word = a.next();
+        (set.every, set.delay, set.check, set.once) = (line.every, line.delay, line.check, line.once);
+        line.exclude.into_iter().try_for_each(|rule| exclude(&mut set, rule, cx))?;
+        if let Some(group) = &line.include {
+            cx.group(group)?;
+            if group.text != "all" {
+                return Err(not_here(group, "neigh_modify include of a group other than all:"));
+            }
+        }
+        let collections = [
+            ("collection/type", line.by_type.map(|lists| lists.span)),
+            ("collection/interval", line.by_size.map(|cutoffs| cutoffs.span)),
+        ];
+        if let Some((name, Some(span))) = collections.iter().find(|c| c.1.is_some()).filter(|_| !set.multi) {
+            let text = format!("{name} belongs to neighbour lists of the kind `multi`");
+            let d = Diagnostic::error(Code::CONFLICT, *span, text);
+            return Err(d.help("write `neighbor SKIN multi` before this line").into());
+        }
+        let sizes = [
+            ("page", line.page.map(|page| page.span)),
+            ("one", line.one.map(|one| one.span)),
+            ("binsize", line.binsize.map(|size| size.span)),
+        ];
+        for (name, span) in sizes.into_iter().chain(collections) {
+            without_effect(name, span, cx);
         }
         if set.delay % set.every != 0 {
             let text = format!("delay ({}) must be a multiple of every ({})", set.delay, set.every);
@@ -70,68 +176,12 @@ impl CommandStyle for NeighModify {
     }
 }
 
-fn option(set: &mut NeighborSettings, keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<()> {
-    match keyword.text.as_str() {
-        "delay" => set.delay = a.integer_from(0, "the delay")?,
-        "every" => set.every = a.integer_from(1, "the interval")?,
-        "check" => set.check = a.flag("check")?,
-        "once" => set.once = a.flag("once")?,
-        "exclude" => exclude(set, a, cx)?,
-        "include" => {
-            let group = a.expect("a group")?;
-            cx.group(group)?;
-            if group.text != "all" {
-                return Err(not_here(group, "neigh_modify include of a group other than all:"));
-            }
-        }
-        "cluster" => {
-            a.flag("cluster")?;
-        }
-        "page" | "one" => {
-            a.integer_from(1, "the size")?;
-            without_effect(keyword, cx);
-        }
-        "binsize" => {
-            a.non_negative("the bin size")?;
-            without_effect(keyword, cx);
-        }
-        "collection/type" | "collection/interval" => collections(set, keyword, a, cx)?,
-        _ => return Err(a.unknown(keyword, &KEYWORDS)),
-    }
-    Ok(())
-}
-
-fn without_effect(keyword: &Word, cx: &BuildCx) {
-    let what = if keyword.text.starts_with("collection") { "classes" } else { "size" };
-    let text = format!("neigh_modify {} has no effect here: lists find their own {what}", keyword.text);
-    cx.note(Diagnostic::note(Code::NO_EFFECT, keyword.span, text));
-}
-
-/// `collection/type N LIST …` and `collection/interval N CUTOFF …`: how LAMMPS' `multi` gathers particles of like reach.
-fn collections(set: &NeighborSettings, keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<()> {
-    if !set.multi {
-        let text = format!("{} belongs to neighbour lists of the kind `multi`", keyword.text);
-        let d = Diagnostic::error(Code::CONFLICT, keyword.span, text);
-        return Err(d.help("write `neighbor SKIN multi` before this line").into());
-    }
-    let count = a.integer_from(1, "the number of collections N")?;
-    match keyword.text.as_str() {
-        "collection/type" => collections_of_types(count, a, cx)?,
-        _ => {
-            let mut last = f64::NEG_INFINITY;
-            for _ in 0..count {
-                let span = a.here();
-                let cutoff = a.number("the upper cutoff of a collection")?;
-                if cutoff <= last {
-                    let text = format!("cutoffs of collections must grow: {cutoff} follows {last}");
-                    return fail(Code::BAD_VALUE, span, text);
-                }
-                last = cutoff;
-            }
-        }
-    }
-    without_effect(keyword, cx);
-    Ok(())
+/// Notes a keyword that has no effect, where it stands in the line.
+fn without_effect(name: &str, span: Option<Span>, cx: &BuildCx) {
+    let Some(span) = span else { return };
+    let what = if name.starts_with("collection") { "classes" } else { "size" };
+    let text = format!("neigh_modify {name} has no effect here: lists find their own {what}");
+    cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
 }
 
 /// Reads `count` lists such as `1*2,5` in which each type stands once.
@@ -164,29 +214,17 @@ fn collections_of_types(count: i64, a: &mut Args, cx: &BuildCx) -> Result<()> {
     }
 }
 
-fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()> {
-    let kinds = ["type", "group", "molecule/intra", "molecule/inter", "molecule", "none"];
-    let span = a.here();
-    let kind = a.choice("kind of exclusion", &kinds)?;
-    if kind.starts_with("molecule") && !cx.world.particles.style.molecules {
-        return fail(Code::CONFLICT, span, "particles of this atom_style belong to no molecules");
+fn exclude(set: &mut NeighborSettings, rule: At<Exclude>, cx: &BuildCx) -> Result<()> {
+    let molecules = matches!(rule.value, Exclude::Molecule(_) | Exclude::Intra(_) | Exclude::Inter(_));
+    if molecules && !cx.world.particles.style.molecules {
+        return fail(Code::CONFLICT, rule.span, "particles of this atom_style belong to no molecules");
     }
-    match kind {
-        "molecule" | "molecule/intra" | "molecule/inter" => {
-            let group = cx.group(a.expect("a group")?)?.bit();
-            add(&mut set.exclude_molecules, (group, kind != "molecule/inter"));
-        }
-        "type" => {
-            let types = cx.world.types;
-            let (i, j) = (one_type(a, types)?, one_type(a, types)?);
-            add(&mut set.exclude_types, (i.min(j), i.max(j)));
-        }
-        "group" => {
-            let mut bit =
-                || Ok::<u32, perigrain_base::diag::Diagnostics>(cx.group(a.expect("a group")?)?.bit());
-            add(&mut set.exclude_groups, (bit()?, bit()?));
-        }
-        _ => {
+    match rule.value {
+        Exclude::Molecule(g) | Exclude::Intra(g) => add(&mut set.exclude_molecules, (g.bit(), true)),
+        Exclude::Inter(g) => add(&mut set.exclude_molecules, (g.bit(), false)),
+        Exclude::Type(OneType(i), OneType(j)) => add(&mut set.exclude_types, (i.min(j), i.max(j))),
+        Exclude::Group(a, b) => add(&mut set.exclude_groups, (a.bit(), b.bit())),
+        Exclude::None => {
             set.exclude_types.clear();
             set.exclude_groups.clear();
             set.exclude_molecules.clear();
@@ -199,15 +237,6 @@ fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()>
 fn add<T: PartialEq>(rules: &mut Vec<T>, rule: T) {
     if !rules.contains(&rule) {
         rules.push(rule);
-    }
-}
-
-fn one_type(a: &mut Args, types: usize) -> Result<u16> {
-    let span = a.here();
-    let k = a.integer_from(1, "the type")?;
-    match u16::try_from(k) {
-        Ok(t) if k as usize <= types => Ok(t),
-        _ => fail(Code::BAD_VALUE, span, format!("there are types 1 to {types}, not {k}")),
     }
 }
 

@@ -3,12 +3,13 @@
 use super::data::body::{DataFile, How};
 use super::data::properties::{Section, fill};
 use super::data::text::find;
-use super::data::words::{Ids, extra_types, ids, offsets, outside};
+use super::data::words::{Adding, Ids, Offsets, extra_types, ids, outside};
 use super::data::{Column, body};
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, Source, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Source, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, bad_keyword, id};
+use perigrain_styles::common::{self, id};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{Domain, Particles, Promise, World, memory};
@@ -17,23 +18,6 @@ use std::sync::Arc;
 /// The command.
 pub struct ReadData;
 
-const KEYWORDS: [&str; 12] = [
-    "add",
-    "offset",
-    "shift",
-    "extra/atom/types",
-    "extra/bond/types",
-    "extra/angle/types",
-    "extra/bond/per/atom",
-    "extra/angle/per/atom",
-    "extra/special/per/atom",
-    "group",
-    "nocoeff",
-    "fix",
-];
-const ELSEWHERE: [&str; 4] =
-    ["extra/dihedral/types", "extra/improper/types", "extra/dihedral/per/atom", "extra/improper/per/atom"];
-
 impl Style for ReadData {
     fn name(&self) -> &'static str {
         "read_data"
@@ -41,36 +25,87 @@ impl Style for ReadData {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "read_data FILE [add append|merge|IDOFFSET] [offset TYPE BOND ANGLE DIHEDRAL IMPROPER] [shift X Y Z] \
-                     [extra/atom/types N] [extra/bond/types N] [extra/angle/types N] [extra/bond/per/atom N] [extra/angle/per/atom N] [extra/special/per/atom N] \
-                     [group ID] [nocoeff] [fix ID HEADER SECTION]…",
+            syntax: "",
             summary: "Reads box, particles, velocities, masses and coefficients from a LAMMPS data file.",
-            text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`; it is looked for in the working \
-                   folder, then beside the deck. The header gives `N atoms`, `N atom types`, `xlo xhi`, `ylo yhi`, `zlo \
-                   zhi`, for atom styles with bonds also `N bonds` and `N bond types`, with angles `N angles` and `N angle types`; sections are Masses, Atoms, Velocities, Bonds \
-                   (number, type, two ids), Angles (number, type, three ids), Pair Coeffs, PairIJ Coeffs, Bond Coeffs and Angle Coeffs. Columns of Atoms: `id type \
-                   x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x y z` (peri), \
-                   `id molecule type x y z` (bond, angle, molecular), `id type charge x y z` (charge), `id type charge x y z mux muy muz` (dipole), `id molecule type charge x y z` (full), `id molecule type diameter density x y z` (bpm/sphere), `id \
-                   type x y z` and then the columns of each style in the order of its name (hybrid; what two have stands \
-                   once), all with three image flags at the end or none. Velocities: `id vx vy vz`, with spheres also `wx \
-                   wy wz`. The density of a sphere becomes the mass 4/3 π r³ ρ; without a radius it is the mass. The \
-                   place at creation of peridynamic particles is the place in the file: families are built anew, and \
-                   damage and contact history are not in a data file (write_restart has them).\n\n\
-                   Positions are wrapped along periodic dimensions; elsewhere they must be inside the box, which is opened \
-                   by 1e-4 of its edge at shrink-wrapped faces, which then follow the particles. Image flags of other dimensions become 0, with a warning.\n\n\
-                   `add` brings particles into an existing box, which grows to hold the file's: `append` puts the ids \
-                   behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types, bond types and angle types (the \
-                   last two numbers are for dihedrals and impropers), `shift` to places and to the file's box. \
-                   Masses of types are skipped where particles in a hybrid with bonds have their own (LAMMPS writes zeros there). \
-                   `extra/atom/types`, `extra/bond/types` and `extra/angle/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
-                   none; `nocoeff` skips coefficients. `fix ID NULL SECTION` reads a section of that heading (`NULL`: the fix's ID) into the properties of a \
-                   fix property/atom: a line for each particle, its id and then the values in the order of the fix's line; a \
-                   file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`, `Atoms # hybrid sphere peri`, \
-                   which LAMMPS takes and which `Atoms # hybrid` may leave out), it must be one with the deck's columns; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
-                   are refused in the file itself. Refused by name: dihedrals and impropers, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
+            text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`. The header gives `N atoms`, `N atom \
+                   types`, `xlo xhi`, `ylo yhi`, `zlo zhi`, for atom styles with bonds also `N bonds` and `N bond types`, with \
+                   angles `N angles` and `N angle types`; sections are Masses, Atoms, Velocities, Bonds (number, type, two ids), \
+                   Angles (number, type, three ids), Pair Coeffs, PairIJ Coeffs, Bond Coeffs and Angle Coeffs.\n\n\
+                   Columns of Atoms: `id type x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x \
+                   y z` (peri), `id molecule type x y z` (bond, angle, molecular), `id type charge x y z` (charge), `id type charge \
+                   x y z mux muy muz` (dipole), `id molecule type charge x y z` (full), `id molecule type diameter density x y z` \
+                   (bpm/sphere), `id type x y z` and then the columns of each style in the order of its name (hybrid; what two have \
+                   stands once), all with three image flags at the end or none. Velocities: `id vx vy vz`, with spheres also `wx wy \
+                   wz`.\n\n\
+                   The density of a sphere becomes the mass 4/3 π r³ ρ; without a radius it is the mass. The place at creation of \
+                   peridynamic particles is the place in the file: families are built anew, and damage and contact history are not \
+                   in a data file (write_restart has them). Masses of types are skipped where particles in a hybrid with bonds have \
+                   their own (LAMMPS writes zeros there).\n\n\
+                   Positions are wrapped along periodic dimensions; elsewhere they must be inside the box, which is opened by 1e-4 \
+                   of its edge at shrink-wrapped faces, which then follow the particles. Image flags of other dimensions become 0, \
+                   with a warning.\n\n\
+                   Where a comment names the style (`Atoms # sphere`, `Atoms # hybrid sphere peri`, which LAMMPS takes and which \
+                   `Atoms # hybrid` may leave out), it must be one with the deck's columns; LAMMPS only warns. Ids that occur \
+                   twice, lines beyond the promised number and particles outside are refused in the file itself. Refused by name: \
+                   dihedrals and impropers, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(refused = "extra/dihedral/types extra/improper/types extra/dihedral/per/atom extra/improper/per/atom")]
+struct Line {
+    /// The file; it is looked for in the working folder, then beside the deck.
+    #[word(name = "FILE", what = "a file name", kind = Kind::File)]
+    file: Word,
+    /// Brings particles into the box that is there, which grows to hold the file's.
+    #[word(keyword, name = "IDOFFSET", with = ids, kind = Adding::KIND)]
+    add: Option<Ids>,
+    /// Added to types, bond types and angle types; the last two numbers are for dihedrals and impropers. Needs `add`.
+    #[word(keyword, name = "types", placed)]
+    offset: Option<At<Offsets>>,
+    /// Added to places and to the file's box; needs `add` [length].
+    #[word(keyword, name = "X Y Z", what = "a component of the shift", placed)]
+    shift: Option<At<[f64; 3]>>,
+    /// Room for more types of particles.
+    #[word(keyword = "extra/atom/types", name = "N", with = extra_types, kind = Kind::Whole, default = 0)]
+    extra_types: usize,
+    /// Room for more types of bonds.
+    #[word(keyword = "extra/bond/types", name = "N", with = extra_types, kind = Kind::Whole, default = 0)]
+    extra_bond_types: usize,
+    /// Room for more types of angles.
+    #[word(keyword = "extra/angle/types", name = "N", with = extra_types, kind = Kind::Whole, default = 0)]
+    extra_angle_types: usize,
+    /// LAMMPS' room for bonds; without effect, as lists grow.
+    #[word(keyword = "extra/bond/per/atom", name = "N", what = "the extra room", from = 0)]
+    room_for_bonds: Option<i64>,
+    /// LAMMPS' room for angles; without effect.
+    #[word(keyword = "extra/angle/per/atom", name = "N", what = "the extra room", from = 0)]
+    room_for_angles: Option<i64>,
+    /// LAMMPS' room for what is bonded; without effect.
+    #[word(keyword = "extra/special/per/atom", name = "N", what = "the extra room", from = 0)]
+    room_for_special: Option<i64>,
+    /// The particles join this group, new if there is none.
+    #[word(keyword, name = "ID", with = group, kind = Kind::Group)]
+    group: Option<Word>,
+    /// Coefficients are skipped.
+    #[word(flag)]
+    nocoeff: bool,
+    /// Reads a section of this heading (`NULL`: the fix's ID) into the properties of a fix property/atom: a line for each particle, its id and then
+    /// the values in the order of the fix's line; a file without the section leaves zeros. HEADER has no meaning.
+    #[word(keyword, name = "section")]
+    fix: Vec<Section>,
+}
+
+/// The group that particles join.
+fn group(args: &mut Args, _: &BuildCx) -> Result<Word> {
+    let word = args.expect("a group")?;
+    id(word, "the group")?;
+    Ok(word.clone())
 }
 
 /// A parsed line.
@@ -92,71 +127,48 @@ struct Reading {
 
 impl CommandStyle for ReadData {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let file = a.expect("a file name")?.clone();
-        let mut r = Reading {
-            file,
-            ids: Ids::First,
-            type_offset: 0,
-            bond_offset: 0,
-            extra_bond_types: 0,
-            angle_offset: 0,
-            extra_angle_types: 0,
-            shift: [0.0; 3],
-            extra_types: 0,
-            group: None,
-            no_coeff: false,
-            sections: vec![],
+        let line: Line = read(a, cx)?;
+        let there = cx.world.domain.is_some();
+        if line.add.is_none() && there {
+            let text = "the simulation box is defined already";
+            let d = Diagnostic::error(Code::WRONG_ORDER, a.name_span(), text);
+            return Err(d
+                .help("write `add append`, `add merge` or `add N` to bring more particles into it")
+                .into());
+        }
+        if line.add.is_some() && !there {
+            return fail(Code::WRONG_ORDER, a.name_span(), "`add` needs a box to add to");
+        }
+        let (offset, shift) = (line.offset.as_ref().map(|o| o.span), line.shift.as_ref().map(|s| s.span));
+        if let (None, Some((name, span))) = (line.add, first(("offset", offset), ("shift", shift))) {
+            return fail(Code::CONFLICT, span, format!("`{name}` goes only with `add`"));
+        }
+        let [type_offset, bond_offset, angle_offset] = line.offset.map_or([0; 3], |o| o.value.used());
+        Ok(Box::new(Reading {
+            file: line.file,
+            ids: line.add.unwrap_or(Ids::First),
+            type_offset,
+            bond_offset,
+            extra_bond_types: line.extra_bond_types,
+            angle_offset,
+            extra_angle_types: line.extra_angle_types,
+            shift: line.shift.map_or([0.0; 3], |s| s.value),
+            extra_types: line.extra_types,
+            group: line.group,
+            no_coeff: line.nocoeff,
+            sections: line.fix,
             checking: cx.checking,
-        };
-        let mut only_with_add = None;
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "add" => r.ids = ids(a)?,
-                "offset" => {
-                    only_with_add.get_or_insert(word);
-                    [r.type_offset, r.bond_offset, r.angle_offset] = offsets(a)?;
-                }
-                "shift" => {
-                    only_with_add.get_or_insert(word);
-                    for s in &mut r.shift {
-                        *s = a.number("a component of the shift")?;
-                    }
-                }
-                "extra/bond/types" => r.extra_bond_types = extra_types(a)?,
-                "extra/angle/types" => r.extra_angle_types = extra_types(a)?,
-                // Lists grow as they must.
-                "extra/bond/per/atom" | "extra/angle/per/atom" | "extra/special/per/atom" => {
-                    a.integer_from(0, "the extra room")?;
-                }
-                "extra/atom/types" => {
-                    r.extra_types = extra_types(a)?;
-                }
-                "group" => {
-                    let word = a.expect("a group")?;
-                    id(word, "the group")?;
-                    r.group = Some(word.clone());
-                }
-                "nocoeff" => r.no_coeff = true,
-                "fix" => r.sections.push(Section::read(a, cx)?),
-                _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
-            }
-        }
-        let first = matches!(r.ids, Ids::First);
-        match (first, cx.world.domain.is_some(), only_with_add) {
-            (true, true, _) => Err(Diagnostic::error(
-                Code::WRONG_ORDER,
-                a.name_span(),
-                "the simulation box is defined already",
-            )
-            .help("write `add append`, `add merge` or `add N` to bring more particles into it")
-            .into()),
-            (false, false, _) => fail(Code::WRONG_ORDER, a.name_span(), "`add` needs a box to add to"),
-            (true, false, Some(word)) => {
-                fail(Code::CONFLICT, word.span, format!("`{}` goes only with `add`", word.text))
-            }
-            _ => Ok(Box::new(r)),
-        }
+        }))
     }
+}
+
+/// Which of two keywords stands first in the line, and where.
+fn first(
+    one: (&'static str, Option<Span>),
+    other: (&'static str, Option<Span>),
+) -> Option<(&'static str, Span)> {
+    let found = [one, other].into_iter().filter_map(|(name, span)| Some((name, span?)));
+    found.min_by_key(|(_, span)| span.start)
 }
 
 impl Act for Reading {

@@ -4,21 +4,19 @@ use super::geometry::body::{Body, FromFile};
 use super::geometry::enter::{Newcomers, off_plane};
 use super::geometry::file::File;
 use super::geometry::mesh::cell::{Fault, Shape, measure};
-use super::geometry::mesh::types::Types;
+use super::geometry::mesh::types::{Source, Types};
 use super::geometry::mesh::{self, Mesh};
-use super::geometry::words::{self, Making};
+use super::geometry::words::{self, Making, Options};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, bad_keyword};
+use perigrain_styles::common;
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
 pub struct ReadMesh;
-
-const KEYWORDS: [&str; 9] =
-    ["type", "types", "thickness", "density", "group", "scale", "rotate", "shift", "move"];
 
 impl Style for ReadMesh {
     fn name(&self) -> &'static str {
@@ -27,33 +25,46 @@ impl Style for ReadMesh {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "read_mesh FILE [type T] [types physical [NAME T|NULL]… | types set NAME T|NULL … | types cell ARRAY [VALUE T|NULL]…] \
-                     [thickness H] [density ρ] [group ID] [scale S] [rotate THETA RX RY RZ] [shift X Y Z]",
+            syntax: "",
             summary: "Makes a particle for each cell of a volume mesh, at its centroid, with its volume.",
-            text: "Cells are tetrahedra, pyramids, wedges and hexahedra; with `thickness` H, and always in a flat scene (`dimension 2`), \
-                   triangles and quads, whose area times H is the volume. What a file has besides (faces of a solid, lines, points) is \
-                   left out, and the log counts it. The extension selects the format, `.gz` behind it a packed file:\n\n\
-                   - `.msh`: Gmsh, versions 2.2 and 4.1 as text;\n\
-                   - `.inp`: Abaqus: `*NODE`, `*ELEMENT`, `*ELSET` of one part that stands where it is;\n\
-                   - `.vtk`: legacy VTK with an unstructured grid, text or binary;\n\
-                   - `.vtu`: VTK's XML, as text, base64 or raw bytes, packed by zlib or not.\n\n\
+            text: "Cells are tetrahedra, pyramids, wedges and hexahedra; with `thickness`, and always in a flat scene (`dimension \
+                   2`), triangles and quads. What a file has besides (faces of a solid, lines, points) is left out, and the log \
+                   counts it. The extension selects the format, `.gz` behind it a packed file:\n\n\
+                   - `.msh`: Gmsh, versions 2.2 and 4.1 as text;
+- `.inp`: Abaqus: `*NODE`, `*ELEMENT`, `*ELSET` of one part that stands where it is;
+- `.vtk`: legacy VTK with an unstructured grid, text or binary;
+- `.vtu`: VTK's XML, as text, base64 or raw bytes, packed by zlib or not.\n\n\
                    Volume and centroid are exact for cells with straight edges and bilinear faces; nodes between the corners are \
-                   left out, with a warning: such cells count as straight. Cells without volume, inside out, or made twice are refused by \
-                   number (as the file counts; VTK's from 0). Wedges may have either triangle first.\n\n\
-                   `type` gives all cells one type. `types physical` goes by Gmsh's physical groups: their names or numbers, each with a type, or without \
-                   any the number itself; `types set` by Abaqus' element sets; `types cell` by an array of the cells, whose values are types or stand before \
-                   them. NULL leaves a group out. Cells in none of the groups get the `type`, and are refused where there is none.\n\n\
-                   The file's numbers are multiplied by `scale`, then turned by THETA degrees about the axis R through the origin, then shifted, \
-                   in whichever order the line says it (`move` is another word for `shift`). Only particles inside of the box are made; a warning counts the others. Peridynamic \
-                   particles get the volume, spheres the diameter of a ball of the same volume, both the `density`, as `set` would give it; \
-                   without one spheres have density 1, as those of create_atoms, and the others none yet. Ids continue behind the largest one.\n\n\
-                   For peridynamics `lattice sc` is the mean spacing V^⅓ of its cells, which is what the partial volumes at the horizon and \
-                   `horizon` of a material go by; where cells are not alike in size `peri_modify horizon own` lets them go by the spacing around each particle. \
-                   With `peri_modify volume full surface tensor` bars of tetrahedra and hexahedra, nine and eight cells across, that are pulled have Young's modulus within 2 % of the \
-                   material's, under `peri/pmb` and `peri/lps`.",
+                   left out, with a warning: such cells count as straight. Cells without volume, inside out, or made twice are \
+                   refused by number (as the file counts; VTK's from 0). Wedges may have either triangle first.\n\n\
+                   Cells in none of the groups of `types` get the `type`, and are refused where there is none. Only particles \
+                   inside of the box are made; a warning counts the others. Peridynamic particles get the volume, spheres the \
+                   diameter of a ball of the same volume. Ids continue behind the largest one.\n\n\
+                   For peridynamics `lattice sc` is the mean spacing V^⅓ of its cells, which is what the partial volumes at the \
+                   horizon and `horizon` of a material go by; where cells are not alike in size `peri_modify horizon own` lets them \
+                   go by the spacing around each particle. With `peri_modify volume full surface tensor` bars of tetrahedra and \
+                   hexahedra, nine and eight cells across, that are pulled have Young's modulus within 2 % of the material's, under \
+                   `peri/pmb` and `peri/lps`.",
             example: "read_mesh body.msh types physical rock 1 binder 2 density 2235.0 scale 0.001 shift 0 0 0.006",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The file.
+    #[word(name = "FILE", what = "the name of a mesh", kind = Kind::File)]
+    file: Word,
+    #[word(keyword, placed)]
+    types: Option<At<Source>>,
+    /// The thickness of triangles and quads, whose area times it is the volume [length].
+    #[word(keyword, name = "H", positive)]
+    thickness: Option<f64>,
+    #[word(flatten)]
+    options: Options,
 }
 
 /// A parsed line.
@@ -68,17 +79,9 @@ struct Reading {
 impl CommandStyle for ReadMesh {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let file = a.expect("the name of a mesh")?.clone();
-        let mut r =
-            Reading { file, making: Making::default(), types: None, thickness: None, checking: cx.checking };
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "types" => r.types = Some(Types::read(word, a, cx, &KEYWORDS)?),
-                "thickness" => r.thickness = Some(a.positive("the thickness")?),
-                _ if r.making.keyword(word, a, cx)? => {}
-                _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
-            }
-        }
+        let Line { file, types, thickness, options } = read(a, cx)?;
+        let (making, types) = (options.making(cx)?, types.map(Types::new).transpose()?);
+        let mut r = Reading { file, making, types, thickness, checking: cx.checking };
         words::need_type(&mut r.making, r.types.is_some(), cx)?;
         if cx.world.settings.two_dimensional && r.thickness.is_none() {
             let d = Diagnostic::error(

@@ -4,18 +4,16 @@ use super::geometry::body::{Body, FromFile};
 use super::geometry::file::File;
 use super::geometry::points::{Table, no_column};
 use super::geometry::rows::{Property, Rows, is_elsewhere, property};
-use super::geometry::words::Making;
+use super::geometry::words::{Making, Options};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, bad_keyword};
+use perigrain_styles::common;
+use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
 pub struct ReadPoints;
-
-const KEYWORDS: [&str; 10] =
-    ["columns", "volume", "diameter", "type", "density", "group", "scale", "rotate", "shift", "move"];
 
 impl Style for ReadPoints {
     fn name(&self) -> &'static str {
@@ -24,8 +22,7 @@ impl Style for ReadPoints {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "read_points FILE [columns PROPERTY COLUMN …] [type T] [volume V] [diameter D] [density ρ] [group ID] \
-                     [scale S] [rotate THETA RX RY RZ] [shift X Y Z]",
+            syntax: "",
             summary: "Makes particles from a table of points, as spreadsheets and scripts write them.",
             text: "The first line names the columns, each further line is a point; fields stand between commas, semicolons, tabs or blanks, \
                    names may have quotes, `#` opens a comment, and a name that ends in `.gz` a packed file. Columns are known by the names of \
@@ -42,6 +39,66 @@ impl Style for ReadPoints {
             example: "print \"\"\"x,y,z,Vol\n0,0,5,1\n0,1.5,5,2\"\"\" file points.csv screen no\n\
                       read_points points.csv columns volume Vol type 2 scale 0.001 density 2235.0",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The file.
+    #[word(name = "FILE", what = "the name of a table", kind = Kind::File)]
+    file: Word,
+    /// Columns of other names for properties, which must be there.
+    #[word(keyword, name = "pairs", placed)]
+    columns: Vec<At<Columns>>,
+    /// The volume, alike for all [volume].
+    #[word(keyword, name = "V", positive)]
+    volume: Option<f64>,
+    /// The diameter, alike for all [length].
+    #[word(keyword, name = "D", positive)]
+    diameter: Option<f64>,
+    #[word(flatten)]
+    options: Options,
+}
+
+/// Properties with the names of their columns.
+struct Columns(Vec<(Word, Word, Property)>);
+
+impl Value for Columns {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[Part::Many(
+            &[
+                Part::Word(Placeholder { name: "PROPERTY", kind: Kind::Text, about: "", unit: "" }),
+                Part::Word(Placeholder { name: "COLUMN", kind: Kind::Text, about: "", unit: "" }),
+            ],
+            1,
+        )],
+        ..*Grammar::NONE
+    });
+    /// Takes pairs up to the next keyword that is no property in front of a column.
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let style = cx.world.particles.style;
+        let mut pairs = vec![];
+        let is_next = |a: &Args| {
+            a.peek().is_some_and(|w| {
+                let known = property(&w.text, style, &cx.world.columns).is_some();
+                // `type 1` and the like may be either: a number is no column's name.
+                let number = a.peek_at(1).is_none_or(|v| v.text.parse::<f64>().is_ok());
+                if a.at_keyword() { known && !number } else { known || is_elsewhere(&w.text) }
+            })
+        };
+        while is_next(args) {
+            let name = args.expect("a property")?;
+            let column = args.expect("the name of a column")?;
+            let Some(p) = property(&name.text, style, &cx.world.columns) else {
+                let text = format!("particles of this scene have no `{}`", name.text);
+                return fail(Code::CONFLICT, name.span, text);
+            };
+            pairs.push((name.clone(), column.clone(), p));
+        }
+        Ok(Self(pairs))
     }
 }
 
@@ -62,60 +119,23 @@ struct Reading {
 impl CommandStyle for ReadPoints {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let file = a.expect("the name of a table")?.clone();
-        let making = Making::default();
-        let mut r =
-            Reading { file, making, columns: vec![], volume: None, diameter: None, checking: cx.checking };
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "columns" => r.columns(word, a, cx)?,
-                "volume" => r.volume = Some(a.positive("the volume")?),
-                "diameter" => r.diameter = Some(a.positive("the diameter")?),
-                _ if r.making.keyword(word, a, cx)? => {}
-                _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
+        let Line { file, columns: said, volume, diameter, options } = read(a, cx)?;
+        let mut columns = vec![];
+        for At { value: Columns(mut pairs), span, .. } in said {
+            if pairs.is_empty() {
+                let text = "`columns` needs a property and the name of its column";
+                let d = Diagnostic::error(Code::MISSING_ARGUMENT, span, text);
+                return Err(d.help("write for example `columns x X_mm`").into());
             }
+            columns.append(&mut pairs);
         }
+        let r =
+            Reading { file, making: options.making(cx)?, columns, volume, diameter, checking: cx.checking };
         Ok(Box::new(FromFile(r)))
     }
 }
 
 impl Reading {
-    /// Takes pairs of property and column, up to the next keyword that is no property in front of a column.
-    fn columns(&mut self, word: &Word, a: &mut Args, cx: &BuildCx) -> Result<()> {
-        let style = cx.world.particles.style;
-        let before = self.columns.len();
-        let is_next = |a: &Args| {
-            a.peek().is_some_and(|w| {
-                let known = property(&w.text, style, &cx.world.columns).is_some();
-                // `type 1` and the like may be either: a number is no column's name.
-                let number = a.peek_at(1).is_none_or(|v| v.text.parse::<f64>().is_ok());
-                if KEYWORDS.contains(&w.text.as_str()) {
-                    known && !number
-                } else {
-                    known || is_elsewhere(&w.text)
-                }
-            })
-        };
-        while is_next(a) {
-            let name = a.expect("a property")?;
-            let column = a.expect("the name of a column")?;
-            let Some(p) = property(&name.text, style, &cx.world.columns) else {
-                let text = format!("particles of this scene have no `{}`", name.text);
-                return fail(Code::CONFLICT, name.span, text);
-            };
-            self.columns.push((name.clone(), column.clone(), p));
-        }
-        if self.columns.len() == before {
-            let d = Diagnostic::error(
-                Code::MISSING_ARGUMENT,
-                word.span,
-                "`columns` needs a property and the name of its column",
-            );
-            return Err(d.help("write for example `columns x X_mm`").into());
-        }
-        Ok(())
-    }
-
     /// The columns to be read with their properties, and the names of others.
     fn wanted(&self, cx: &ActCx, names: &[String], head: Span) -> Result<Found> {
         let (mut wanted, mut others): (Vec<(usize, Property)>, Vec<String>) = (vec![], vec![]);

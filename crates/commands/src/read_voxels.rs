@@ -3,21 +3,19 @@
 use super::geometry::body::{Body, FromFile};
 use super::geometry::enter::{Newcomers, off_plane};
 use super::geometry::voxels::blocks::{Blocks, Counter};
-use super::geometry::voxels::ranges::Ranges;
+use super::geometry::voxels::ranges::{List, Ranges};
 use super::geometry::voxels::{self, Image};
-use super::geometry::words::Making;
+use super::geometry::words::{Making, Options};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, bad_keyword};
+use perigrain_styles::common;
+use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
 pub struct ReadVoxels;
-
-const KEYWORDS: [&str; 11] =
-    ["types", "spacing", "resample", "array", "type", "density", "group", "scale", "rotate", "shift", "move"];
 
 /// How far the volume of a material may be from that in the image without a warning.
 const NEAR: f64 = 0.01;
@@ -29,24 +27,80 @@ impl Style for ReadVoxels {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "read_voxels FILE types LO:HI T … [spacing S|SX SY SZ] [resample H] [array NAME] [density ρ] [group ID] \
-                     [scale S] [rotate THETA RX RY RZ] [shift X Y Z]",
+            syntax: "",
             summary: "Makes particles of the voxels of an image, as a tomograph gives it: ranges of grey values become types.",
-            text: "`types` gives ranges of grey values, both ends in them (`7` alone is a range, too), the types of their particles; other values are empty. The extension selects the format:\n\n\
-                   - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;\n\
-                   - `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;\n\
-                   - `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;\n\
-                   - `.vti`: VTK's XML images in one piece; of several arrays `array` says which, of cells or of points.\n\n\
-                   Packed TIFF is refused by name. Images are read slice by slice, twice: memory is needed for the particles and one slice. A `.vti` is so where its \
-                   arrays are appended raw, packed by zlib or not, as ParaView writes them; one whose arrays are text or base64 is read whole.\n\n\
-                   Edges of voxels are the file's, or `spacing`'s, which a file without them needs (PNG, TIFF). The image begins where the file says, else with its lower corner at the \
-                   origin; columns lie along x, rows along y with the first one lowest. Images in flat scenes have one slice, which lies at z = 0; its depth counts in the volume.\n\n\
-                   Each voxel with a type is a particle, in its middle with its volume. `resample` H makes blocks of about H instead (a whole number of them along each edge of the image; the log \
-                   has their edges), each of the material that fills most of it. What materials gain and lose by that is kept account of and decides where two fill about the same: \
-                   of the whole image each material keeps its volume to within about ten blocks, and the log compares. More than 1 % draws a warning, as in images of a few hundred blocks.\n\n\
-                   Other keywords, masses and diameters are those of `read_mesh`. The particles lie on a lattice: `lattice sc` with the edge of voxels or blocks, for peridynamics, makes \
-                   partial volumes and horizons of materials right.",
+            text: "The extension selects the format:\n\n\
+                   - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;
+- `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;
+- `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;
+- `.vti`: VTK's XML images in one piece.\n\n\
+                   Packed TIFF is refused by name. Images are read slice by slice, twice: memory is needed for the particles and \
+                   one slice. A `.vti` is so where its arrays are appended raw, packed by zlib or not, as ParaView writes them; one \
+                   whose arrays are text or base64 is read whole.\n\n\
+                   Edges of voxels are the file's, or `spacing`'s, which a file without them needs (PNG, TIFF). The image begins \
+                   where the file says, else with its lower corner at the origin; columns lie along x, rows along y with the first \
+                   one lowest. Images in flat scenes have one slice, which lies at z = 0; its depth counts in the volume.\n\n\
+                   Each voxel with a type is a particle, in its middle with its volume. With `resample` each block is, of the \
+                   material that fills most of it. What materials gain and lose by that is kept account of and decides where two \
+                   fill about the same: of the whole image each material keeps its volume to within about ten blocks, and the log \
+                   compares. More than 1 % draws a warning, as in images of a few hundred blocks.\n\n\
+                   Masses and diameters are those of `read_mesh`. The particles lie on a lattice: `lattice sc` with the edge of \
+                   voxels or blocks, for peridynamics, makes partial volumes and horizons of materials right.",
             example: "read_voxels stack.nrrd types 100:199 1 200:255 2 resample 0.001 density 2235.0 scale 0.001 shift -0.004 -0.004 0.0045",
+        }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The file.
+    #[word(name = "FILE", what = "the name of an image", kind = Kind::File)]
+    file: Word,
+    #[word(keyword, name = "ranges", placed)]
+    types: Option<At<List>>,
+    /// The edge of voxels for all axes, or one for each [length].
+    #[word(keyword, name = "edges")]
+    spacing: Option<Spacing>,
+    /// The edge of blocks, about: a whole number of them along each edge of the image [length].
+    #[word(keyword, name = "H", positive)]
+    resample: Option<f64>,
+    /// The name of an array, of cells or of points, of a `.vti` with several.
+    #[word(keyword, name = "NAME", what = "the name of an array")]
+    array: Option<Word>,
+    #[word(flatten)]
+    options: Options,
+}
+
+/// Edges of voxels.
+#[derive(Words)]
+struct Spacing {
+    #[word(name = "S", what = "the edge of voxels", positive)]
+    x: f64,
+    #[word(name = "SY SZ", what = "the edge of voxels along {}")]
+    others: Option<(Edge, Edge)>,
+}
+
+/// The edge of voxels along another axis.
+struct Edge(f64);
+
+impl Value for Edge {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive(what).map(Self)
+    }
+    fn begins(word: &Word) -> bool {
+        word.unknown || word.text.parse::<f64>().is_ok()
+    }
+}
+
+impl Spacing {
+    fn edges(self) -> [f64; 3] {
+        match self.others {
+            Some((y, z)) => [self.x, y.0, z.0],
+            None => [self.x; 3],
         }
     }
 }
@@ -65,37 +119,13 @@ struct Reading {
 impl CommandStyle for ReadVoxels {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let file = a.expect("the name of an image")?.clone();
-        let mut ranges = None;
-        let (making, checking) = (Making::default(), cx.checking);
-        let mut r = Reading {
-            file,
-            making,
-            ranges: Ranges::default(),
-            spacing: None,
-            resample: None,
-            array: None,
-            checking,
-        };
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "types" => ranges = Some(Ranges::read(word, a, cx, &KEYWORDS)?),
-                "spacing" => r.spacing = Some(spacing(a)?),
-                "resample" => r.resample = Some(a.positive("the edge of blocks")?),
-                "array" => r.array = Some(a.expect("the name of an array")?.clone()),
-                "type" => {
-                    let d = Diagnostic::error(
-                        Code::CONFLICT,
-                        word.span,
-                        "voxels get their types by grey values: `types`",
-                    );
-                    return Err(d.help("`types 1:255 1` makes all from 1 to 255 type 1").into());
-                }
-                _ if r.making.keyword(word, a, cx)? => {}
-                _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
-            }
+        let Line { file, types, spacing, resample, array, options } = read(a, cx)?;
+        if let Some(kind) = &options.kind {
+            let text = "voxels get their types by grey values: `types`";
+            let d = Diagnostic::error(Code::CONFLICT, kind.span, text);
+            return Err(d.help("`types 1:255 1` makes all from 1 to 255 type 1").into());
         }
-        let Some(ranges) = ranges else {
+        let Some(types) = types else {
             let d = Diagnostic::error(
                 Code::INCOMPLETE,
                 a.name_span(),
@@ -103,18 +133,11 @@ impl CommandStyle for ReadVoxels {
             );
             return Err(d.help("write for example `types 40:120 1 121:255 2`").into());
         };
-        r.ranges = ranges;
+        let (making, ranges) = (options.making(cx)?, Ranges::new(&types)?);
+        let (spacing, checking) = (spacing.map(Spacing::edges), cx.checking);
+        let r = Reading { file, making, ranges, spacing, resample, array, checking };
         Ok(Box::new(FromFile(r)))
     }
-}
-
-/// One edge of voxels for all axes, or three.
-fn spacing(a: &mut Args) -> Result<[f64; 3]> {
-    let x = a.positive("the edge of voxels")?;
-    if a.peek().is_none_or(|w| w.text.parse::<f64>().is_err() && !w.unknown) {
-        return Ok([x; 3]);
-    }
-    Ok([x, a.positive("the edge of voxels along y")?, a.positive("the edge of voxels along z")?])
 }
 
 impl Body for Reading {

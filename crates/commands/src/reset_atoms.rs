@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{Clusters, held_together};
+use perigrain_styles::words::{Form, Forms, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{GroupId, World};
 use std::collections::BTreeMap;
@@ -25,19 +26,14 @@ impl Style for ResetAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "reset_atoms id [sort yes|no]\nreset_atoms mol GROUP [compress yes|no] [offset N] [single yes|no]\n\
-                     reset_atoms image GROUP",
+            syntax: "",
             summary: "Numbers particles or molecules anew, or brings image counts back to zero.",
-            text: "`id`: ids from 1 without gaps in the order of storage. With `sort yes` they follow the places: small cells along x, \
-                   then y, then z, and within a cell the coordinates, as in LAMMPS. What belongs to particles stays with them.\n\n\
-                   `mol`: particles of the group that bonds between them hold together are a molecule. Molecules are numbered from 1 (or, \
-                   for a group other than all, from the largest number outside of it; `offset N`: from N + 1) in the order of their \
-                   smallest ids; with `compress no` a molecule's number is its smallest id. Particles without bonds get 0, or a number \
-                   with `single yes`.\n\n`image`: takes the mean of the largest and the smallest image count of each molecule (a whole \
-                   number, rounded down) from those of its particles that are in the group. `mol` and `image` need an atom_style with \
-                   bonds; bonds that are turned off hold, too.",
+            text: "`mol` and `image` need an atom_style with bonds; bonds that are turned off hold, too.",
             example: "reset_atoms id sort yes",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        Line::FORMS.to_vec()
     }
 }
 
@@ -48,11 +44,14 @@ impl Style for ResetAtomIds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "reset_atom_ids [sort yes|no]",
+            syntax: "",
             summary: "The old name of `reset_atoms id`.",
             text: "LAMMPS has renamed the command; both names do the same.",
             example: "reset_atom_ids",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Ids::GRAMMAR)]
     }
 }
 
@@ -63,36 +62,78 @@ impl Style for ResetMolIds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "reset_mol_ids GROUP [compress yes|no] [offset N] [single yes|no]",
+            syntax: "",
             summary: "The old name of `reset_atoms mol`.",
             text: "LAMMPS has renamed the command; both names do the same.",
             example: BONDED,
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Molecules::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Ids {
+    /// Whether ids follow the places: small cells along x, then y, then z, and within a cell the coordinates, as in LAMMPS.
+    #[word(keyword, default = false)]
+    sort: bool,
+}
+
+/// How molecules are numbered.
+#[derive(Words)]
+struct Molecules {
+    #[word(name = "GROUP")]
+    group: GroupId,
+    /// Whether molecules are numbered in the order of their smallest ids, or have these as numbers.
+    #[word(keyword, default = true)]
+    compress: bool,
+    /// Numbers begin behind N; for −1, from 1 or, for a group other than all, behind the largest number outside of it.
+    #[word(keyword, name = "N", what = "the offset", from = -1, default = -1)]
+    offset: i64,
+    /// Whether particles without bonds get a number, too, or 0.
+    #[word(keyword, default = false)]
+    single: bool,
+}
+
+#[derive(Words)]
+struct Images {
+    #[word(name = "GROUP")]
+    group: GroupId,
+}
+
+#[derive(Words)]
+#[word(forms = "reset_atoms", what = "style of reset_atoms", style)]
+enum Line {
+    /// Ids from 1 without gaps in the order of storage. What belongs to particles stays with them.
+    Id(Ids),
+    /// Particles of the group that bonds between them hold together are a molecule.
+    Mol(Molecules),
+    /// Takes the mean of the largest and the smallest image count of each molecule (a whole number, rounded down) from those of its particles
+    /// that are in the group.
+    Image(Images),
 }
 
 impl CommandStyle for ResetAtoms {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let style = a.expect("id, image or mol")?;
-        match style.text.as_str() {
-            "id" => ids(a, cx),
-            "mol" => {
-                needs_bonds("reset_atoms mol", style.span, cx)?;
-                molecules(a, cx)
-            }
-            "image" => {
-                needs_bonds("reset_atoms image", style.span, cx)?;
-                images(a, cx)
-            }
-            _ => Err(common::unknown_style(style, "style of reset_atoms", &["id", "image", "mol"])),
+        let (style, span) = (a.peek_text(), a.here());
+        if ["mol", "image"].contains(&style) {
+            needs_bonds(&format!("reset_atoms {style}"), span, cx)?;
         }
+        common::domain(cx)?;
+        Ok(match Line::form(a, cx)? {
+            Line::Id(line) => ids(line),
+            Line::Mol(how) => molecules(how),
+            Line::Image(line) => images(line),
+        })
     }
 }
 
 impl CommandStyle for ResetAtomIds {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         renamed("`reset_atom_ids` is called `reset_atoms id` now", a, cx);
-        ids(a, cx)
+        common::domain(cx)?;
+        read(a, cx).map(ids)
     }
 }
 
@@ -100,7 +141,8 @@ impl CommandStyle for ResetMolIds {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         renamed("`reset_mol_ids` is called `reset_atoms mol` now", a, cx);
         needs_bonds("reset_mol_ids", a.name_span(), cx)?;
-        molecules(a, cx)
+        common::domain(cx)?;
+        read(a, cx).map(molecules)
     }
 }
 
@@ -122,16 +164,8 @@ fn needs_bonds(what: &str, span: Span, cx: &BuildCx) -> Result<()> {
         .into())
 }
 
-fn ids(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-    common::domain(cx)?;
-    let mut sorted = false;
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "sort" => sorted = a.flag("sort")?,
-            _ => return Err(a.unknown(word, &["sort"])),
-        }
-    }
-    Ok(on_particles(vec![], move |cx| {
+fn ids(Ids { sort: sorted }: Ids) -> Box<dyn Act> {
+    on_particles(vec![], move |cx| {
         cx.print("Resetting atom IDs ...");
         common::settle(cx.world);
         match sorted {
@@ -143,48 +177,33 @@ fn ids(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         }
         cx.world.slots.invalidate();
         Ok(())
-    }))
+    })
 }
 
-/// How molecules are numbered.
-struct Numbering {
-    compress: bool,
-    /// Where numbers begin; `None`: behind those of other particles.
-    offset: Option<i64>,
-    single: bool,
-}
-
-fn molecules(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-    common::domain(cx)?;
-    let group = cx.group(a.expect("a group")?)?;
-    let mut how = Numbering { compress: true, offset: None, single: false };
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "compress" => how.compress = a.flag("compress")?,
-            "offset" => how.offset = Some(a.integer_from(-1, "the offset")?).filter(|n| *n >= 0),
-            "single" => how.single = a.flag("single")?,
-            _ => return Err(a.unknown(word, &["compress", "offset", "single"])),
-        }
-    }
-    Ok(on_particles(vec![], move |cx| {
+fn molecules(how: Molecules) -> Box<dyn Act> {
+    on_particles(vec![], move |cx| {
         cx.print("Resetting molecule IDs ...");
-        let count = number(cx.world, group, &how);
+        let count = number(cx.world, &how);
         let count = count.map_or("unknown".to_string(), |n| n.to_string());
         cx.print(format!("  number of new molecule IDs = {count}"));
         cx.world.slots.invalidate();
         Ok(())
-    }))
+    })
 }
 
 /// Numbers the molecules of a group; how many there are where they are counted.
-fn number(w: &mut World, group: GroupId, how: &Numbering) -> Option<usize> {
+fn number(w: &mut World, how: &Molecules) -> Option<usize> {
+    let group = how.group;
     let of = |w: &World, i: usize| w.particles.mask[i] & group.bit() != 0;
     let names = fragments(w, |i| of(w, i), how.single);
     let mut numbers: BTreeMap<u32, u32> = names.iter().copied().filter(|k| *k > 0).map(|k| (k, k)).collect();
     let mut count = None;
     if how.compress {
         let outside = (0..w.n()).filter(|i| !of(w, *i)).map(|i| w.particles.molecule[i]).max().unwrap_or(0);
-        let offset = how.offset.map_or(outside, |n| n.clamp(0, i64::from(i32::MAX)) as u32);
+        let offset = match how.offset {
+            ..0 => outside,
+            n => n.min(i64::from(i32::MAX)) as u32,
+        };
         numbers.values_mut().zip(1..).for_each(|(number, k)| *number = offset + k);
         count = Some(numbers.len());
     }
@@ -208,11 +227,8 @@ fn fragments(w: &World, chosen: impl Fn(usize) -> bool, single: bool) -> Vec<u32
     (0..w.n()).map(|i| if named[i] { clusters.name(i) as u32 } else { 0 }).collect()
 }
 
-fn images(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-    common::domain(cx)?;
-    let group = cx.group(a.expect("a group")?)?;
-    a.finish()?;
-    Ok(on_particles(vec![], move |cx| {
+fn images(Images { group }: Images) -> Box<dyn Act> {
+    on_particles(vec![], move |cx| {
         cx.print("Resetting image flags ...");
         let w = &mut *cx.world;
         let names = fragments(w, |_| true, true);
@@ -230,7 +246,7 @@ fn images(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         }
         cx.world.slots.invalidate();
         Ok(())
-    }))
+    })
 }
 
 /// About how many particles a cell holds.

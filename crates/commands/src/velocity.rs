@@ -4,12 +4,13 @@ mod options;
 
 use super::momentum::{Members, temperature as temperature_of};
 use super::{Act, CommandStyle};
-use options::{Loop, Options, options};
+use options::{Distribution, Loop, Options};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::{Vec3, sub};
-use perigrain_lang::{Args, Param, Word};
-use perigrain_styles::common::{self, axis, on_particles, param_or_null, ramp, scales, seed, velocity_axis};
+use perigrain_lang::{Args, Param};
+use perigrain_styles::common::{self, on_particles, ramp};
+use perigrain_styles::words::{At, Axis, Form, Nullable, PerAtom, Seed, VelocityAxis, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Flow, Motion, Style};
 use perigrain_world::{GroupId, World};
 
@@ -23,66 +24,76 @@ impl Style for Velocity {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "velocity GROUP create T SEED | set VX VY VZ | scale T | ramp vx|vy|vz VLO VHI x|y|z CLO CHI | \
-                     zero linear|angular  [dist uniform|gaussian] [sum yes|no] [mom yes|no] [rot yes|no] \
-                     [loop all|local|geom] [temp COMPUTE] [bias yes|no] [rigid FIX] [units lattice|box]",
+            syntax: "",
             summary: "Gives the particles of a group velocities.",
-            text: "`create` draws from LAMMPS' Park–Miller stream, number by number as LAMMPS does, takes away the mean \
-                   (`mom yes`, default) and the rotation (`rot yes`), and scales to the temperature T, where \
-                   T = Σ m v² / ((3N − 3) k), in flat scenes (2N − 2). `temp` names a temperature compute that says the \
-                   present temperature instead, also for `scale`; with `bias yes` the flow that it takes away stays as it is, and \
-                   the rest is made or scaled. `zero … rigid FIX` stops each body of a fix rigid by itself, its particles following. `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
-                   stream for each place. `set` takes numbers, `NULL` or variables. `ramp` is linear between two \
-                   coordinates and constant beyond. `sum yes` adds to the present velocities. Velocities and coordinates \
-                   of `set` and `ramp` are in lattice spacings (per time) unless `units box` is given: in SI decks with a \
-                   fine lattice `units box` is nearly always meant; values of variables are not scaled.",
+            text: "T = Σ m v² / ((3N − 3) k), in flat scenes (2N − 2). Velocities and coordinates of `set` and `ramp` are in \
+                   lattice spacings (per time) unless `units box` is given: in SI decks with a fine lattice `units box` is nearly \
+                   always meant; values of variables are not scaled.",
             example: "velocity bullet set 0.0 0.0 -35.0 units box",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
 }
 
+#[derive(Words)]
+struct Line {
+    #[word(name = "GROUP")]
+    group: GroupId,
+    #[word(name = "style")]
+    action: At<Action>,
+    #[word(flatten)]
+    options: Options,
+}
+
+#[derive(Words)]
+#[word(what = "style of velocity", style)]
 enum Action {
-    Create { temperature: f64, seed: u32 },
-    Set([Option<Param>; 3]),
-    Scale { temperature: f64 },
-    Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
-    ZeroLinear,
-    ZeroAngular,
+    /// Draws velocities from LAMMPS' Park–Miller stream, number by number as LAMMPS does, and scales them to the temperature T.
+    Create {
+        #[word(name = "T", what = "the temperature", non_negative)]
+        temperature: f64,
+        #[word(name = "SEED")]
+        seed: Seed,
+    },
+    /// Numbers, variables, or `NULL` for a component that stays.
+    Set(#[word(name = "VX VY VZ", what = "the velocity")] [Nullable<PerAtom>; 3]),
+    /// Scales velocities to the temperature T.
+    Scale {
+        #[word(name = "T", what = "the temperature", non_negative)]
+        temperature: f64,
+    },
+    /// Linear between two coordinates and constant beyond.
+    Ramp {
+        #[word(name = "vx|vy|vz")]
+        along: VelocityAxis,
+        #[word(name = "VLO VHI", what = "the velocity at an end")]
+        by: [f64; 2],
+        #[word(name = "x|y|z", what = "axis of the ramp")]
+        axis: Axis,
+        #[word(name = "CLO CHI", what = "the end of the ramp")]
+        between: [f64; 2],
+    },
+    /// Takes the momentum of the centre of mass or the rotation about it away.
+    Zero(#[word(name = "momentum")] Momentum),
+}
+
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "momentum to take away")]
+enum Momentum {
+    Linear,
+    Angular,
 }
 
 impl CommandStyle for Velocity {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let group = cx.group(a.expect("a group")?)?;
-        let style = a.expect("create, set, scale, ramp or zero")?;
-        let action = match style.text.as_str() {
-            "create" => Action::Create { temperature: a.non_negative("the temperature")?, seed: seed(a)? },
-            "set" => {
-                let mut next = || {
-                    let p = param_or_null(a, "the velocity")?;
-                    p.iter().try_for_each(|p| cx.param(p, true)).map(|()| p)
-                };
-                Action::Set([next()?, next()?, next()?])
-            }
-            "scale" => Action::Scale { temperature: a.non_negative("the temperature")? },
-            "ramp" => Action::Ramp {
-                along: velocity_axis(a)?,
-                by: [a.number("the lower velocity")?, a.number("the upper velocity")?],
-                axis: axis(a, "axis of the ramp")?,
-                between: [a.number("the lower end")?, a.number("the upper end")?],
-            },
-            "zero" => match a.choice("momentum to take away", &["linear", "angular"])? {
-                "linear" => Action::ZeroLinear,
-                _ => Action::ZeroAngular,
-            },
-            other => {
-                let text = format!("unknown style `{other}`: create, set, scale, ramp or zero");
-                return fail(Code::UNKNOWN_STYLE, style.span, text);
-            }
-        };
-        let options = options(a, cx)?;
-        if cx.world.settings.two_dimensional {
-            stays_flat(&action, style)?;
+        let Line { group, action: At { value: action, span, .. }, options } = read(a, cx)?;
+        options.check(cx)?;
+        if cx.world.settings.two_dimensional && leaves_plane(&action) {
+            let text = "velocities along z do not go with a flat scene (`dimension 2`)";
+            return fail(Code::CONFLICT, span, text);
         }
         let at = cx.span;
         Ok(on_particles(vec!["velocity"], move |cx| {
@@ -94,33 +105,27 @@ impl CommandStyle for Velocity {
     }
 }
 
-/// Refuses velocities out of the plane of a flat scene.
-fn stays_flat(action: &Action, style: &Word) -> Result<()> {
-    let leaves = match action {
-        Action::Set([.., z]) => z.as_ref().is_some_and(|z| *z != Param::Number(0.0)),
-        Action::Ramp { along, .. } => *along == 2,
+/// Whether velocities leave the plane of a flat scene.
+fn leaves_plane(action: &Action) -> bool {
+    match action {
+        Action::Set([.., z]) => z.0.as_ref().is_some_and(|z| z.0 != Param::Number(0.0)),
+        Action::Ramp { along, .. } => along.0 == 2,
         _ => false,
-    };
-    match leaves {
-        true => {
-            fail(Code::CONFLICT, style.span, "velocities along z do not go with a flat scene (`dimension 2`)")
-        }
-        false => Ok(()),
     }
 }
 
 fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result<()> {
-    let scale = scales(cx.world, o.lattice);
+    let scale = o.units.scales(cx.world);
     let members = Members::new(cx.world, group);
-    if let (Some(fix), Action::ZeroLinear | Action::ZeroAngular) = (&o.rigid, action) {
-        let what = if matches!(action, Action::ZeroLinear) { Motion::Linear } else { Motion::Angular };
+    if let (Some(fix), Action::Zero(momentum)) = (&o.rigid, action) {
+        let what = if *momentum == Momentum::Linear { Motion::Linear } else { Motion::Angular };
         return cx.values.stop(cx.world, fix, what);
     }
     match action {
         Action::Create { temperature, seed } => {
             let old = members.velocities(cx.world);
             let flow = take_flow_away(cx, o)?;
-            let mut new = created(cx.world, &members, *seed, o)?;
+            let mut new = created(cx.world, &members, seed.0, o)?;
             let now = match &flow {
                 None => present(cx, &members, &new, o)?,
                 Some(_) => temperature_of(cx.world, &members, &new),
@@ -134,7 +139,7 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
         }
         Action::Set(values) => {
             for (d, value) in values.iter().enumerate() {
-                let Some(value) = value else { continue };
+                let Nullable(Some(PerAtom(value))) = value else { continue };
                 let factor = if matches!(value, Param::Number(_)) { scale[d] } else { 1.0 };
                 let v = cx.per_atom_of(value, &members.list)?;
                 for &i in &members.list {
@@ -155,7 +160,7 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
                 members.write(cx.world, &old, true);
             }
         }
-        Action::Ramp { along, by, axis, between } => {
+        Action::Ramp { along: VelocityAxis(along), by, axis: Axis(axis), between } => {
             let by = by.map(|b| scale[*along] * b);
             let between = between.map(|c| scale[*axis] * c);
             for &i in &members.list {
@@ -164,12 +169,12 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
                 cx.world.particles.v[i][*along] = old + v;
             }
         }
-        Action::ZeroLinear => {
+        Action::Zero(Momentum::Linear) => {
             let mut v = members.velocities(cx.world);
             members.stop_drift(cx.world, &mut v);
             members.write(cx.world, &v, false);
         }
-        Action::ZeroAngular => {
+        Action::Zero(Momentum::Angular) => {
             let mut v = members.velocities(cx.world);
             members.stop_rotation(cx.world, &mut v);
             members.write(cx.world, &v, false);
@@ -201,7 +206,8 @@ fn created(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[
 fn draws(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[f64; 3]>> {
     let mut stream = ParkMiller::new(seed);
     let next = |stream: &mut ParkMiller| {
-        let mut one = || if o.gaussian { stream.gaussian() } else { stream.uniform() - 0.5 };
+        let mut one =
+            || if o.dist == Distribution::Gaussian { stream.gaussian() } else { stream.uniform() - 0.5 };
         [one(), one(), one()]
     };
     let p = &w.particles;
@@ -234,7 +240,7 @@ fn draws(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[f6
 
 /// With `bias yes`: takes the flow away from all particles and returns it.
 fn take_flow_away(cx: &mut ActCx, o: &Options) -> Result<Option<Flow>> {
-    let Some(compute) = o.compute.as_ref().filter(|_| o.bias) else { return Ok(None) };
+    let Some(compute) = o.compute.as_ref().filter(|_| o.keeps_flow()) else { return Ok(None) };
     let flow = cx.values.flow(cx.world, compute)?;
     for (v, taken) in cx.world.particles.v.iter_mut().zip(&flow.taken) {
         *v = sub(*v, *taken);

@@ -3,9 +3,10 @@
 use super::data::write;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Result, Span};
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_output::file::{Pattern, replace, trouble};
-use perigrain_styles::common::{domain, not_here, settle};
+use perigrain_styles::common::{domain, settle};
+use perigrain_styles::words::{Form, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::Promise;
 use std::sync::Arc;
@@ -20,18 +21,59 @@ impl Style for WriteData {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "write_data FILE [pair ii|ij] [nocoeff] [nofix] [nolabelmap]",
+            syntax: "",
             summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
-            text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data), names the styles of a hybrid, as OVITO wants it, and \
-                   appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
-                   bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. No \
-                   pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone): `pair` makes no difference; \
-                   `nocoeff` leaves out those of bonds and angles. Each fix property/atom has a section of its own unless it says `writedata no` (`nofix`: none has). `nolabelmap` makes no difference, as types have no labels. Peridynamic bonds, damage, contact history, forces and \
-                   the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
-                   refused.",
+            text: "The file has LAMMPS' sections and columns (see read_data), names the styles of a hybrid, as OVITO wants it, and \
+                   appears whole or not at all. Numbers are written in the shortest form that is read back to the same bits. \
+                   Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS.\n\n\
+                   No pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone). \
+                   Each fix property/atom has a section of its own unless its line has `writedata no`. Peridynamic bonds, damage, \
+                   contact history, forces and the clock are not in a data file: write_restart has them. `types labels` and \
+                   `triclinic/general` are refused.",
             example: "write_data plate.*.data nocoeff",
         }
     }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(refused = "triclinic/general")]
+struct Line {
+    /// The file; a `*` in its name becomes the step.
+    #[word(name = "FILE", what = "a file name", kind = Kind::File)]
+    file: Word,
+    /// LAMMPS' form of coefficients; without effect.
+    #[word(keyword)]
+    pair: Option<Pair>,
+    /// Coefficients of bonds and angles are left out.
+    #[word(flag)]
+    nocoeff: bool,
+    /// Fixes have no sections.
+    #[word(flag)]
+    nofix: bool,
+    /// Without effect, as types have no labels.
+    #[word(flag)]
+    nolabelmap: bool,
+    #[word(keyword)]
+    types: Option<Types>,
+}
+
+/// LAMMPS' forms of coefficients.
+#[derive(Words)]
+#[word(what = "value of pair")]
+enum Pair {
+    Ii,
+    Ij,
+}
+
+/// How types are written.
+#[derive(Words)]
+#[word(what = "value of types", refused = "labels")]
+enum Types {
+    /// Types are numbers.
+    Numeric,
 }
 
 struct Writing {
@@ -44,23 +86,9 @@ struct Writing {
 impl CommandStyle for WriteData {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         domain(cx)?;
-        let word = a.expect("a file name")?;
+        let Line { file: word, nocoeff, nofix, .. } = read(a, cx)?;
         let file = Pattern::new(&word.text).map_err(|e| e.at(word.span))?;
-        let mut with = write::With { coeffs: true, fixes: true };
-        while let Some(key) = a.next() {
-            match key.text.as_str() {
-                "pair" => drop(a.choice("value of pair", &["ii", "ij"])?),
-                "nocoeff" => with.coeffs = false,
-                "nofix" => with.fixes = false,
-                "nolabelmap" => {}
-                "types" => match a.peek() {
-                    Some(w) if w.text == "labels" => return Err(not_here(w, "write_data types")),
-                    _ => drop(a.choice("value of types", &["numeric"])?),
-                },
-                "triclinic/general" => return Err(not_here(key, "keyword of write_data")),
-                _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "nolabelmap", "types"])),
-            }
-        }
+        let with = write::With { coeffs: !nocoeff, fixes: !nofix };
         Ok(Box::new(Writing { file, span: word.span, with, checking: cx.checking }))
     }
 }

@@ -1,10 +1,11 @@
 //! Particles on a surface of triangles from a file.
 
 use super::places::{Maker, New};
+use super::words::OnMesh;
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{add, cross, length, scale, sub};
-use perigrain_lang::Args;
 use perigrain_mesh::{Format, Triangle};
+use perigrain_styles::words::Words;
 use perigrain_styles::{BuildCx, triangles};
 
 /// A surface to be filled.
@@ -18,12 +19,14 @@ pub struct Mesh {
 }
 
 /// How triangles are filled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Words)]
+#[word(what = "mode")]
 pub enum Mode {
-    /// Triangles are halved until the corners are on average no farther from the centre than this; one particle each.
-    Bisect(f64),
-    /// So many particles per area, at places of a quasi-random sequence.
-    Quasi(f64),
+    /// Halves triangles at their longest side until their corners are on average no farther than R from the centre, and puts a particle there.
+    Bisect(#[word(name = "R", what = "the largest mean distance of the corners", positive)] f64),
+    /// D particles per area, at places of a quasi-random sequence.
+    #[word("qrand")]
+    Quasi(#[word(name = "D", what = "the number of particles per area", positive)] f64),
 }
 
 impl Mode {
@@ -128,18 +131,10 @@ fn scatter([a, b, c]: Triangle, density: f64, found: &mut Vec<([f64; 3], f64)>) 
     }
 }
 
-/// Takes a `meshmode`.
-pub fn mode(a: &mut Args) -> Result<Mode> {
-    Ok(match a.choice("mode", &["bisect", "qrand"])? {
-        "bisect" => Mode::Bisect(a.positive("the largest mean distance of the corners")?),
-        _ => Mode::Quasi(a.positive("the number of particles per area")?),
-    })
-}
-
-/// Takes the name of a file and reads it; the surface, and lines for the log about it.
-pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
-    let word = a.expect("the name of a file of triangles")?;
-    let mesh = |triangles| Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 };
+/// Reads the file of a line; the surface, and lines for the log about it.
+pub fn read(line: &OnMesh, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
+    let word = &line.file;
+    let mesh = |triangles| Mesh { triangles, mode: line.meshmode, radius_scale: line.radscale };
     let Some(read) = triangles::read(word, cx)? else { return Ok((mesh(vec![]), vec![])) };
     triangles::doubt_size(word, &read.triangles, cx);
     let kind = match read.format {

@@ -8,6 +8,7 @@ use perigrain_lang::Args;
 use perigrain_styles::BuildCx;
 use perigrain_styles::common;
 use perigrain_styles::molecules::{self, any_turn, fits, named};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
 use perigrain_world::template::Numbering;
 use perigrain_world::{Template, World};
 use std::f64::consts::PI;
@@ -18,36 +19,61 @@ pub struct Copies {
     set: Arc<[Template]>,
     seed: u32,
     /// The turn of all copies; random by default.
-    pub turned: Option<Quat>,
+    turned: Option<Quat>,
     span: Span,
 }
 
-/// Takes the words after `mol`.
-pub fn copies(a: &mut Args, cx: &BuildCx) -> Result<Copies> {
-    let word = a.expect("a molecule template")?;
-    let set = named(word, cx)?;
-    if set.len() > 1 {
-        let text = format!("only the first of the {} molecules of this template is used", set.len());
-        cx.note(Diagnostic::warning(Code::SUSPICIOUS, word.span, text));
+impl Value for Copies {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            Part::Word(Placeholder { name: "ID", kind: Kind::Molecule, about: "", unit: "" }),
+            Part::Word(Placeholder { name: "SEED", kind: Kind::Whole, about: "", unit: "" }),
+        ],
+        ..*Grammar::NONE
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("a molecule template")?;
+        let set = named(word, cx)?;
+        if set.len() > 1 {
+            let text = format!("only the first of the {} molecules of this template is used", set.len());
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, word.span, text));
+        }
+        let c = Self { set, seed: common::marsaglia_seed(args)?, turned: None, span: word.span };
+        fits(c.template(), cx, c.span)?;
+        Ok(c)
     }
-    let c = Copies { set, seed: common::marsaglia_seed(a)?, turned: None, span: word.span };
-    fits(c.template(), cx, c.span)?;
-    Ok(c)
 }
 
-/// Takes the words after `rotate`.
-pub fn rotate(a: &mut Args) -> Result<Quat> {
-    let angle = a.number("the angle [degrees]")?;
-    let span = a.here();
-    let axis = [a.number("the axis")?, a.number("the axis")?, a.number("the axis")?];
-    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if length == 0.0 {
-        return fail(Code::BAD_VALUE, span, "the axis must not be zero");
+/// A turn about an axis.
+#[derive(Words)]
+pub struct Turned {
+    #[word(name = "ANGLE", what = "the angle [degrees]")]
+    angle: f64,
+    #[word(name = "X Y Z", what = "the axis")]
+    axis: [At<f64>; 3],
+}
+
+impl Turned {
+    /// The turn.
+    ///
+    /// # Errors
+    /// An axis without a direction.
+    pub fn quat(&self) -> Result<Quat> {
+        let axis = self.axis.map(|x| x.value);
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length == 0.0 {
+            return fail(Code::BAD_VALUE, self.axis[0].span, "the axis must not be zero");
+        }
+        Ok(turn(axis.map(|x| x / length), self.angle * PI / 180.0))
     }
-    Ok(turn(axis.map(|x| x / length), angle * PI / 180.0))
 }
 
 impl Copies {
+    /// The same with a turn of all copies, if there is one.
+    pub fn turned(self, turned: Option<Quat>) -> Self {
+        Self { turned, ..self }
+    }
+
     fn template(&self) -> &Template {
         &self.set[0]
     }

@@ -8,15 +8,18 @@ use super::packing::room::Room;
 use super::packing::sizes::{Amount, Sizes};
 use super::packing::{Goal, Packing, THROUGH, pack};
 use super::places::New;
+use super::words::Joined;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::rng::ParkMiller;
-use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, orthogonal, seed};
+use perigrain_lang::Word;
+use perigrain_styles::common::{self, orthogonal};
+use perigrain_styles::words::{At, Or, Seed};
 use perigrain_styles::{ActCx, BuildCx};
 use perigrain_world::{Domain, Region};
 use std::f64::consts::PI;
-use words::{in_range, mixture, own_types, sizes};
+pub use words::{Aggregate, Opal, Plain};
+use words::{Distribution, OneSize, Share};
 
 /// Rounds by default.
 const ROUNDS: usize = 1000;
@@ -67,56 +70,76 @@ enum Form {
     Aggregate { porosity: f64, wavelength: f64, spans: [Span; 2] },
 }
 
-/// Takes the words from the region on, up to the keywords.
-pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Pack> {
+/// The region of a packing, which spheres can be packed in.
+fn region(name: &Word, style: &Word, cx: &BuildCx) -> Result<Region> {
     spheres(style, cx)?;
-    let name = a.expect("a region")?.clone();
-    let region = cx.region(&name)?.clone();
-    refuse_region(&name, &region, common::domain(cx)?)?;
+    let region = cx.region(name)?.clone();
+    refuse_region(name, &region, common::domain(cx)?)?;
     if style.text != "pack" && common::domain(cx)?.tilted() {
         return Err(orthogonal(&format!("create_atoms {}", style.text)).at(name.span));
     }
-    let mut form = Form::Plain;
-    if style.text == "opal" {
-        let span = a.here();
-        let diameter = a.positive("the diameter of pores")?;
-        let spacing = in_range(
-            a,
-            "the spacing of pores, in diameters",
-            0.5,
-            1.0,
-            "1 lets them just touch, less opens windows between them",
-        )?;
-        form = Form::Opal { diameter, spacing, axis: Axis::Layers, span };
+    Ok(region)
+}
+
+/// Sizes of spheres with their types, and where they stand; `style` where nothing says them.
+fn sizes(said: Option<At<Distribution>>, style: &Word) -> Result<(Sizes, Vec<u16>, Span)> {
+    let Some(At { value, span, .. }) = said else { return Ok((Sizes::Mono(1.0), vec![], style.span)) };
+    value.parts().map(|(sizes, types, last)| (sizes, types, span.to(last)))
+}
+
+/// The same of spheres that are all alike.
+fn alike(said: Option<At<OneSize>>) -> Option<At<Distribution>> {
+    said.map(|At { value: OneSize::Mono(d), span, unknown }| At {
+        value: Distribution::Mono(d),
+        span,
+        unknown,
+    })
+}
+
+impl Plain {
+    /// The packing, and the group that spheres join.
+    ///
+    /// # Errors
+    /// What does not go together, here and below.
+    pub fn read(self, style: &Word, cx: &BuildCx) -> Result<(Pack, Joined)> {
+        let Self { region: name, fill, seed: Seed(seed), sizes: said, effort, joined } = self;
+        let region = region(&name, style, cx)?;
+        let (sizes, types, sizes_span) = sizes(said, style)?;
+        let (share_span, fill, form) = (fill.span, fill.value.into(), Form::Plain);
+        let goal = Goal { overlap: effort.overlap, rounds: effort.rounds };
+        Ok((Pack { form, region, name, fill, share_span, seed, sizes, types, sizes_span, goal }, joined))
     }
-    let share_span = a.here();
-    let remedy = "random packings of equal spheres reach 0.64; write for example 0.6";
-    let fill = match style.text != "aggregate" && a.eat("number") {
-        true => {
-            let number = a.integer_from(1, "the number of spheres")?;
-            Fill::Number(usize::try_from(number).unwrap_or(usize::MAX))
-        }
-        false => Fill::Share(in_range(a, "the share of the volume", 0.0, DENSEST, remedy)?),
-    };
-    let seed = seed(a)?;
-    if let ("aggregate", Fill::Share(share)) = (style.text.as_str(), fill) {
-        let spans = [a.here(), a.peek_at(1).map_or(a.here(), |w| w.span)];
-        let remedy = "it is the part of the region's volume without spheres";
-        let unknown = a.peek().is_some_and(|w| w.unknown);
-        let porosity = in_range(a, "the porosity", 0.0, 1.0, remedy)?;
-        if porosity <= 1.0 - share && !unknown {
-            let text =
-                format!("a packing of share {share} has porosity {} by itself", general(1.0 - share, 6));
-            let d = Diagnostic::error(Code::BAD_VALUE, spans[0], text);
+}
+
+impl Opal {
+    /// The packing, and the group that spheres join.
+    pub fn read(self, style: &Word, cx: &BuildCx) -> Result<(Pack, Joined)> {
+        let Self { region, diameter, spacing, fill, seed, sizes, axis, effort, joined } = self;
+        let (span, diameter, spacing) = (diameter.span, diameter.value, spacing.value);
+        let plain = Plain { region, fill, seed, sizes: alike(sizes), effort, joined };
+        let (mut pack, joined) = plain.read(style, cx)?;
+        pack.form = Form::Opal { diameter, spacing, axis, span };
+        Ok((pack, joined))
+    }
+}
+
+impl Aggregate {
+    /// The packing, and the group that spheres join.
+    pub fn read(self, style: &Word, cx: &BuildCx) -> Result<(Pack, Joined)> {
+        let Self { region, share, seed, porosity, wavelength, sizes, effort, joined } = self;
+        if porosity.value <= 1.0 - share.value && !porosity.unknown {
+            let own = general(1.0 - share.value, 6);
+            let text = format!("a packing of share {} has porosity {own} by itself", share.value);
+            let d = Diagnostic::error(Code::BAD_VALUE, porosity.span, text);
             return Err(d.help("write a larger porosity, or `pack`").into());
         }
-        let wavelength = a.positive("the wavelength")?;
-        form = Form::Aggregate { porosity, wavelength, spans };
+        let fill = At { value: Or::Else(Share(share.value)), span: share.span, unknown: share.unknown };
+        let plain = Plain { region, fill, seed, sizes: alike(sizes), effort, joined };
+        let (mut pack, joined) = plain.read(style, cx)?;
+        let (spans, porosity) = ([porosity.span, wavelength.span], porosity.value);
+        pack.form = Form::Aggregate { porosity, wavelength: wavelength.value, spans };
+        Ok((pack, joined))
     }
-    let goal = Goal { overlap: None, rounds: ROUNDS };
-    let sizes = Sizes::Mono(1.0);
-    let types = vec![];
-    Ok(Pack { form, region, name, fill, share_span, seed, sizes, types, sizes_span: style.span, goal })
 }
 
 /// Refuses scenes without spheres in space.
@@ -145,45 +168,6 @@ fn refuse_region(name: &Word, region: &Region, domain: &Domain) -> Result<()> {
 }
 
 impl Pack {
-    /// Takes what stands behind a keyword in a scene of so many types; `false` if the keyword does not go with this form.
-    pub fn keyword(&mut self, word: &Word, a: &mut Args, types: usize) -> Result<bool> {
-        match (word.text.as_str(), &mut self.form) {
-            ("sizes", form) => {
-                let plain = matches!(form, Form::Plain);
-                let last = a.peek_at(if a.peek_text() == "mono" { 1 } else { 2 });
-                self.sizes_span = word.span.to(last.map_or(a.here(), |w| w.span));
-                if plain && a.eat("mix") {
-                    self.sizes = mixture(a)?;
-                    self.types = own_types(a, &self.sizes, types)?;
-                } else {
-                    (self.sizes, self.types) = (sizes(a, plain)?, vec![]);
-                }
-            }
-            ("overlap", _) => {
-                let remedy = "it is a part of the distance of touching spheres, 0 for none";
-                let (span, unknown) = (a.here(), a.peek().is_some_and(|w| w.unknown));
-                let overlap = a.non_negative("the largest overlap")?;
-                if overlap >= 0.5 && !unknown {
-                    let text = format!("the largest overlap must be below 0.5, not {overlap}");
-                    return Err(Diagnostic::error(Code::BAD_VALUE, span, text).help(remedy).into());
-                }
-                self.goal.overlap = Some(overlap);
-            }
-            ("rounds", _) => {
-                let rounds = a.integer_from(1, "the number of rounds")?;
-                self.goal.rounds = usize::try_from(rounds).unwrap_or(usize::MAX);
-            }
-            ("axis", Form::Opal { axis, .. }) => {
-                *axis = match a.choice("direction along z", &["111", "100"])? {
-                    "111" => Axis::Layers,
-                    _ => Axis::Cube,
-                };
-            }
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-
     /// About how many spheres there will be.
     pub fn expected(&self, domain: &Domain) -> f64 {
         let volume = Room::new(domain, &self.region).map_or(0.0, |room| self.with_pores(room).volume());

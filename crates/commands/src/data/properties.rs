@@ -5,6 +5,7 @@ use super::more::molecule_id;
 use super::text::{Line, number, whole};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
+use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
 use perigrain_styles::{BuildCx, Use, UseKind};
 use perigrain_world::index::Index;
 use perigrain_world::properties::MOLECULE;
@@ -30,12 +31,16 @@ pub struct Filled {
     pub columns: Vec<Vec<f64>>,
 }
 
-impl Section {
-    /// Takes `ID HEADER SECTION` behind `fix`.
-    ///
-    /// # Errors
-    /// Fixes without such sections, headings that a file has anyway.
-    pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+impl Value for Section {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            Part::Word(Placeholder { name: "ID", kind: Kind::Fix, about: "", unit: "" }),
+            Part::Word(Placeholder { name: "HEADER", kind: Kind::Text, about: "", unit: "" }),
+            Part::Word(Placeholder { name: "SECTION", kind: Kind::Text, about: "", unit: "" }),
+        ],
+        ..*Grammar::NONE
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect("the ID of a fix property/atom")?;
         match cx.names.fix_style(&word.text) {
             Some("property/atom") => {}

@@ -1,11 +1,12 @@
 //! The keywords that all bodies from files take: size, turn and place, type, density, group.
 
-use crate::create_atoms::molecules::rotate;
+use crate::create_atoms::molecules::Turned;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::body::{Quat, turned};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::common::free_id;
+use perigrain_styles::words::{At, OneType, Words};
 
 /// Where the numbers of a file go: first they are multiplied, then turned about the origin, then shifted.
 #[derive(Clone, Copy)]
@@ -43,60 +44,60 @@ pub struct Making {
     pub group: Option<Word>,
 }
 
-impl Default for Making {
-    fn default() -> Self {
-        let placement = Placement { scale: 1.0, turn: None, shift: [0.0; 3] };
-        Self { placement, kind: None, density: None, group: None }
-    }
+/// The words for it.
+#[derive(Words)]
+pub struct Options {
+    /// The type of those that nothing else gives one.
+    #[word(keyword = "type", name = "T", what = "the type", placed)]
+    pub kind: Option<At<OneType>>,
+    /// The density, as `set` would give it; without one spheres have density 1, as those of create_atoms, and others none yet
+    /// [mass/volume].
+    #[word(keyword, name = "ρ", positive, placed)]
+    density: Option<At<f64>>,
+    /// The group they join, made if it is not there.
+    #[word(keyword, name = "ID", with = group, kind = Kind::Group)]
+    group: Option<Word>,
+    /// The scale, a factor on the lengths of the file.
+    #[word(keyword, name = "S", positive, default = 1.0)]
+    scale: f64,
+    /// Then it is turned by an angle in degrees about an axis through the origin.
+    #[word(keyword, name = "turn")]
+    rotate: Option<Turned>,
+    /// Then it is shifted, whatever the order of the words [length].
+    #[word(keyword, name = "X Y Z", what = "a component of the shift")]
+    shift: Option<At<[f64; 3]>>,
+    /// As `shift`.
+    #[word(keyword = "move", name = "X Y Z", what = "a component of the shift")]
+    moved: Option<At<[f64; 3]>>,
 }
 
-impl Making {
-    /// Takes the values of a keyword; whether it is one of those that all take.
+/// The group that particles join.
+fn group(args: &mut Args, _: &BuildCx) -> Result<Word> {
+    let word = args.expect("a group")?;
+    free_id(word, "the group's ID")?;
+    Ok(word.clone())
+}
+
+impl Options {
+    /// What they ask for.
     ///
     /// # Errors
-    /// Values that cannot be.
-    pub fn keyword(&mut self, word: &Word, a: &mut Args, cx: &BuildCx) -> Result<bool> {
-        match word.text.as_str() {
-            "type" => self.kind = Some(kind(a, cx)?),
-            "density" => {
-                if !cx.world.particles.style.own_mass() {
-                    let name = cx.world.particles.style.name();
-                    let text =
-                        format!("particles of atom_style {name} have no density: `mass` gives types a mass");
-                    return fail(Code::CONFLICT, word.span, text);
-                }
-                self.density = Some(a.positive("the density")?);
-            }
-            "group" => {
-                let word = a.expect("a group")?;
-                free_id(word, "the group's ID")?;
-                self.group = Some(word.clone());
-            }
-            "scale" => self.placement.scale = a.positive("the scale")?,
-            "rotate" => self.placement.turn = Some(rotate(a)?),
-            "shift" | "move" => {
-                for s in &mut self.placement.shift {
-                    *s = a.number("a component of the shift")?;
-                }
-            }
-            _ => return Ok(false),
+    /// A density of particles that have none, an axis without a direction.
+    pub fn making(self, cx: &BuildCx) -> Result<Making> {
+        let style = cx.world.particles.style;
+        if let Some(density) = self.density.filter(|_| !style.own_mass()) {
+            let name = style.name();
+            let text = format!("particles of atom_style {name} have no density: `mass` gives types a mass");
+            return fail(Code::CONFLICT, density.span, text);
         }
-        Ok(true)
-    }
-}
-
-/// Takes a type.
-///
-/// # Errors
-/// Types that there are not.
-pub fn kind(a: &mut Args, cx: &BuildCx) -> Result<u16> {
-    let (span, types) = (a.here(), cx.world.types);
-    let unknown = a.peek().is_some_and(|w| w.unknown);
-    let k = a.integer("the type")?;
-    match u16::try_from(k) {
-        Ok(t) if k >= 1 && usize::from(t) <= types => Ok(t),
-        _ if unknown => Ok(1),
-        _ => fail(Code::BAD_VALUE, span, format!("there are types 1 to {types}, not {k}")),
+        let turn = self.rotate.map(|turn| turn.quat()).transpose()?;
+        let shift = [self.shift, self.moved].into_iter().flatten().max_by_key(|s| s.span.start);
+        Ok(Making {
+            placement: Placement { scale: self.scale, turn, shift: shift.map_or([0.0; 3], |s| s.value) },
+            kind: self.kind.map(|kind| kind.value.0),
+            density: self.density.map(|density| density.value),
+            group: self.group,
+        })
     }
 }
 

@@ -2,89 +2,81 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_styles::common::units_lattice;
+use perigrain_styles::words::{At, Units, Words};
 use perigrain_styles::{BuildCx, UseKind};
 
-const KEYWORDS: [&str; 9] = ["dist", "sum", "mom", "rot", "temp", "bias", "loop", "rigid", "units"];
-
 /// In which order random numbers are given out.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "loop")]
 pub enum Loop {
-    /// By id.
+    /// Numbers are drawn for ids 1 … N in order.
     All,
-    /// As stored.
+    /// Numbers are drawn in storage order.
     Local,
-    /// By place.
+    /// Each place has a stream of its own.
     Geom,
 }
 
-/// What stands behind the style.
-pub struct Options {
-    /// Drawn from a normal distribution.
-    pub gaussian: bool,
-    /// Added to the present velocities.
-    pub sum: bool,
-    /// The drift of the new ones is taken away.
-    pub momentum: bool,
-    /// Their rotation too.
-    pub rotation: bool,
-    /// In which order numbers are drawn.
-    pub order: Loop,
-    /// Lengths are in lattice spacings.
-    pub lattice: bool,
-    /// The compute that gives the temperature.
-    pub compute: Option<ValueRef>,
-    /// The flow that this compute takes away stays as it is.
-    pub bias: bool,
-    /// The fix whose rigid bodies are stopped, each by itself.
-    pub rigid: Option<Word>,
+/// How random numbers are distributed.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "distribution")]
+pub enum Distribution {
+    Uniform,
+    Gaussian,
 }
 
-/// Reads them.
-pub fn options(a: &mut Args, cx: &BuildCx) -> Result<Options> {
-    let mut o = Options {
-        gaussian: false,
-        sum: false,
-        momentum: true,
-        rotation: false,
-        order: Loop::All,
-        lattice: true,
-        compute: None,
-        bias: false,
-        rigid: None,
-    };
-    let mut bias = None;
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "dist" => o.gaussian = a.choice("distribution", &["uniform", "gaussian"])? == "gaussian",
-            "sum" => o.sum = a.flag("sum")?,
-            "mom" => o.momentum = a.flag("mom")?,
-            "rot" => o.rotation = a.flag("rot")?,
-            "loop" => {
-                o.order = match a.choice("loop", &["all", "local", "geom"])? {
-                    "all" => Loop::All,
-                    "local" => Loop::Local,
-                    _ => Loop::Geom,
-                }
-            }
-            "units" => o.lattice = units_lattice(a)?,
-            "temp" => o.compute = Some(temperature_compute(a, cx)?),
-            "bias" => {
-                o.bias = a.flag("bias")?;
-                bias = Some(word.span);
-            }
-            "rigid" => o.rigid = Some(rigid_fix(a, cx)?),
-            _ => return Err(a.unknown(word, &KEYWORDS)),
+/// What stands behind the style.
+#[derive(Words)]
+pub struct Options {
+    /// The distribution of `create`.
+    #[word(keyword, default = Distribution::Uniform)]
+    pub dist: Distribution,
+    /// Whether velocities are added to the present ones.
+    #[word(keyword, default = false)]
+    pub sum: bool,
+    /// Whether `create` takes the mean away.
+    #[word(keyword = "mom", default = true)]
+    pub momentum: bool,
+    /// Whether `create` takes the rotation away.
+    #[word(keyword = "rot", default = false)]
+    pub rotation: bool,
+    /// The order in which `create` draws.
+    #[word(keyword = "loop", default = Loop::All)]
+    pub order: Loop,
+    /// The temperature compute that gives the present temperature, for `create` and `scale`.
+    #[word(keyword = "temp", name = "COMPUTE", with = temperature_compute, kind = Kind::Compute)]
+    pub compute: Option<ValueRef>,
+    /// Whether the flow that the compute of `temp` takes away stays as it is, and the rest is made or scaled.
+    #[word(keyword, what = "bias", placed, shown = "no")]
+    bias: Option<At<bool>>,
+    /// `zero` stops each body of this fix rigid by itself, its particles following.
+    #[word(keyword, name = "FIX", with = rigid_fix, kind = Kind::Fix)]
+    pub rigid: Option<Word>,
+    /// The unit of velocities and distances.
+    #[word(keyword, default = Units::Lattice)]
+    pub units: Units,
+}
+
+impl Options {
+    /// Whether the flow that the compute takes away stays as it is.
+    pub fn keeps_flow(&self) -> bool {
+        self.bias.as_ref().is_some_and(|bias| bias.value)
+    }
+
+    /// Refuses options that do not go together.
+    ///
+    /// # Errors
+    /// `bias yes` without a temperature that takes a flow away.
+    pub fn check(&self, cx: &BuildCx) -> Result<()> {
+        match self.bias.as_ref().filter(|bias| bias.value) {
+            Some(bias) => takes_flow_away(self, bias.span, cx),
+            None => Ok(()),
         }
     }
-    if o.bias {
-        takes_flow_away(&o, bias, cx)?;
-    }
-    Ok(o)
 }
 
 /// `bias yes` needs a temperature that takes a flow away.
-fn takes_flow_away(o: &Options, bias: Option<Span>, cx: &BuildCx) -> Result<()> {
+fn takes_flow_away(o: &Options, bias: Span, cx: &BuildCx) -> Result<()> {
     let d = match &o.compute {
         None => Diagnostic::error(Code::CONFLICT, bias, "`bias yes` needs `temp` with a temperature"),
         Some(r) if !cx.names.compute(&r.name).is_some_and(|s| s.flow) => {

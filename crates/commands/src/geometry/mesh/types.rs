@@ -1,12 +1,11 @@
 //! Which type each cell of a mesh gives its particle: by physical group, element set, or a number of the cell.
 
-use super::super::words::kind;
 use super::{Mesh, Set};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
+use perigrain_lang::Word;
 use perigrain_lang::args::parse_number;
-use perigrain_lang::{Args, Word};
-use perigrain_styles::BuildCx;
+use perigrain_styles::words::{At, Nullable, OneType, Words};
 
 /// What decides.
 #[derive(Clone, Debug)]
@@ -19,7 +18,22 @@ enum By {
     Cell(Word),
 }
 
-/// The words behind `types`.
+/// The words for it.
+#[derive(Words)]
+#[word(what = "source of types")]
+pub enum Source {
+    /// Gmsh's physical groups: their names or numbers, each with a type, or without any the number itself; NULL leaves a group out.
+    Physical(#[word(name = "NAME T", what = "the type")] Vec<(Word, Nullable<OneType>)>),
+    /// Abaqus' element sets by their names.
+    Set(#[word(name = "NAME T", what = "the type")] Vec<(Word, Nullable<OneType>)>),
+    /// An array of the cells, whose values are types or stand before them.
+    Cell(
+        #[word(name = "ARRAY", what = "the name of an array of cells")] Word,
+        #[word(name = "VALUE T", what = "the type")] Vec<(Word, Nullable<OneType>)>,
+    ),
+}
+
+/// Which types cells give.
 #[derive(Clone, Debug)]
 pub struct Types {
     by: By,
@@ -29,33 +43,28 @@ pub struct Types {
 }
 
 impl Types {
-    /// Takes the words up to the next keyword.
+    /// What the words ask for.
     ///
     /// # Errors
-    /// Types that there are not, a line that ends too early.
-    pub fn read(word: &Word, a: &mut Args, cx: &BuildCx, keywords: &[&str]) -> Result<Self> {
-        let by = match a.choice("source of types", &["physical", "set", "cell"])? {
-            "physical" => By::Physical,
-            "set" => By::Set,
-            _ => By::Cell(a.expect("the name of an array of cells")?.clone()),
+    /// Values that are no numbers, sets without names.
+    pub fn new(said: At<Source>) -> Result<Self> {
+        let (by, map) = match said.value {
+            Source::Physical(map) => (By::Physical, map),
+            Source::Set(map) => (By::Set, map),
+            Source::Cell(array, map) => (By::Cell(array), map),
         };
-        let mut map = vec![];
-        while let Some(name) = a.peek().filter(|w| !keywords.contains(&w.text.as_str())) {
-            a.next();
-            if matches!(by, By::Cell(_)) {
-                parse_number(name, "a value of the array")?;
-            }
-            let to = if a.eat("NULL") { None } else { Some(kind(a, cx)?) };
-            map.push((name.clone(), to));
+        if matches!(by, By::Cell(_)) {
+            map.iter().try_for_each(|(value, _)| parse_number(value, "a value of the array").map(drop))?;
         }
         if matches!(by, By::Set) && map.is_empty() {
             return fail(
                 Code::MISSING_ARGUMENT,
-                word.span,
+                said.span,
                 "`types set` needs names of element sets and their types",
             );
         }
-        Ok(Self { by, at: word.span, map })
+        let map = map.into_iter().map(|(name, to)| (name, to.0.map(|kind| kind.0))).collect();
+        Ok(Self { by, at: said.span, map })
     }
 
     /// The type of each cell; 0 for those that are left out.

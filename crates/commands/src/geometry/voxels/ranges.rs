@@ -1,10 +1,9 @@
 //! Ranges of grey values, each with its type.
 
-use super::super::words::kind;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::cformat::general;
-use perigrain_lang::{Args, Word};
-use perigrain_styles::BuildCx;
+use perigrain_lang::Word;
+use perigrain_styles::words::{At, OneType, Words};
 
 /// Ranges with both ends in them, and the types of what lies in them.
 #[derive(Clone, Debug, Default)]
@@ -12,17 +11,23 @@ pub struct Ranges {
     list: Vec<(f64, f64, u16)>,
 }
 
+/// The words for it.
+#[derive(Words)]
+pub struct List {
+    /// A range of grey values, both ends in it (`7` alone is one, too), and the type of its particles; other values are empty.
+    #[word(name = "LO:HI T", what = "the type")]
+    ranges: Vec<(Word, OneType)>,
+}
+
 impl Ranges {
-    /// Takes `LO:HI T …` up to the next keyword.
+    /// What the words ask for.
     ///
     /// # Errors
     /// No range, ranges that are none, two with values in common.
-    pub fn read(word: &Word, a: &mut Args, cx: &BuildCx, keywords: &[&str]) -> Result<Self> {
+    pub fn new(said: &At<List>) -> Result<Self> {
         let mut r = Self::default();
-        while let Some(range) = a.peek().filter(|w| !keywords.contains(&w.text.as_str())) {
-            a.next();
+        for (range, kind) in &said.value.ranges {
             let (lo, hi) = ends(range)?;
-            let kind = kind(a, cx)?;
             if let Some((x, y, _)) = r.list.iter().find(|(x, y, _)| lo <= *y && hi >= *x && !range.unknown) {
                 let text = format!(
                     "`{}` has values in common with {}:{}",
@@ -32,12 +37,12 @@ impl Ranges {
                 );
                 return fail(Code::CONFLICT, range.span, text);
             }
-            r.list.push((lo, hi, kind));
+            r.list.push((lo, hi, kind.0));
         }
         if r.list.is_empty() {
             return fail(
                 Code::MISSING_ARGUMENT,
-                word.span,
+                said.span,
                 "`types` needs ranges of grey values and their types, as `128:255 1`",
             );
         }
