@@ -26,11 +26,11 @@ for (const grammar of told.contributes.grammars) {
   expect(read(grammar.path).scopeName === grammar.scopeName, `the grammar is not ${grammar.scopeName}`);
 }
 for (const { command } of told.contributes.commands) {
-  expect(code.includes(`"${command}"`), `nobody answers the command ${command}`);
+  expect(code.includes(`"${command}"`), `the command ${command} has no handler`);
 }
 for (const name of Object.keys(told.contributes.configuration.properties)) {
   const [section, key] = name.split(".");
-  expect(code.includes(`getConfiguration("${section}")`) && code.includes(`"${key}"`), `nobody reads the setting ${name}`);
+  expect(code.includes(`getConfiguration("${section}")`) && code.includes(`"${key}"`), `the setting ${name} is not read`);
 }
 for (const [, name] of code.matchAll(/require\("([^")]+)"\)/g)) {
   const module = name.split("/")[0];
