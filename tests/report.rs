@@ -248,7 +248,7 @@ fn a_run_is_shown_paused_and_stopped_while_it_runs() {
     let mut line = String::new();
     BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
     let (address, token) =
-        line.trim().strip_prefix("Look at it at http://").unwrap().split_once("/?").unwrap();
+        line.trim().strip_prefix("The run is shown at http://").unwrap().split_once("/?").unwrap();
     let host = format!("HTTP/1.1\r\nHost: {address}");
     let get = |path: &str| asked(address, &format!("GET /{path}?{token}&since=0 {host}"));
     let post =

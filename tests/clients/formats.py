@@ -98,7 +98,7 @@ def flights():
             f"fix mean all ave/time 1 1 1 c_ke v_t file mean.{box}", *(f"dump {k} all {words}" for k, words in enumerate(dumps)),
             "dump_modify 4 element C Si", "dump_modify 5 element C Si",
             "thermo 1", "thermo_style custom step time c_ke atoms vol", "run 2"])
-    # A log with rows of several lines, and one with rows in YAML: readers tell them apart by the whole file.
+    # A log with rows of several lines, and one with rows in YAML: readers distinguish them by the whole file.
     for name, style in (("multi", "multi"), ("yaml", "yaml")):
         run(name, deck("sphere", BOXES["upright"]) + ["comm_modify vel yes", "fix 1 all nve/sphere", f"timestep {DT}", "thermo 1", f"thermo_style {style}", "run 2"])
 

@@ -424,8 +424,8 @@ fn mistakes_in_images_are_named() {
     fs::write(folder.path().join("huge.nrrd"), huge).unwrap();
     fs::write(folder.path().join("odd.nrrd"), huge.replace("uint8", "block")).unwrap();
     for (line, row, printed) in [
-        ("nospacing.nrrd types 1:9 1", 0, "does not say how large its voxels are"),
-        ("ct_5.png types 1:9 1", 0, "does not say how large its voxels are"),
+        ("nospacing.nrrd types 1:9 1", 0, "does not state the size of its voxels"),
+        ("ct_5.png types 1:9 1", 0, "does not state the size of its voxels"),
         ("raw8.nrrd", 0, "which grey values are which types is missing"),
         ("raw8.nrrd types 9:1 1", 0, "`9:1` is no range"),
         ("raw8.nrrd types 1:9 1 9:20 2", 0, "has values in common with 1:9"),

@@ -51,7 +51,7 @@ def same_bits(deck, perigrain):
                 file.write("\n".join(lines) + "\n")
             said, left = run(f"{top}/{name}", perigrain, "-threads", threads, "-log", "none", f"{top}/in")
             errors = [line for line in said.splitlines() if line.startswith(("error", "thread"))]
-            # Elapsed steps and the first row of a run are told by the last row of each step.
+            # Elapsed steps and the first row of a run follow from the last row of each step.
             table = {row[0]: row for row in rows(said)}
             found.append((name, errors, table, left.get("end.dump")))
     one = found[0]

@@ -1,4 +1,4 @@
-"""Random decks of bonds that twist and bend (bond_style bpm/rotational), broken and whole, with what tells of them. LAMMPS takes
+"""Random decks of bonds that twist and bend (bond_style bpm/rotational), broken and whole, with the outputs about them. LAMMPS takes
 small angles by arc cosines, which leaves 1e-6 in some columns of one deck in ten."""
 from bonds import clumps
 
@@ -8,7 +8,7 @@ def coeff(r, kind):
     stiff = r.choice([30, 200])
     limit = r.choice([0.3, 2, 30])
     k = [stiff, stiff * r.choice([0.1, 0.4, 0]), stiff * r.choice([0.02, 0.05, 0]), stiff * r.choice([0.02, 0.07])]
-    # Limits of twist and bending are told in another order by the manual than by the program: they differ here.
+    # The manual lists limits of twist and bending in another order than the program: they differ here.
     b = [limit, limit * 0.7, limit * 0.2, limit * 0.3]
     g = [r.choice([0, 0.5]), r.choice([0, 0.1]), r.choice([0, 0.02]), r.choice([0, 0.03])]
     return f"bond_coeff {kind} " + " ".join(f"{a:g}" for a in k + b + g)
@@ -31,7 +31,7 @@ def beams(r):
     deck += [f"set group all diameter {r.choice([0.9, 1.0])}", "set type 1 density 1", f"set type 2*3 density {r.choice([0.7, 1.5])}",
              "group one type 1", "group two type 2", "group loose type 3", "group odd id 1:200:2"]
     if r.random() < 0.7:
-        # Bonds exactly along −z are told apart by rounding.
+        # Bonds exactly along −z are distinguished by rounding.
         deck.append(f"displace_atoms all random 0.03 0.03 {0 if flat else 0.03} {r.randint(1, 9999)} units box")
     deck += [f"pair_style gran/{r.choice(['hooke', 'hooke/history', 'hertz/history'])} {r.choice([400, 1000])} NULL {r.choice([3, 10])} NULL {r.choice([0, 0.4])} 1",
              "pair_coeff * *", "neighbor 2.0 nsq", "neigh_modify every 1 delay 0 check yes", "bond_style zero", "bond_coeff *", "special_bonds lj 0 1 1 coul 0 1 1",

@@ -155,7 +155,7 @@ def differences(theirs, ours):
         return REFUSED if "signal" not in theirs else errors
     if errors[0] and "signal" in errors[0][0] and not errors[1]:
         return REFUSED
-    # LAMMPS asks for longer lists, a wider rim of ghosts, averages of this very step or forces of zero, which perigrain does not need.
+    # LAMMPS needs longer lists, a wider rim of ghosts, averages of this very step or forces of zero, which perigrain does not need.
     if errors[0] and re.search("exceeds ghost atom range|longer than pairwise cutoff|cutoff > max neighbor cutoff|not computed at compatible time|non-zero forces in an energy minimization", errors[0][0]) and not errors[1]:
         return REFUSED
     if errors[0] or errors[1]:

@@ -1,4 +1,4 @@
-"""Random decks of other kinds that end in a data file, which both programs read from both and go on with."""
+"""Random decks of other kinds that end in a data file, which both programs read from both and continue with."""
 from beside import Read
 from bonds import bonds
 from grains import grains
@@ -13,7 +13,7 @@ AFTER = {"lattice", "region", "group", "variable", "pair_style", "pair_coeff", "
 
 
 def carried(r):
-    """A deck, a data file behind its first run, and a deck that goes on from it."""
+    """A deck, a data file behind its first run, and a deck that continues from it."""
     deck = r.choice([bonds, bonds, grains, hybrid, hybrid, mixed, motion])(r)
     at = next(k for k, line in enumerate(deck) if line.startswith("run ") and int(line.split()[1]) > 0)
     head = deck[:at] + [f"run {r.choice([1, 10, 20])}"]

@@ -69,7 +69,7 @@ def change(r, later=False):
              f"velocity {group} ramp vx -5 5 x 0 0.005 units box",
              f"set group {group} density {r.choice([2000, 3000])}"]
     rotate = f"displace_atoms {group} rotate 0.002 0.002 0 0 0 1 {r.choice([2, 30])} units box"
-    # What is drawn hangs on the last digits of places, which a run leaves other than LAMMPS does.
+    # What is drawn depends on the last digits of places, which a run leaves other than LAMMPS does.
     scatter = f"displace_atoms {group} random {r.choice(['1e-7', '2e-5'])} 0 1e-6 {r.randint(1, 999)} units box"
     press = [scatter, f"change_box all {r.choice('xyz')} scale {r.choice([0.85, 0.97, 1.03])} remap", rotate,
              f"delete_atoms region middle compress {r.choice(['yes', 'no'])}",

@@ -13,7 +13,7 @@ def least(r):
     at = next(k for k, line in enumerate(deck) if line.startswith("run ") and int(line.split()[1]) > 0)
     # Bodies stand still meanwhile, and LAMMPS has put them up before or not.
     head = [line for line in deck[:at] if not line.startswith("run_style") and " rigid " not in line]
-    # What contacts remember of evaluations that a line search takes back hangs on lists.
+    # The contact history of evaluations that a line search takes back depends on lists.
     forceful = kind is grains or any(word in line for line in head for word in ("mindlin", "_history", "/history", "sds", "marshall"))
     style = r.choice(["fire", "quickmin"] if forceful else ["cg", "sd", "fire", "quickmin"])
     # Wherever springs and indenters act, their energies count.

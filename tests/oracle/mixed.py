@@ -56,7 +56,7 @@ def laws(r):
 
 
 def kept(deck):
-    """Whether nobody may be deleted: fixes hold them, or the last grains, which take their places in LAMMPS' lists, would
+    """Whether no grain may be deleted: fixes hold them, or the last grains, which take their places in LAMMPS' lists, would
     stand first in pairs that remember rolling and twisting."""
     return any("few" in line for line in deck if line.startswith("fix")) or any(" rolling " in line or " twisting " in line for line in deck)
 

@@ -79,7 +79,7 @@ def odds(r):
     deck = [part for line in deck for part in line.split("\n")]
     ids = {line.split()[1] for line in deck if line.startswith("fix ")}
     columns += ["f_la"] if "la" in ids else []
-    # What LAMMPS tells of a controller before it acts is whatever stood in memory.
+    # LAMMPS' values of a controller before it acts are whatever was in memory.
     columns += ["v_level"] if "co" in ids else []
     columns += ["f_hw[1]", "f_hw[4]"] if "hw" in ids else []
     columns += ["f_bb[1]", "f_bb[2]", "bonds"] if "bb" in ids else []

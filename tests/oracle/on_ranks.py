@@ -17,13 +17,13 @@ from again import Cut
 from beside import run
 from random_decks import KINDS
 
-# Lines that tell of time, memory and processes.
+# Lines about time, memory and processes.
 OF_THIS_RUN = ("perigrain ", "Loop time", "Performance", "Total wall", "Per MPI rank", "ranks: ")
 PARTS = ("% CPU", "CPU = ", " | ", "[s]", "s/step", "Wall time")
 
 
 def lines(said):
-    """What was printed, but what tells of this run alone."""
+    """What was printed, without lines about this run alone."""
     return [line for line in said.splitlines() if not line.startswith(OF_THIS_RUN) and not any(part in line for part in PARTS)]
 
 

@@ -3,7 +3,7 @@ from bodies import bodies
 from grains import grains
 from mixed import mixed
 
-# What LAMMPS lets nobody go back in time with.
+# What LAMMPS lets no deck go back in time with.
 TIMED = (" move ", " rigid", "wiggle", " shear ", " vector ", "dt/reset", " recenter")
 
 

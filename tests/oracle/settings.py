@@ -25,7 +25,7 @@ def stretched(r, line, leveled):
 def settings(r):
     """A deck of another kind with more settings."""
     deck = [line for line in r.choice([grains, mixed, motion, sources])(r) if line not in ("comm_modify vel yes", "newton off")]
-    # Who stands first in a pair that remembers rolling and twisting hangs on lists in LAMMPS.
+    # Which grain is first in a pair with rolling and twisting history depends on lists in LAMMPS.
     free = not any(" rolling " in line or " twisting " in line for line in deck)
     lines = []
     for line in deck:

@@ -2,7 +2,7 @@
 from levels import levels
 from motion import WHOLE, computes, forces, movers
 
-# What asks for spheres, or for pairs that touch.
+# What needs spheres, or pairs that touch.
 SPHERES = ("radius", "/sphere", "contact/atom", "fabric", "cutoff radius", "diameter", "omega")
 
 # Of neighbours equally far on a lattice centro/atom takes any; distances stand on the edges of rdf's bins.
@@ -42,7 +42,7 @@ def solids(r):
     lines, columns = computes(r, False, False, False, not set(sides) & set("sm"))
     left = [line for line in lines if not any(word in line for word in SPHERES + ("pair/local", "group/group", "temp/sphere", "tz", "tb", "torque/chunk") + TIES)]
     known = {line.split()[1] for line in left if line.split()[0] in ("compute", "fix", "variable")}
-    # What hangs on what has been left out goes too.
+    # What depends on something left out goes too.
     while True:
         uses = lambda line: {w.split("_", 1)[1].split("[")[0] for w in line.split() if w[:2] in ("c_", "f_")}
         fewer = [line for line in left if uses(line) <= known | {"thermo_temp"}]

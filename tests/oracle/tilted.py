@@ -76,5 +76,5 @@ def tilted(r):
     later = r.choice([[], ["run 100"], [] if any("move" in line for line in deck) else ["timestep 0.0004", "run 100"], ["set group odd vx 0.1", "run 100"],
                       [f"change_box all {r.choice(['xy delta 0.3', 'xz delta -0.2', 'x scale 1.02'])} {r.choice(['', 'remap '])}units box", "run 60"]])
     deck += [] if stays else later
-    # LAMMPS' gyration goes on with the mass of those that are lost.
+    # LAMMPS' gyration continues with the mass of lost particles.
     return deck if "f" not in sides else [line.replace(" c_ms[4] c_gy", "") for line in deck]

@@ -5,7 +5,7 @@
     tests/scripts/oracle.py --fill FILE...   writes the `# print:` lines anew, at the end of each block
 
 LAMMPS is $LMP or the one benches/versus_lammps has installed. A block with a line `# perigrain only: why` is left out. The prints of a block with
-`@scene` must begin with `= `, so that --fill can tell them from the rest of LAMMPS' output.
+`@scene` must begin with `= `, so that --fill can distinguish them from the rest of LAMMPS' output.
 """
 import os
 import subprocess

@@ -36,7 +36,7 @@ pub fn open(o: &Options, text: &str, log: &Log) -> Result<Option<Arc<Live>>> {
     report.live = true;
     let page = report::html(&report);
     log.keep_rows();
-    eprintln!("It is shown at {}", server.url());
+    eprintln!("The run is shown at {}", server.url());
     let (shared, log) = (live.clone(), log.clone());
     std::thread::spawn(move || server.serve(|question| answer(question, &shared, &page, &log)));
     Ok(Some(live))

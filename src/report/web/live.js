@@ -1,4 +1,4 @@
-// A page that is open while its run goes on: asks where it stands, takes rows and snapshots in, hands wishes on.
+// A page that is open during its run: requests the state, takes in rows and snapshots, sends the reader's requests.
 "use strict";
 (() => {
   if (!report.data.live) return;
@@ -15,7 +15,7 @@
 
   const buttons = () => {
     const none = over || status === "waiting" || status === "stopping";
-    $("pause").textContent = status === "paused" ? "Go on" : "Pause the run";
+    $("pause").textContent = status === "paused" ? "Continue" : "Pause the run";
     $("pause").disabled = $("stop").disabled = none;
     $("step").disabled = none || status !== "paused";
   };
@@ -62,7 +62,7 @@
     status = state.status;
     await picture();
     over = status === "over" && !state.rows.length;
-    const words = { waiting: "Nothing runs at the moment.", running: "The run goes on", paused: "The run waits", stopping: "The run ends", over: "The run is over; this page keeps what it has seen." };
+    const words = { waiting: "Nothing runs at the moment.", running: "The run is in progress", paused: "The run is paused", stopping: "The run ends", over: "The run is over; this page keeps what it has seen." };
     $("status").textContent = ["waiting", "over"].includes(status) ? words[status] : `${words[status]}: ${state.done} of ${state.total} steps.`;
     buttons();
   };

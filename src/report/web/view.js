@@ -483,7 +483,7 @@
   canvas.addEventListener("pointerup", lift);
   canvas.addEventListener("pointercancel", lift);
   canvas.addEventListener("contextmenu", e => e.preventDefault());
-  // The page scrolls until somebody has taken hold of the picture.
+  // The page scrolls until the picture is grabbed.
   canvas.addEventListener("wheel", e => {
     if (document.activeElement !== canvas) return;
     e.preventDefault();
