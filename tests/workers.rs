@@ -92,7 +92,7 @@ fn ranks_without_a_run_are_counted_once() {
         (&["sweep", "in.x", "-each", "m", "1", "2"][..], "never uses the variable `m`"),
         (&["sweep", "in.x"], "needs values"),
         (&["sweep", "in.none", "-each", "n", "1"], "cannot read the deck `in.none`"),
-        (&["sweep", "in.x", "-each", "n", "1", "-partition", "2x1"], "`-partition` wants several processes"),
+        (&["sweep", "in.x", "-each", "n", "1", "-partition", "2x1"], "`-partition` needs several processes"),
     ] {
         let alone = perigrain(folder.path(), args);
         let several = perigrain(folder.path(), &[args, &["-ranks", "3"]].concat());
