@@ -4,10 +4,11 @@ mod coefficients;
 
 use super::window::forget;
 use super::{Fix, FixStyle};
-use coefficients::Follows;
+use coefficients::{Follows, OfBonds, OfPairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::{Args, Param, RefKind, ValueRef};
+use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_styles::words::{Alternative, At, Form, Grammar, Kind, Part, Placeholder, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{COLUMNS, LISTS, MASK, MASS, MEMO, RADIUS, SLOTS};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -22,100 +23,144 @@ impl Style for Adapt {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group adapt N atom diameter|diameter/disc v_name | pair STYLE COEFFICIENT I J v_name | \
-                     bond STYLE COEFFICIENT I v_name … [scale yes|no] [reset yes|no] [mass yes|no]",
+            syntax: "",
             summary: "Lets the diameter of spheres or coefficients of forces follow variables during a run.",
-            text: "The variables are evaluated in the setup of a run and at multiples of N (N = 0: in the setup only). They are equal-style, and for \
-                   `atom` atom-style as well (LAMMPS 22Jul2025 has none of these): a value for each particle. Several changes can be written one after another; of `atom`, one.\n\n\
-                   `atom`: the value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
-                   diameter it had at first (each change multiplies the present one by the new factor over the last; a particle that comes later \
-                   begins with the factor that is in force, and with an atom-style variable with 1). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
-                   of a disc with `diameter/disc`; `mass no` keeps the mass. Neighbour lists are made anew before particles have grown by a quarter of the skin \
-                   (LAMMPS' are not, nor under `compat lammps`: there the skin must be as wide as what they grow by). After `reset yes` LAMMPS' masses are wrong in the next run; \
-                   perigrain's are those of before.\n\n\
-                   `pair`, `bond`: the value becomes the coefficient of these types, or with `scale yes` a factor on what it was when the run \
-                   began. There are `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` of all peridynamic styles, `c` of \
-                   the bond-based ones, `k gamma` of pair style bpm/spring, and `a` of pair style soft (as in LAMMPS); a sub-style of `hybrid` is named by its own name. A new \
-                   `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.\n\n\
-                   `reset yes`: what was changed is put back at the end of each run. `kspace` and `atom charge` are refused.",
+            text: "The variables are evaluated in the setup of a run and at multiples of N. They are equal-style, and \
+                   for `atom` atom-style as well (LAMMPS 22Jul2025 has none of these): a value for each particle. \
+                   Several changes can be written one after another; of `atom`, one. `kspace` and `atom charge` are \
+                   refused.\n\n\
+                   A particle that comes later begins with the factor that is in force, and with an atom-style variable \
+                   with 1. Neighbour lists are made anew before particles have grown by a quarter of the skin (LAMMPS' \
+                   are not, nor under `compat lammps`: there the skin must be as wide as what they grow by). After \
+                   `reset yes` LAMMPS' masses are wrong in the next run; perigrain's are those of before.\n\n\
+                   There are the coefficients `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` \
+                   of all peridynamic styles, `c` of the bond-based ones, `k gamma` of pair style bpm/spring, and `a` \
+                   of pair style soft (as in LAMMPS); a sub-style of `hybrid` is named by its own name. A new \
+                   `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.",
             example: "variable d equal ramp(0.001,0.0011)\nfix swell ball adapt 1 atom diameter v_d reset yes",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// Acts at multiples of N [steps]; 0: in the setup of runs only.
+    #[word(name = "N", what = "the number of steps N", from = 0)]
+    every: i64,
+    #[word(name = "attribute", least = 1)]
+    attributes: Vec<At<Supported>>,
+    /// Whether values are factors: on the diameter that a particle had at first (each change multiplies the present one by the new
+    /// factor over the last), or on what a coefficient was when the run began.
+    #[word(keyword, default = false)]
+    scale: bool,
+    /// Whether what was changed is put back at the end of each run.
+    #[word(keyword, default = false)]
+    reset: bool,
+    /// Whether the density stays, of a disc with `diameter/disc`, as LAMMPS 22Jul2025 does, and not the mass.
+    #[word(keyword, default = true)]
+    mass: bool,
+}
+
+/// What a variable changes.
+#[derive(Words)]
+#[word(what = "attribute")]
+enum Attribute {
+    /// The value becomes the diameter of every particle of the group.
+    Atom(#[word(name = "size")] Size),
+    /// The value becomes the coefficient of these types.
+    Pair(#[word(name = "coefficient")] OfPairs),
+    /// The value becomes the coefficient of these bond types.
+    Bond(#[word(name = "coefficient")] OfBonds),
+}
+
+/// An attribute; those of LAMMPS that no style has here are refused.
+struct Supported(Attribute);
+
+/// What only LAMMPS' fix changes.
+const REFUSED: [&str; 4] = ["angle", "dihedral", "improper", "kspace"];
+
+impl Value for Supported {
+    const KIND: Kind = <Attribute as Value>::KIND;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        if let Some(word) = args.peek().filter(|w| REFUSED.contains(&w.text.as_str())) {
+            let text = format!("no style in perigrain has a parameter that `{}` could change", word.text);
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+            return Err(d
+                .help("fix adapt changes `atom diameter`, and coefficients of `pair` and `bond` styles")
+                .into());
+        }
+        Attribute::value(what, args, cx).map(Self)
+    }
+    fn begins(word: &Word) -> bool {
+        Attribute::begins(word) || REFUSED.contains(&word.text.as_str())
     }
 }
 
 impl FixStyle for Adapt {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(0, "the number of steps N")?;
-        let mut fix = Declared {
+        let line: Line = read(args, cx)?;
+        let (mut size, mut follows) = (None, vec![]);
+        for At { value: Supported(attribute), span, .. } in line.attributes {
+            match attribute {
+                Attribute::Atom(_) if size.is_some() => {
+                    let text = "this fix changes the diameter already: use another fix";
+                    return fail(Code::CONFLICT, span, text);
+                }
+                Attribute::Atom(own) => size = Some(own),
+                Attribute::Pair(OfPairs(own)) | Attribute::Bond(OfBonds(own)) => follows.push(own),
+            }
+        }
+        Ok(Box::new(Declared {
             id: cx.id.to_string(),
             factor: Key::new(&format!("adapt/{}/factor", cx.id)),
             columns: ["radius", "mass"].map(|what| Key::new(&format!("adapt/{}/{what}", cx.id))),
             factors: Key::new(&format!("adapt/{}/factors", cx.id)),
             group: cx.group,
-            every,
-            size: None,
-            follows: vec![],
-            scale: false,
-            reset: false,
-            mass: true,
-        };
-        attribute(&mut fix, args, cx)?;
-        while ATTRIBUTES.contains(&args.peek_text()) {
-            attribute(&mut fix, args, cx)?;
-        }
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "scale" => fix.scale = args.flag("scale")?,
-                "reset" => fix.reset = args.flag("reset")?,
-                "mass" => fix.mass = args.flag("mass")?,
-                _ => return Err(args.unknown(word, &["scale", "reset", "mass"])),
-            }
-        }
-        Ok(Box::new(fix))
+            every: line.every,
+            size,
+            follows,
+            scale: line.scale,
+            reset: line.reset,
+            mass: line.mass,
+        }))
     }
 }
 
-/// What LAMMPS' fix changes.
-const ATTRIBUTES: [&str; 7] = ["atom", "pair", "bond", "angle", "dihedral", "improper", "kspace"];
-
-/// Parses one attribute with its words.
-fn attribute(fix: &mut Declared, args: &mut Args, cx: &BuildCx) -> Result<()> {
-    let span = args.here();
-    match args.choice("attribute", &ATTRIBUTES)? {
-        "atom" if fix.size.is_some() => {
-            fail(Code::CONFLICT, span, "this fix changes the diameter already: use another fix")
-        }
-        "atom" => {
-            fix.size = Some(size(args, cx)?);
-            Ok(())
-        }
-        kind @ ("pair" | "bond") => {
-            fix.follows.push(coefficients::read(kind == "bond", args, cx)?);
-            Ok(())
-        }
-        other => {
-            let text = format!("no style in perigrain has a parameter that `{other}` could change");
+impl Value for Size {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            Part::Word(Placeholder {
+                name: "property",
+                kind: Kind::Choice(&[
+                    Alternative { word: "diameter", about: "", parts: &[] },
+                    Alternative { word: "diameter/disc", about: "", parts: &[] },
+                ]),
+                about: "",
+                unit: "",
+            }),
+            coefficients::VARIABLE,
+        ],
+        keywords: &[],
+        refused: &[],
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
+        if what == "charge" {
+            let text = "fix adapt does not change the charge in perigrain";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
-            Err(d
-                .help("fix adapt changes `atom diameter`, and coefficients of `pair` and `bond` styles")
-                .into())
+            return Err(d.help("`set … charge` does, between runs").into());
         }
+        if !cx.world.particles.style.sphere {
+            let text = "the particles of this scene have no diameter";
+            let d = Diagnostic::error(Code::CONFLICT, span, text);
+            return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
+        }
+        Ok(Self { variable: variable(args, true, cx)?, disc: what == "diameter/disc" })
     }
-}
-
-fn size(args: &mut Args, cx: &BuildCx) -> Result<Size> {
-    let span = args.here();
-    let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
-    if what == "charge" {
-        let d =
-            Diagnostic::error(Code::NOT_SUPPORTED, span, "fix adapt does not change the charge in perigrain");
-        return Err(d.help("`set … charge` does, between runs").into());
-    }
-    if !cx.world.particles.style.sphere {
-        let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");
-        return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
-    }
-    Ok(Size { variable: variable(args, true, cx)?, disc: what == "diameter/disc" })
 }
 
 /// The attribute `atom diameter`.

@@ -11,10 +11,12 @@ use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{self, Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
 use perigrain_styles::pair::ToCome;
+use perigrain_styles::words::{Form, Words};
 use perigrain_styles::{BuildCx, Doc, PlaceTest, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::X;
 use perigrain_world::{GroupId, Key, Numbers, Region, SlotId, World};
+use words::Line;
 
 /// The style.
 pub struct Deposit;
@@ -25,34 +27,30 @@ impl Style for Deposit {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group deposit N type M seed region ID [near R] [attempt Q] [global lo hi | local lo hi delta] \
-                     [gaussian x y z sigma] [rate V] [vx lo hi] [vy lo hi] [vz lo hi] [target x y z] \
-                     [var NAME set x|y|z NAME …] [mol TEMPLATE [molfrac f1 f2 …] [rigid fixID] [orient x y z]] [id max|next] \
-                     [units lattice|box]",
+            syntax: "",
             summary: "Puts a new particle or molecule into the scene every M steps, N in all.",
-            text: "At the next step and every M steps a place is drawn in the region, uniform or with `gaussian` around a point; `global` puts it lo to hi above the highest \
-                   particle, `local` above the highest one within delta of it sideways (in flat scenes above means along y, and z is 0; LAMMPS, and `compat lammps`, leaves it where it was drawn). It \
-                   is taken if no particle is nearer than R (`near`, default 0) and, with `var` and `set` as in `create_atoms`, if \
-                   the variable is not zero there; up to Q attempts (10). Velocities are uniform between bounds (0); `target` \
-                   points them to a place. `rate` moves the region up. The new particle is of LAMMPS' default size, for spheres diameter 1 and density 1, and \
-                   belongs to `all` and the fix's group. `id max` continues from the largest id in use, `next` from the \
-                   last one given (under `compat lammps` some twice where `create_atoms` makes particles in between, as in LAMMPS). Distances and velocities are in lattice spacings unless `units box`.\n\n\
-                   Random numbers and their order are LAMMPS'. A second run continues where the first one ended, also after a restart. \
-                   Steps whose particle found no place are made up for by later ones and warned about at the end of the run. \
-                   \n\n\
-                   `mol` puts in copies of a molecule template with their bonds, about their geometric centre and turned at random, \
-                   about the axis `orient` if given; `type` is added to their types (so 0 is one). `molfrac`: the shares of the several \
-                   molecules of a template, equal without. `rigid` names the fix rigid/small with the same `mol` that moves them as \
-                   bodies. `near` is the distance of each of their particles. `shake` is refused. Scalar (intensive): how many there are so far.",
+            text: "At the next step and every M steps a place is drawn in the region, uniform or with `gaussian` around \
+                   a point. It is taken if no particle is too near and, with `var` and `set` as in `create_atoms`, if \
+                   the variable is not zero there. The new particle is of LAMMPS' default size, for spheres diameter 1 \
+                   and density 1, and belongs to `all` and the fix's group. In flat scenes above means along y, and z \
+                   is 0 (LAMMPS, and `compat lammps`, leaves it where it was drawn).\n\n\
+                   Molecules are put in about their geometric centre; `near` is the distance of each of their \
+                   particles. `shake` is refused.\n\n\
+                   Random numbers and their order are LAMMPS'. A second run continues where the first one ended, also \
+                   after a restart. Steps whose particle found no place are made up for by later ones and warned about \
+                   at the end of the run. Scalar (intensive): how many there are so far.",
             example: "region high block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\n\
                       fix dep grains deposit 3 2 5 4711 region high vz -1 -1 near 0.0015 units box",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
 impl FixStyle for Deposit {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        words::read(args, cx).map(|fix| -> Box<dyn Fix> { Box::new(fix) })
+        words::build(args, cx).map(|fix| -> Box<dyn Fix> { Box::new(fix) })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::newcomers::settle;
 use super::pair::ToCome;
+use super::words::{At, Grammar, Keyword, Kind, Part, Placeholder, Value, Words};
 use super::{BuildCx, SealCx};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::math::body::{Quat, turn};
@@ -104,24 +105,51 @@ pub struct Molecules {
     axis: Option<Vec3>,
 }
 
-/// Keywords that [`Words::take`] knows.
-pub const KEYWORDS: [&str; 4] = ["mol", "molfrac", "rigid", "shake"];
-
-/// The molecule keywords read so far.
+/// The keywords of molecules that are put in.
 #[derive(Default)]
-pub struct Words {
+pub struct Inserted {
     mol: Option<(Word, Arc<[Template]>)>,
     shares: Option<Vec<f64>>,
     rigid: Option<Word>,
-    orient: Option<(Vec3, Span)>,
 }
 
-impl Words {
-    /// Takes the values of one of these keywords (or `orient`, where the fix has it).
-    ///
-    /// # Errors
-    /// Unknown templates, shares that do not sum to 1.
-    pub fn take(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<()> {
+const fn keyword(word: &'static str, values: &'static [Part], about: &'static str) -> Keyword {
+    Keyword { word, values, about, default: "", repeats: false }
+}
+
+const fn place(name: &'static str, kind: Kind) -> Part {
+    Part::Word(Placeholder { name, kind, about: "", unit: "" })
+}
+
+impl Words for Inserted {
+    const GRAMMAR: &'static Grammar = &Grammar {
+        parts: &[],
+        keywords: &[
+            keyword(
+                "mol",
+                &[place("TEMPLATE", Kind::Molecule)],
+                "Copies of a molecule template with their bonds are put in, turned at random, in the place of single particles; `type` is \
+                 added to their types (so 0 is one).",
+            ),
+            keyword(
+                "molfrac",
+                &[Part::Many(&[place("f", Kind::Number)], 1)],
+                "The shares of the several molecules of a template, equal without it.",
+            ),
+            keyword(
+                "rigid",
+                &[place("fixID", Kind::Fix)],
+                "The fix rigid/small with the same `mol` that moves the molecules as bodies.",
+            ),
+        ],
+        refused: &[],
+    };
+
+    fn begin(_: &mut Args, _: &BuildCx) -> Result<Self> {
+        Ok(Self::default())
+    }
+
+    fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
         match word.text.as_str() {
             "mol" => {
                 let name = args.expect("a molecule template")?;
@@ -134,25 +162,54 @@ impl Words {
                 let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
                 return Err(d.help("`rigid ID` keeps whole molecules rigid").into());
             }
-            _ => {
-                let span = args.here();
-                let axis = [args.number("x")?, args.number("y")?, args.number("z")?];
-                if axis == [0.0; 3] {
-                    return fail(Code::BAD_VALUE, span, "the axis must not be zero");
-                }
-                if cx.world.settings.two_dimensional && (axis[0], axis[1]) != (0.0, 0.0) {
-                    return fail(
-                        Code::BAD_VALUE,
-                        span,
-                        "in a flat scene the axis is z: write `orient 0 0 1`",
-                    );
-                }
-                self.orient = Some((axis, word.span));
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+}
+
+/// An axis about which molecules are turned.
+#[derive(Clone, Copy, Debug)]
+pub struct Orient(Vec3);
+
+impl Value for Orient {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[place("x", Kind::Number), place("y", Kind::Number), place("z", Kind::Number)],
+        keywords: &[],
+        refused: &[],
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let axis = [args.number("x")?, args.number("y")?, args.number("z")?];
+        if axis == [0.0; 3] {
+            return fail(Code::BAD_VALUE, span, "the axis must not be zero");
+        }
+        if cx.world.settings.two_dimensional && (axis[0], axis[1]) != (0.0, 0.0) {
+            return fail(Code::BAD_VALUE, span, "in a flat scene the axis is z: write `orient 0 0 1`");
+        }
+        Ok(Self(axis))
+    }
+}
+
+/// A type, or 0 where molecules bring their own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offset(pub u16);
+
+impl Value for Offset {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let kind = args.integer("the type")?;
+        match u16::try_from(kind).ok().filter(|k| usize::from(*k) <= cx.world.types) {
+            Some(kind) => Ok(Self(kind)),
+            None => {
+                fail(Code::BAD_VALUE, span, format!("there are types 1 to {}, not {kind}", cx.world.types))
             }
         }
-        Ok(())
     }
+}
 
+impl Inserted {
     fn fractions(&self, word: &Word, args: &mut Args) -> Result<Vec<f64>> {
         let Some((_, set)) = &self.mol else {
             let d = Diagnostic::error(Code::WRONG_ORDER, word.span, "`molfrac` comes before its template");
@@ -178,13 +235,19 @@ impl Words {
         }
     }
 
-    /// What is inserted: nothing without `mol`, in which case `kind`, a type, must exist.
+    /// What is inserted: nothing without `mol`, in which case `kind`, a type, must exist; turned about `orient`, if it is there.
     ///
     /// # Errors
     /// Templates that do not fit the scene, words that lack `mol`.
-    pub fn finish(self, kind: u16, at: Span, cx: &BuildCx) -> Result<Option<Molecules>> {
+    pub fn finish(
+        self,
+        kind: At<Offset>,
+        orient: Option<At<Orient>>,
+        cx: &BuildCx,
+    ) -> Result<Option<Molecules>> {
+        let At { value: Offset(kind), span: at, .. } = kind;
         let Some((word, set)) = self.mol else {
-            if let Some((_, span)) = self.orient {
+            if let Some(At { span, .. }) = orient {
                 let text = "without effect: `orient` is for molecules, and single particles are put in";
                 cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
             }
@@ -211,7 +274,7 @@ impl Words {
             set,
             kind,
             rigid: self.rigid,
-            axis: self.orient.map(|o| o.0),
+            axis: orient.map(|axis| axis.value.0),
         }))
     }
 }

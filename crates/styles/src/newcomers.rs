@@ -1,8 +1,8 @@
 //! Particles that fixes create in the middle of a run: how they join, and the state such a fix keeps between runs.
 
+use crate::words::Words;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
-use perigrain_lang::Args;
 use perigrain_world::{GroupId, Numbers, World};
 use std::f64::consts::PI;
 
@@ -57,23 +57,18 @@ pub fn settle(w: &mut World) {
 }
 
 /// Which ids newcomers get.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Words)]
+#[word(what = "value of id")]
 pub enum Ids {
-    /// Those after the largest one in use.
+    /// New ids continue from the largest one in use.
+    #[default]
     Max,
-    /// Those after the last one that the fix gave away.
+    /// New ids continue from the last one that the fix gave (under `compat lammps` some twice where `create_atoms` makes particles in
+    /// between, as in LAMMPS).
     Next,
 }
 
 impl Ids {
-    /// Takes the value of the keyword `id`.
-    ///
-    /// # Errors
-    /// Another word.
-    pub fn take(args: &mut Args) -> Result<Self> {
-        Ok(if args.choice("value of id", &["max", "next"])? == "max" { Self::Max } else { Self::Next })
-    }
-
     /// The particle and the molecule ID before those of the next newcomer.
     pub fn before(self, w: &World, account: &Account) -> [u32; 2] {
         match self {

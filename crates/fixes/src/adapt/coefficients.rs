@@ -4,6 +4,7 @@ use super::variable;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{MEMO, SLOTS};
@@ -17,8 +18,53 @@ pub struct Follows {
     style: Word,
 }
 
-/// Reads the words after `pair` or `bond`.
-pub fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
+/// `STYLE PARAMETER I J v_name`.
+pub struct OfPairs(pub Follows);
+
+/// `STYLE PARAMETER I v_name`.
+pub struct OfBonds(pub Follows);
+
+const fn word(name: &'static str, kind: Kind) -> Part {
+    Part::Word(Placeholder { name, kind, about: "", unit: "" })
+}
+
+/// The variable that is followed.
+pub const VARIABLE: Part = word("v_name", Kind::Reference);
+
+impl Value for OfPairs {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            word("STYLE", Kind::Text),
+            word("COEFFICIENT", Kind::Text),
+            word("I", Kind::Types),
+            word("J", Kind::Types),
+            VARIABLE,
+        ],
+        keywords: &[],
+        refused: &[],
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        read(false, args, cx).map(Self)
+    }
+}
+
+impl Value for OfBonds {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            word("STYLE", Kind::Text),
+            word("COEFFICIENT", Kind::Text),
+            word("I", Kind::Types),
+            VARIABLE,
+        ],
+        keywords: &[],
+        refused: &[],
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        read(true, args, cx).map(Self)
+    }
+}
+
+fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
     let what = if bond { "bond" } else { "pair" };
     let style = args.expect(&format!("a {what} style"))?;
     let Some(known) = cx.names.coefficients(bond, &style.text) else {

@@ -1,131 +1,175 @@
 //! The words of fix deposit.
 
 use super::{Depositing, Height};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_styles::BuildCx;
-use perigrain_styles::common::{axis, bad_keyword, domain, scales, seed, units_lattice};
-use perigrain_styles::molecules;
+use perigrain_styles::common::domain;
+use perigrain_styles::molecules::{Inserted, Offset, Orient};
 use perigrain_styles::newcomers::Ids;
+use perigrain_styles::words::{At, Axis, Kind, Seed, Units, Value, Words, read};
 use perigrain_world::Region;
 
-const KEYWORDS: [&str; 20] = [
-    "region", "var", "set", "id", "global", "local", "near", "gaussian", "attempt", "rate", "vx", "vy", "vz",
-    "target", "units", "mol", "molfrac", "rigid", "shake", "orient",
-];
-
-/// A region and the corners of its bounding box.
-type Bounded = (Region, ([f64; 3], [f64; 3]));
-
-/// Values of the keywords, in the units of the line.
-struct Keywords {
+/// The words of the line.
+#[derive(Words)]
+pub struct Line {
+    /// The number of particles N in all.
+    #[word(name = "N", from = 0)]
+    count: i64,
+    /// The type of the particles; with `mol` 0 is one.
+    #[word(name = "type")]
+    kind: At<Offset>,
+    /// Distance of the insertions [steps].
+    #[word(name = "M", what = "the number of steps M", from = 1)]
+    every: i64,
+    /// The seed of the random numbers.
+    seed: Seed,
+    /// Where particles appear, inside the box.
+    #[word(keyword, name = "ID")]
     region: Option<Bounded>,
-    variable: Option<ValueRef>,
-    sets: [Option<ValueRef>; 3],
-    lattice: bool,
-    molecules: molecules::Words,
+    /// An equal-style variable that decides whether a place is taken.
+    #[word(keyword, name = "NAME", placed)]
+    var: Option<At<Named>>,
+    /// An internal-style variable that gets a coordinate of the place.
+    #[word(keyword, name = "x|y|z NAME", what = "the coordinate", placed)]
+    set: Vec<At<(Axis, Named)>>,
+    #[word(keyword, shown = "max")]
+    id: Ids,
+    /// The place is put this far above the highest particle [length].
+    #[word(keyword, name = "lo hi", what = "the {} distance", placed)]
+    global: Option<At<[f64; 2]>>,
+    /// The place is put this far above the highest particle within delta of it sideways [length].
+    #[word(keyword, name = "lo hi delta", what = "the {} distance", placed)]
+    local: Option<At<(f64, f64, Width)>>,
+    /// The distance to others that a place must have [length].
+    #[word(keyword, name = "R", non_negative, default = 0.0)]
+    near: f64,
+    /// Places are drawn around a point with this width [length].
+    #[word(keyword, name = "x y z sigma", what = "{}")]
+    gaussian: Option<(f64, f64, f64, Width)>,
+    /// The number of attempts for each particle.
+    #[word(keyword, name = "Q", from = 1, default = 10)]
+    attempt: i64,
+    /// The velocity of the region, which moves up [velocity].
+    #[word(keyword, name = "V", default = 0.0)]
+    rate: f64,
+    /// Velocities are uniform between these bounds [velocity].
+    #[word(keyword, name = "lo hi", what = "the {} velocity", shown = "0 0")]
+    vx: [f64; 2],
+    /// Velocities are uniform between these bounds [velocity].
+    #[word(keyword, name = "lo hi", what = "the {} velocity", shown = "0 0")]
+    vy: [f64; 2],
+    /// Velocities are uniform between these bounds [velocity].
+    #[word(keyword, name = "lo hi", what = "the {} velocity", shown = "0 0")]
+    vz: [f64; 2],
+    /// Velocities point to this place [length].
+    #[word(keyword, name = "x y z", what = "{}")]
+    target: Option<[f64; 3]>,
+    /// Distances and velocities are in these units.
+    #[word(keyword, shown = "lattice")]
+    units: Units,
+    #[word(flatten)]
+    molecules: Inserted,
+    /// Molecules are turned about this axis.
+    #[word(keyword, name = "axis", placed)]
+    orient: Option<At<Orient>>,
 }
 
-/// Reads the words after `deposit`.
-pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Depositing> {
-    let count = args.integer_from(0, "the number of particles N")? as u64;
-    let (kind, at) = one_type(args, cx)?;
-    let every = args.integer_from(1, "the number of steps M")?;
-    let mut fix = Depositing {
-        id: cx.id.to_string(),
-        group: cx.group,
-        count,
-        kind,
-        every,
-        seed: seed(args)?,
-        region: Region::inside(perigrain_world::region::Shape::Sphere { center: [0.0; 3], radius: 0.0 }),
-        corners: Default::default(),
-        ids: Ids::Max,
-        height: Height::Drawn,
-        near: 0.0,
-        gaussian: None,
-        tries: 10,
-        rate: 0.0,
-        velocity: [[0.0; 2]; 3],
-        target: None,
-        molecules: None,
-        test: None,
-    };
-    let (sets, molecules) = ([None, None, None], molecules::Words::default());
-    let mut keywords = Keywords { region: None, variable: None, sets, lattice: true, molecules };
-    let start = args.here();
-    while let Some(word) = args.next() {
-        keyword(word, args, cx, &mut fix, &mut keywords)?;
+/// A region and the corners of its bounding box.
+struct Bounded(Region, ([f64; 3], [f64; 3]));
+
+impl Value for Bounded {
+    const KIND: Kind = Kind::Region;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        region(args.expect("the region's ID")?, cx)
     }
-    fix.molecules = keywords.molecules.finish(kind, at, cx)?;
-    let Some((region, corners)) = keywords.region else {
+}
+
+/// A variable by its name.
+struct Named(ValueRef);
+
+impl Value for Named {
+    const KIND: Kind = Kind::Variable;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("the name of a variable")?;
+        let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
+        cx.value(&r, false)?;
+        Ok(Self(r))
+    }
+}
+
+/// A width that is not negative.
+struct Width(f64);
+
+impl Value for Width {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.non_negative(what).map(Self)
+    }
+}
+
+/// The fix of a line.
+pub fn build(args: &mut Args, cx: &BuildCx) -> Result<Depositing> {
+    let line: Line = read(args, cx)?;
+    let kind = line.kind.value.0;
+    let molecules = line.molecules.finish(line.kind, line.orient, cx)?;
+    let Some(Bounded(region, corners)) = line.region else {
         let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix deposit needs `region ID`");
         return Err(d.help("it is the region where particles may appear").into());
     };
-    (fix.region, fix.corners) = (region, corners);
-    fix.test = match (keywords.variable, keywords.sets.iter().any(Option::is_some)) {
-        (None, false) => None,
-        (Some(variable), true) => Some((variable, keywords.sets)),
-        _ => {
-            let text = "`var` and `set` belong together";
-            let d = Diagnostic::error(Code::INCOMPLETE, start.to(args.here()), text);
-            return Err(d.help("write for example `var test set x xx`").into());
-        }
+    let mut fix = Depositing {
+        id: cx.id.to_string(),
+        group: cx.group,
+        count: line.count as u64,
+        kind,
+        every: line.every,
+        seed: line.seed.0,
+        region,
+        corners,
+        ids: line.id,
+        height: height(line.global, line.local),
+        near: line.near,
+        gaussian: line.gaussian.map(|(x, y, z, sigma)| ([x, y, z], sigma.0)),
+        tries: line.attempt,
+        rate: line.rate,
+        velocity: [line.vx, line.vy, line.vz],
+        target: line.target,
+        molecules,
+        test: test(line.var, line.set)?,
     };
-    scale(&mut fix, scales(cx.world, keywords.lattice), cx.world.settings.two_dimensional);
+    scale(&mut fix, line.units.scales(cx.world), cx.world.settings.two_dimensional);
     Ok(fix)
 }
 
-fn keyword(
-    word: &Word,
-    args: &mut Args,
-    cx: &BuildCx,
-    fix: &mut Depositing,
-    keywords: &mut Keywords,
-) -> Result<()> {
-    match word.text.as_str() {
-        "region" => keywords.region = Some(region(args.expect("the region's ID")?, cx)?),
-        "var" => keywords.variable = Some(variable(args, cx, true)?),
-        "set" => {
-            let d = axis(args, "the coordinate")?;
-            keywords.sets[d] = Some(variable(args, cx, false)?);
-        }
-        "id" => fix.ids = Ids::take(args)?,
-        "global" => fix.height = Height::Global(pair(args, "distance")?),
-        "local" => {
-            fix.height = Height::Local(pair(args, "distance")?, args.non_negative("the distance sideways")?);
-        }
-        "near" => fix.near = args.non_negative("the distance to others")?,
-        "gaussian" => {
-            let middle = [args.number("x")?, args.number("y")?, args.number("z")?];
-            fix.gaussian = Some((middle, args.non_negative("the width")?));
-        }
-        "attempt" => fix.tries = args.integer_from(1, "the number of attempts")?,
-        "rate" => fix.rate = args.number("the velocity of the region")?,
-        "vx" => fix.velocity[0] = pair(args, "velocity")?,
-        "vy" => fix.velocity[1] = pair(args, "velocity")?,
-        "vz" => fix.velocity[2] = pair(args, "velocity")?,
-        "target" => fix.target = Some([args.number("x")?, args.number("y")?, args.number("z")?]),
-        "units" => keywords.lattice = units_lattice(args)?,
-        "mol" | "molfrac" | "rigid" | "shake" | "orient" => keywords.molecules.take(word, args, cx)?,
-        _ => return Err(bad_keyword(args, word, &KEYWORDS, &[])),
-    }
-    Ok(())
-}
-
-/// The type (0 is allowed as an offset for molecules) and its span.
-fn one_type(args: &mut Args, cx: &BuildCx) -> Result<(u16, Span)> {
-    let span = args.here();
-    let kind = args.integer("the type")?;
-    match u16::try_from(kind).ok().filter(|k| usize::from(*k) <= cx.world.types) {
-        Some(kind) => Ok((kind, span)),
-        None => fail(Code::BAD_VALUE, span, format!("there are types 1 to {}, not {kind}", cx.world.types)),
+/// Of `global` and `local` the later one counts.
+fn height(global: Option<At<[f64; 2]>>, local: Option<At<(f64, f64, Width)>>) -> Height {
+    match (global, local) {
+        (Some(global), Some(local)) if global.span.start > local.span.start => Height::Global(global.value),
+        (_, Some(At { value: (lo, hi, delta), .. })) => Height::Local([lo, hi], delta.0),
+        (Some(global), None) => Height::Global(global.value),
+        (None, None) => Height::Drawn,
     }
 }
 
-/// Two numbers, in any order, as in LAMMPS.
-fn pair(args: &mut Args, what: &str) -> Result<[f64; 2]> {
-    Ok([args.number(&format!("the smallest {what}"))?, args.number(&format!("the largest {what}"))?])
+/// The variable that decides, and those that get the coordinates.
+type Test = (ValueRef, [Option<ValueRef>; 3]);
+
+fn test(variable: Option<At<Named>>, sets: Vec<At<(Axis, Named)>>) -> Result<Option<Test>> {
+    let alone = match (&variable, &sets[..]) {
+        (None, []) => return Ok(None),
+        (Some(variable), []) => Some(variable.span),
+        (None, [set, ..]) => Some(set.span),
+        _ => None,
+    };
+    if let Some(span) = alone {
+        let d = Diagnostic::error(Code::INCOMPLETE, span, "`var` and `set` belong together");
+        return Err(d.help("write for example `var test set x xx`").into());
+    }
+    let mut names = [const { None }; 3];
+    for At { value: (Axis(d), Named(name)), .. } in sets {
+        names[d] = Some(name);
+    }
+    Ok(variable.map(|variable| (variable.value.0, names)))
 }
 
 fn region(word: &Word, cx: &BuildCx) -> Result<Bounded> {
@@ -149,14 +193,7 @@ fn region(word: &Word, cx: &BuildCx) -> Result<Bounded> {
         let d = Diagnostic::error(Code::BAD_VALUE, word.span, text);
         return Err(d.help("let the region lie inside the box").into());
     }
-    Ok((region, (lo, hi)))
-}
-
-fn variable(args: &mut Args, cx: &BuildCx, decides: bool) -> Result<ValueRef> {
-    let word = args.expect(if decides { "an equal-style variable" } else { "an internal-style variable" })?;
-    let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
-    cx.value(&r, false)?;
-    Ok(r)
+    Ok(Bounded(region, (lo, hi)))
 }
 
 /// Converts from the units of the line to box units.

@@ -8,22 +8,19 @@ use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::common::{bad_keyword, seed};
-use perigrain_styles::molecules::{self, Molecules};
+use perigrain_styles::molecules::{Inserted, Molecules, Offset};
 use perigrain_styles::newcomers::{Account, Ids};
 use perigrain_styles::pair::ToCome;
+use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Seed, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Pull, SealCx, Shape, Style};
 use perigrain_world::{GroupId, Key, Numbers, World};
 use rain::Rain;
-use sizes::Sizes;
+use sizes::{Diameters, Sizes};
 use std::f64::consts::PI;
 use volume::Volume;
 
 /// The style.
 pub struct Pour;
-
-const KEYWORDS: [&str; 12] =
-    ["region", "diam", "id", "vol", "rate", "dens", "vel", "ignore", "mol", "molfrac", "rigid", "shake"];
 
 impl Style for Pour {
     fn name(&self) -> &'static str {
@@ -31,30 +28,110 @@ impl Style for Pour {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group pour N type seed region ID [diam one D | range Dlo Dhi | poly n D1 P1 …] [vol fraction tries] \
-                     [dens lo hi] [vel vxlo vxhi vylo vyhi vz] [rate V] [id max|next] [ignore] [mol TEMPLATE [molfrac f1 f2 …] [rigid fixID]]",
+            syntax: "",
             summary: "Pours N spheres into the scene, batch by batch, under gravity.",
-            text: "The region is a block or a cylinder along z, in flat scenes a block; it is filled to the volume fraction \
-                   `vol` (0.25) with spheres that touch no other one, and again when these have fallen out of it, until there \
-                   are N new ones in `all` and the fix's group. How many and how often is said when a run begins. Heights are chosen and vertical velocities set as \
-                   if the spheres fell in a steady stream from the region's top, where they have the velocity vz (0; in flat scenes `vel vxlo vxhi vy`); \
-                   vx, vy and densities (1) are uniform between bounds. `diam range` is uniform, `poly` gives n diameters by shares of \
-                   the number that sum to 1 (default `one 1.0`). A batch makes at most its number times `tries` (50) attempts; spheres that find \
-                   no place are made up for later and warned about at the end of the run. `rate` lets the region rise. `id max` continues from the largest id in use, `next` \
-                   from the last one given (under `compat lammps` some twice where `create_atoms` makes particles in between, as in LAMMPS). Distances are in box units.\n\n\
-                   `mol` pours copies of a molecule template with their bonds in the place of spheres, turned at random; `type` is added to \
-                   their types (so 0 is one), each counts with the sphere that holds it towards the volume fraction, and `diam` and \
-                   `dens` concern it not. `molfrac`: the shares of the several molecules of a template, equal without (LAMMPS counts all as the largest one, so that a later run \
-                   pours more than N). `rigid` names \
-                   the fix rigid/small with the same `mol` that moves them as bodies. `shake` is refused.\n\n\
-                   Random numbers and their order are LAMMPS', so that places agree. There must be exactly one `fix gravity`, \
-                   constant and along −z (flat: −y). A second run continues where the first one ended, also after a \
-                   restart; LAMMPS pours a batch at the first step of every run, and so does perigrain under `-compat lammps`. \
-                   `ignore` concerns particles of other shapes and \
-                   has no effect. Scalar (intensive): how many there are so far.",
+            text: "The region is filled to the volume fraction with spheres that touch no other one, and again when \
+                   these have fallen out of it, until there are N new ones in `all` and the fix's group. How many and \
+                   how often is said when a run begins. Heights are chosen and vertical velocities set as if the \
+                   spheres fell in a steady stream from the region's top. Spheres that find no place are made up for \
+                   later and warned about at the end of the run. Distances are in box units.\n\n\
+                   Molecules each count with the sphere that holds them towards the volume fraction, and `diam` and \
+                   `dens` concern them not. LAMMPS counts all as the largest one of a template, so that a later run \
+                   pours more than N. `shake` is refused.\n\n\
+                   Random numbers and their order are LAMMPS', so that places agree. There must be exactly one `fix \
+                   gravity`, constant and along −z (flat: −y). A second run continues where the first one ended, also \
+                   after a restart; LAMMPS pours a batch at the first step of every run, and so does perigrain under \
+                   `-compat lammps`. Scalar (intensive): how many there are so far.",
             example: "region slot block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\nfix g all gravity 9.81 vector 0 0 -1\n\
                       fix rain grains pour 20 2 4711 region slot diam range 0.0004 0.0006 dens 2500 2500 vol 0.2 50",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The number of spheres.
+    #[word(name = "N", from = 0)]
+    count: i64,
+    /// The type of the spheres; with `mol` 0 is one.
+    #[word(name = "type")]
+    kind: At<Offset>,
+    /// The seed of the random numbers.
+    seed: Seed,
+    /// Where spheres appear: a block or a cylinder along z, in flat scenes a block.
+    #[word(keyword, name = "ID")]
+    region: Option<Volume>,
+    #[word(keyword, name = "distribution", shown = "one 1")]
+    diam: Option<Diameters>,
+    #[word(keyword, shown = "max")]
+    id: Ids,
+    /// The volume fraction to which the region is filled, and how many attempts a batch makes for each of its spheres.
+    #[word(keyword, name = "fraction tries", shown = "0.25 50")]
+    vol: Option<(At<Filled>, Tries)>,
+    /// The velocity of the region, which may rise [velocity].
+    #[word(keyword, name = "V", default = 0.0)]
+    rate: f64,
+    /// Densities are uniform between these bounds [density].
+    #[word(keyword, name = "lo hi", what = "the {} density", positive, shown = "1 1")]
+    dens: Option<(f64, At<f64>)>,
+    /// Velocities across are uniform between these bounds, and vz is that at the region's top [velocity]; in flat scenes
+    /// `vel vxlo vxhi vy`.
+    #[word(keyword, name = "velocities", shown = "0 0 0 0 0")]
+    vel: Option<Drift>,
+    /// For particles of other shapes: without effect.
+    #[word(flag, placed)]
+    ignore: Option<Span>,
+    #[word(flatten)]
+    molecules: Inserted,
+}
+
+/// A volume fraction.
+struct Filled(f64);
+
+impl Value for Filled {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let (span, fraction) = (args.here(), args.positive("the volume fraction")?);
+        match fraction > 1.0 {
+            true => fail(Code::BAD_VALUE, span, format!("a volume fraction is at most 1: {fraction}")),
+            false => Ok(Self(fraction)),
+        }
+    }
+}
+
+/// A number of attempts.
+struct Tries(u64);
+
+impl Value for Tries {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer_from(1, "the number of attempts").map(|tries| Self(tries as u64))
+    }
+}
+
+/// Bounds of the velocities across, and the vertical velocity with its place.
+struct Drift([[f64; 2]; 2], f64, Span);
+
+const fn number(name: &'static str) -> Part {
+    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
+}
+
+impl Value for Drift {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[number("vxlo"), number("vxhi"), number("vylo"), number("vyhi"), number("vz")],
+        keywords: &[],
+        refused: &[],
+    });
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let flat = cx.world.settings.two_dimensional;
+        let x = rising(args, "x velocity")?;
+        let y = if flat { [0.0; 2] } else { rising(args, "y velocity")? };
+        let span = args.here();
+        let fall = args.number(if flat { "the y velocity" } else { "the z velocity" })?;
+        Ok(Self([x, y], fall, span))
     }
 }
 
@@ -65,107 +142,65 @@ impl FixStyle for Pour {
                 .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
                 .into());
         }
-        let count = args.integer_from(0, "the number of spheres")? as u64;
-        let span = args.here();
-        let kind = args.integer_from(0, "the type")?;
-        let Some(kind) = u16::try_from(kind).ok().filter(|k| usize::from(*k) <= cx.world.types) else {
-            let text = format!("there are types 1 to {}, not {kind}", cx.world.types);
-            return fail(Code::BAD_VALUE, span, text);
-        };
-        let seed = seed(args)?;
-        let mut pouring = Pouring {
-            id: cx.id.to_string(),
-            group: cx.group,
-            count,
-            kind,
-            seed,
-            volume: Volume::Block([0.0; 3], [0.0; 3]),
-            sizes: Sizes::One(0.5),
-            density: [1.0; 2],
-            fraction: 0.25,
-            tries: 50,
-            drift: [[0.0; 2]; 2],
-            fall: 0.0,
-            rate: 0.0,
-            ids: Ids::Max,
-            molecules: None,
-        };
-        if !keywords(&mut pouring, args, cx, span)? {
+        let line: Line = read(args, cx)?;
+        if line.ignore.is_some() {
+            let text = "without effect: all particles are spheres or points";
+            cx.note(Diagnostic::note(Code::NO_EFFECT, line.ignore, text));
+        }
+        let Some(volume) = line.region else {
             let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix pour needs `region ID`");
             return Err(d.help("the region where spheres appear: a block or a cylinder along z").into());
+        };
+        let density = match line.dens {
+            Some((lo, hi)) => ordered([lo, hi.value], hi.span, "density")?,
+            None => [1.0; 2],
+        };
+        let (fraction, tries) = line.vol.map_or((0.25, 50), |(filled, tries)| {
+            doubt(&filled, cx);
+            (filled.value.0, tries.0)
+        });
+        let Drift(drift, fall, span) = line.vel.unwrap_or(Drift([[0.0; 2]; 2], 0.0, cx.span));
+        if fall > 0.0 {
+            let text = "a vertical velocity upwards: spheres are let go downwards with it all the same, as in LAMMPS";
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text).help("say it with a minus"));
         }
-        Ok(Box::new(pouring))
+        Ok(Box::new(Pouring {
+            id: cx.id.to_string(),
+            group: cx.group,
+            count: line.count as u64,
+            kind: line.kind.value.0,
+            seed: line.seed.0,
+            volume,
+            sizes: line.diam.map_or(Ok(Sizes::One(0.5)), Sizes::new)?,
+            density,
+            fraction,
+            tries,
+            drift,
+            fall,
+            rate: line.rate,
+            ids: line.id,
+            molecules: line.molecules.finish(line.kind, None, cx)?,
+        }))
     }
 }
 
-/// Reads the keywords; returns whether there was a region.
-fn keywords(p: &mut Pouring, args: &mut Args, cx: &BuildCx, kind: Span) -> Result<bool> {
-    let (mut region, mut molecules) = (false, molecules::Words::default());
-    while let Some(word) = args.next() {
-        match word.text.as_str() {
-            "region" => {
-                p.volume = Volume::of(args.expect("the region's ID")?, cx)?;
-                region = true;
-            }
-            "diam" => p.sizes = Sizes::read(args)?,
-            "id" => p.ids = Ids::take(args)?,
-            "vol" => {
-                let span = args.here();
-                p.fraction = args.positive("the volume fraction")?;
-                if p.fraction > 1.0 {
-                    return fail(
-                        Code::BAD_VALUE,
-                        span,
-                        format!("a volume fraction is at most 1: {}", p.fraction),
-                    );
-                }
-                if p.fraction > 0.6 {
-                    let text = format!("spheres at random places cannot fill {} of a volume", p.fraction);
-                    cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text).help("0.2 to 0.4 is usual"));
-                }
-                p.tries = args.integer_from(1, "the number of attempts")? as u64;
-            }
-            "rate" => p.rate = args.number("the velocity of the region")?,
-            "dens" => p.density = rising(args, "density", Args::positive)?,
-            "vel" => velocity(p, args, cx)?,
-            "ignore" => cx.note(Diagnostic::note(
-                Code::NO_EFFECT,
-                word.span,
-                "without effect: all particles are spheres or points",
-            )),
-            key if molecules::KEYWORDS.contains(&key) => molecules.take(word, args, cx)?,
-            _ => return Err(bad_keyword(args, word, &KEYWORDS, &[])),
-        }
+/// Warns of a volume fraction that spheres at random places do not reach.
+fn doubt(filled: &At<Filled>, cx: &BuildCx) {
+    if filled.value.0 > 0.6 {
+        let text = format!("spheres at random places cannot fill {} of a volume", filled.value.0);
+        cx.note(Diagnostic::warning(Code::SUSPICIOUS, filled.span, text).help("0.2 to 0.4 is usual"));
     }
-    p.molecules = molecules.finish(p.kind, kind, cx)?;
-    Ok(region)
-}
-
-fn velocity(p: &mut Pouring, args: &mut Args, cx: &BuildCx) -> Result<()> {
-    p.drift[0] = rising(args, "x velocity", Args::number)?;
-    let flat = cx.world.settings.two_dimensional;
-    if !flat {
-        p.drift[1] = rising(args, "y velocity", Args::number)?;
-    }
-    let span = args.here();
-    p.fall = args.number(if flat { "the y velocity" } else { "the z velocity" })?;
-    if p.fall > 0.0 {
-        let text =
-            "a vertical velocity upwards: spheres are let go downwards with it all the same, as in LAMMPS";
-        cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text).help("say it with a minus"));
-    }
-    Ok(())
 }
 
 /// Two numbers, the second not below the first.
-fn rising<'a>(
-    args: &mut Args<'a>,
-    what: &str,
-    read: fn(&mut Args<'a>, &str) -> Result<f64>,
-) -> Result<[f64; 2]> {
-    let lo = read(args, &format!("the smallest {what}"))?;
+fn rising(args: &mut Args, what: &str) -> Result<[f64; 2]> {
+    let lo = args.number(&format!("the smallest {what}"))?;
     let span = args.here();
-    let hi = read(args, &format!("the largest {what}"))?;
+    ordered([lo, args.number(&format!("the largest {what}"))?], span, what)
+}
+
+/// Refuses two numbers of which the second is below the first.
+fn ordered([lo, hi]: [f64; 2], span: Span, what: &str) -> Result<[f64; 2]> {
     if lo > hi {
         return fail(Code::BAD_VALUE, span, format!("{what}: {lo} is above {hi}"));
     }

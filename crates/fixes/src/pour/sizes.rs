@@ -3,7 +3,45 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::Args;
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
 use std::f64::consts::PI;
+
+/// Diameters of the spheres.
+#[derive(Words)]
+#[word(what = "distribution of diameters")]
+pub enum Diameters {
+    /// One diameter for all.
+    One(#[word(name = "D", what = "the diameter", positive)] f64),
+    /// Uniform between two diameters.
+    Range(
+        #[word(name = "Dlo", what = "the smallest diameter", positive)] f64,
+        #[word(name = "Dhi", what = "the largest diameter", positive)] At<f64>,
+    ),
+    /// So many diameters, each with its share of the number; shares sum to 1.
+    Poly(#[word(name = "shares")] Shares),
+}
+
+/// Radii with their shares of the number.
+pub struct Shares(Vec<[f64; 2]>);
+
+const fn number(name: &'static str) -> Part {
+    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
+}
+
+impl Value for Shares {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            Part::Word(Placeholder { name: "n", kind: Kind::Whole, about: "", unit: "" }),
+            Part::Many(&[number("D"), number("P")], 1),
+        ],
+        keywords: &[],
+        refused: &[],
+    });
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        shares(args).map(Self)
+    }
+}
 
 /// A distribution of radii.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,24 +55,19 @@ pub enum Sizes {
 }
 
 impl Sizes {
-    /// Reads `one D`, `range Dlo Dhi` or `poly N D1 P1 …`.
+    /// Those of these diameters.
     ///
     /// # Errors
-    /// Diameters that are not positive, fractions that do not sum to 1.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        Ok(match args.choice("distribution of diameters", &["one", "range", "poly"])? {
-            "one" => Self::One(0.5 * args.positive("the diameter")?),
-            "range" => {
-                let lo = args.positive("the smallest diameter")?;
-                let span = args.here();
-                let hi = args.positive("the largest diameter")?;
-                if lo > hi {
-                    let text = format!("the diameters must rise: {lo} is above {hi}");
-                    return fail(Code::BAD_VALUE, span, text);
-                }
-                Self::Range(0.5 * lo, 0.5 * hi)
+    /// A smallest diameter above the largest.
+    pub fn new(diameters: Diameters) -> Result<Self> {
+        Ok(match diameters {
+            Diameters::One(d) => Self::One(0.5 * d),
+            Diameters::Range(lo, hi) if lo > hi.value => {
+                let text = format!("the diameters must rise: {lo} is above {}", hi.value);
+                return fail(Code::BAD_VALUE, hi.span, text);
             }
-            _ => Self::Poly(shares(args)?),
+            Diameters::Range(lo, hi) => Self::Range(0.5 * lo, 0.5 * hi.value),
+            Diameters::Poly(Shares(list)) => Self::Poly(list),
         })
     }
 

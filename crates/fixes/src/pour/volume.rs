@@ -2,9 +2,10 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::rng::ParkMiller;
-use perigrain_lang::Word;
+use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::common;
+use perigrain_styles::words::{Kind, Value};
 use perigrain_world::region::Shape;
 use std::f64::consts::PI;
 
@@ -15,6 +16,13 @@ pub enum Volume {
     Block([f64; 3], [f64; 3]),
     /// Axis, radius, lower and upper end.
     Cylinder([f64; 2], f64, f64, f64),
+}
+
+impl Value for Volume {
+    const KIND: Kind = Kind::Region;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        Self::of(args.expect("the region's ID")?, cx)
+    }
 }
 
 impl Volume {
