@@ -1,7 +1,7 @@
 //! Declared lines as something to be walked along: what may stand at the cursor, and what it means.
 
 use super::syntax::Place;
-use perigrain_styles::words::{Form, Grammar, Keyword, Kind, Part, Placeholder};
+use perigrain_styles::words::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder};
 
 /// What may stand at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,8 @@ struct Walk<'a> {
     rest: Vec<String>,
     /// The part at the cursor, or the keyword, counted behind the parts.
     within: Option<usize>,
+    /// The words of which one stands behind the part in order: they end lists in it.
+    behind: &'static [Alternative],
 }
 
 impl Declared {
@@ -99,8 +101,15 @@ impl Declared {
     }
 
     fn walk<'a>(&self, typed: &'a [&'a str]) -> Walk<'a> {
-        let mut walk =
-            Walk { typed, at: 0, grammar: self.grammar, offers: vec![], rest: vec![], within: None };
+        let mut walk = Walk {
+            typed,
+            at: 0,
+            grammar: self.grammar,
+            offers: vec![],
+            rest: vec![],
+            within: None,
+            behind: &[],
+        };
         walk.line();
         walk
     }
@@ -112,13 +121,18 @@ impl Walk<'_> {
     }
 
     fn at_keyword(&self) -> bool {
-        self.typed.get(self.at).is_some_and(|word| self.grammar.has(word))
+        let behind = |word: &str| self.behind.iter().any(|a| a.word == word);
+        self.typed.get(self.at).is_some_and(|word| self.grammar.has(word) || behind(word))
     }
 
     fn line(&mut self) {
         let (parts, all) = (self.grammar.in_order(), self.grammar.every());
         for (k, part) in parts.iter().enumerate() {
             let before = self.offers.len();
+            self.behind = match parts.get(k + 1) {
+                Some(Part::Word(next)) => next.kind.choices(),
+                _ => &[],
+            };
             let passed = self.along(&[*part]);
             if self.within.is_none() && self.offers.len() > before {
                 self.within = Some(k);
@@ -283,7 +297,6 @@ impl Walk<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perigrain_styles::words::Alternative;
 
     const NUMBER: Part =
         Part::Word(Placeholder { name: "R", kind: Kind::Number, about: "The radius.", unit: "length" });

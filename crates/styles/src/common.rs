@@ -56,11 +56,6 @@ pub fn choice_or_refuse(
     }
 }
 
-/// Takes the value of a `units` keyword: whether distances are in lattice spacings.
-pub fn units_lattice(a: &mut Args) -> Result<bool> {
-    Ok(a.choice("value of units", &["lattice", "box"])? == "lattice")
-}
-
 /// Factors from the words' distances to the box's.
 pub fn scales(world: &World, lattice: bool) -> [f64; 3] {
     if lattice { world.lattice.spacing } else { [1.0; 3] }
@@ -116,19 +111,6 @@ pub fn fraction(a: &mut Args) -> Result<f64> {
         return Ok(x);
     }
     fail(Code::BAD_VALUE, span, format!("the fraction must lie between 0 and 1: {x}"))
-}
-
-/// Takes a number, `NULL` (nothing) or a variable.
-pub fn param_or_null(a: &mut Args, what: &str) -> Result<Option<Param>> {
-    if a.eat("NULL") {
-        return Ok(None);
-    }
-    variable_param(a, what).map(Some)
-}
-
-/// Takes a number or `NULL` (nothing).
-pub fn number_or_null(a: &mut Args, what: &str) -> Result<Option<f64>> {
-    if a.eat("NULL") { Ok(None) } else { a.number(what).map(Some) }
 }
 
 /// Takes a number or `v_name`; references of other kinds are an error here.

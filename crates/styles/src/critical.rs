@@ -6,7 +6,6 @@ use crate::words::Words;
 use perigrain_base::diag::Result;
 use perigrain_base::math::body::principal;
 use perigrain_base::math::vec3::{SIX, Vec3};
-use perigrain_lang::Args;
 use perigrain_peri::families::{Families, ForceUnit};
 use perigrain_world::World;
 use perigrain_world::contacts::WallSpring;
@@ -22,20 +21,6 @@ pub enum Estimate {
     Silling,
     /// 2/ω of the present scene.
     Exact,
-}
-
-impl Estimate {
-    /// Reads its name.
-    ///
-    /// # Errors
-    /// Another word.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        Ok(match args.choice("estimate of the solids' step", &["cfl", "silling", "exact"])? {
-            "silling" => Estimate::Silling,
-            "exact" => Estimate::Exact,
-            _ => Estimate::Cfl,
-        })
-    }
 }
 
 /// The longest step of the solids [time]; infinite without bonds.

@@ -8,7 +8,6 @@ use perigrain_base::diag::{Result, Span};
 use perigrain_base::math::vec3::{Vec3, length};
 use perigrain_bonded::limit::Swinging;
 use perigrain_bonded::network::Network;
-use perigrain_lang::Args;
 use perigrain_world::World;
 
 /// How the step of bonded particles is found.
@@ -25,18 +24,6 @@ pub enum Estimate {
 }
 
 impl Estimate {
-    /// Reads its name.
-    ///
-    /// # Errors
-    /// Another word.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        Ok(match args.choice("estimate of the bonds' step", &["local", "exact", "none"])? {
-            "local" => Estimate::Local,
-            "exact" => Estimate::Exact,
-            _ => Estimate::None,
-        })
-    }
-
     /// The longest step of bonded particles [time]; infinite without bonds.
     ///
     /// # Errors
