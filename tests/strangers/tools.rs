@@ -25,7 +25,7 @@ fn help_finds_how_tos() {
     let movie = output_of(&["help", "movie"]);
     assert!(movie.contains("howto movie") || movie.contains("How do I make a movie"), "{movie}");
     for (word, howto) in
-        [("angle of repose", "howto repose"), ("paraview", "howto results"), ("kill", "howto sweep")]
+        [("angle of repose", "howto repose"), ("paraview", "howto results"), ("kill", "howto long-runs")]
     {
         let found = output_of(&["help", word]);
         assert!(found.contains(&format!("\n  {howto} ")), "{word}: {found}");

@@ -121,7 +121,7 @@ impl CommandStyle for CreateAtoms {
     }
 }
 
-/// What a line asks for.
+/// What a line creates.
 fn creation(way: Way, kind: u16, style: &Word, cx: &BuildCx) -> Result<Creation> {
     let mut note = vec![];
     let (place, also) = match way {

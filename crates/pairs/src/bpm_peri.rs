@@ -110,7 +110,7 @@ struct Repulsion {
 }
 
 impl Repulsion {
-    /// Looks for pairs after a rebuild, and leaves out who is joined whenever bonds have changed.
+    /// Looks for pairs after a rebuild, and leaves out bonded pairs whenever bonds have changed.
     fn update(&mut self, w: &World, t: &Tick, range: f64) -> Result<()> {
         if t.setup || self.held != Some(w.rebuild.generation) {
             let mut wanted = Wanted::new(w.types);

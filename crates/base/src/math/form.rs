@@ -51,7 +51,7 @@ impl Form {
     /// Runs a loop in this form.
     ///
     /// # Safety
-    /// The loop must have what it asks for.
+    /// What the loop requires must hold.
     #[inline]
     pub unsafe fn run<W: InLanes>(self, work: W) -> W::Out {
         // SAFETY: passed on.
@@ -90,7 +90,7 @@ pub trait InLanes {
     /// Runs it.
     ///
     /// # Safety
-    /// The processor must have what these lanes need; what else it asks for, the loop tells.
+    /// The processor must have what these lanes need, and what the loop's own documentation requires must hold.
     unsafe fn run<const N: usize, V: Lanes<N>>(self) -> Self::Out;
 }
 
@@ -101,7 +101,7 @@ pub trait Isa {
     /// Runs a loop in these lanes.
     ///
     /// # Safety
-    /// The processor must have what the lanes need, and the loop what it asks for.
+    /// The processor must have what the lanes need, and what the loop requires must hold.
     unsafe fn run<W: InLanes>(work: W) -> W::Out;
     /// Runs it with these instructions in four lanes.
     ///

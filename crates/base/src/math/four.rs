@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Four lanes that a formula is evaluated on at once, and the moves between rows in memory and lanes.
 ///
-/// Only [`Four::load`] makes values from nothing: who may call it may use the operators as well.
+/// Only [`Four::load`] makes values from nothing: where it may be called, the operators may be used.
 pub trait Four: Real {
     /// Whether it is worth compiling loops for special cases.
     const FAST: bool;
@@ -411,7 +411,7 @@ mod tests {
             let mut y = [0.0; 4];
             // SAFETY: an array of four numbers.
             unsafe { x.store(y.as_mut_ptr()) };
-            // The sign of a NaN is nobody's promise.
+            // No standard fixes the sign of a NaN.
             out.extend(y.map(|y: f64| if y.is_nan() { 7 } else { y.to_bits() }));
         };
         for x in [a + b, a - b, a * b, a / b, -a, a.abs(), a.abs().sqrt(), a + 0.1, a - 0.1, a * 3.0, a / 7.0]

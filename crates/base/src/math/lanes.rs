@@ -71,7 +71,7 @@ pub trait Lanes<const N: usize>: Real {
     /// # Safety
     /// As [`Lanes::pick`].
     unsafe fn vectors(list: *const Vec3, at: *const u32) -> Vec3<Self>;
-    /// a − (b + shift) of the vectors at these places of a list, where b has entries that tell [`place`] and which of the `shifts`
+    /// a − (b + shift) of the vectors at these places of a list, where b has entries that hold [`place`] and which of the `shifts`
     /// it is; [`NO_SHIFT`] is none.
     ///
     /// # Safety
@@ -102,7 +102,7 @@ pub fn prefetch(p: *const f64) {
     let _ = p;
 }
 
-/// Bits of an entry that hold a place in a list; what stands above them tells which shift.
+/// Bits of an entry that hold a place in a list; the bits above them select the shift.
 pub const PLACE_BITS: u32 = 27;
 
 /// Of 27 shifts, by −1, 0 or 1 in three directions, the one in the middle that is none.

@@ -57,7 +57,7 @@ impl Style for PeriPmb {
                 nothing where it is beyond one of them (dual horizons, Ren et al. 2016), so that forces are equal and opposite and the energy under even \
                 strain is the material's; s00 of a G_c goes with δ^(−½), the longer horizon counts. It needs materials, and no `calibrate`. \
                 All three are said before the first run; bodies of several types or volumes run as lists with `surface energy`, all \
-                bodies with the others; the log tells what they change. `broken compress yes`: a broken bond \
+                bodies with the others; the log says what they change. `broken compress yes`: a broken bond \
                 still pushes with c s w V_j while it is shorter than at the start, so that crushed parts do not pass through \
                 each other; bonds of `peri_crack` too, and under state-based laws with c = 18K/(πδ⁴). `nofail region` makes \
                 bonds last whose one end lies in the region at the start. `repulsion no` leaves the short-range force out, \
