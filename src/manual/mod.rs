@@ -102,7 +102,8 @@ fn gathered() -> Vec<Page> {
         table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc(), forms: s.words().leak() }).collect()
     }
     fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
-        table.iter().map(|&(name, doc)| Page { kind, name, doc, forms: &[] }).collect()
+        let forms = |name: &str| if name == "dump_modify" { modified().leak() } else { &[] as &[Form] };
+        table.iter().map(|&(name, doc)| Page { kind, name, doc, forms: forms(name) }).collect()
     }
     [
         own("topic", pages::TOPICS),
@@ -115,6 +116,17 @@ fn gathered() -> Vec<Page> {
         of("dump", DUMPS),
     ]
     .concat()
+}
+
+/// The lines of `dump_modify`: what all dumps have, and what each style adds.
+fn modified() -> Vec<Form> {
+    let mut forms = perigrain_dumps::MODIFIED.to_vec();
+    for form in DUMPS.iter().flat_map(|dump| dump.words()).filter(|form| !form.head.is_empty()) {
+        if !forms.contains(&form) {
+            forms.push(form);
+        }
+    }
+    forms
 }
 
 /// What a kind of page is called in a list.

@@ -1,7 +1,7 @@
 //! compute coord/atom: number of neighbours of each particle.
 
 use super::{Compute, ComputeStyle};
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_neigh::list::Reach;
 use perigrain_plan::{Op, Stage, When};
@@ -47,7 +47,6 @@ struct Line {
 
 /// What a neighbour is.
 #[derive(Words)]
-#[word(refused = "orientorder")]
 enum Method {
     /// All within a distance.
     Cutoff(#[word(name = "R", what = "the cutoff", positive)] f64),
@@ -61,6 +60,10 @@ struct Among {
 
 impl ComputeStyle for CoordAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        if let Some(word) = args.peek().filter(|word| word.text == "orientorder") {
+            let text = "the style `orientorder` of compute coord/atom is not in perigrain: use `cutoff`";
+            return fail(Code::NOT_SUPPORTED, word.span, text);
+        }
         let Line { method: Method::Cutoff(cutoff), among, types } = read(args, cx)?;
         let among = among.group.unwrap_or(GroupId::ALL);
         let mut types: Vec<_> = types.into_iter().map(|Types(first, last)| (first, last)).collect();

@@ -35,7 +35,8 @@ impl Style for CrackTip {
             summary: "A crack that runs in a direction: its tip, length, speed, angle and number of arms.",
             text: "Global vector of 8: 1–3 the tip, 4 the length, 5 the speed, 6 the angle in degrees, 7 the number of arms, 8 the \
                    number of cracked particles; all 0 while nothing is cracked. The tip is the cracked particle that lies farthest in \
-                   the direction, at its place before the first run. Length is the straight distance to the tip from where the crack \
+                   the direction, at its place before the first run.\n\n\
+                   Length is the straight distance to the tip from where the crack \
                    begins, angle that between this line and the direction. Speed is the change of length since the evaluation before, \
                    over the time between; 0 at the first. Arms are the groups of cracked particles no further than 2.1 lattice spacings \
                    from each other, among those in a slab behind the tip. The group chooses what to look at: leave out edges that \

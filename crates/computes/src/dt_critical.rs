@@ -29,8 +29,7 @@ impl Style for DtCritical {
             text: "Global vector of four: 1 the step of the solids, 2 that of the grains, 3 m, the whole number of times the \
                    shorter of the solids' and of grains' and bonds' fits into the longer (at least 1), 4 that of the bonds; scalar: the shortest. \
                    A side that the scene does not have, and grains while nothing touches, have the step `inf`.\n\n\
-                   `cfl` and `silling` are estimates from the bonds that live. `exact` is the limit of the scene as it is: 2/ω, ω² being \
-                   the largest eigenvalue of M⁻¹K and K the derivative of the forces at the present positions, with the bonds that \
+                   `exact` is the limit of the scene as it is: K is the derivative of the forces at the present positions, with the bonds that \
                    still live, any material, volumes and layout. It is found by Lanczos' method (power iteration that keeps its vectors) and \
                    costs some 50 to 200 force evaluations each time it is read. What holds particles fast makes the true limit longer \
                    still; dashpots make it shorter.\n\n\

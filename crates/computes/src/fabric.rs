@@ -42,7 +42,7 @@ struct Line {
     /// Which pairs count: those of spheres that touch, or those within the cutoff of their types, of which those that do not
     /// touch have no force.
     cutoff: Cutoff,
-    #[word(name = "tensor", what = "a tensor, as `contact`", least = 1)]
+    #[word(name = "tensor", least = 1)]
     tensors: Vec<Tensor>,
     /// Only pairs of one type of the first list with one of the second count: types or ranges with commas, as `1,3*4`; several of them
     /// add up.
@@ -52,6 +52,7 @@ struct Line {
 
 /// The tensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+#[word(what = "tensor")]
 enum Tensor {
     /// C = 15/2 (⟨n n⟩ − 1/3 I).
     Contact,

@@ -34,9 +34,11 @@ impl Style for Fragments {
                    least n particles, 2 the mass of the body, 3 the mass of the other fragments of at \
                    least n particles, 4 that of the dust (all smaller ones), 5 the eroded mass (3 and 4), 6 its volume: that \
                    of the crater, reckoned before the first run, 7 its speed, root of the mean square weighted with mass, 8 the speed of its fastest \
-                   fragment. Global array, a row for each fragment of at least n particles, the heaviest first (equal \
+                   fragment.\n\n\
+                   Global array, a row for each fragment of at least n particles, the heaviest first (equal \
                    ones by id): the smallest id in it, the number of particles, mass, volume, centre of mass x y z, its velocity x y z, \
-                   kinetic energy of its particles. Masses are true masses also where LAMMPS' convention has densities in \
+                   kinetic energy of its particles.\n\n\
+                   Masses are true masses also where LAMMPS' convention has densities in \
                    their place; volumes are the peridynamic ones, elsewhere those of spheres. Bonds are those of families and those of the bond table \
                    (`bond_style bpm/*`, `harmonic`), turned off or not.\n\n\
                    A crack leaves crushed particles behind it, and single bonds across such dust are enough to make one fragment \

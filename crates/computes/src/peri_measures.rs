@@ -79,7 +79,8 @@ impl Style for CauchyAtom {
             text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
                    J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
                    λ = K − 2G/3 of Young's modulus `E` and Poisson's ratio `nu`, or of a `material` (Hartmann et al. 2023, equations \
-                   28 to 30). A picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
+                   28 to 30).\n\n\
+                   A picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
                    of it; compute stress/atom has what bonds bear, torn families included. 0 where there is no F, and but for J where J is not \
                    positive; NaN (or 0) in torn families: `torn` and `damage` as of compute peri/defgrad/atom.",
             example: "compute S all peri/stress/atom neohooke 1.0e5 0.48",

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::attribute::{Attribute, Bound, Frame};
 use clock::Clock;
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::args::blame;
 use perigrain_lang::{ValueRef, Word};
 use perigrain_output::dump::{Data, Target, sort_rows};
@@ -212,12 +212,12 @@ impl Base {
     }
 
     /// Refuses a name without `*` if every snapshot is a separate file; `write_dump` needs no `*`.
-    pub fn needs_star(&self, file: &Word, cx: &BuildCx) -> Result<()> {
+    pub fn needs_star(&self, at: Span, cx: &BuildCx) -> Result<()> {
         if self.state().target.pattern.many() || cx.id == "WRITE_DUMP" {
             return Ok(());
         }
         let message = format!("dump {} writes one file per snapshot", self.style);
-        let d = Diagnostic::error(Code::BAD_VALUE, file.span, message);
+        let d = Diagnostic::error(Code::BAD_VALUE, at, message);
         Err(d.help("put a `*` into the file name: it becomes the step").into())
     }
 

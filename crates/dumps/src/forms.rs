@@ -2,7 +2,8 @@
 
 use super::attribute::{Attribute, Core, Source};
 use super::base::{Base, Files, OfFile};
-use super::text::{Columns, Form, Formatted, Layout, OfYaml, Text, Timed};
+use super::columns::{Columns, Formatted, Timed};
+use super::text::{Form, Layout, OfYaml, Text};
 use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
@@ -108,7 +109,7 @@ pub(super) fn xyz(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn
 pub(super) fn cfg(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
     let line: Columns = read(args, cx)?;
     let base = Base::new(files, &line.target.file, cx)?;
-    base.needs_star(&line.target.file, cx)?;
+    base.needs_star(line.attributes[0].span, cx)?;
     let mut columns = line.attributes(cx)?;
     let begins =
         |names: [&str; 5]| columns.len() >= 5 && columns.iter().zip(names).all(|(c, name)| c.word == name);

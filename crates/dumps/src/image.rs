@@ -75,7 +75,7 @@ impl DumpStyle for Image {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
         let line: Line = read_or(args, cx, foreign)?;
         let base = Base::new(Files { endings: &ENDINGS, ..Files::any("image") }, &line.target.file, cx)?;
-        base.needs_star(&line.target.file, cx)?;
+        base.needs_star(line.colour.span, cx)?;
         Ok(Box::new(Declared::new(base, None, line, cx)?))
     }
 }

@@ -5,6 +5,7 @@
 
 mod attribute;
 mod base;
+mod columns;
 mod forms;
 mod image;
 mod local;

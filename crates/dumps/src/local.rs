@@ -1,7 +1,7 @@
 //! Dump `local`: values of pairs, bonds and other local data as text.
 
 use super::base::{Base, Common, Files, OfFile, OfParticles, Sort, column, foreign};
-use super::text::{ColumnFormat, OfColumn, OfColumns, Renamed, Table, Usual};
+use super::columns::{ColumnFormat, OfColumn, OfColumns, Renamed, Table, Usual};
 use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use perigrain_lang::args::blame;

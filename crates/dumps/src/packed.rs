@@ -1,8 +1,8 @@
 //! Dumps `atom/gz`, `custom/gz`, `cfg/gz`, `xyz/gz` and `local/gz`: compressed files with a selectable level.
 
 use super::base::{Files, OfFile};
+use super::columns::Columns;
 use super::local::Line;
-use super::text::Columns;
 use super::{Dump, DumpStyle, forms, local, text};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;

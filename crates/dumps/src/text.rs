@@ -1,7 +1,8 @@
 //! Dumps `atom` and `custom`: LAMMPS' text format.
 
-use super::attribute::{Attribute, Core, expand};
+use super::attribute::{Attribute, Core};
 use super::base::{Base, Common, Files, OfFile, OfParticles, Sort, column, foreign};
+use super::columns::{ColumnFormat, Columns, Formatted, OfColumn, OfColumns, Renamed, Table, Timed, Usual};
 use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
@@ -79,27 +80,6 @@ impl DumpStyle for Custom {
     }
 }
 
-/// The line of a dump of attributes.
-#[derive(Words)]
-pub(super) struct Columns {
-    #[word(flatten)]
-    pub target: OfFile,
-    /// The attributes of `dump custom`.
-    #[word(name = "attribute", what = "a particle attribute such as id or x", kind = Kind::Attribute, least = 1)]
-    pub attributes: Vec<Word>,
-}
-
-impl Columns {
-    /// What each column holds.
-    ///
-    /// # Errors
-    /// Unknown attributes.
-    pub fn attributes(&self, cx: &BuildCx) -> Result<Vec<Attribute>> {
-        let all = self.attributes.iter().map(|word| expand(word, cx)).collect::<Result<Vec<_>>>()?;
-        Ok(all.concat())
-    }
-}
-
 /// A dump of style `atom` into these files.
 pub(super) fn atom(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
     let base = Base::new(files, &read::<OfFile>(args, cx)?.file, cx)?;
@@ -111,80 +91,6 @@ pub(super) fn custom(files: Files, args: &mut Args, cx: &BuildCx) -> Result<Box<
     let line: Columns = read(args, cx)?;
     let base = Base::new(files, &line.target.file, cx)?;
     Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(line.attributes(cx)?))))
-}
-
-/// The format of a column, or of several.
-pub(super) type ColumnFormat = Or<OfColumns, OfColumn>;
-
-/// The format of several columns.
-#[derive(Words)]
-pub(super) enum OfColumns {
-    /// One conversion for each column, in quotes.
-    Line(#[word(name = "\"…\"", what = "a format such as %g")] Word),
-    /// Of all columns with whole numbers.
-    Int(#[word(name = "%d", what = "a format such as %g")] Word),
-    /// Of all columns with other numbers.
-    Float(#[word(name = "%g", what = "a format such as %g")] Word),
-    /// As without any `format`.
-    None,
-}
-
-/// The format of one column.
-#[derive(Words)]
-pub(super) struct OfColumn {
-    #[word(name = "N", what = "line, int, float, a column or none")]
-    pub column: Word,
-    #[word(name = "%…", what = "a format such as %g")]
-    pub format: Word,
-}
-
-/// The keywords of `dump_modify` that this dump has beside those of all.
-#[derive(Words)]
-pub(super) struct Formatted {
-    /// How numbers are written.
-    #[word(keyword, name = "format", what = "line, int, float, a column or none")]
-    pub format: Vec<At<ColumnFormat>>,
-}
-
-/// The same, with the time.
-#[derive(Words)]
-pub(super) struct Timed {
-    #[word(flatten)]
-    pub formatted: Formatted,
-    /// The time stands at the head of each snapshot.
-    #[word(keyword, what = "time")]
-    pub time: Option<bool>,
-}
-
-/// The same, with titles.
-#[derive(Words)]
-pub(super) struct Table {
-    #[word(flatten)]
-    pub timed: Timed,
-    /// The name of a column; `default` gives all columns their own names again.
-    #[word(keyword, name = "title", what = "a column or default")]
-    pub colname: Vec<Or<Usual, Renamed>>,
-    /// Snapshots have a header.
-    #[word(keyword, what = "header")]
-    pub header: Option<bool>,
-    /// The unit system stands in the first header.
-    #[word(keyword, what = "units")]
-    pub units: Option<bool>,
-}
-
-/// As without the keyword.
-#[derive(Words)]
-pub(super) enum Usual {
-    Default,
-}
-
-/// A column's new name.
-#[derive(Words)]
-pub(super) struct Renamed {
-    #[word(name = "N", what = "a column or default")]
-    pub column: Word,
-    #[word(what = "the column's new name")]
-    pub name: String,
 }
 
 /// The keywords of `dump_modify` that dump atom has beside those of all.

@@ -51,7 +51,7 @@ impl DumpStyle for Vtk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
         let Line { target: OfFile { file }, attributes } = read(args, cx)?;
         let base = Base::new(Files { endings: &[".vtu"], ..Files::any("vtk") }, &file, cx)?;
-        base.needs_star(&file, cx)?;
+        base.needs_star(attributes.first().map_or(file.span, |word| word.span), cx)?;
         let attributes = attributes.iter().map(|word| expand(word, cx)).collect::<Result<Vec<_>>>()?.concat();
         Ok(Box::new(Declared { base, attributes, storage: Storage::default(), single: false }))
     }

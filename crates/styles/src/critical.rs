@@ -14,12 +14,12 @@ use perigrain_world::contacts::WallSpring;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
 #[word(what = "estimate of the solids' step")]
 pub enum Estimate {
-    /// h/√(K/ρ).
+    /// h/√(K/ρ) with h = V^(1/3) (Hartmann et al. 2022, equations 41 and 42).
     #[default]
     Cfl,
-    /// Silling & Askari.
+    /// √(2 ρ/Σ c w V/|ξ|) over the bonds that live (Silling & Askari 2005).
     Silling,
-    /// 2/ω of the present scene.
+    /// 2/ω of the scene as it is: ω² is the largest eigenvalue of M⁻¹K.
     Exact,
 }
 

@@ -177,11 +177,10 @@ pub(super) const DUMP: Entry = (
 pub(super) const DUMP_MODIFY: Entry = (
     "dump_modify",
     Doc {
-        syntax: "dump_modify ID keyword value …",
+        syntax: "",
         summary: "Sets options of a dump.",
-        text: "All dumps understand `append`, `every`, `first`, `pad`, `region`, `sort` and `thresh`, explained on the page \
-            of `dump custom`; `flush` and `buffer` are read, snapshots are handed over whole anyway. The other keywords \
-            stand on the page of the style. LAMMPS' further keywords are refused by name. In LAMMPS one dump is unsorted \
+        text: "The first line has the keywords of all dumps, the second those of all dumps of particles, the others those that \
+            styles add, each on its page too. LAMMPS' further keywords are refused by name. In LAMMPS a dump is unsorted \
             unless set otherwise; here rows are sorted by id.",
         example: "dump 1 all custom 2 plate.*.txt id type x y z c_dmg\n\
             dump_modify 1 region half sort -1 pad 6 first yes format float %.8g thresh c_dmg >= 0",
