@@ -45,8 +45,8 @@ struct Line {
     gamma_a: f64,
     /// Both coefficients are multiplied by this ratio for a type or range of types, or by an atom-style variable for all; one
     /// of both ways.
-    #[word(keyword, name = "type ratio|v_name")]
-    scale: Vec<At<Factor>>,
+    #[word(keyword, name = "type ratio|v_name", placed)]
+    scale: Vec<At<At<Factor>>>,
 }
 
 impl FixStyle for DampingCundall {

@@ -55,11 +55,11 @@ struct Line {
     #[word(name = "N", what = "the number of steps N", from = 1)]
     every: i64,
     #[word(keyword, name = "style", placed)]
-    x: Option<At<Motion>>,
+    x: Option<At<At<Motion>>>,
     #[word(keyword, name = "style", placed)]
-    y: Option<At<Motion>>,
+    y: Option<At<At<Motion>>>,
     #[word(keyword, name = "style", placed)]
-    z: Option<At<Motion>>,
+    z: Option<At<At<Motion>>>,
     #[word(keyword, name = "style", placed)]
     xy: Option<At<lean::Motion>>,
     #[word(keyword, name = "style", placed)]
@@ -155,7 +155,7 @@ impl FixStyle for Deform {
 }
 
 /// Lengths along x, y, z and tilts xy, xz, yz that change.
-type Changes = ([Option<At<Motion>>; 3], [Option<At<lean::Motion>>; 3]);
+type Changes = ([Option<At<At<Motion>>>; 3], [Option<At<lean::Motion>>; 3]);
 
 /// The fix of a line; with `controls`, pressures may steer it.
 ///
@@ -171,8 +171,8 @@ fn declared(
     for (d, length) in lengths.iter().enumerate() {
         let Some(At { value, span, .. }) = length else { continue };
         check_faces(cx, *span, d)?;
-        if d == 2 && cx.world.settings.two_dimensional && matches!(value, Motion::Pressed(_)) {
-            return fail(Code::CONFLICT, *span, "no pressure steers a flat scene along z");
+        if d == 2 && cx.world.settings.two_dimensional && matches!(value.value, Motion::Pressed(_)) {
+            return fail(Code::CONFLICT, value.span, "no pressure steers a flat scene along z");
         }
     }
     for (k, tilt) in tilts.iter().enumerate() {
@@ -183,7 +183,7 @@ fn declared(
         id: cx.id.to_string(),
         group: cx.group,
         every,
-        motions: lengths.map(|length| length.map(|at| at.value)),
+        motions: lengths.map(|length| length.map(|at| at.value.value)),
         leans: tilts.map(|tilt| tilt.map(|at| at.value)),
         flips: handling.flip,
         remap: handling.remap,

@@ -47,7 +47,7 @@ impl Style for NveSphere {
 #[derive(Words)]
 pub(crate) struct Line {
     #[word(keyword, placed)]
-    update: Option<At<Update>>,
+    update: Option<At<At<Update>>>,
     /// I = 1/2 m R² instead of 2/5 m R², for flat scenes.
     #[word(flag, placed)]
     disc: Option<Span>,
@@ -71,14 +71,14 @@ pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Res
         && !cx.world.particles.style.dipole
     {
         let text = "`update dipole` needs particles with a dipole, and these have none";
-        let d = Diagnostic::error(Code::CONFLICT, update.span, text);
+        let d = Diagnostic::error(Code::CONFLICT, update.span.to(update.value.span), text);
         let spheres = if oriented { "bpm/sphere" } else { "sphere" };
         return Err(d.help(format!("`atom_style hybrid {spheres} dipole` has both")).into());
     }
     if let Some(span) = disc.filter(|_| !cx.world.settings.two_dimensional) {
         return fail(Code::CONFLICT, span, "`disc` belongs to flat scenes (`dimension 2`)");
     }
-    let (inertia, update) = (if disc.is_some() { DISC } else { INERTIA }, update.map(|u| u.value));
+    let (inertia, update) = (if disc.is_some() { DISC } else { INERTIA }, update.map(|u| u.value.value));
     let turning = Turning { inertia, oriented };
     Ok(Box::new(Declared { name, id: cx.id.to_string(), group: cx.group, turning, update }))
 }

@@ -70,15 +70,19 @@ impl Scale {
     ///
     /// # Errors
     /// Both, and several variables.
-    pub fn of(factors: Vec<At<Factor>>, types: usize) -> Result<Self> {
+    pub fn of(factors: Vec<At<At<Factor>>>, types: usize) -> Result<Self> {
         let mut ranges = vec![];
         let several = factors.len() > 1;
-        for At { value, span, .. } in factors {
-            match value {
+        for At { value: factor, span, .. } in factors {
+            match factor.value {
                 Factor::ByType(range, ratio) => ranges.push((range, ratio)),
                 Factor::Each(by) if !several => return Ok(Self::Each(by)),
                 Factor::Each(_) => {
-                    return fail(Code::CONFLICT, span, "scale either by type or by a variable");
+                    return fail(
+                        Code::CONFLICT,
+                        span.to(factor.span),
+                        "scale either by type or by a variable",
+                    );
                 }
             }
         }

@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Chosen, change_forces, keep_places, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, PerAtom, Words, read};
+use perigrain_styles::words::{At, Form, PerAtom, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, MASK, SLOTS, X};
 use perigrain_world::{GroupId, Key, Vectors, World};
@@ -39,7 +39,7 @@ struct Line {
     #[word(name = "K", what = "the stiffness K")]
     stiffness: At<PerAtom>,
     /// The directions in which particles are tied; without them all three.
-    #[word(name = "directions")]
+    #[word(name = "directions", with = along, kind = <Along as Value>::KIND)]
     along: Option<Along>,
 }
 
@@ -54,6 +54,10 @@ enum Along {
     X,
     Y,
     Z,
+}
+
+fn along(args: &mut Args, cx: &BuildCx) -> Result<Along> {
+    Along::value("direction", args, cx)
 }
 
 impl Along {

@@ -36,8 +36,8 @@ struct Line {
     /// The drag coefficient gamma [torque/angular velocity].
     gamma: f64,
     /// The coefficient is γ·ratio for a type or range of types, or γ times an atom-style variable for all; one of both ways.
-    #[word(keyword, name = "type ratio|v_name")]
-    scale: Vec<At<Factor>>,
+    #[word(keyword, name = "type ratio|v_name", placed)]
+    scale: Vec<At<At<Factor>>>,
 }
 
 impl FixStyle for ViscousSphere {

@@ -19,7 +19,7 @@
 //! | `list` | the values of a keyword are all words up to the next keyword |
 //! | `least = 1` | how many of a list must be there |
 //! | `positive`, `non_negative`, `from = 1` | bounds of numbers |
-//! | `placed` | the place of an `At` is that of the keyword; a `flag` is an `Option<Span>` then |
+//! | `placed` | the place of an `At` is that of the keyword, of an `At` in it that of the value; a `flag` is an `Option<Span>` then |
 //! | `like = Type` | it is read as this type, from which it can be made |
 //! | `with = path, kind = Kind::Number` | a reading function of its own (or a call that makes one), and what it reads |
 //! | `flatten` | the words and keywords of another struct stand here |

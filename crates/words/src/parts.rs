@@ -181,7 +181,13 @@ impl Field {
                 })
             }
             Shape::Placed(of) if self.said.placed => {
-                let value = self.reading(of, false, k)?;
+                let value = match shape(of)? {
+                    Shape::Placed(inner) => {
+                        let value = self.reading(inner, false, k)?;
+                        quote!(At::read(args, |args| Ok(#value))?)
+                    }
+                    _ => self.reading(of, false, k)?,
+                };
                 quote!(At { value: #value, span: word.span, unknown: word.unknown })
             }
             Shape::Placed(of) => {

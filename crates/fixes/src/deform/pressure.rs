@@ -41,11 +41,11 @@ struct Line {
     #[word(name = "N", what = "the number of steps N", from = 1)]
     every: i64,
     #[word(keyword, name = "style", placed)]
-    x: Option<At<Length>>,
+    x: Option<At<At<Length>>>,
     #[word(keyword, name = "style", placed)]
-    y: Option<At<Length>>,
+    y: Option<At<At<Length>>>,
     #[word(keyword, name = "style", placed)]
-    z: Option<At<Length>>,
+    z: Option<At<At<Length>>>,
     #[word(keyword, name = "style", placed)]
     xy: Option<At<Tilt>>,
     #[word(keyword, name = "style", placed)]
@@ -142,13 +142,13 @@ fn not_of_a_box(word: &Word) -> Option<Diagnostics> {
 impl FixStyle for DeformPressure {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let line: Line = read_or(args, cx, not_of_a_box)?;
-        let length = |length: At<Length>| {
-            let value = match length.value {
+        let length = |At { value: length, span, unknown }: At<At<Length>>| {
+            let motion = match length.value {
                 Or::Word(Pressing::Pressure(goal)) => Motion::Pressed(goal.pressed(false)),
                 Or::Word(Pressing::Mean(goal)) => Motion::Pressed(goal.pressed(true)),
                 Or::Else(motion) => motion,
             };
-            At { value, span: length.span, unknown: length.unknown }
+            At { value: At { value: motion, span: length.span, unknown: length.unknown }, span, unknown }
         };
         let tilt = |tilt: At<Tilt>| {
             let value = match tilt.value {

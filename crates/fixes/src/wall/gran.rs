@@ -91,6 +91,9 @@ impl Value for Named {
             let d = Diagnostic::error(Code::UNKNOWN_STYLE, args.here(), "a region is a wall of another fix");
             return Err(d.help("write `fix … wall/gran/region … region ID`").into());
         }
+        if args.is_empty() {
+            args.expect("the wall: xplane yplane zplane or zcylinder")?;
+        }
         Standing::value(what, args, cx).map(Self)
     }
 }

@@ -97,7 +97,7 @@ fn unexpected<T: Words>(word: &Word, args: &Args) -> Diagnostics {
     if T::GRAMMAR.refuses(&word.text) {
         return not_here(word, &format!("keyword of {}", args.command()));
     }
-    if known.is_empty() {
+    if known.is_empty() || known.contains(&word.text.as_str()) {
         return left_over(word, args);
     }
     args.unknown(word, &known)
