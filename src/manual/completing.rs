@@ -197,21 +197,23 @@ impl Slot<'_> {
             (0, names.into_iter().map(|text| Candidate { text, what: What::Named(kind) }).collect())
         };
         match place.kind {
-            Kind::Group => named(Named::Group),
-            Kind::Region => named(Named::Region),
-            Kind::Compute => named(Named::Compute),
-            Kind::Fix => named(Named::Fix),
-            Kind::Dump => named(Named::Dump),
-            Kind::Variable => named(Named::Variable),
-            Kind::Material => named(Named::Material),
-            Kind::File => files(self.word, self.folder),
+            Kind::File => self.files(),
             Kind::Value => (0, values(self.known)),
             Kind::Attribute => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
             Kind::Param | Kind::Reference => {
                 (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())
             }
-            _ => (0, vec![]),
+            kind => Named::of_kind(kind).map_or((0, vec![]), named),
         }
+    }
+
+    /// The files there are, and for a material those built in.
+    fn files(&self) -> (usize, Vec<Candidate>) {
+        let (skip, mut all) = files(self.word, self.folder);
+        if self.command == "material" {
+            all.extend(of(What::File, perigrain_world::potentials::EMBEDDED.iter().map(|(name, _)| *name)));
+        }
+        (skip, all)
     }
 
     /// What a placeholder may become, `before` being the word of the syntax line before it.
@@ -219,13 +221,7 @@ impl Slot<'_> {
         let last = self.typed.last().copied().unwrap_or_default();
         match (Named::of(placeholder, before, last, self.command), placeholder) {
             (_, "file") if self.command == "material" => (0, of(What::Keyword, ["file"])),
-            (Some(Named::File), _) if self.command == "material" => {
-                let (skip, mut all) = files(self.word, self.folder);
-                let built_in = perigrain_world::potentials::EMBEDDED.iter().map(|(name, _)| *name);
-                all.extend(of(What::File, built_in));
-                (skip, all)
-            }
-            (Some(Named::File), _) => files(self.word, self.folder),
+            (Some(Named::File), _) => self.files(),
             (Some(kind), _) => {
                 let mut known = self.known.clone();
                 let names = kind.list(&mut known).map(std::mem::take).unwrap_or_default();

@@ -1,9 +1,10 @@
 //! What completion, hints, highlighting and editors know: the manual's syntax lines, and what their placeholders mean.
 
 use super::syntax::{Form, Place, is_word};
-use super::walk::Declared;
+use super::walk::{Declared, Offer};
 use super::{Page, all};
 use crate::session::{Known, THERMO};
+use perigrain_styles::words::Kind;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -145,6 +146,22 @@ impl Named {
         })
     }
 
+    /// What a declared word names.
+    pub fn of_kind(kind: Kind) -> Option<Self> {
+        Some(match kind {
+            Kind::Group => Self::Group,
+            Kind::Region => Self::Region,
+            Kind::Compute => Self::Compute,
+            Kind::Fix => Self::Fix,
+            Kind::Dump => Self::Dump,
+            Kind::Variable => Self::Variable,
+            Kind::Molecule => Self::Molecule,
+            Kind::Material => Self::Material,
+            Kind::File => Self::File,
+            _ => return None,
+        })
+    }
+
     /// What a placeholder of a syntax line names: `before` is the word of the line before it, `last` the word typed there.
     pub fn of(placeholder: &str, before: &str, last: &str, command: &str) -> Option<Self> {
         Some(match placeholder {
@@ -256,6 +273,15 @@ pub fn named(words: &[&str], k: usize) -> Option<Named> {
     let command = *words.first()?;
     let (word, last) = (*words.get(k)?, *words.get(k.checked_sub(1)?)?);
     let place = best(words, &Known::default())?.form.place(&words[..k]);
+    if !place.offers.is_empty() {
+        let typed = |offer: &Offer| matches!(offer, Offer::Word(known, _) if *known == word);
+        let names = |offer: &Offer| match offer {
+            Offer::Place(p) if p.kind == Kind::Text => Named::of(p.name, &place.before, last, command),
+            Offer::Place(p) => Named::of_kind(p.kind),
+            Offer::Word(..) => None,
+        };
+        return if place.offers.iter().any(typed) { None } else { place.offers.iter().find_map(names) };
+    }
     let each = || place.here.iter().flat_map(|here| here.trim_end_matches('…').split('|'));
     if each().any(|one| one == word && is_word(one)) {
         return None;

@@ -23,6 +23,7 @@ impl Style for AtomModify {
             example: "atom_modify map array sort 0 0.0",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

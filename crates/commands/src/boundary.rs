@@ -26,6 +26,7 @@ impl Style for BoundaryCommand {
             example: "boundary f fs p",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

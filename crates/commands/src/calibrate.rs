@@ -6,6 +6,7 @@ mod dsm;
 mod fit;
 mod found;
 mod kinds;
+mod line;
 mod messages;
 mod model;
 mod scene;
@@ -24,9 +25,11 @@ mod words;
 
 use super::{Act, CommandStyle};
 use found::Found;
+use line::{Calibration, Head};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, populated};
+use perigrain_styles::words::{Form, Forms};
 use perigrain_styles::{ActCx, BuildCx, Compute, Doc, Style};
 use perigrain_world::GroupId;
 use scene::Scene;
@@ -43,15 +46,7 @@ impl Style for Calibrate {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "calibrate dsm ID GROUP axis x|y|z strain S [low|high grip|plate|wall] [thick T] [rotations yes|no] [contacts yes|no] \
-                     [prestress remove|keep] [tol P] [bound yes|no] [method pcg|paper [FL [FN]]] [shape block|cylinder|area A] \
-                     [length free|body] [fields yes|no] [large yes|no] [mu M] [steps N]\n\
-                     calibrate ste ID GROUP axis x|y|z [order N] [slabs auto|H] [map deviation|stiffness D] [strain S] [low|high wall] [thick T] [contacts yes|no] \
-                     [mu M] [shape …] [length free|body]\n\
-                     calibrate periodic ID GROUP [rotations yes|no] [tol P]\n\
-                     calibrate strength ID GROUP axis x|y|z strain S [low|high grip|plate] [thick T] [rotations yes|no] [tol P] [until P] [most N] \
-                     [avalanche all|one] [together P] [curve FILE] [shape …] [length free|body] [fields yes|no]\n\
-                     calibrate fit ID GROUP target K|E|nu|strength V … vary bond T COEFF … [method dsm|ste|periodic] [tol P] and words of that method",
+            syntax: "",
             summary: "Stiffness and strength of bonded bodies without a run, and coefficients of bonds that give them.",
             text: DOC,
             example: "units si\natom_style hybrid sphere bond\nboundary f f f\nlattice fcc 1.4142e-3\n\
@@ -62,6 +57,9 @@ impl Style for Calibrate {
                       calibrate fit c all target K 2.0e4 vary bond 1 k low plate high plate\n\
                       print \"before: $(c_a[1]:%.5g) N/m, estimated $(c_b[1]:%.5g) N/m; now $(c_c[1]:%.5g) N/m with k = $(c_c[11]:%.5g) N/m\"",
         }
+    }
+    fn words(&self) -> Vec<Form> {
+        Calibration::FORMS.to_vec()
     }
 }
 
@@ -128,7 +126,8 @@ impl CommandStyle for Calibrate {
         if common::domain(cx)?.tilted() {
             return Err(common::orthogonal("calibrate").at(cx.span));
         }
-        let name = a.choice("kind of calibration", &["dsm", "ste", "periodic", "strength", "fit"])?;
+        let name = a.peek_text();
+        let (Head { id: word, group }, words) = Words::new(Calibration::form(a, cx)?, cx)?;
         let kind = match name {
             "dsm" => Kind::Dsm,
             "ste" => Kind::Ste,
@@ -136,7 +135,6 @@ impl CommandStyle for Calibrate {
             "strength" => Kind::Strength,
             _ => Kind::Fit,
         };
-        let word = a.expect("an ID for the results")?;
         if !word.unknown && !word.text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
             let text = format!("`{}` is no ID: it may hold letters, digits and underscores", word.text);
             return fail(Code::BAD_VALUE, word.span, text);
@@ -146,13 +144,11 @@ impl CommandStyle for Calibrate {
             let d = Diagnostic::error(Code::DUPLICATE_NAME, word.span, text);
             return Err(d.help("choose another ID: results are read as `c_ID[1]`").into());
         }
-        let group = cx.group(a.expect("a group")?)?;
         if cx.world.bonds.coeffs.is_none() {
             let text = "there is no bond_style: bonds have no stiffness";
             let d = Diagnostic::error(Code::WRONG_ORDER, a.name_span(), text);
             return Err(d.help("put `bond_style` and `bond_coeff` before this line").into());
         }
-        let words = Words::read(a, name, cx.world.bonds.types)?;
         let fields = if words.fields { 2 } else { usize::from(words.map.is_some()) };
         let tensor = match kind {
             Kind::Dsm | Kind::Strength => false,

@@ -32,6 +32,7 @@ impl Style for ChangeBox {
             example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -24,6 +24,7 @@ impl Style for CommModify {
             example: "comm_modify vel yes",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

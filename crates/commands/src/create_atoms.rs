@@ -62,6 +62,7 @@ impl Style for CreateAtoms {
             example: "create_atoms 1 region disc subset 20 4711",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         Way::FORMS.to_vec()
     }

@@ -7,8 +7,9 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair, Reach, View, pairs};
-use perigrain_styles::common::{self, bad_keyword, bond_type, on_particles};
+use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{every_type, room_for_pairs};
+use perigrain_styles::words::{At, BondType, Form, Forms, Kind, Value, Words};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Bond, GroupId, Partners, World};
@@ -23,23 +24,107 @@ impl Style for CreateBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_bonds many GROUP1 GROUP2 TYPE RMIN RMAX | single/bond TYPE ID1 ID2 | single/angle TYPE ID1 ID2 ID3  [special yes|no]\n\
-                     create_bonds gap GROUP1 GROUP2 TYPE GMIN GMAX [mix TYPE2 SHARE SEED]",
+            syntax: "",
             summary: "Makes bonds between particles.",
-            text: "`many`: a bond between each particle of one group and each of the other whose distance lies between RMIN and \
-                   RMAX, both included, except where `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) \
-                   take the pair out of neighbour lists: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
-                   the default weights particles two or three bonds apart are left out, too: a warning says how many and what would bond them. LAMMPS also needs a pair style that \
-                   reaches as far; perigrain does not. `single/bond`: one bond between two ids; `single/angle`: an angle at the second of three ids, which exerts nothing (`angle_style zero`).\n\n\
-                   `special no` leaves open for now which pairs count as bonded: use `yes` with the last of many such lines. \
-                   `single/dihedral` and `single/improper` are refused.\n\n\
-                   `gap` is perigrain's own: as `many`, for spheres whose surfaces are GMIN to GMAX apart (distance less both \
-                   radii, both ends included). A negative GMIN takes in spheres that overlap so far, as packings leave them; a \
-                   warning counts those that a larger one leaves out. `mix` gives a part SHARE of the bonds TYPE2, drawn from the two \
-                   ids and SEED alone: the same pairs whatever the order, and whichever other bonds there are.",
+            text: "Of `many` and `gap`: pairs that `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) take \
+                   out of neighbour lists get no bond: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
+                   the default weights particles two or three bonds apart are left out, too: a warning says how many and what would \
+                   bond them. LAMMPS also needs a pair style that reaches as far; perigrain does not.\n\n\
+                   A negative GMIN takes in spheres that overlap so far, as packings leave them; a warning counts those that a \
+                   larger one leaves out. `single/dihedral` and `single/improper` are refused.",
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nprint \"$(bonds) bonds\"",
+        }
+    }
+
+    fn words(&self) -> Vec<Form> {
+        Line::FORMS.to_vec()
+    }
+}
+
+#[derive(Words)]
+#[word(
+    forms = "create_bonds",
+    what = "style of create_bonds",
+    style,
+    refused = "single/dihedral single/improper"
+)]
+enum Line {
+    /// A bond between each particle of one group and each of the other whose distance lies between RMIN and RMAX, both included.
+    Many(Many),
+    /// As `many`, for spheres whose surfaces are GMIN to GMAX apart (distance less both radii, both ends included); perigrain's own.
+    Gap(gap::Line),
+    /// One bond between two ids.
+    #[word("single/bond")]
+    Bond(One),
+    /// An angle at the second of three ids, which exerts nothing (`angle_style zero`).
+    #[word("single/angle")]
+    Angle(angle::Line),
+}
+
+#[derive(Words)]
+struct Many {
+    #[word(name = "GROUP1 GROUP2")]
+    groups: [GroupId; 2],
+    #[word(name = "TYPE")]
+    kind: BondType,
+    /// The smallest distance [length].
+    #[word(name = "RMIN", non_negative)]
+    least: f64,
+    /// The largest distance [length].
+    #[word(name = "RMAX", non_negative)]
+    most: At<f64>,
+    #[word(flatten)]
+    special: Special,
+}
+
+#[derive(Words)]
+struct One {
+    #[word(name = "TYPE")]
+    kind: BondType,
+    #[word(name = "ID1 ID2")]
+    ids: [At<Id>; 2],
+    #[word(flatten)]
+    special: Special,
+}
+
+/// Whether it is decided anew which pairs count as bonded.
+#[derive(Words)]
+struct Special {
+    /// `no` leaves open for now which pairs count as bonded, of `single/bond` alone: the last of many such lines needs `yes`.
+    #[word(keyword = "special", what = "special", shown = "yes")]
+    said: Option<At<bool>>,
+}
+
+impl Special {
+    fn is_on(&self) -> bool {
+        self.said.as_ref().is_none_or(|said| said.value)
+    }
+
+    /// Refuses `no`, which goes with single bonds.
+    fn refuse_no(&self) -> Result<()> {
+        match &self.said {
+            Some(said) if !said.value => {
+                fail(Code::CONFLICT, said.span, "`special no` goes with single/bond only")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The id of a particle.
+#[derive(Clone, Copy)]
+struct Id(u32);
+
+impl Value for Id {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let k = args.integer_from(1, "an id")?;
+        match u32::try_from(k) {
+            Ok(k) => Ok(Self(k)),
+            Err(_) => fail(Code::BAD_VALUE, span, format!("ids go from 1 to {}, not {k}", u32::MAX)),
         }
     }
 }
@@ -58,50 +143,28 @@ impl CommandStyle for CreateBonds {
             let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let style = a.expect("many, gap or single/bond")?;
-        let (kind, choice) = match style.text.as_str() {
-            "many" => many(a, cx)?,
-            "gap" => gap::parse(style, a, cx).map(|(kind, gap)| (kind, Choice::Gap(gap)))?,
-            "single/bond" => single(a, cx)?,
-            "single/angle" => return angle::parse(a, cx),
-            "single/dihedral" | "single/improper" => {
-                return Err(common::not_here(style, "create_bonds"));
-            }
-            _ => {
-                let known = ["many", "gap", "single/bond", "single/angle"];
-                return Err(common::unknown_style(style, "style of create_bonds", &known));
-            }
+        let style = a.here();
+        let (kind, choice, special) = match Line::form(a, cx)? {
+            Line::Many(line) => many(line, a, cx)?,
+            Line::Gap(line) => line.read(style, a, cx)?,
+            Line::Bond(line) => single(line)?,
+            Line::Angle(line) => return line.read(a, cx),
         };
-        let mut special = true;
-        while let Some(word) = a.next() {
-            let span = a.here();
-            match word.text.as_str() {
-                "special" => special = a.flag("special")?,
-                _ => return Err(bad_keyword(a, word, &["special"], &[])),
-            }
-            if !special && !matches!(choice, Choice::Single { .. }) {
-                return fail(Code::CONFLICT, span, "`special no` goes with single/bond only");
-            }
+        if !matches!(choice, Choice::Single { .. }) {
+            special.refuse_no()?;
         }
-        Ok(on_particles(vec![], move |cx| create(cx, kind, &choice, special)))
+        Ok(on_particles(vec![], move |cx| create(cx, kind.0, &choice, special.is_on())))
     }
 }
 
-fn many(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
-    let groups = [cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?];
-    let kind = bond_type(a, cx.world.bonds.types)?;
-    let least = a.non_negative("the smallest distance")?;
-    let span = a.here();
-    let most = a.non_negative("the largest distance")?;
+fn many(line: Many, a: &Args, cx: &BuildCx) -> Result<(BondType, Choice, Special)> {
+    let Many { groups, kind, least, most: At { value: most, span, .. }, special } = line;
     if most < least {
-        return fail(
-            Code::BAD_VALUE,
-            span,
-            format!("the largest distance {most} is below the smallest, {least}"),
-        );
+        let text = format!("the largest distance {most} is below the smallest, {least}");
+        return fail(Code::BAD_VALUE, span, text);
     }
     needs_zero_weights("many", a, cx)?;
-    Ok((kind, Choice::Many { groups, range: [least, most], at: span }))
+    Ok((kind, Choice::Many { groups, range: [least, most], at: span }, special))
 }
 
 /// Refuses weights that leave bonded pairs in neighbour lists.
@@ -117,19 +180,12 @@ fn needs_zero_weights(style: &str, a: &Args, cx: &BuildCx) -> Result<()> {
     Err(d.help("put `special_bonds lj/coul 0.0 1.0 1.0` before this line").into())
 }
 
-fn single(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
-    let kind = bond_type(a, cx.world.bonds.types)?;
-    let (mut ids, mut spans) = ([0; 2], [Span::default(); 2]);
-    for (id, span) in ids.iter_mut().zip(&mut spans) {
-        *span = a.here();
-        let k = a.integer_from(1, "an id")?;
-        *id = u32::try_from(k)
-            .or_else(|_| fail(Code::BAD_VALUE, *span, format!("ids go from 1 to {}, not {k}", u32::MAX)))?;
-    }
+fn single(One { kind, ids, special }: One) -> Result<(BondType, Choice, Special)> {
+    let (spans, ids) = (ids.map(|id| id.span), ids.map(|id| id.value.0));
     if ids[0] == ids[1] {
         return fail(Code::BAD_VALUE, spans[1], "a bond needs two different particles");
     }
-    Ok((kind, Choice::Single { ids, spans }))
+    Ok((kind, Choice::Single { ids, spans }, special))
 }
 
 fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<()> {

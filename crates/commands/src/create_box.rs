@@ -30,6 +30,7 @@ impl Style for CreateBox {
             example: "create_box 3 world",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -30,6 +30,7 @@ impl Style for DeleteAtoms {
             example: "delete_atoms region notch",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

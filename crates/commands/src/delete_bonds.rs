@@ -29,6 +29,7 @@ impl Style for DeleteBonds {
                       create_bonds many all all 1 0.9 1.1\ndelete_bonds all bond 1\ndelete_bonds all stats",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -25,6 +25,7 @@ impl Style for Dimension {
             example: "dimension 3",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

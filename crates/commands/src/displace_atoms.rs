@@ -30,6 +30,7 @@ impl Style for DisplaceAtoms {
             example: "displace_atoms ball move 0 0 -0.001 units box",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

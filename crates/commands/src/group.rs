@@ -1,16 +1,17 @@
 //! `group`: named sets of particles.
 
 use super::{Act, CommandStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param, ValueRef, Word};
-use perigrain_styles::common::{
-    self, atom_variable, bad_keyword, free_id, in_group, setting, unknown_style, whole,
-};
+use perigrain_styles::common::{self, free_id, in_group, setting, whole};
 use perigrain_styles::surface::{check_volumes, choose};
+use perigrain_styles::words::{
+    Alternative, At, AtomVariable, Form, Forms, Kind, Part, Placeholder, Value, Words,
+};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use perigrain_world::region::Variable;
 use perigrain_world::surface::{Rule, Surface};
-use perigrain_world::{Dynamic, GroupId, Particles, Region};
+use perigrain_world::{Dynamic, GroupId, Key, Particles, Region};
 use std::collections::BTreeSet;
 
 /// The command.
@@ -23,33 +24,150 @@ impl Style for Group {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "group ID type|id|molecule A B:C D:E:F … | type|id|molecule < <= > >= == != N | type|id|molecule <> A B | \
-                     include molecule | region ID | \
-                     variable NAME | union ID … | intersect ID ID … | subtract ID ID … | empty | clear | delete | \
-                     dynamic PARENT [region ID] [var NAME] [every N] | \
-                     surface PARENT [nn K | mfrac F] [shells S] [every N] | static",
+            syntax: "",
             summary: "Names a set of particles, or adds particles to it.",
-            text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the \
-                   particles named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. `variable` takes \
-                   those for which the atom-style variable is not zero. `subtract` takes members of the first group that \
-                   are in none of the others. At most 32 groups, `all` among them. `molecule` selects molecule IDs as `id` \
-                   for ids; `include molecule` takes all molecules of which some particle is in the group already.\n\n\
-                   `dynamic` chooses the members anew at the start of each run and at every step that is a multiple of N \
-                   (default 1): those of PARENT that are inside the region and for which the atom-style variable is not \
-                   zero. It does so when forces have been computed, before fixes act on them. `static` lets the group stay \
-                   as it is.\n\n\
-                   `surface` takes the hybrid particles of the peridynamic solids in PARENT, which meet grains, other solids and \
-                   walls as spheres (`set … peri/radius`): those with fewer than K nearest neighbours (default 6), counted in \
-                   bonds that live, before the first run in places closer than 1.25 V^⅓; or with `mfrac` those whose Σ r² V is \
-                   below F times the largest. `shells` takes S layers in all. With `every` the choice is made anew in the setup \
-                   of each run and every N steps, so that cracks and craters get surfaces. As long as the group exists, other \
-                   particles of PARENT have no contacts, and two particles that were in one family have none with each other, \
-                   whether their bond lives or not (`peri_modify family broken`: as long as it lives): a solid meets itself only farther apart. The short-range force of \
-                   peridynamic styles acts besides, unless `peri_modify repulsion no`. Hybrid particles do not turn: move them by \
-                   `fix nve`.",
+            text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the particles \
+                   named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. At most 32 groups, `all` among them.\n\n\
+                   A dynamic group is chosen when forces have been computed, before fixes act on them.\n\n\
+                   `surface` is for the hybrid particles of peridynamic solids, which meet grains, other solids and walls as \
+                   spheres (`set … peri/radius`). Neighbours are counted in bonds that live, before the first run in places closer \
+                   than 1.25 V^⅓. With `every` cracks and craters get surfaces.\n\n\
+                   As long as a surface exists, other particles of PARENT have no contacts, and two particles that were in one \
+                   family have none with each other, whether their bond lives or not (`peri_modify family broken`: as long as it \
+                   lives): a solid meets itself only farther apart. The short-range force of peridynamic styles acts besides, \
+                   unless `peri_modify repulsion no`. Hybrid particles do not turn: move them by `fix nve`.",
             example: "group bullet region ball",
         }
     }
+
+    fn words(&self) -> Vec<Form> {
+        Line::FORMS.to_vec()
+    }
+}
+
+#[derive(Words)]
+#[word(forms = "group ID", what = "style of group", style)]
+enum Line {
+    /// Particles of these types.
+    Type(OfTypes),
+    /// Particles with these ids.
+    Id(WithIds),
+    /// Particles of molecules with these IDs.
+    Molecule(OfMolecules),
+    /// All molecules of which some particle is in the group already.
+    Include(Included),
+    /// Particles inside a region.
+    Region(InRegion),
+    /// Particles for which an atom-style variable is not zero.
+    Variable(Chosen),
+    /// Particles that are in one of the groups at least.
+    Union(AnyOf),
+    /// Particles that are in all of the groups.
+    Intersect(Several),
+    /// Members of the first group that are in none of the others.
+    Subtract(Several),
+    /// No particles.
+    Empty,
+    /// The group stays, without members.
+    Clear,
+    /// The group is gone.
+    Delete,
+    /// The members are chosen anew at the start of each run and every N steps.
+    Dynamic(Following),
+    /// The particles at the surface of the solids in a group.
+    Surface(AtSurface),
+    /// A dynamic group stays as it is.
+    Static,
+}
+
+#[derive(Words)]
+struct OfTypes {
+    #[word(name = "A:B:C…", what = "a type")]
+    numbers: Numbers,
+}
+
+#[derive(Words)]
+struct WithIds {
+    #[word(name = "A:B:C…", what = "an id")]
+    numbers: Numbers,
+}
+
+#[derive(Words)]
+struct OfMolecules {
+    #[word(name = "A:B:C…", what = "a molecule")]
+    numbers: Numbers,
+}
+
+#[derive(Words)]
+struct Included {
+    #[word(name = "what")]
+    _what: Molecule,
+}
+
+#[derive(Words)]
+#[word(what = "style of group include")]
+enum Molecule {
+    Molecule,
+}
+
+#[derive(Words)]
+struct InRegion {
+    #[word(name = "ID")]
+    region: Region,
+}
+
+#[derive(Words)]
+struct Chosen {
+    #[word(name = "NAME")]
+    variable: AtomVariable,
+}
+
+#[derive(Words)]
+struct AnyOf {
+    #[word(name = "ID", least = 1)]
+    groups: Vec<GroupId>,
+}
+
+#[derive(Words)]
+struct Several {
+    #[word(name = "ID", least = 2)]
+    groups: Vec<GroupId>,
+}
+
+#[derive(Words)]
+#[word(refused = "property exclude include within")]
+struct Following {
+    /// The group of which members are chosen.
+    #[word(name = "PARENT", what = "the parent group", kind = Kind::Group)]
+    parent: Word,
+    /// Only inside this region.
+    #[word(keyword, name = "ID")]
+    region: Option<Key<Region>>,
+    /// Only where this atom-style variable is not zero.
+    #[word(keyword, name = "NAME")]
+    var: Option<AtomVariable>,
+    /// The interval [steps].
+    #[word(keyword, name = "N", from = 1, default = 1)]
+    every: i64,
+}
+
+#[derive(Words)]
+struct AtSurface {
+    /// The group of the solids.
+    #[word(name = "PARENT", kind = Kind::Group)]
+    parent: Word,
+    /// Particles with fewer nearest neighbours.
+    #[word(keyword, name = "K", what = "the number of nearest neighbours inside", from = 1, shown = "6")]
+    nn: Option<At<usize>>,
+    /// Particles whose Σ r² V is below F times the largest, in place of `nn`.
+    #[word(keyword, name = "F", what = "the part of the largest weighted volume", positive)]
+    mfrac: Option<At<f64>>,
+    /// The number of layers in all.
+    #[word(keyword, name = "S", from = 1, default = 1)]
+    shells: usize,
+    /// The choice is made anew in the setup of each run and every N steps.
+    #[word(keyword, name = "N", what = "the interval", from = 1)]
+    every: Option<i64>,
 }
 
 /// Which particles join.
@@ -75,6 +193,37 @@ enum Numbers {
     Between(i64, i64),
 }
 
+/// The words that compare with a number.
+const OPERATORS: [&str; 6] = ["<", "<=", ">", ">=", "==", "!="];
+
+/// A number behind one of them.
+const NUMBER: [Part; 1] = [Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" })];
+
+impl Value for Numbers {
+    const KIND: Kind = Kind::Or(
+        &Kind::Choice(&[
+            Alternative { word: "<", about: "", parts: &NUMBER },
+            Alternative { word: "<=", about: "", parts: &NUMBER },
+            Alternative { word: ">", about: "", parts: &NUMBER },
+            Alternative { word: ">=", about: "", parts: &NUMBER },
+            Alternative { word: "==", about: "", parts: &NUMBER },
+            Alternative { word: "!=", about: "", parts: &NUMBER },
+            Alternative {
+                word: "<>",
+                about: "",
+                parts: &[
+                    Part::Word(Placeholder { name: "A", kind: Kind::Whole, about: "", unit: "" }),
+                    Part::Word(Placeholder { name: "B", kind: Kind::Whole, about: "", unit: "" }),
+                ],
+            },
+        ]),
+        &Kind::Text,
+    );
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        numbers(args, what)
+    }
+}
+
 impl Numbers {
     fn contain(&self, k: i64) -> bool {
         match self {
@@ -97,31 +246,40 @@ impl CommandStyle for Group {
         common::domain(cx)?;
         let word = a.expect("the group's ID")?;
         let name = free_id(word, "the group's ID")?;
-        let style = a.expect("a style")?;
-        match style.text.as_str() {
-            "delete" => return delete(cx, word, name),
-            "clear" => return clear(cx, word),
-            "static" => return make_static(cx, word),
-            _ => {}
+        let (style, span) = (a.peek_text(), a.here());
+        if !["delete", "clear", "static"].contains(&style) {
+            if name == "all" {
+                return fail(Code::BAD_VALUE, word.span, "the group `all` cannot be changed");
+            }
+            if cx.world.groups.find(&name).is_none() && cx.world.groups.names().count() == 32 {
+                return fail(Code::TOO_LARGE, word.span, "there are 32 groups already; delete one first");
+            }
         }
-        if name == "all" {
-            return fail(Code::BAD_VALUE, word.span, "the group `all` cannot be changed");
+        if ["molecule", "include"].contains(&style) && !cx.world.particles.style.molecules {
+            return fail(Code::CONFLICT, span, "particles of this atom_style belong to no molecules");
         }
-        if cx.world.groups.find(&name).is_none() && cx.world.groups.names().count() == 32 {
-            return fail(Code::TOO_LARGE, word.span, "there are 32 groups already; delete one first");
-        }
-        if style.text == "dynamic" {
-            return dynamic(a, cx, name);
-        }
-        if style.text == "surface" {
-            return surface(a, cx, style, name);
-        }
+        let choice = match Line::form(a, cx)? {
+            Line::Delete => return delete(cx, word, name),
+            Line::Clear => return clear(cx, word),
+            Line::Static => return make_static(cx, word),
+            Line::Dynamic(line) => return dynamic(line, cx, name),
+            Line::Surface(line) => return surface(line, cx, span, name),
+            Line::Type(line) => Choice::Kind(line.numbers),
+            Line::Id(line) => Choice::Tag(line.numbers),
+            Line::Molecule(line) => Choice::Molecule(line.numbers),
+            Line::Include(_) => Choice::Include,
+            Line::Region(line) => Choice::Region(Box::new(line.region)),
+            Line::Variable(line) => Choice::Variable(line.variable.0),
+            Line::Union(line) => Choice::Union(line.groups),
+            Line::Intersect(line) => Choice::Intersect(line.groups),
+            Line::Subtract(line) => Choice::Subtract(line.groups),
+            Line::Empty => Choice::Empty,
+        };
         if cx.world.groups.find(&name).is_some_and(|g| cx.world.groups.dynamic(g).is_some()) {
             let text = format!("the dynamic group `{name}` chooses its particles itself");
             let d = Diagnostic::error(Code::CONFLICT, word.span, text);
             return Err(d.help(format!("write `group {name} static` first")).into());
         }
-        let choice = choice(style, a, cx)?;
         Ok(setting(move |cx| join(cx, &name, &choice)))
     }
 }
@@ -175,9 +333,9 @@ fn make_static(cx: &BuildCx, word: &Word) -> Result<Box<dyn Act>> {
     }))
 }
 
-fn dynamic(a: &mut Args, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
-    let parent_word = a.expect("the parent group")?;
-    let parent = cx.group(parent_word)?;
+fn dynamic(line: Following, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
+    let Following { parent: parent_word, region, var, every } = line;
+    let parent = cx.group(&parent_word)?;
     if parent_word.text == name || cx.world.groups.dynamic(parent).is_some() {
         let text = format!("the parent `{}` of a dynamic group must be a static group", parent_word.text);
         return fail(Code::CONFLICT, parent_word.span, text);
@@ -186,26 +344,8 @@ fn dynamic(a: &mut Args, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
         let text = format!("`{name}` cannot be dynamic: the dynamic group `{child}` chooses from it");
         return fail(Code::CONFLICT, cx.span, text);
     }
-    let mut rule = Dynamic { parent, region: None, variable: None, every: 1 };
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "region" => {
-                let word = a.expect("a region")?;
-                cx.region(word)?;
-                rule.region = Some(word.text.clone());
-            }
-            "var" => {
-                let word = a.expect("a variable")?;
-                atom_variable(cx, word)?;
-                rule.variable = Some(Variable { name: word.text.clone(), span: word.span });
-            }
-            "every" => rule.every = a.integer_from(1, "the interval")?,
-            _ => {
-                const ELSEWHERE: [&str; 4] = ["property", "exclude", "include", "within"];
-                return Err(bad_keyword(a, word, &["region", "var", "every"], &ELSEWHERE));
-            }
-        }
-    }
+    let variable = var.map(|AtomVariable(r)| Variable { name: r.name, span: r.span });
+    let rule = Dynamic { parent, region: region.map(|key| key.text().to_string()), variable, every };
     Ok(setting(move |cx| {
         let Some(group) = cx.world.groups.find_or_add(&name) else {
             return fail(Code::TOO_LARGE, None, "there are 32 groups already; delete one first");
@@ -216,32 +356,27 @@ fn dynamic(a: &mut Args, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
     }))
 }
 
-fn surface(a: &mut Args, cx: &BuildCx, style: &Word, name: String) -> Result<Box<dyn Act>> {
+fn surface(line: AtSurface, cx: &BuildCx, style: Span, name: String) -> Result<Box<dyn Act>> {
     if !cx.world.particles.style.peri || !cx.world.particles.style.sphere {
         let text =
             "hybrid particles have a volume and a radius, and particles of this atom_style have not both";
-        return Err(Diagnostic::error(Code::CONFLICT, style.span, text)
+        return Err(Diagnostic::error(Code::CONFLICT, style, text)
             .help("put `atom_style hybrid sphere peri` at the top of the deck")
             .into());
     }
-    let word = a.expect("the group of the solids")?;
-    let parent = cx.group(word)?;
+    let AtSurface { parent: word, nn, mfrac, shells, every } = line;
+    let parent = cx.group(&word)?;
     if word.text == name {
         return fail(Code::CONFLICT, word.span, "a surface cannot be that of itself");
     }
-    let mut found = Surface { parent, rule: Rule::Neighbours(6), shells: 1, every: None };
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "nn" => {
-                found.rule =
-                    Rule::Neighbours(a.integer_from(1, "the number of nearest neighbours inside")? as usize);
-            }
-            "mfrac" => found.rule = Rule::Weight(a.positive("the part of the largest weighted volume")?),
-            "shells" => found.shells = a.integer_from(1, "the number of layers")? as usize,
-            "every" => found.every = Some(a.integer_from(1, "the interval")?),
-            _ => return Err(a.unknown(word, &["nn", "mfrac", "shells", "every"])),
+    let rule = match (&nn, &mfrac) {
+        (nn, Some(part)) if nn.as_ref().is_none_or(|nn| nn.span.start < part.span.start) => {
+            Rule::Weight(part.value)
         }
-    }
+        (Some(nn), _) => Rule::Neighbours(nn.value),
+        (None, _) => Rule::Neighbours(6),
+    };
+    let found = Surface { parent, rule, shells, every };
     let span = word.span;
     let made = Some(name.clone());
     Ok(in_group(vec![], made, move |cx| {
@@ -266,55 +401,7 @@ fn log_count(cx: &mut ActCx, group: GroupId, name: &str) {
     cx.print(format!("{count} atoms in group {name}"));
 }
 
-/// The ways to choose a group's particles.
-const KNOWN: [&str; 13] = [
-    "empty",
-    "type",
-    "id",
-    "molecule",
-    "include",
-    "region",
-    "variable",
-    "union",
-    "intersect",
-    "subtract",
-    "dynamic",
-    "surface",
-    "static",
-];
-
-fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
-    Ok(match style.text.as_str() {
-        "empty" => Choice::Empty,
-        "type" => Choice::Kind(numbers(a, "a type")?),
-        "id" => Choice::Tag(numbers(a, "an id")?),
-        "region" => Choice::Region(Box::new(cx.region(a.expect("a region")?)?.clone())),
-        "variable" => Choice::Variable(atom_variable(cx, a.expect("a variable")?)?),
-        "union" => Choice::Union(groups(a, cx, 1)?),
-        "intersect" => Choice::Intersect(groups(a, cx, 2)?),
-        "subtract" => Choice::Subtract(groups(a, cx, 2)?),
-        "molecule" | "include" if !cx.world.particles.style.molecules => {
-            return fail(Code::CONFLICT, style.span, "particles of this atom_style belong to no molecules");
-        }
-        "molecule" => Choice::Molecule(numbers(a, "a molecule")?),
-        "include" => {
-            a.choice("style of group include", &["molecule"])?;
-            Choice::Include
-        }
-        _ => return Err(unknown_style(style, "style of group", &KNOWN)),
-    })
-}
-
-fn groups(a: &mut Args, cx: &BuildCx, least: usize) -> Result<Vec<GroupId>> {
-    let mut list = vec![];
-    while list.len() < least || !a.is_empty() {
-        list.push(cx.group(a.expect("a group")?)?);
-    }
-    Ok(list)
-}
-
 fn numbers(a: &mut Args, what: &str) -> Result<Numbers> {
-    const OPERATORS: [&str; 6] = ["<", "<=", ">", ">=", "==", "!="];
     if a.eat("<>") {
         return Ok(Numbers::Between(a.integer(what)?, a.integer(what)?));
     }

@@ -4,7 +4,10 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{not_here, setting, unknown_style};
+use perigrain_styles::common::{setting, unknown_style};
+use perigrain_styles::words::{
+    Alternative, At, Axis, Form, Kind, Positive, Value, Words, alternatives, read,
+};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::Lattice;
 use perigrain_world::lattice::{Cell, Placing, is_frame};
@@ -19,58 +22,169 @@ impl Style for LatticeCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "lattice none|sc|bcc|fcc|hcp|diamond|sq|sq2|hex|custom SCALE [origin X Y Z] [orient x|y|z I J K] \
-                     [spacing DX DY DZ] [a1|a2|a3 X Y Z] [basis X Y Z] …",
+            syntax: "",
             summary: "Defines the points particles are created on, and the unit of length of `units lattice`.",
-            text: "SCALE is the lattice constant [length]; in units lj it is the reduced density ρ*, and the constant is \
-                   (N/V/ρ*)^(1/3) for N points in a cell of volume V (in flat scenes (N/A/ρ*)^(1/2)). `sq sq2 hex` are for \
-                   `dimension 2`, `sc bcc fcc hcp diamond` for three dimensions. `origin` shifts by fractions (0 ≤ x < 1) of the \
-                   spacings. `orient x 1 1 0` puts the lattice direction [110] along x; the three directions must be \
-                   orthogonal and right-handed. `spacing` sets the unit of length (times the scale) where the extent of \
-                   the turned cell is not wanted. `a1 a2 a3 basis` belong to `custom`. `none` gives a unit of length \
-                   and no points. The latest `lattice` also sets the partial-volume rule of the peridynamic styles.",
+            text: "`sq sq2 hex` are for `dimension 2`, `sc bcc fcc hcp diamond` for three dimensions; `none` gives a unit of length \
+                   and no points. The three directions of `orient` must be orthogonal and right-handed. The latest `lattice` also \
+                   sets the partial-volume rule of the peridynamic styles.",
             example: "lattice custom 0.5 a1 1.0 0.0 0.0 basis 0.5 0.5 0.5",
+        }
+    }
+
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+#[word(refused = "triclinic/general")]
+struct Line {
+    #[word(flatten)]
+    kind: Named,
+    /// The origin, shifted by fractions (0 ≤ x < 1) of the spacings.
+    #[word(keyword, name = "X Y Z", what = "the origin", shown = "0 0 0")]
+    origin: Option<[Within; 3]>,
+    /// A lattice direction: `orient x 1 1 0` puts [110] along x.
+    #[word(keyword, name = "direction")]
+    orient: Vec<At<Orient>>,
+    /// The unit of length, times the scale, where the extent of the turned cell is not wanted.
+    #[word(keyword, name = "DX DY DZ", what = "a spacing")]
+    spacing: Option<[Positive; 3]>,
+    /// The first edge of the cell, of `custom`.
+    #[word(keyword, name = "X Y Z", placed, shown = "1 0 0")]
+    a1: Option<At<[f64; 3]>>,
+    /// The second edge of the cell, of `custom`.
+    #[word(keyword, name = "X Y Z", placed, shown = "0 1 0")]
+    a2: Option<At<[f64; 3]>>,
+    /// The third edge of the cell, of `custom`.
+    #[word(keyword, name = "X Y Z", placed, shown = "0 0 1")]
+    a3: Option<At<[f64; 3]>>,
+    /// A point of the cell of `custom`, in fractions of its edges.
+    #[word(keyword, name = "X Y Z", what = "a point of the cell", placed)]
+    basis: Vec<At<[Within; 3]>>,
+}
+
+/// A lattice and its size.
+#[derive(Words)]
+struct Named {
+    #[word(name = "style", what = "a lattice style", kind = Kind::Choice(&STYLES))]
+    style: Word,
+    /// The lattice constant; in units lj the reduced density ρ*, and the constant is (N/V/ρ*)^(1/3) for N points in a cell of volume V (in
+    /// flat scenes (N/A/ρ*)^(1/2)) [length].
+    #[word(name = "SCALE", positive)]
+    scale: f64,
+}
+
+/// The lattices.
+const KNOWN: [(&str, ()); 10] = [
+    ("none", ()),
+    ("sc", ()),
+    ("bcc", ()),
+    ("fcc", ()),
+    ("hcp", ()),
+    ("diamond", ()),
+    ("sq", ()),
+    ("sq2", ()),
+    ("hex", ()),
+    ("custom", ()),
+];
+
+const STYLES: [Alternative; 10] = alternatives(&KNOWN);
+
+/// A direction of the lattice along an axis.
+#[derive(Words)]
+struct Orient {
+    #[word(name = "x|y|z", what = "axis of orient")]
+    axis: Axis,
+    #[word(name = "I J K", what = "a lattice direction")]
+    direction: [Direction; 3],
+}
+
+/// A number of a lattice direction.
+#[derive(Clone, Copy)]
+struct Direction(i32);
+
+impl Value for Direction {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let n = args.integer(what)?;
+        match i32::try_from(n) {
+            Ok(n) if n.abs() < 10_000 => Ok(Self(n)),
+            _ => fail(Code::BAD_VALUE, span, format!("{n} is no sensible lattice direction")),
         }
     }
 }
 
-const KEYWORDS: [&str; 7] = ["origin", "orient", "spacing", "a1", "a2", "a3", "basis"];
+/// A number from 0 on and below 1.
+#[derive(Clone, Copy)]
+struct Within(f64);
+
+impl Value for Within {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let x = args.number(what)?;
+        match (0.0..1.0).contains(&x) {
+            true => Ok(Self(x)),
+            false => fail(Code::BAD_VALUE, span, format!("{what} must lie in 0 ≤ x < 1, not at {x}")),
+        }
+    }
+}
 
 impl CommandStyle for LatticeCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let style = a.expect("a lattice style")?;
         let flat = cx.world.settings.two_dimensional;
-        let cell = cell_of(style, flat)?;
-        let custom = style.text == "custom";
-        let scale = a.positive("the lattice constant")?;
-        let Some(mut cell) = cell else {
-            return Ok(set(Lattice::none(scale)));
-        };
-        let reduced = cx.world.settings.units.is_reduced();
-        let mut placing = Placing { flat, ..Placing::plain(scale, reduced) };
-        let mut orient_span = None;
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "origin" => placing.origin = fractions(a, "the origin")?,
-                "orient" => orient_span = Some(orient(a, &mut placing)?),
-                "spacing" => placing.spacing = Some(spacings(a)?),
-                "a1" | "a2" | "a3" | "basis" if !custom => {
-                    let text =
-                        format!("`{}` belongs to `lattice custom`, not to `{}`", word.text, style.text);
-                    return fail(Code::CONFLICT, word.span, text);
-                }
-                "a1" => cell.edges[0] = triple(a, "the first edge")?,
-                "a2" => cell.edges[1] = triple(a, "the second edge")?,
-                "a3" => cell.edges[2] = triple(a, "the third edge")?,
-                "basis" => cell.basis.push(fractions(a, "a point of the cell")?),
-                _ => return Err(refuse_or_unknown(a, word)),
+        let mut cell = Cell::orthogonal([1.0; 3], &[]);
+        if let Some(style) = a.peek() {
+            match cell_of(style, flat)? {
+                Some(named) => cell = named,
+                None => return read(a, cx).map(|Named { scale, .. }| set(Lattice::none(scale))),
             }
         }
-        check(&cell, &placing, orient_span.unwrap_or(style.span), style.span)?;
+        let line: Line = read(a, cx)?;
+        let Named { style, scale } = &line.kind;
+        line.refuse_cell(style)?;
+        let reduced = cx.world.settings.units.is_reduced();
+        let mut placing = Placing { flat, ..Placing::plain(*scale, reduced) };
+        if let Some(origin) = line.origin {
+            placing.origin = origin.map(|x| x.0);
+        }
+        let mut turned = style.span;
+        for At { value: Orient { axis, direction }, span, .. } in &line.orient {
+            placing.orient[axis.0] = direction.map(|n| n.0);
+            turned = *span;
+        }
+        placing.spacing = line.spacing.map(|spacing| spacing.map(|x| x.0));
+        for (edge, given) in cell.edges.iter_mut().zip([line.a1, line.a2, line.a3]) {
+            *edge = given.map_or(*edge, |given| given.value);
+        }
+        cell.basis.extend(line.basis.iter().map(|point| point.value.map(|x| x.0)));
+        check(&cell, &placing, turned, style.span)?;
         if flat {
-            check_flat(&cell, &placing, orient_span.unwrap_or(style.span), style.span)?;
+            check_flat(&cell, &placing, turned, style.span)?;
         }
         Ok(set(Lattice::new(&cell, &placing)))
+    }
+}
+
+impl Line {
+    /// Refuses a cell of its own for a lattice that has one.
+    fn refuse_cell(&self, style: &Word) -> Result<()> {
+        let spans = [
+            ("a1", self.a1.map(|a| a.span)),
+            ("a2", self.a2.map(|a| a.span)),
+            ("a3", self.a3.map(|a| a.span)),
+            ("basis", self.basis.first().map(|b| b.span)),
+        ];
+        let given = spans.into_iter().filter_map(|(name, span)| Some((name, span?)));
+        match given.min_by_key(|(_, span)| span.start).filter(|_| style.text != "custom") {
+            Some((name, span)) => {
+                let text = format!("`{name}` belongs to `lattice custom`, not to `{}`", style.text);
+                fail(Code::CONFLICT, span, text)
+            }
+            None => Ok(()),
+        }
     }
 }
 
@@ -104,11 +218,7 @@ fn cell_of(style: &Word, flat: bool) -> Result<Option<Cell>> {
         "custom" => Ok(Some(Cell::orthogonal([1.0; 3], &[]))),
         _ => match Cell::named(name) {
             Some(cell) => Ok(Some(cell)),
-            None => {
-                const KNOWN: [&str; 10] =
-                    ["none", "sc", "bcc", "fcc", "hcp", "diamond", "sq", "sq2", "hex", "custom"];
-                Err(unknown_style(style, "lattice", &KNOWN))
-            }
+            None => Err(unknown_style(style, "lattice", &KNOWN.map(|(name, ())| name))),
         },
     }
 }
@@ -126,47 +236,6 @@ fn check_flat(cell: &Cell, placing: &Placing, orient: Span, style: Span) -> Resu
         return fail(Code::BAD_VALUE, style, text);
     }
     Ok(())
-}
-
-fn refuse_or_unknown(a: &Args, word: &Word) -> perigrain_base::diag::Diagnostics {
-    match word.text.as_str() {
-        "triclinic/general" => not_here(word, "keyword of lattice"),
-        _ => a.unknown(word, &KEYWORDS),
-    }
-}
-
-fn triple(a: &mut Args, what: &str) -> Result<[f64; 3]> {
-    Ok([a.number(what)?, a.number(what)?, a.number(what)?])
-}
-
-fn fractions(a: &mut Args, what: &str) -> Result<[f64; 3]> {
-    let mut out = [0.0; 3];
-    for x in &mut out {
-        let span = a.here();
-        *x = a.number(what)?;
-        if !(0.0..1.0).contains(x) {
-            return fail(Code::BAD_VALUE, span, format!("{what} must lie in 0 ≤ x < 1, not at {x}"));
-        }
-    }
-    Ok(out)
-}
-
-fn spacings(a: &mut Args) -> Result<[f64; 3]> {
-    Ok([a.positive("a spacing")?, a.positive("a spacing")?, a.positive("a spacing")?])
-}
-
-fn orient(a: &mut Args, placing: &mut Placing) -> Result<Span> {
-    let start = a.here();
-    let axis = perigrain_styles::common::axis(a, "axis of orient")?;
-    for k in &mut placing.orient[axis] {
-        let span = a.here();
-        let n = a.integer("a lattice direction")?;
-        *k = match i32::try_from(n) {
-            Ok(n) if n.abs() < 10_000 => n,
-            _ => return fail(Code::BAD_VALUE, span, format!("{n} is no sensible lattice direction")),
-        };
-    }
-    Ok(start)
 }
 
 fn check(cell: &Cell, placing: &Placing, orient: Span, style: Span) -> Result<()> {

@@ -24,6 +24,7 @@ impl Style for Mass {
             example: "mass * 1.0",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

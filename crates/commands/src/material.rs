@@ -2,6 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail};
 use perigrain_lang::{Args, Word};
+use perigrain_styles::words::{At, Each, Form, Said, Words, read_or};
 use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Doc, Style};
 use perigrain_world::material::{Material, Strength};
 use perigrain_world::potentials;
@@ -16,23 +17,69 @@ impl Style for MaterialStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "material ID E value nu value rho value [Gc value | s00 value] [alpha value] [ft value]\n\
-                     material ID file NAME [E value] [nu value] [rho value] [Gc value | s00 value] [alpha value] [ft value]",
+            syntax: "",
             summary: "Gives engineering data a name, so that pair_coeff can turn them into coefficients.",
-            text: "Young's modulus `E`, Poisson's ratio `nu` and density `rho` are needed; the fracture energy `Gc` or the \
-                critical stretch `s00` says when bonds break (without either they never do), and `alpha` how much \
-                compression strengthens them (0). The tensile strength `ft` is where bonds of `peri/pmb/softening` have their \
-                peak.\n\nNumbers in the line are in the deck's units. A file carries its own \
-                units and is converted (`units si cgs micro nano`). It is looked for beside the deck, in the working \
-                folder, then among the files built into perigrain: alumina.toml, brittle-plate.toml, \
-                impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to laminate-ply-4.toml, \
-                soda-lime-glass.toml, steel.toml. Values after the file's name replace the file's.",
+            text: "`E`, `nu` and `rho` are needed, in the line or in the file; without `Gc` or `s00` bonds never break.\n\n\
+                   Numbers in the line are in the deck's units. A file carries its own units and is converted (`units si cgs micro \
+                   nano`). It is looked for beside the deck, in the working folder, then among the files built into perigrain: \
+                   alumina.toml, brittle-plate.toml, impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to \
+                   laminate-ply-4.toml, soda-lime-glass.toml, steel.toml.",
             example: "material plate file brittle-plate.toml Gc 50",
         }
     }
+
+    fn words(&self) -> Vec<Form> {
+        vec![
+            Form { head: "material ID", about: "Values of the line.", grammar: InLine::GRAMMAR },
+            Form {
+                head: "material ID file",
+                about: "Values of a file, which those of the line replace.",
+                grammar: FromFile::GRAMMAR,
+            },
+        ]
+    }
 }
 
-const KEYS: [&str; 7] = ["E", "nu", "rho", "Gc", "s00", "alpha", "ft"];
+#[derive(Words)]
+struct InLine {
+    #[word(flatten)]
+    properties: Each<Property>,
+}
+
+#[derive(Words)]
+struct FromFile {
+    /// The file's name.
+    #[word(name = "NAME", kind = Kind::File)]
+    file: Word,
+    #[word(flatten)]
+    properties: Each<Property>,
+}
+
+/// What a line says of a material.
+#[derive(Clone, Words)]
+#[word(keywords)]
+enum Property {
+    /// Young's modulus [pressure].
+    #[word("E")]
+    Young(#[word(name = "value", what = "E")] At<f64>),
+    /// Poisson's ratio.
+    #[word("nu")]
+    Poisson(#[word(name = "value", what = "nu")] At<f64>),
+    /// The density [mass/volume].
+    #[word("rho")]
+    Density(#[word(name = "value", what = "rho")] At<f64>),
+    /// The fracture energy, which says when bonds break [energy/area].
+    #[word("Gc")]
+    Energy(#[word(name = "value", what = "Gc")] At<f64>),
+    /// The critical stretch, in place of the fracture energy.
+    #[word("s00")]
+    Stretch(#[word(name = "value", what = "s00")] At<f64>),
+    /// How much compression strengthens bonds; 0 by default.
+    Alpha(#[word(name = "value", what = "alpha")] At<f64>),
+    /// The tensile strength, where bonds of `peri/pmb/softening` have their peak [pressure].
+    #[word("ft")]
+    Tensile(#[word(name = "value", what = "ft")] At<f64>),
+}
 
 impl CommandStyle for MaterialStyle {
     fn parse(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
@@ -41,62 +88,73 @@ impl CommandStyle for MaterialStyle {
         if cx.world.materials.contains_key(&id.text) && !again {
             return fail(Code::DUPLICATE_NAME, id.span, format!("there already is a material `{}`", id.text));
         }
-        let base =
-            if args.eat("file") { Some(from_file(args.expect("the file's name")?, cx)?) } else { None };
-        let material = read(args, base, &id.text)?;
+        let (base, properties) = match args.eat("file") {
+            true => {
+                let line: FromFile = read_or(args, cx, no_yield)?;
+                (Some(from_file(&line.file, cx)?), line.properties)
+            }
+            false => (None, read_or::<InLine>(args, cx, no_yield)?.properties),
+        };
+        let material = material(properties, base, &id.text, args.span())?;
         Ok(Box::new(Define { id: id.text.clone(), material }))
     }
 }
 
-/// Reads `key value …` over the values of a file.
-fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
+/// The refusal of a property that belongs to pair_coeff.
+fn no_yield(word: &Word) -> Option<Diagnostics> {
+    let d = Diagnostic::error(
+        Code::NOT_SUPPORTED,
+        word.span,
+        "a material has no syc: the stretch at which bonds flow is set in pair_coeff",
+    );
+    let help = "write `pair_style peri/pmb/plastic` and `pair_coeff … material ID horizon H syc V`";
+    (word.text == "syc").then(|| d.help(help).into())
+}
+
+/// The values of a line over those of a file.
+fn material(said: Each<Property>, base: Option<Material>, id: &str, line: Span) -> Result<Material> {
     let mut missing = if base.is_some() { vec![] } else { vec!["E", "nu", "rho"] };
     let mut m = base.unwrap_or_else(|| blank(id));
-    let mut seen: Vec<&'static str> = vec![];
-    while let Some(word) = args.peek() {
-        if word.text == "syc" {
-            return Err(Diagnostic::error(
-                Code::NOT_SUPPORTED,
-                word.span,
-                "a material has no syc: the stretch at which bonds flow is set in pair_coeff",
-            )
-            .help("write `pair_style peri/pmb/plastic` and `pair_coeff … material ID horizon H syc V`")
-            .into());
-        }
-        let key = args.choice("material property", &KEYS)?;
+    let mut seen: Vec<String> = vec![];
+    for Said { word, value, .. } in said.0 {
+        let key = word.text;
         if seen.contains(&key) {
             return fail(Code::CONFLICT, word.span, format!("`{key}` is given twice"));
         }
         let rival = if key == "Gc" { "s00" } else { "Gc" };
-        if matches!(key, "Gc" | "s00") && seen.contains(&rival) {
+        if matches!(key.as_str(), "Gc" | "s00") && seen.iter().any(|k| k == rival) {
             let text = "Gc and s00 both set when a bond breaks: give one";
             return fail(Code::CONFLICT, word.span, text);
         }
-        seen.push(key);
         missing.retain(|k| *k != key);
-        let at = args.here();
-        let unknown = args.peek().is_some_and(|w| w.unknown);
-        let value = args.number(key)?;
-        match key {
-            "E" => m.young = value,
-            "nu" => m.nu = value,
-            "rho" => m.density = value,
-            "Gc" => m.strength = Some(Strength::FractureEnergy(value)),
-            "s00" => m.strength = Some(Strength::Stretch(value)),
-            "ft" => m.tensile = Some(value),
-            _ => m.alpha = value,
+        let given = value.put(&mut m);
+        if let Some((_, why)) = m.implausible().filter(|(bad, _)| *bad == key && !given.unknown) {
+            return fail(Code::BAD_VALUE, given.span, why);
         }
-        if let Some((_, why)) = m.implausible().filter(|(bad, _)| *bad == key && !unknown) {
-            return fail(Code::BAD_VALUE, at, why);
-        }
+        seen.push(key);
     }
     match missing.as_slice() {
         [] => Ok(m),
         keys => fail(
             Code::MISSING_ARGUMENT,
-            args.span(),
+            line,
             format!("material `{id}` has no {}: E, nu and rho are needed", keys.join(", ")),
         ),
+    }
+}
+
+impl Property {
+    /// Puts the value into a material, and returns it with its place.
+    fn put(self, m: &mut Material) -> At<f64> {
+        match self {
+            Self::Young(at) => (m.young = at.value, at).1,
+            Self::Poisson(at) => (m.nu = at.value, at).1,
+            Self::Density(at) => (m.density = at.value, at).1,
+            Self::Energy(at) => (m.strength = Some(Strength::FractureEnergy(at.value)), at).1,
+            Self::Stretch(at) => (m.strength = Some(Strength::Stretch(at.value)), at).1,
+            Self::Alpha(at) => (m.alpha = at.value, at).1,
+            Self::Tensile(at) => (m.tensile = Some(at.value), at).1,
+        }
     }
 }
 
@@ -229,8 +287,14 @@ mod tests {
         };
         let mut args = Args::new(&command);
         args.next();
-        let base = if args.eat("file") { Some(from_file(args.expect("a file")?, &cx)?) } else { None };
-        read(&mut args, base, "m")
+        let (base, properties) = match args.eat("file") {
+            true => {
+                let line: FromFile = read_or(&mut args, &cx, no_yield)?;
+                (Some(from_file(&line.file, &cx)?), line.properties)
+            }
+            false => (None, read_or::<InLine>(&mut args, &cx, no_yield)?.properties),
+        };
+        material(properties, base, "m", span)
     }
 
     fn si() -> World {

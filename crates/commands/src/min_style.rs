@@ -26,6 +26,7 @@ impl Style for MinStyleCommand {
             example: "min_style fire",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

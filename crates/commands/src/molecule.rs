@@ -37,6 +37,7 @@ impl Style for Molecule {
                       create_atoms 0 single 0 0 0.006 mol pair 4928 units box",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

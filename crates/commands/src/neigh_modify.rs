@@ -29,6 +29,7 @@ impl Style for NeighModify {
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

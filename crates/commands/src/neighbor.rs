@@ -27,6 +27,7 @@ impl Style for Neighbor {
             example: "neighbor 0.5 bin",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -23,6 +23,7 @@ impl Style for Newton {
             example: "newton off",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -30,6 +30,7 @@ impl Style for PeriCrack {
                       peri_crack plane 0 0.0015 0 0 1 0 region slit units box",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         Line::FORMS.to_vec()
     }

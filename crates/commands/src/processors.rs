@@ -23,6 +23,7 @@ impl Style for Processors {
             example: "processors * * 1",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

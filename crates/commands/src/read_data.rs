@@ -51,6 +51,7 @@ impl Style for ReadData {
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

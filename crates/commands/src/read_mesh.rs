@@ -30,10 +30,10 @@ impl Style for ReadMesh {
             text: "Cells are tetrahedra, pyramids, wedges and hexahedra; with `thickness`, and always in a flat scene (`dimension \
                    2`), triangles and quads. What a file has besides (faces of a solid, lines, points) is left out, and the log \
                    counts it. The extension selects the format, `.gz` behind it a packed file:\n\n\
-                   - `.msh`: Gmsh, versions 2.2 and 4.1 as text;
-- `.inp`: Abaqus: `*NODE`, `*ELEMENT`, `*ELSET` of one part that stands where it is;
-- `.vtk`: legacy VTK with an unstructured grid, text or binary;
-- `.vtu`: VTK's XML, as text, base64 or raw bytes, packed by zlib or not.\n\n\
+                   - `.msh`: Gmsh, versions 2.2 and 4.1 as text;\n\
+                   - `.inp`: Abaqus: `*NODE`, `*ELEMENT`, `*ELSET` of one part that stands where it is;\n\
+                   - `.vtk`: legacy VTK with an unstructured grid, text or binary;\n\
+                   - `.vtu`: VTK's XML, as text, base64 or raw bytes, packed by zlib or not.\n\n\
                    Volume and centroid are exact for cells with straight edges and bilinear faces; nodes between the corners are \
                    left out, with a warning: such cells count as straight. Cells without volume, inside out, or made twice are \
                    refused by number (as the file counts; VTK's from 0). Wedges may have either triangle first.\n\n\
@@ -48,6 +48,7 @@ impl Style for ReadMesh {
             example: "read_mesh body.msh types physical rock 1 binder 2 density 2235.0 scale 0.001 shift 0 0 0.006",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -40,6 +40,7 @@ impl Style for ReadPoints {
                       read_points points.csv columns volume Vol type 2 scale 0.001 density 2235.0",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -30,10 +30,10 @@ impl Style for ReadVoxels {
             syntax: "",
             summary: "Makes particles of the voxels of an image, as a tomograph gives it: ranges of grey values become types.",
             text: "The extension selects the format:\n\n\
-                   - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;
-- `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;
-- `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;
-- `.vti`: VTK's XML images in one piece.\n\n\
+                   - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;\n\
+                   - `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;\n\
+                   - `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;\n\
+                   - `.vti`: VTK's XML images in one piece.\n\n\
                    Packed TIFF is refused by name. Images are read slice by slice, twice: memory is needed for the particles and \
                    one slice. A `.vti` is so where its arrays are appended raw, packed by zlib or not, as ParaView writes them; one \
                    whose arrays are text or base64 is read whole.\n\n\
@@ -49,6 +49,7 @@ impl Style for ReadVoxels {
             example: "read_voxels stack.nrrd types 100:199 1 200:255 2 resample 0.001 density 2235.0 scale 0.001 shift -0.004 -0.004 0.0045",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

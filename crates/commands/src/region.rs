@@ -64,6 +64,7 @@ impl Style for RegionCommand {
                       region gear mesh gear.obj scale 0.001 shift 0.0 0.0 0.002 units box",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         Line::FORMS.to_vec()
     }

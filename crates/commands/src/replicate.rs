@@ -32,6 +32,7 @@ impl Style for Replicate {
                       mass 1 1.0\nreplicate 2 2 1\nprint \"$(atoms) particles\"",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

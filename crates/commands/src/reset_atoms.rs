@@ -32,6 +32,7 @@ impl Style for ResetAtoms {
             example: "reset_atoms id sort yes",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         Line::FORMS.to_vec()
     }
@@ -50,6 +51,7 @@ impl Style for ResetAtomIds {
             example: "reset_atom_ids",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Ids::GRAMMAR)]
     }
@@ -68,6 +70,7 @@ impl Style for ResetMolIds {
             example: BONDED,
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Molecules::GRAMMAR)]
     }

@@ -24,6 +24,7 @@ impl Style for ResetTimestep {
             example: "reset_timestep 0",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -4,8 +4,9 @@ mod respa;
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_styles::common::setting;
+use perigrain_styles::words::{At, Form, Forms, Kind, Or, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{MOST_SHORT, RunStyle, World};
 
@@ -22,38 +23,28 @@ impl Style for RunStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "run_style verlet\n\
-                     run_style respa N n1 n2 … [bond M] [pair M] [hybrid M1 M2 …] [angle M] [dihedral M] [improper M] [kspace M]\n\
-                     run_style staggered [m auto|N] [faster solids|grains] [scheme kick|hartmann GROUP]",
+            syntax: "",
             summary: "How steps are made: all alike, several lengths within each other, or short ones for solids inside long ones for grains.",
-            text: "`respa` is the multi-level scheme of Tuckerman, Berne & Martyna (1992) with N levels, numbered from the shortest \
-                steps. n1 steps of level 1 make one of level 2, n2 of those one of level 3 …; `timestep`, and whatever counts \
-                steps, means the outermost. The forces of a level kick by half of its step at both of its ends, and particles \
-                move in level 1. `bond` (default 1) and `pair` (default N) choose the level of a style's forces, `hybrid` \
-                that of each sub-style of pair_style hybrid, in its order. `angle`, `dihedral`, `improper` and `kspace` are \
-                read, held to LAMMPS' order bond ≤ angle ≤ dihedral ≤ improper ≤ pair ≤ kspace, and name forces that no particle \
-                here has. `inner`, `middle` and `outer` are refused: no pair style here is cut up by distance.\n\n\
-                Under `respa` fixes act as in LAMMPS: addforce, addtorque, aveforce, drag, gravity, indent, setforce, spring, \
-                spring/self, viscous and viscous/sphere in the level that `fix_modify ID respa M` names, else the outermost; \
-                what takes components of forces away (setforce, aveforce, lineforce, planeforce, enforce2d, freeze) in every \
-                level, with its value in that one; walls in the outermost; `nve`, `nve/sphere` and `nve/limit` kick in every \
-                level, nve/noforce moves in level 1 and `move` in the outermost. Values of such a fix (f_ID) count all levels. \
-                Lists are made anew at the beginning of an outermost step. Springs and dashpots of contacts in a longer step go by the \
-                way of that step, and while springs stick no energy is made; LAMMPS, and `compat lammps`, takes its length times \
-                the velocity at its end, which makes energy where bonds swing in the shorter steps. Refused with the reason: rigid bodies, `fix move` with \
-                free components, energy/ledger, dt/guard and plastic grains (`mdr`).\n\n\
-                `staggered`: `timestep` is the long step. Contacts, walls and body forces kick all particles by half a long step \
-                at both of its ends; in between solids make m velocity-Verlet steps under their bonds alone. Momentum is \
-                conserved, contacts go by the way of the long step; with m = 1 the bits are those of `verlet`. `m auto` (the default) takes the fewest short steps \
-                that stay within 0.8 of the solids' stable step, and looks again when the step changes. `respa 2 m hybrid \
-                1 2`, with the peridynamic sub-style named first, comes to the same, but moves grains in the short steps too.\n\n\
-                `faster grains`: bonds act at every N-th step only, with N times their force; `timestep` is then the grains' step, \
-                and the forces that are printed are those that act.\n\n\
-                `scheme hartmann GROUP` lets the particles of a group drift in the long step and again in the short ones, as \
-                Hartmann, Thoeni & Rojek (2022, eq. 47) print it: a free particle then moves at twice its velocity, which is as \
-                if it had half its inertia. It is there to reproduce their figures.\n\n\
-                What takes components of forces away (setforce, lineforce, planeforce, enforce2d, freeze) does so in both kinds of \
-                staggered step. Solids are moved by `fix nve` or `nve/sphere` there; other fixes that move them are refused.",
+            text: "`respa` is the multi-level scheme of Tuckerman, Berne & Martyna (1992). `timestep`, and whatever counts steps, \
+                   means the outermost. The forces of a level kick by half of its step at both of its ends, and particles move in \
+                   level 1. LAMMPS' order bond ≤ angle ≤ dihedral ≤ improper ≤ pair ≤ kspace is held. `inner`, `middle` and `outer` \
+                   are refused: no pair style here is cut up by distance.\n\n\
+                   Under `respa` fixes act as in LAMMPS: addforce, addtorque, aveforce, drag, gravity, indent, setforce, spring, \
+                   spring/self, viscous and viscous/sphere in the level that `fix_modify ID respa M` names, else the outermost; \
+                   what takes components of forces away (setforce, aveforce, lineforce, planeforce, enforce2d, freeze) in every \
+                   level, with its value in that one; walls in the outermost; `nve`, `nve/sphere` and `nve/limit` kick in every \
+                   level, nve/noforce moves in level 1 and `move` in the outermost. Values of such a fix (f_ID) count all levels. \
+                   Lists are made anew at the beginning of an outermost step.\n\n\
+                   Springs and dashpots of contacts in a longer step go by the way of that step, and while springs stick no energy \
+                   is made; LAMMPS, and `compat lammps`, takes its length times the velocity at its end, which makes energy where \
+                   bonds swing in the shorter steps. Refused with the reason: rigid bodies, `fix move` with free components, \
+                   energy/ledger, dt/guard and plastic grains (`mdr`).\n\n\
+                   `staggered`: `timestep` is the long step. Contacts, walls and body forces kick all particles by half a long step \
+                   at both of its ends; in between solids make m velocity-Verlet steps under their bonds alone. Momentum is \
+                   conserved, contacts go by the way of the long step; with m = 1 the bits are those of `verlet`. `respa 2 m hybrid \
+                   1 2`, with the peridynamic sub-style named first, comes to the same, but moves grains in the short steps too.\n\n\
+                   What takes components of forces away (setforce, lineforce, planeforce, enforce2d, freeze) does so in both kinds \
+                   of staggered step. Solids are moved by `fix nve` or `nve/sphere` there; other fixes that move them are refused.",
             example: "units si\n\
                 atom_style hybrid sphere peri\n\
                 boundary s s s\n\
@@ -80,23 +71,92 @@ impl Style for RunStyleCommand {
                 run 20",
         }
     }
+
+    fn words(&self) -> Vec<Form> {
+        Line::FORMS.to_vec()
+    }
+}
+
+#[derive(Words)]
+#[word(forms = "run_style", what = "run style", foreign = respa::not_split)]
+enum Line {
+    /// All steps are alike.
+    Verlet,
+    /// N levels of steps within each other, numbered from the shortest: n1 steps of level 1 make one of level 2, n2 of those one of level 3 …
+    Respa(respa::Line),
+    /// Short steps for solids inside long ones for grains.
+    Staggered(Staggered),
+}
+
+#[derive(Words)]
+struct Staggered {
+    /// Short steps in a long one; `auto` takes the fewest that stay within 0.8 of the solids' stable step, and looks again when the step changes.
+    #[word(
+        keyword,
+        name = "N",
+        what = "the number of short steps in a long one, or auto",
+        default = Or::Word(Auto::Auto),
+        shown = "auto"
+    )]
+    m: Or<Auto, Steps>,
+    #[word(keyword, default = Side::Solids)]
+    faster: Side,
+    #[word(keyword, placed, shown = "kick")]
+    scheme: Option<At<Scheme>>,
+}
+
+/// The word in the place of a number of steps.
+#[derive(Words)]
+enum Auto {
+    Auto,
+}
+
+/// A number of short steps.
+struct Steps(i64);
+
+impl Value for Steps {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        let steps = args.integer_from(1, what)?;
+        refuse_many(steps, span).map(|()| Self(steps))
+    }
+}
+
+/// Which side has the shorter steps.
+#[derive(PartialEq, Words)]
+#[word(what = "side with the shorter steps")]
+enum Side {
+    /// Solids make the shorter steps.
+    Solids,
+    /// Bonds act at every N-th step only, with N times their force; `timestep` is then the grains' step, and the forces that are printed are those
+    /// that act.
+    Grains,
+}
+
+/// How solids move in both kinds of steps.
+#[derive(Words)]
+#[word(what = "scheme")]
+enum Scheme {
+    /// Forces of the long step kick.
+    Kick,
+    /// The particles of a group drift in the long step and again in the short ones, as Hartmann, Thoeni & Rojek (2022, eq. 47) print it: a free
+    /// particle then moves at twice its velocity, which is as if it had half its inertia. It is there to reproduce their figures.
+    Hartmann(
+        #[word(name = "GROUP", what = "the group of hybrid particles, which drift twice", kind = Kind::Group)]
+         Word,
+    ),
 }
 
 impl CommandStyle for RunStyleCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let style = match a.choice("run style", &RUN_STYLES)? {
-            "respa" => {
-                let (style, lines) = respa::read(a)?;
-                return Ok(setting(move |cx| {
-                    lines.iter().for_each(|line| cx.print(line));
-                    put(cx.world, style.clone());
-                    Ok(())
-                }));
-            }
-            "staggered" => staggered(a, cx)?,
-            _ => RunStyle::Verlet,
+        let (style, log) = match Line::form(a, cx)? {
+            Line::Verlet => (RunStyle::Verlet, vec![]),
+            Line::Respa(line) => line.read()?,
+            Line::Staggered(line) => (staggered(line, a, cx)?, vec![]),
         };
         Ok(setting(move |cx| {
+            log.iter().for_each(|line| cx.print(line));
             put(cx.world, style.clone());
             Ok(())
         }))
@@ -122,32 +182,23 @@ fn refuse_many(short: i64, span: Span) -> Result<()> {
         .into())
 }
 
-fn staggered(a: &mut Args, cx: &BuildCx) -> Result<RunStyle> {
-    let (mut ratio, mut rare, mut twice) = (None, false, None);
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "m" if a.eat("auto") => ratio = None,
-            "m" => {
-                let span = a.here();
-                let m = a.integer_from(1, "the number of short steps in a long one, or auto")?;
-                refuse_many(m, span)?;
-                ratio = Some(m);
-            }
-            "faster" => rare = a.choice("side with the shorter steps", &["solids", "grains"])? == "grains",
-            "scheme" => {
-                if a.choice("scheme", &["kick", "hartmann"])? == "hartmann" {
-                    let group = a.expect("the group of hybrid particles, which drift twice")?;
-                    twice = Some(cx.group(group)?);
-                    let text = "scheme hartmann moves the hybrid particles twice per step: they behave as if they had half their inertia";
-                    cx.note(
-                        Diagnostic::warning(Code::SUSPICIOUS, word.span.to(group.span), text)
-                            .help("`scheme kick` is the consistent form"),
-                    );
-                }
-            }
-            _ => return Err(a.unknown(word, &["m", "faster", "scheme"])),
+fn staggered(Staggered { m, faster, scheme }: Staggered, a: &Args, cx: &BuildCx) -> Result<RunStyle> {
+    let rare = faster == Side::Grains;
+    let ratio = match m {
+        Or::Word(_) => None,
+        Or::Else(Steps(m)) => Some(m),
+    };
+    let twice = match &scheme {
+        Some(At { value: Scheme::Hartmann(group), span, .. }) => {
+            let text = "scheme hartmann moves the hybrid particles twice per step: they behave as if they had half their inertia";
+            cx.note(
+                Diagnostic::warning(Code::SUSPICIOUS, span.to(group.span), text)
+                    .help("`scheme kick` is the consistent form"),
+            );
+            Some(cx.group(group)?)
         }
-    }
+        _ => None,
+    };
     if rare && ratio.is_none() {
         return fail(
             Code::MISSING_ARGUMENT,

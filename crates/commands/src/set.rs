@@ -39,6 +39,7 @@ impl Style for Set {
             example: "set group plate density 2235.0 volume 1.25e-10",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -28,6 +28,7 @@ impl Style for SpecialBonds {
             example: "special_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

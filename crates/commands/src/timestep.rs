@@ -24,6 +24,7 @@ impl Style for Timestep {
             example: "timestep 1.0e-8",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

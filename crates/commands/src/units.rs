@@ -25,6 +25,7 @@ impl Style for Units {
             example: "units si",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -32,6 +32,7 @@ impl Style for Velocity {
             example: "velocity bullet set 0.0 0.0 -35.0 units box",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

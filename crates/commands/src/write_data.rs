@@ -33,6 +33,7 @@ impl Style for WriteData {
             example: "write_data plate.*.data nocoeff",
         }
     }
+
     fn words(&self) -> Vec<Form> {
         vec![Form::behind(Line::GRAMMAR)]
     }

@@ -1,16 +1,18 @@
 //! What words of a `calibrate` line choose.
 
 use perigrain_base::diag::Span;
+use perigrain_styles::words::Words;
 
 /// How the cross-section of a sample is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Words)]
+#[word(what = "shape")]
 pub enum Shape {
-    /// The product of both widths.
+    /// The section is the product of both widths.
     Block,
-    /// π D²/4 with the mean D of both widths.
+    /// The section is π D²/4 with the mean D of both widths.
     Cylinder,
-    /// Given [length²].
-    Area(f64),
+    /// The section.
+    Area(#[word(name = "A", what = "the area", positive)] f64),
 }
 
 /// How the linear system is solved.

@@ -2,11 +2,12 @@
 
 use super::conflicts;
 pub use super::kinds::{Map, Method, Quantity, Shape, Solver, Target, Vary};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use super::line::{Breaks, Calibration, Contacts, Head, Load, Sizes, Solution};
+use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_bonded::ends::Hold;
 use perigrain_bonded::strength::Avalanche;
-use perigrain_lang::Args;
-use perigrain_styles::common::axis;
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::Or;
 
 /// The accuracy to which a break is resolved, relative to the change it causes, by default.
 const BREAKING: f64 = 1e-4;
@@ -78,58 +79,9 @@ pub struct Words {
     pub curve: Option<(String, Span)>,
 }
 
-/// Of a body under a load.
-const LOAD: &[&str] = &["axis", "strain", "low", "high", "thick", "shape", "length"];
-/// Of breaks.
-const BREAKS: &[&str] = &["until", "most", "avalanche", "together"];
-
-/// What of [`Words`] a kind of calibration has.
-pub fn keywords(kind: &str) -> Vec<&'static str> {
-    match kind {
-        "dsm" => {
-            let own = [
-                "rotations",
-                "contacts",
-                "prestress",
-                "tol",
-                "bound",
-                "method",
-                "fields",
-                "large",
-                "mu",
-                "steps",
-            ];
-            [LOAD, &own].concat()
-        }
-        "ste" => [LOAD, &["contacts", "order", "slabs", "map", "mu"]].concat(),
-        "periodic" => vec!["rotations", "tol"],
-        "strength" => [LOAD, BREAKS, &["rotations", "tol", "fields", "curve"]].concat(),
-        _ => {
-            let own = [
-                "target",
-                "vary",
-                "method",
-                "tol",
-                "rotations",
-                "contacts",
-                "prestress",
-                "order",
-                "large",
-                "mu",
-                "steps",
-            ];
-            [&own, LOAD, BREAKS].concat()
-        }
-    }
-}
-
-impl Words {
-    /// Reads the words behind the group.
-    ///
-    /// # Errors
-    /// Every mistake in them.
-    pub fn read(a: &mut Args, kind: &str, types: usize) -> Result<Self> {
-        let mut out = Self {
+impl Default for Words {
+    fn default() -> Self {
+        Self {
             axis: 2,
             strain: -0.01,
             holds: [Hold::Grip; 2],
@@ -138,11 +90,7 @@ impl Words {
             rotations: true,
             contacts: None,
             relaxed: true,
-            tol: match kind {
-                "fit" => 0.005,
-                "strength" => BREAKING,
-                _ => 0.01,
-            },
+            tol: 0.01,
             bound: None,
             method: Method::Pcg,
             paper: None,
@@ -161,18 +109,113 @@ impl Words {
             until: 0.5,
             most: usize::MAX,
             avalanche: Avalanche::default(),
-            together: if kind == "fit" { TOGETHER } else { 0.0 },
+            together: 0.0,
             curve: None,
-        };
-        let known = keywords(kind);
-        while let Some(word) = a.next() {
-            let Some(name) = known.iter().find(|k| **k == word.text) else {
-                return Err(out.unknown(a, word, kind));
-            };
-            out.keyword(a, name, kind == "fit", types, word.span)?;
         }
+    }
+}
+
+impl Words {
+    /// What a line says, with its ID and group.
+    ///
+    /// # Errors
+    /// Words that do not go together.
+    pub fn new(line: Calibration, cx: &BuildCx) -> Result<(Head, Self)> {
+        let mut out = Self::default();
+        let (kind, head) = match line {
+            Calibration::Dsm(dsm) => {
+                out.load(dsm.load);
+                out.solution(dsm.solution);
+                out.contacts(dsm.contacts);
+                out.sizes(dsm.sizes);
+                out.bound = dsm.bound.filter(|bound| bound.value).map(|bound| bound.span);
+                if let Some(way) = dsm.method {
+                    out.method = way.value.method();
+                    out.paper = (out.method != Method::Pcg).then_some(way.span);
+                }
+                out.fields = dsm.fields;
+                ("dsm", dsm.head)
+            }
+            Calibration::Ste(ste) => {
+                out.load(ste.load);
+                out.contacts(ste.contacts);
+                out.order = ste.order.min(1_000_000);
+                out.slabs = ste.slabs.map(|height| match height {
+                    Or::Word(_) => None,
+                    Or::Else(height) => Some(height.0),
+                });
+                out.map = ste.map.map(|map| map.parts());
+                ("ste", ste.head)
+            }
+            Calibration::Periodic(cell) => {
+                out.solution(cell.solution);
+                ("periodic", cell.head)
+            }
+            Calibration::Strength(line) => {
+                out.tol = BREAKING;
+                out.load(line.load);
+                out.breaks(line.breaks);
+                out.solution(line.solution);
+                out.fields = line.fields;
+                out.curve = line.curve.map(|word| (word.text, word.span));
+                ("strength", line.head)
+            }
+            Calibration::Fit(fit) => {
+                (out.tol, out.together) = (0.005, TOGETHER);
+                out.load(fit.load);
+                out.breaks(fit.breaks);
+                out.solution(fit.solution);
+                out.contacts(fit.contacts);
+                out.sizes(fit.sizes);
+                (out.solver, out.order) = (fit.method, fit.order.min(1_000_000));
+                out.targets = fit.target.into_iter().map(Target::from).collect();
+                let types = cx.world.bonds.types;
+                for vary in fit.vary {
+                    let (kind, name) = vary.parts();
+                    if kind.value > types as i64 {
+                        let text = format!("there are bond types 1 to {types}");
+                        return fail(Code::BAD_VALUE, kind.span, text);
+                    }
+                    out.vary.push(Vary { kind: kind.value as u16, name: name.text, span: name.span });
+                }
+                ("fit", fit.head)
+            }
+        };
         conflicts::refuse(&out, kind)?;
-        Ok(out)
+        Ok((head, out))
+    }
+
+    fn load(&mut self, load: Load) {
+        (self.axis, self.body) = (load.axis.0, load.of_body());
+        self.strain = load.strain;
+        for (hold, end) in self.holds.iter_mut().zip([load.low, load.high]) {
+            let Some(end) = end else { continue };
+            *hold = end.value.into();
+            self.wall = self.wall.or((*hold == Hold::Wall).then_some(end.span));
+        }
+        self.thick = load.thick;
+        self.shape = load.shape;
+    }
+
+    fn breaks(&mut self, breaks: Breaks) {
+        (self.until, self.most, self.avalanche) = (breaks.until, breaks.most, breaks.avalanche);
+        self.together = breaks.together.unwrap_or(self.together);
+    }
+
+    fn solution(&mut self, solution: Solution) {
+        self.rotations = solution.rotations;
+        self.tol = solution.tol.unwrap_or(self.tol);
+    }
+
+    fn contacts(&mut self, contacts: Contacts) {
+        self.contacts = contacts.contacts.map(|at| (at.value, at.span));
+        self.friction = contacts.mu.map(|at| (at.value, at.span));
+    }
+
+    fn sizes(&mut self, sizes: Sizes) {
+        self.relaxed = sizes.is_relaxed();
+        self.large = sizes.large.filter(|large| large.value).map(|large| large.span);
+        self.parts = sizes.steps.map(|steps| (steps.value, steps.span));
     }
 
     /// Whether the load is put on in parts, for displacements of any size.
@@ -184,185 +227,4 @@ impl Words {
     pub fn aims(&self, quantity: Quantity) -> bool {
         self.targets.iter().any(|t| t.quantity == quantity)
     }
-
-    fn unknown(
-        &self,
-        a: &Args,
-        word: &perigrain_lang::Word,
-        kind: &str,
-    ) -> perigrain_base::diag::Diagnostics {
-        let elsewhere = ["dsm", "ste", "periodic", "strength", "fit"]
-            .into_iter()
-            .find(|k| keywords(k).contains(&word.text.as_str()));
-        match elsewhere {
-            Some(other) => {
-                let text = format!("`{}` does not concern `calibrate {kind}`", word.text);
-                Diagnostic::error(Code::BAD_VALUE, word.span, text)
-                    .help(format!("`calibrate {other}` has it"))
-                    .into()
-            }
-            None => a.unknown(word, &keywords(kind)),
-        }
-    }
-
-    fn keyword(&mut self, a: &mut Args, name: &str, fit: bool, types: usize, at: Span) -> Result<()> {
-        let value = a.here();
-        match name {
-            "axis" => self.axis = axis(a, "axis of the load")?,
-            "strain" => self.strain = strain(a)?,
-            "low" => self.hold(a, 0)?,
-            "high" => self.hold(a, 1)?,
-            "thick" => self.thick = Some(a.positive("the thickness of an end")?),
-            "rotations" => self.rotations = a.flag("rotations")?,
-            "prestress" => self.relaxed = a.choice("prestress", &["remove", "keep"])? == "remove",
-            "contacts" => self.contacts = Some((a.flag("contacts")?, at)),
-            "tol" => self.tol = tolerance(a)?,
-            "bound" => self.bound = a.flag("bound")?.then_some(value),
-            "method" if fit => {
-                self.solver = match a.choice("method of a fit", &["dsm", "ste", "periodic"])? {
-                    "dsm" => Solver::Dsm,
-                    "ste" => Solver::Ste,
-                    _ => Solver::Periodic,
-                }
-            }
-            "method" => {
-                self.method = method(a)?;
-                self.paper = (self.method != Method::Pcg).then_some(value);
-            }
-            "large" => self.large = a.flag("large")?.then_some(at),
-            "mu" => self.friction = Some((a.non_negative("the coefficient of friction")?, at)),
-            "steps" => self.parts = Some((a.integer_from(1, "the number of steps")? as usize, at)),
-            "until" | "most" | "avalanche" | "together" | "curve" => self.breaking(a, name)?,
-            "shape" | "length" | "fields" | "order" | "slabs" | "map" => self.measure(a, name)?,
-            "target" => self.targets.push(target(a)?),
-            _ => self.vary(a, types)?,
-        }
-        Ok(())
-    }
-
-    fn measure(&mut self, a: &mut Args, name: &str) -> Result<()> {
-        match name {
-            "shape" => {
-                self.shape = match a.choice("shape", &["block", "cylinder", "area"])? {
-                    "block" => Shape::Block,
-                    "cylinder" => Shape::Cylinder,
-                    _ => Shape::Area(a.positive("the area")?),
-                }
-            }
-            "length" => self.body = a.choice("length", &["free", "body"])? == "body",
-            "fields" => self.fields = a.flag("fields")?,
-            "order" => self.order = a.integer_from(0, "the order")?.min(1_000_000) as usize,
-            "map" => {
-                let deviation = a.choice("map", &["deviation", "stiffness"])? == "deviation";
-                let map = if deviation { Map::Deviation } else { Map::Stiffness };
-                self.map = Some((map, a.positive("the radius of the surroundings")?));
-            }
-            _ => {
-                self.slabs =
-                    Some(if a.eat("auto") { None } else { Some(a.positive("the height of a slab")?) })
-            }
-        }
-        Ok(())
-    }
-
-    fn breaking(&mut self, a: &mut Args, name: &str) -> Result<()> {
-        let span = a.here();
-        match name {
-            "until" => {
-                self.until = a.non_negative("the part of the largest force")?;
-                if self.until >= 1.0 {
-                    return fail(Code::BAD_VALUE, span, "the part of the largest force is to be below 1");
-                }
-            }
-            "avalanche" => {
-                let one = a.choice("what breaks in an avalanche", &["one", "all"])? == "one";
-                self.avalanche = if one { Avalanche::One } else { Avalanche::All };
-            }
-            "together" => {
-                self.together = a.non_negative("the part of the load")?;
-                if self.together >= 1.0 {
-                    return fail(Code::BAD_VALUE, span, "the part of the load is to be below 1");
-                }
-            }
-            "most" => self.most = a.integer_from(1, "the number of breaks")? as usize,
-            _ => {
-                let word = a.expect("a file for the breaks")?;
-                self.curve = Some((word.text.clone(), word.span));
-            }
-        }
-        Ok(())
-    }
-
-    fn hold(&mut self, a: &mut Args, end: usize) -> Result<()> {
-        let span = a.here();
-        self.holds[end] = match a.choice("way to hold an end", &["grip", "plate", "wall"])? {
-            "grip" => Hold::Grip,
-            "plate" => Hold::Plate,
-            _ => {
-                self.wall = self.wall.or(Some(span));
-                Hold::Wall
-            }
-        };
-        Ok(())
-    }
-
-    fn vary(&mut self, a: &mut Args, types: usize) -> Result<()> {
-        a.choice("what varies", &["bond"])?;
-        let span = a.here();
-        let kind = a.integer_from(1, "a bond type")?;
-        if kind > types as i64 {
-            return fail(Code::BAD_VALUE, span, format!("there are bond types 1 to {types}"));
-        }
-        let word = a.expect("a coefficient of the bond style")?;
-        self.vary.push(Vary { kind: kind as u16, name: word.text.clone(), span: word.span });
-        Ok(())
-    }
-}
-
-fn strain(a: &mut Args) -> Result<f64> {
-    let span = a.here();
-    let strain = a.number("the strain")?;
-    if strain == 0.0 {
-        return fail(Code::BAD_VALUE, span, "without a strain there is no stiffness: write about -0.01");
-    }
-    if strain <= -1.0 {
-        let text = format!("a strain of {strain} turns bonds inside out");
-        let d = Diagnostic::error(Code::BAD_VALUE, span, text);
-        return Err(d
-            .help("strains are above -1; displacements are small ones, so that about -0.01 is meant")
-            .into());
-    }
-    Ok(strain)
-}
-
-fn tolerance(a: &mut Args) -> Result<f64> {
-    let span = a.here();
-    let tol = a.positive("the tolerance")?;
-    if tol >= 1.0 {
-        return fail(Code::BAD_VALUE, span, "the tolerance is a part of the stiffness: it must be below 1");
-    }
-    Ok(tol)
-}
-
-fn method(a: &mut Args) -> Result<Method> {
-    if a.choice("method", &["pcg", "paper"])? == "pcg" {
-        return Ok(Method::Pcg);
-    }
-    let mut limits = [1e-6, 1e-3];
-    for limit in &mut limits {
-        if a.peek().is_some_and(|w| w.text.parse::<f64>().is_ok()) {
-            *limit = a.positive("the force that may be left")?;
-        }
-    }
-    Ok(Method::Paper(limits))
-}
-
-fn target(a: &mut Args) -> Result<Target> {
-    let quantity = match a.choice("quantity", &["K", "E", "nu", "strength"])? {
-        "K" => Quantity::Stiffness,
-        "E" => Quantity::Young,
-        "nu" => Quantity::Poisson,
-        _ => Quantity::Strength,
-    };
-    Ok(Target { quantity, value: a.positive("the value to reach")? })
 }

@@ -1,16 +1,37 @@
 //! `create_bonds gap`: bonds between spheres by the gap of their surfaces, of one type or of two that are mixed.
 
-use super::{needs_zero_weights, within};
+use super::{Choice, Special, needs_zero_weights, within};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::rng::ParkMiller;
-use perigrain_lang::{Args, Word};
+use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair, Reach};
-use perigrain_styles::common::{self, bond_type};
+use perigrain_styles::words::{At, BondType, Fraction, Seed, Words};
 use perigrain_styles::{ActCx, BuildCx};
 use perigrain_world::{Bond, GroupId};
 
-/// A parsed line.
+/// The words of a line.
+#[derive(Words)]
+pub struct Line {
+    #[word(name = "GROUP1 GROUP2")]
+    groups: [GroupId; 2],
+    #[word(name = "TYPE")]
+    kind: BondType,
+    /// The smallest gap [length].
+    #[word(name = "GMIN")]
+    least: At<f64>,
+    /// The largest gap [length].
+    #[word(name = "GMAX")]
+    most: At<f64>,
+    /// A part of the bonds gets another type, drawn from the two ids and the seed alone: the same pairs whatever the order, and whichever other
+    /// bonds there are.
+    #[word(keyword, name = "TYPE2 SHARE SEED")]
+    mix: Option<(BondType, Fraction, Seed)>,
+    #[word(flatten)]
+    special: Special,
+}
+
+/// What a line asks for.
 pub struct Gap {
     groups: [GroupId; 2],
     range: [f64; 2],
@@ -34,36 +55,30 @@ impl Mix {
     }
 }
 
-/// Takes the words from the first group on; the type with them.
-pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(u16, Gap)> {
-    if !cx.world.particles.style.sphere {
-        let text = format!("particles of atom_style {} have no surfaces", cx.world.particles.style.name());
-        let d = Diagnostic::error(Code::CONFLICT, style.span, text);
-        return Err(d.help("write `create_bonds many` with distances, or `atom_style bpm/sphere`").into());
+impl Line {
+    /// What it asks for, of a line whose style stands at `style`.
+    ///
+    /// # Errors
+    /// Particles without surfaces, an empty range.
+    pub(super) fn read(self, style: Span, a: &Args, cx: &BuildCx) -> Result<(BondType, Choice, Special)> {
+        if !cx.world.particles.style.sphere {
+            let name = cx.world.particles.style.name();
+            let text = format!("particles of atom_style {name} have no surfaces");
+            let d = Diagnostic::error(Code::CONFLICT, style, text);
+            return Err(d
+                .help("write `create_bonds many` with distances, or `atom_style bpm/sphere`")
+                .into());
+        }
+        let (spans, range) = ([self.least.span, self.most.span], [self.least.value, self.most.value]);
+        if range[1] < range[0] {
+            let text = format!("the largest gap {} is below the smallest, {}", range[1], range[0]);
+            return fail(Code::BAD_VALUE, spans[1], text);
+        }
+        needs_zero_weights("gap", a, cx)?;
+        let mix =
+            self.mix.map(|(kind, share, seed)| Mix { kind: i32::from(kind.0), share: share.0, seed: seed.0 });
+        Ok((self.kind, Choice::Gap(Gap { groups: self.groups, range, spans, mix }), self.special))
     }
-    let groups = [cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?];
-    let kind = bond_type(a, cx.world.bonds.types)?;
-    let mut spans = [a.here(); 2];
-    let least = a.number("the smallest gap")?;
-    spans[1] = a.here();
-    let most = a.number("the largest gap")?;
-    if most < least {
-        return fail(
-            Code::BAD_VALUE,
-            spans[1],
-            format!("the largest gap {most} is below the smallest, {least}"),
-        );
-    }
-    needs_zero_weights("gap", a, cx)?;
-    let mix = match a.eat("mix") {
-        true => Some(Mix {
-            kind: i32::from(bond_type(a, cx.world.bonds.types)?),
-            share: common::fraction(a)?,
-            seed: common::seed(a)?,
-        }),
-        false => None,
-    };
-    Ok((kind, Gap { groups, range: [least, most], spans, mix }))
 }
 
 impl Gap {

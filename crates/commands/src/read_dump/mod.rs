@@ -8,7 +8,8 @@ use super::data::text::{Lines, comes, find};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{bad_keyword, domain, on_particles};
+use perigrain_styles::common::{domain, on_particles};
+use perigrain_styles::words::{At, Form, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 pub use reel::{Reel, Rerun};
 use snapshot::{enter, particles};
@@ -19,9 +20,6 @@ pub struct ReadDump;
 
 /// What can be read, in LAMMPS' words.
 const FIELDS: [&str; 12] = ["x", "y", "z", "vx", "vy", "vz", "ix", "iy", "iz", "fx", "fy", "fz"];
-const KEYWORDS: [&str; 9] =
-    ["box", "timestep", "replace", "purge", "trim", "add", "label", "scaled", "wrapped"];
-
 impl Style for ReadDump {
     fn name(&self) -> &'static str {
         "read_dump"
@@ -29,31 +27,105 @@ impl Style for ReadDump {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "read_dump FILE STEP FIELD … [box yes|no] [timestep yes|no] [replace yes|no] [purge yes|no] \
-                     [trim yes|no] [add yes|keep|no] [label FIELD COLUMN] [scaled yes|no] [wrapped yes|no] [format native]",
+            syntax: "",
             summary: "Takes positions, velocities, image flags or forces from a snapshot of a text dump.",
-            text: "The file is one of `dump atom` or `dump custom`, packed with gzip if its name ends in `.gz`; it needs a \
-                   column `id`. FIELDs are `x y z vx vy vz ix iy iz fx fy fz`; for `x` the first of the columns `x xs xu xsu` \
-                   is taken (scaled, unwrapped, both), likewise for `y` and `z`; `label` names another column, and then \
-                   `scaled` and `wrapped` say what is in it. Defaults: the snapshot's box takes the place of the box and \
-                   its step that of the clock; particles with the same id are overwritten (`replace`); others stay unless \
-                   `trim yes`; particles that are only in the snapshot are left out unless `add keep` (with their ids) or \
-                   `add yes` (with new ids behind the largest), which needs a column `type`. `purge yes` deletes all \
-                   particles first and goes with `replace no`. Particles are wrapped and shrink-wrapped faces follow \
-                   afterwards. Positions at creation and peridynamic bonds stay as they are. The formats xyz, molfile and \
-                   adios and files per processor are refused.",
+            text: "The file is one of `dump atom` or `dump custom`, packed with gzip if its name ends in `.gz`; it needs a column \
+                   `id`. For `x` the first of the columns `x xs xu xsu` is taken (scaled, unwrapped, both), likewise for `y` and \
+                   `z`.\n\n\
+                   Particles are wrapped and shrink-wrapped faces follow afterwards. Positions at creation and peridynamic bonds \
+                   stay as they are. The formats xyz, molfile and adios and files per processor are refused.",
             example: "write_dump all custom now.dump id type x y z vx vy vz\nread_dump now.dump 0 x y z vx vy vz",
         }
     }
+
+    fn words(&self) -> Vec<Form> {
+        vec![Form::behind(Line::GRAMMAR)]
+    }
+}
+
+#[derive(Words)]
+struct Line {
+    /// The file.
+    #[word(name = "FILE", what = "a file name", kind = Kind::File)]
+    file: Word,
+    /// The snapshot's step.
+    #[word(name = "STEP")]
+    step: At<i64>,
+    #[word(flatten)]
+    wanted: Wanted,
+}
+
+/// What is read of a snapshot.
+#[derive(Words)]
+#[word(refused = "nfile q")]
+struct Wanted {
+    /// What is read: places, velocities, image counts, forces.
+    #[word(name = "FIELD", what = "field", least = 1)]
+    fields: Vec<At<Field>>,
+    /// Whether the snapshot's box takes the place of the box.
+    #[word(keyword = "box", default = true)]
+    domain: bool,
+    /// Whether the snapshot's step becomes that of the clock.
+    #[word(keyword, default = true)]
+    timestep: bool,
+    /// Whether particles with the same id are overwritten.
+    #[word(keyword, default = true)]
+    replace: bool,
+    /// Whether all particles are deleted first; goes with `replace no`.
+    #[word(keyword, default = false)]
+    purge: bool,
+    /// Whether particles that are not in the snapshot are deleted.
+    #[word(keyword, default = false)]
+    trim: bool,
+    #[word(keyword, default = Add::No)]
+    add: Add,
+    /// The column of a field, of `id` or of `type`.
+    #[word(keyword, name = "FIELD COLUMN", what = "the label of a column")]
+    label: Vec<(Word, String)>,
+    /// Whether places in labelled columns are parts of the box.
+    #[word(keyword, default = false)]
+    scaled: bool,
+    /// Whether places in labelled columns are wrapped into the box.
+    #[word(keyword, default = true)]
+    wrapped: bool,
+    #[word(keyword)]
+    format: Option<Format>,
+}
+
+/// What can be read, in LAMMPS' words.
+#[derive(Clone, Copy, Words)]
+#[word(what = "field")]
+enum Field {
+    X,
+    Y,
+    Z,
+    Vx,
+    Vy,
+    Vz,
+    Ix,
+    Iy,
+    Iz,
+    Fx,
+    Fy,
+    Fz,
+}
+
+/// How dumps are written.
+#[derive(Words)]
+#[word(what = "format of read_dump", refused = "xyz adios molfile")]
+enum Format {
+    Native,
 }
 
 /// What happens to particles that only the snapshot has.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "value of add")]
 enum Add {
+    /// Particles that are only in the snapshot are left out.
     No,
-    /// With new ids.
+    /// They get new ids behind the largest; needs a column `type`.
     Yes,
-    /// With their ids.
+    /// They keep their ids; needs a column `type`.
     Keep,
 }
 
@@ -75,80 +147,51 @@ struct Wish {
 impl CommandStyle for ReadDump {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         domain(cx)?;
-        let file = a.expect("a file name")?.clone();
-        let at = a.here();
-        let step = a.integer("the snapshot's step")?;
-        let wish = Wish::read(a, cx)?;
+        let Line { file, step: At { value: step, span: at, .. }, wanted } = read(a, cx)?;
+        let wish = Wish::new(wanted, a, cx)?;
         if cx.checking {
             comes(cx.world, &file, "dump")?;
         }
-        Ok(on_particles(vec![], move |cx| read(cx, &file, step, at, &wish)))
+        Ok(on_particles(vec![], move |cx| enter_snapshot(cx, &file, step, at, &wish)))
     }
 }
 
 impl Wish {
+    /// Takes the fields and keywords of a line.
     fn read(a: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let wanted = read(a, cx)?;
+        Self::new(wanted, a, cx)
+    }
+
+    fn new(wanted: Wanted, a: &Args, cx: &BuildCx) -> Result<Self> {
         let mut w = Self {
             fields: vec![],
             labels: BTreeMap::new(),
-            scaled: false,
-            wrapped: true,
-            domain: true,
-            timestep: true,
-            replace: true,
-            purge: false,
-            trim: false,
-            add: Add::No,
+            scaled: wanted.scaled,
+            wrapped: wanted.wrapped,
+            domain: wanted.domain,
+            timestep: wanted.timestep,
+            replace: wanted.replace,
+            purge: wanted.purge,
+            trim: wanted.trim,
+            add: wanted.add,
             span: a.span(),
         };
-        while let Some(k) = FIELDS.iter().position(|f| *f == a.peek_text()) {
-            let word = a.expect("a field")?;
+        for At { value: field, span, .. } in wanted.fields {
+            let (k, name) = (field as usize, FIELDS[field as usize]);
             if cx.world.settings.two_dimensional && k % 3 == 2 {
-                let text = format!("a flat scene has no `{}` to read", word.text);
-                return fail(Code::CONFLICT, word.span, text);
+                return fail(Code::CONFLICT, span, format!("a flat scene has no `{name}` to read"));
             }
             if w.fields.contains(&k) {
-                return fail(Code::CONFLICT, word.span, format!("`{}` is named twice", word.text));
+                return fail(Code::CONFLICT, span, format!("`{name}` is named twice"));
             }
             w.fields.push(k);
         }
-        if w.fields.is_empty() {
-            let text = format!("read_dump needs a field to read: {}", FIELDS.join(" "));
-            return fail(Code::MISSING_ARGUMENT, a.here(), text);
-        }
-        while let Some(word) = a.next() {
-            match word.text.as_str() {
-                "box" => w.domain = a.flag("box")?,
-                "timestep" => w.timestep = a.flag("timestep")?,
-                "replace" => w.replace = a.flag("replace")?,
-                "purge" => w.purge = a.flag("purge")?,
-                "trim" => w.trim = a.flag("trim")?,
-                "scaled" => w.scaled = a.flag("scaled")?,
-                "wrapped" => w.wrapped = a.flag("wrapped")?,
-                "add" => {
-                    w.add = match a.choice("value of add", &["yes", "keep", "no"])? {
-                        "yes" => Add::Yes,
-                        "keep" => Add::Keep,
-                        _ => Add::No,
-                    }
-                }
-                "label" => {
-                    let known: Vec<&str> = FIELDS.iter().copied().chain(["id", "type"]).collect();
-                    let field = a.expect("a field")?;
-                    if !known.contains(&field.text.as_str()) {
-                        return Err(a.unknown(field, &FIELDS));
-                    }
-                    let column = a.expect("the label of a column")?;
-                    w.labels.insert(field.text.clone(), column.text.clone());
-                }
-                "format" => drop(perigrain_styles::common::choice_or_refuse(
-                    a,
-                    "format of read_dump",
-                    &["native"],
-                    &["xyz", "adios", "molfile"],
-                )?),
-                _ => return Err(bad_keyword(a, word, &KEYWORDS, &["nfile", "q"])),
+        for (field, column) in wanted.label {
+            if !FIELDS.iter().chain(&["id", "type"]).any(|known| *known == field.text) {
+                return Err(a.unknown(&field, &FIELDS));
             }
+            w.labels.insert(field.text, column);
         }
         if w.purge && (w.replace || w.trim) {
             let text = "where all particles are purged, none can be replaced or trimmed";
@@ -190,7 +233,7 @@ impl Wish {
 }
 
 /// Reads the snapshot of a step, which the line names at `at`, into the scene.
-fn read(cx: &mut ActCx, file: &Word, step: i64, at: Span, wish: &Wish) -> Result<()> {
+fn enter_snapshot(cx: &mut ActCx, file: &Word, step: i64, at: Span, wish: &Wish) -> Result<()> {
     let text = find(cx.world, file, "dump")?;
     let mut lines = Lines::new(&text.text);
     let outcome = (|| {

@@ -1,17 +1,15 @@
 //! `run_style respa`: levels of steps within each other, in LAMMPS' words.
 
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
 use perigrain_world::{Respa, RunStyle};
-
-const KEYWORDS: [&str; 10] =
-    ["bond", "angle", "dihedral", "improper", "pair", "inner", "middle", "outer", "hybrid", "kspace"];
 
 /// Forces that LAMMPS orders: none may act in shorter steps than the one before.
 const ORDER: [&str; 6] = ["bond", "angle", "dihedral", "improper", "pair", "kspace"];
 
 /// A line's choices of levels, from 0; `None` where it makes none.
-#[derive(Default)]
 struct Choices {
     levels: [Option<(usize, Span)>; 6],
     subs: Option<(Vec<usize>, Span)>,
@@ -20,46 +18,110 @@ struct Choices {
 /// What a level keeps, without forces of particles.
 const BYTES_PER_LEVEL: f64 = 1000.0;
 
-/// Reads the words after `respa`; also returns the lines that list which forces act at which level.
-///
-/// # Errors
-/// Every mistake in the line.
-pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
-    let count = a.count("the number of levels", BYTES_PER_LEVEL)?;
-    let (mut loops, mut all) = (vec![], 1i64);
-    for k in 1..count {
-        let span = a.here();
-        let times = a.integer_from(1, &format!("how many steps of level {k} fill one of level {}", k + 1))?;
-        all = all.saturating_mul(times);
-        super::refuse_many(all, span)?;
-        loops.push(times);
-    }
-    let mut choices = Choices::default();
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "inner" | "middle" | "outer" => return Err(not_split(word)),
-            "hybrid" => {
-                let mut subs = vec![];
-                while subs.is_empty() || a.peek().is_some_and(|w| w.text.parse::<i64>().is_ok()) {
-                    subs.push(level(a, count, "the level of a sub-style")?.0);
-                }
-                choices.subs = Some((subs, word.span));
-            }
-            other => match ORDER.iter().position(|name| *name == other) {
-                Some(k) => {
-                    choices.levels[k] = Some(level(a, count, &format!("the level of {other} forces"))?);
-                }
-                None => return Err(a.unknown(word, &KEYWORDS)),
-            },
-        }
-    }
-    choices.settle(loops)
+/// The words of a line.
+#[derive(Words)]
+pub struct Line {
+    #[word(name = "levels")]
+    levels: Levels,
+    /// The level of bonds, peridynamic ones included; 1 by default.
+    #[word(keyword, name = "M", what = "the level of bond forces, from 1", from = 1)]
+    bond: Option<At<usize>>,
+    /// The level of angles, which exert nothing here.
+    #[word(keyword, name = "M", what = "the level of angle forces, from 1", from = 1)]
+    angle: Option<At<usize>>,
+    /// The level of dihedrals, which there are none of here.
+    #[word(keyword, name = "M", what = "the level of dihedral forces, from 1", from = 1)]
+    dihedral: Option<At<usize>>,
+    /// The level of impropers, which there are none of here.
+    #[word(keyword, name = "M", what = "the level of improper forces, from 1", from = 1)]
+    improper: Option<At<usize>>,
+    /// The level of the pair style; N by default.
+    #[word(keyword, name = "M", what = "the level of pair forces, from 1", from = 1)]
+    pair: Option<At<usize>>,
+    /// The level of each sub-style of pair_style hybrid, in its order.
+    #[word(keyword, name = "levels", placed)]
+    hybrid: Option<At<Hybrid>>,
+    /// The level of long-range forces, which there are none of here.
+    #[word(keyword, name = "M", what = "the level of kspace forces, from 1", from = 1)]
+    kspace: Option<At<usize>>,
 }
 
-/// Takes a level, from 1.
-fn level(a: &mut Args, count: usize, what: &str) -> Result<(usize, Span)> {
-    let span = a.here();
-    let level = a.integer_from(1, &format!("{what}, from 1"))? as usize;
+/// The levels of sub-styles.
+#[derive(Words)]
+struct Hybrid {
+    #[word(name = "M", what = "the level of a sub-style, from 1", least = 1)]
+    levels: Vec<At<Level>>,
+}
+
+/// A level, from 1.
+#[derive(Clone, Copy)]
+struct Level(usize);
+
+impl Value for Level {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer_from(1, what).map(|level| Self(level as usize))
+    }
+    fn begins(word: &Word) -> bool {
+        word.text.parse::<i64>().is_ok()
+    }
+}
+
+/// How many levels, and how many steps of each make one of the next.
+struct Levels(Vec<i64>);
+
+impl Value for Levels {
+    const KIND: Kind = Kind::Words(&Grammar {
+        parts: &[
+            Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
+            Part::Many(&[Part::Word(Placeholder { name: "n", kind: Kind::Whole, about: "", unit: "" })], 0),
+        ],
+        ..*Grammar::NONE
+    });
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let count = args.count("the number of levels", BYTES_PER_LEVEL)?;
+        let (mut loops, mut all) = (vec![], 1i64);
+        for k in 1..count {
+            let span = args.here();
+            let what = format!("how many steps of level {k} fill one of level {}", k + 1);
+            let times = args.integer_from(1, &what)?;
+            all = all.saturating_mul(times);
+            super::refuse_many(all, span)?;
+            loops.push(times);
+        }
+        Ok(Self(loops))
+    }
+}
+
+impl Line {
+    /// The style, and the lines that list which forces act at which level.
+    ///
+    /// # Errors
+    /// Levels that there are not, and those against LAMMPS' order.
+    pub fn read(self) -> Result<(RunStyle, Vec<String>)> {
+        let count = self.levels.0.len() + 1;
+        let of = |named: Option<At<usize>>| named.map(|at| level(at.value, at.span, count)).transpose();
+        let levels = [
+            of(self.bond)?,
+            of(self.angle)?,
+            of(self.dihedral)?,
+            of(self.improper)?,
+            of(self.pair)?,
+            of(self.kspace)?,
+        ];
+        let subs = match self.hybrid {
+            Some(At { value, span, .. }) => {
+                let each = value.levels.iter().map(|at| Ok(level(at.value.0, at.span, count)?.0));
+                Some((each.collect::<Result<Vec<_>>>()?, span))
+            }
+            None => None,
+        };
+        Choices { levels, subs }.settle(self.levels.0)
+    }
+}
+
+/// A level counted from 0, with its place.
+fn level(level: usize, span: Span, count: usize) -> Result<(usize, Span)> {
     if level > count {
         let text = format!("there are {count} levels, and this is number {level}");
         return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
@@ -70,12 +132,15 @@ fn level(a: &mut Args, count: usize, what: &str) -> Result<(usize, Span)> {
 }
 
 /// The refusal of a pair style cut up by distance.
-fn not_split(word: &Word) -> perigrain_base::diag::Diagnostics {
+pub fn not_split(form: &str, word: &Word) -> Option<Diagnostics> {
+    if form != "respa" || !["inner", "middle", "outer"].contains(&word.text.as_str()) {
+        return None;
+    }
     let text = format!("`{}` cuts pair forces up by distance, which no pair style here does", word.text);
-    Diagnostic::error(Code::NOT_SUPPORTED, word.span, text)
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text)
         .help("give the pair style one level (`pair M`), or each sub-style of hybrid its own (`hybrid M1 M2 …`)")
-        .help("LAMMPS refuses it for its granular and peridynamic styles too")
-        .into()
+        .help("LAMMPS refuses it for its granular and peridynamic styles too");
+    Some(d.into())
 }
 
 impl Choices {
