@@ -121,7 +121,7 @@ impl CommandStyle for CreateAtoms {
     }
 }
 
-/// What a line asks for.
+/// The creation that the words of a line describe.
 fn creation(way: Way, kind: u16, style: &Word, cx: &BuildCx) -> Result<Creation> {
     let mut note = vec![];
     let (place, also) = match way {
