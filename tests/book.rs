@@ -249,7 +249,7 @@ fn paragraph(behind: &str) -> &str {
 
 /// What is missing after a formula: `Source: …`, then `Code: …` with files and names that occur in them.
 fn unfounded(behind: &str) -> Option<String> {
-    let note = paragraph(behind);
+    let note = paragraph(behind).split_whitespace().collect::<Vec<_>>().join(" ");
     let Some((_, code)) = note.strip_prefix("Source: ").and_then(|note| note.split_once("Code: ")) else {
         return Some("no source and code".into());
     };

@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{bonds_across, bonds_fit};
-use perigrain_styles::words::{Each, Form, Said, Units, Words, read};
+use perigrain_styles::words::{Each, Form, Given, Units, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Boundary, Domain, GroupId};
 
@@ -126,7 +126,7 @@ impl CommandStyle for ChangeBox {
         common::domain(cx)?;
         let Line { group, changes, units } = read(a, cx)?;
         let mut steps = vec![];
-        for Said { word, value, .. } in changes.0 {
+        for Given { word, value, .. } in changes.0 {
             match value {
                 Change::X(how) => edge(0, how, &word, &mut steps)?,
                 Change::Y(how) => edge(1, how, &word, &mut steps)?,

@@ -94,19 +94,19 @@ struct One {
 struct Special {
     /// `no` leaves open for now which pairs count as bonded, of `single/bond` alone: the last of many such lines needs `yes`.
     #[word(keyword = "special", what = "special", shown = "yes")]
-    said: Option<At<bool>>,
+    given: Option<At<bool>>,
 }
 
 impl Special {
     fn is_on(&self) -> bool {
-        self.said.as_ref().is_none_or(|said| said.value)
+        self.given.as_ref().is_none_or(|given| given.value)
     }
 
     /// Refuses `no`, which goes with single bonds.
     fn refuse_no(&self) -> Result<()> {
-        match &self.said {
-            Some(said) if !said.value => {
-                fail(Code::CONFLICT, said.span, "`special no` goes with single/bond only")
+        match &self.given {
+            Some(given) if !given.value => {
+                fail(Code::CONFLICT, given.span, "`special no` goes with single/bond only")
             }
             _ => Ok(()),
         }

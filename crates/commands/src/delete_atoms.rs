@@ -145,12 +145,12 @@ impl CommandStyle for DeleteAtoms {
 }
 
 /// Whether a keyword says `yes`, which needs particles that have what it is about.
-fn goes(name: &str, said: Option<At<bool>>, there: bool) -> Result<bool> {
-    match said {
+fn goes(name: &str, given: Option<At<bool>>, there: bool) -> Result<bool> {
+    match given {
         Some(At { value: true, span, .. }) if !there => {
             fail(Code::CONFLICT, span, format!("`{name} yes` needs an atom style with bonds"))
         }
-        said => Ok(said.is_some_and(|said| said.value)),
+        given => Ok(given.is_some_and(|given| given.value)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::words::{At, Each, Form, Said, Words, read_or};
+use perigrain_styles::words::{At, Each, Form, Given, Words, read_or};
 use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Doc, Style};
 use perigrain_world::material::{Material, Strength};
 use perigrain_world::potentials;
@@ -112,11 +112,11 @@ fn no_yield(word: &Word) -> Option<Diagnostics> {
 }
 
 /// The values of a line over those of a file.
-fn material(said: Each<Property>, base: Option<Material>, id: &str, line: Span) -> Result<Material> {
+fn material(given: Each<Property>, base: Option<Material>, id: &str, line: Span) -> Result<Material> {
     let mut missing = if base.is_some() { vec![] } else { vec!["E", "nu", "rho"] };
     let mut m = base.unwrap_or_else(|| blank(id));
     let mut seen: Vec<String> = vec![];
-    for Said { word, value, .. } in said.0 {
+    for Given { word, value, .. } in given.0 {
         let key = word.text;
         if seen.contains(&key) {
             return fail(Code::CONFLICT, word.span, format!("`{key}` is given twice"));

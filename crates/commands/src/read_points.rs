@@ -120,9 +120,9 @@ struct Reading {
 impl CommandStyle for ReadPoints {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
-        let Line { file, columns: said, volume, diameter, options } = read(a, cx)?;
+        let Line { file, columns: given, volume, diameter, options } = read(a, cx)?;
         let mut columns = vec![];
-        for At { value: Columns(mut pairs), span, .. } in said {
+        for At { value: Columns(mut pairs), span, .. } in given {
             if pairs.is_empty() {
                 let text = "`columns` needs a property and the name of its column";
                 let d = Diagnostic::error(Code::MISSING_ARGUMENT, span, text);

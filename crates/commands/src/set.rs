@@ -9,7 +9,7 @@ use change::{Change, Limit};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, bad_keyword, id_range, on_particles, variable_param};
-use perigrain_styles::words::{At, Each, Form, Keywords, Kind, Said, Types, Value, Words};
+use perigrain_styles::words::{At, Each, Form, Given, Keywords, Kind, Types, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::{GroupId, Region};
@@ -105,7 +105,7 @@ impl CommandStyle for Set {
                 None => custom(keyword, a, cx)?,
             };
             change.check(keyword, cx)?;
-            items.push(Said { word: keyword.clone(), span, value: change });
+            items.push(Given { word: keyword.clone(), span, value: change });
             word = a.next();
         }
         let settles = items.iter().filter_map(|i| i.value.settles()).collect();

@@ -76,10 +76,10 @@ impl FixStyle for Efield {
         let Line { field, region, energy, potential } = read(args, cx)?;
         let constant = field.iter().all(|p| matches!(p, Param::Number(_)));
         let given = [("energy", &energy), ("potential", &potential)];
-        if let Some((word, Some(said))) = given.into_iter().find(|(_, said)| constant && said.is_some()) {
+        if let Some((word, Some(given))) = given.into_iter().find(|(_, given)| constant && given.is_some()) {
             let d = Diagnostic::error(
                 Code::CONFLICT,
-                said.span,
+                given.span,
                 format!("the {word} of a constant field is known already"),
             );
             return Err(d.help("leave the word and its value out").into());

@@ -46,7 +46,7 @@ pub struct Said {
 impl Said {
     /// Reads the attributes of an item.
     pub fn read(attributes: &[Attribute]) -> syn::Result<Self> {
-        let mut said = Self::default();
+        let mut given = Self::default();
         let mut lines = vec![];
         for a in attributes {
             if a.path().is_ident("doc")
@@ -57,11 +57,11 @@ impl Said {
                 lines.push(text.value().trim().to_string());
             }
             if a.path().is_ident("word") {
-                said.attribute(a)?;
+                given.attribute(a)?;
             }
         }
-        (said.about, said.unit) = without_unit(&lines.join(" "));
-        Ok(said)
+        (given.about, given.unit) = without_unit(&lines.join(" "));
+        Ok(given)
     }
 
     fn attribute(&mut self, a: &Attribute) -> syn::Result<()> {

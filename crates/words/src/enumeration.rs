@@ -23,13 +23,13 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
     }
     let mut built = Built::default();
     for variant in &data.variants {
-        let said = Said::read(&variant.attrs)?;
-        if said.skip {
+        let given = Said::read(&variant.attrs)?;
+        if given.skip {
             continue;
         }
         let (parts, read) = fields(variant)?;
-        built.words.push(word(&said, variant));
-        built.abouts.push(said.about);
+        built.words.push(word(&given, variant));
+        built.abouts.push(given.about);
         built.parts.push(parts);
         built.reads.push(read);
     }
@@ -45,8 +45,8 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
 }
 
 /// A variant's word.
-fn word(said: &Said, variant: &Variant) -> String {
-    said.word.clone().unwrap_or_else(|| variant.ident.to_string().to_lowercase())
+fn word(given: &Said, variant: &Variant) -> String {
+    given.word.clone().unwrap_or_else(|| variant.ident.to_string().to_lowercase())
 }
 
 /// The call that takes one of the words.
@@ -128,9 +128,9 @@ fn forms(input: &DeriveInput, data: &DataEnum, own: &Said, head: &str) -> syn::R
     let ident = &input.ident;
     let (mut words, mut forms, mut reads) = (vec![], vec![], vec![]);
     for variant in &data.variants {
-        let (said, name) = (Said::read(&variant.attrs)?, &variant.ident);
-        let word = word(&said, variant);
-        let (head, about) = (format!("{head} {word}").trim().to_string(), &said.about);
+        let (given, name) = (Said::read(&variant.attrs)?, &variant.ident);
+        let word = word(&given, variant);
+        let (head, about) = (format!("{head} {word}").trim().to_string(), &given.about);
         let foreign = match &own.foreign {
             Some(foreign) => quote!(|w| #foreign(#word, w)),
             None => quote!(|_| None),
@@ -171,11 +171,11 @@ fn fields(variant: &Variant) -> syn::Result<(Vec<TokenStream>, TokenStream)> {
     let (mut parts, mut values) = (vec![], vec![]);
     for (k, field) in variant.fields.iter().enumerate() {
         let name = field.ident.as_ref().map_or_else(|| format!("value{}", k + 1), ToString::to_string);
-        let said = Said::read(&field.attrs)?;
-        let value = match said.skip {
+        let given = Said::read(&field.attrs)?;
+        let value = match given.skip {
             true => quote!(Default::default()),
             false => {
-                let field = Field::new(said, name.trim_end_matches('_'), &field.ty);
+                let field = Field::new(given, name.trim_end_matches('_'), &field.ty);
                 parts.append(&mut field.parts()?);
                 field.read()?
             }

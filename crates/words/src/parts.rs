@@ -8,7 +8,7 @@ use syn::{Expr, GenericArgument, Lit, PathArguments, Type};
 
 /// A field's words.
 pub struct Field {
-    pub said: Said,
+    pub given: Said,
     /// Its placeholders, one for each word that a value has.
     names: Vec<String>,
     what: String,
@@ -27,18 +27,18 @@ enum Shape<'a> {
 
 impl Field {
     /// A field of this name, which stands in the syntax line unless the field says another.
-    pub fn new(said: Said, name: &str, ty: &Type) -> Self {
-        let names = said.name.as_deref().unwrap_or(name).split_whitespace().map(String::from).collect();
-        let what = match is_switch(ty) && said.own_what().is_none() {
-            true => said.keyword.clone().flatten().unwrap_or_else(|| name.to_string()),
-            false => said.what(name),
+    pub fn new(given: Said, name: &str, ty: &Type) -> Self {
+        let names = given.name.as_deref().unwrap_or(name).split_whitespace().map(String::from).collect();
+        let what = match is_switch(ty) && given.own_what().is_none() {
+            true => given.keyword.clone().flatten().unwrap_or_else(|| name.to_string()),
+            false => given.what(name),
         };
-        Self { what, names, said, ty: ty.clone() }
+        Self { what, names, given, ty: ty.clone() }
     }
 
     /// The keyword, if it is one.
     pub fn keyword(&self, name: &str) -> Option<String> {
-        self.said.keyword.as_ref().map(|k| k.clone().unwrap_or_else(|| name.to_string()))
+        self.given.keyword.as_ref().map(|k| k.clone().unwrap_or_else(|| name.to_string()))
     }
 
     /// Its place in the grammar, where it stands in order.
@@ -50,7 +50,7 @@ impl Field {
                 vec![quote!(Part::Maybe(&[#(#inner),*]))]
             }
             Shape::Many(of) => {
-                let (inner, least) = (self.of(of, &mut names)?, self.said.least);
+                let (inner, least) = (self.of(of, &mut names)?, self.given.least);
                 vec![quote!(Part::Many(&[#(#inner),*], #least))]
             }
             _ => self.of(&self.ty, &mut names)?,
@@ -63,11 +63,11 @@ impl Field {
 
     /// The words behind it, where it is a keyword.
     pub fn values(&self) -> syn::Result<Vec<TokenStream>> {
-        if self.said.flag {
+        if self.given.flag {
             return Ok(vec![]);
         }
         match shape(&self.ty)? {
-            Shape::Many(_) if self.said.list => self.parts(),
+            Shape::Many(_) if self.given.list => self.parts(),
             Shape::Maybe(of) | Shape::Many(of) => self.of(of, &mut self.names.iter()),
             _ => self.of(&self.ty, &mut self.names.iter()),
         }
@@ -75,7 +75,7 @@ impl Field {
 
     /// Whether each time that the keyword stands there counts.
     pub fn repeats(&self) -> syn::Result<bool> {
-        Ok(matches!(shape(&self.ty)?, Shape::Many(_)) && !self.said.list)
+        Ok(matches!(shape(&self.ty)?, Shape::Many(_)) && !self.given.list)
     }
 
     fn of<'a>(
@@ -109,8 +109,8 @@ impl Field {
         let Some(name) = names.next() else {
             return wrong(ty.span(), "say in `name` how each word is called");
         };
-        let (about, unit) = (&self.said.about, &self.said.unit);
-        let kind = match (&self.said.kind, &self.said.like) {
+        let (about, unit) = (&self.given.about, &self.given.unit);
+        let kind = match (&self.given.kind, &self.given.like) {
             (Some(kind), _) => quote!(#kind),
             (None, Some(like)) => quote!(<#like as Value>::KIND),
             (None, None) => quote!(<#ty as Value>::KIND),
@@ -125,15 +125,15 @@ impl Field {
 
     /// The expression that reads the words behind the keyword: of a list one of its members, unless all stand there.
     pub fn read_value(&self) -> syn::Result<TokenStream> {
-        if self.said.flag {
-            return Ok(if self.said.placed { quote!(Some(word.span)) } else { quote!(true) });
+        if self.given.flag {
+            return Ok(if self.given.placed { quote!(Some(word.span)) } else { quote!(true) });
         }
         match shape(&self.ty)? {
             Shape::Maybe(of) => {
                 let value = self.reading(of, false, 0)?;
                 Ok(quote!(Some(#value)))
             }
-            Shape::Many(of) if !self.said.list => self.reading(of, false, 0),
+            Shape::Many(of) if !self.given.list => self.reading(of, false, 0),
             _ => self.reading(&self.ty, true, 0),
         }
     }
@@ -141,13 +141,13 @@ impl Field {
     /// The expression that reads a type; `k` counts the words of a group.
     fn reading(&self, ty: &Type, open: bool, k: usize) -> syn::Result<TokenStream> {
         let what = self.what.replace("{}", self.names.get(k).map_or("", String::as_str));
-        if let Some(with) = &self.said.with {
+        if let Some(with) = &self.given.with {
             return Ok(match shape(ty)? {
                 Shape::Maybe(_) if open => {
                     quote!(if args.is_empty() || args.at_keyword() { None } else { Some(#with(args, cx)?) })
                 }
                 Shape::Many(_) if open => {
-                    let least = self.said.least;
+                    let least = self.given.least;
                     quote!({
                         let mut all = vec![];
                         while all.len() < #least || !(args.is_empty() || args.at_keyword()) {
@@ -168,7 +168,7 @@ impl Field {
                 })
             }
             Shape::Many(of) if open => {
-                let (value, least, first) = (self.reading(of, false, k)?, self.said.least, first(of)?);
+                let (value, least, first) = (self.reading(of, false, k)?, self.given.least, first(of)?);
                 quote!({
                     let mut all = vec![];
                     while all.len() < #least || args.peek().is_some_and(|w| !args.at_keyword() && <#first as Value>::begins(w)) {
@@ -180,7 +180,7 @@ impl Field {
                     all
                 })
             }
-            Shape::Placed(of) if self.said.placed => {
+            Shape::Placed(of) if self.given.placed => {
                 let value = match shape(of)? {
                     Shape::Placed(inner) => {
                         let value = self.reading(inner, false, k)?;
@@ -204,9 +204,9 @@ impl Field {
                     (0..count).map(|k| self.reading(of, false, k)).collect::<syn::Result<Vec<_>>>()?;
                 quote!([#(#values),*])
             }
-            _ if self.said.positive => quote!(args.positive(#what)?),
-            _ if self.said.non_negative => quote!(args.non_negative(#what)?),
-            _ => match (&self.said.from, &self.said.like) {
+            _ if self.given.positive => quote!(args.positive(#what)?),
+            _ if self.given.non_negative => quote!(args.non_negative(#what)?),
+            _ => match (&self.given.from, &self.given.like) {
                 (Some(least), _) => quote!(<#ty as Whole>::from(args, #least, #what)?),
                 (None, Some(like)) => quote!(<#ty>::from(<#like as Value>::value(#what, args, cx)?)),
                 (None, None) => quote!(<#ty as Value>::value(#what, args, cx)?),

@@ -28,8 +28,8 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
     let own = Said::read(&input.attrs)?;
     let mut built = Built::default();
     for field in &fields.named {
-        let (Some(name), said) = (&field.ident, Said::read(&field.attrs)?) else { continue };
-        built.add(name, said, &field.ty)?;
+        let (Some(name), given) = (&field.ident, Said::read(&field.attrs)?) else { continue };
+        built.add(name, given, &field.ty)?;
     }
     let Built { parts, keywords, begin, arms, nested, fields } = built;
     let refused = literals(&own.refused);
@@ -71,13 +71,13 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
 }
 
 impl Built {
-    fn add(&mut self, ident: &Ident, said: Said, ty: &syn::Type) -> syn::Result<()> {
+    fn add(&mut self, ident: &Ident, given: Said, ty: &syn::Type) -> syn::Result<()> {
         self.fields.push(ident.clone());
-        if said.skip {
+        if given.skip {
             self.begin.push(quote!(let #ident = Default::default();));
             return Ok(());
         }
-        if said.flatten {
+        if given.flatten {
             self.parts.push(quote!(Part::All(<#ty as Words>::GRAMMAR)));
             self.begin.push(quote!(let #ident = <#ty as Words>::begin(args, cx)?;));
             self.nested.push(quote!(Words::keyword(&mut self.#ident, word, args, cx)?));
@@ -85,20 +85,21 @@ impl Built {
         }
         let name = ident.to_string();
         let name = name.trim_start_matches("r#").trim_end_matches('_');
-        let field = Field::new(said, name, ty);
+        let field = Field::new(given, name, ty);
         let Some(word) = field.keyword(name) else {
             self.parts.append(&mut field.parts()?);
             let value = field.read()?;
             self.begin.push(quote!(let #ident = #value;));
             return Ok(());
         };
-        let (values, repeats, said) = (field.values()?, field.repeats()?, &field.said);
-        let about = &said.about;
-        let shown = said.shown.clone().or_else(|| said.default.as_ref().and_then(shown)).unwrap_or_default();
+        let (values, repeats, given) = (field.values()?, field.repeats()?, &field.given);
+        let about = &given.about;
+        let shown =
+            given.shown.clone().or_else(|| given.default.as_ref().and_then(shown)).unwrap_or_default();
         self.keywords.push(quote! {
             Keyword { word: #word, values: &[#(#values),*], about: #about, default: #shown, repeats: #repeats }
         });
-        let default = match &said.default {
+        let default = match &given.default {
             Some(value) => quote!(#value),
             None => quote!(Default::default()),
         };

@@ -82,14 +82,14 @@ fn region(name: &Word, style: &Word, cx: &BuildCx) -> Result<Region> {
 }
 
 /// Sizes of spheres with their types, and where they stand; `style` where nothing says them.
-fn sizes(said: Option<At<Distribution>>, style: &Word) -> Result<(Sizes, Vec<u16>, Span)> {
-    let Some(At { value, span, .. }) = said else { return Ok((Sizes::Mono(1.0), vec![], style.span)) };
+fn sizes(given: Option<At<Distribution>>, style: &Word) -> Result<(Sizes, Vec<u16>, Span)> {
+    let Some(At { value, span, .. }) = given else { return Ok((Sizes::Mono(1.0), vec![], style.span)) };
     value.parts().map(|(sizes, types, last)| (sizes, types, span.to(last)))
 }
 
 /// The same of spheres that are all alike.
-fn alike(said: Option<At<OneSize>>) -> Option<At<Distribution>> {
-    said.map(|At { value: OneSize::Mono(d), span, unknown }| At {
+fn alike(given: Option<At<OneSize>>) -> Option<At<Distribution>> {
+    given.map(|At { value: OneSize::Mono(d), span, unknown }| At {
         value: Distribution::Mono(d),
         span,
         unknown,
@@ -102,9 +102,9 @@ impl Plain {
     /// # Errors
     /// What does not go together, here and below.
     pub fn read(self, style: &Word, cx: &BuildCx) -> Result<(Pack, Joined)> {
-        let Self { region: name, fill, seed: Seed(seed), sizes: said, effort, joined } = self;
+        let Self { region: name, fill, seed: Seed(seed), sizes: given, effort, joined } = self;
         let region = region(&name, style, cx)?;
-        let (sizes, types, sizes_span) = sizes(said, style)?;
+        let (sizes, types, sizes_span) = sizes(given, style)?;
         let (share_span, fill, form) = (fill.span, fill.value.into(), Form::Plain);
         let goal = Goal { overlap: effort.overlap, rounds: effort.rounds };
         Ok((Pack { form, region, name, fill, share_span, seed, sizes, types, sizes_span, goal }, joined))

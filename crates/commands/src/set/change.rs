@@ -8,7 +8,7 @@ use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, masses_from_density};
 use perigrain_styles::words::{
-    At, Fraction, Kind, MarsagliaSeed, Nullable, Or, PerAtom, Said, Seed, Types, Value, Words,
+    At, Fraction, Given, Kind, MarsagliaSeed, Nullable, Or, PerAtom, Seed, Types, Value, Words,
 };
 use perigrain_styles::{ActCx, BuildCx};
 use perigrain_world::columns::{BOND_FACTORS, TEMPERATURE};
@@ -298,7 +298,7 @@ impl Limit {
 }
 
 /// Changes the chosen particles, item by item; all or nothing.
-pub fn apply(cx: &mut ActCx, choice: &Choice, items: &[Said<Change>]) -> Result<()> {
+pub fn apply(cx: &mut ActCx, choice: &Choice, items: &[Given<Change>]) -> Result<()> {
     let chosen = chosen(choice, cx.world);
     // Constants were checked when the line was read: only variables can still turn out wrong.
     let before = items.iter().any(|item| item.value.has_variable()).then(|| cx.world.particles.clone());
@@ -332,7 +332,7 @@ fn chosen(choice: &Choice, w: &World) -> Vec<usize> {
     (0..p.len()).filter(|&i| meant(i)).collect()
 }
 
-fn change_particles(cx: &mut ActCx, item: &Said<Change>, chosen: &[usize]) -> Result<usize> {
+fn change_particles(cx: &mut ActCx, item: &Given<Change>, chosen: &[usize]) -> Result<usize> {
     let types = cx.world.types;
     let mut checked = |p: &Param, what: &str, limit: Option<Limit>| -> Result<Vec<f64>> {
         let values = cx.per_atom_of(p, chosen)?;

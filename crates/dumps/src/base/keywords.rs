@@ -318,20 +318,20 @@ impl Base {
     ///
     /// # Errors
     /// What this dump cannot do.
-    pub fn modify(&mut self, said: Common, cx: &BuildCx) -> Result<()> {
-        said.check(self, cx)?;
-        self.rhythm = said.rhythm().unwrap_or_else(|| self.rhythm.clone());
-        if let Some(Or::Else(Interval(every))) = said.every.map(|e| e.value) {
+    pub fn modify(&mut self, given: Common, cx: &BuildCx) -> Result<()> {
+        given.check(self, cx)?;
+        self.rhythm = given.rhythm().unwrap_or_else(|| self.rhythm.clone());
+        if let Some(Or::Else(Interval(every))) = given.every.map(|e| e.value) {
             self.every = Some(every);
         }
-        self.append = said.append.unwrap_or(self.append);
-        self.level = said.compression_level.map(|l| l.value.0).or(self.level);
-        self.delay = said.delay.unwrap_or(self.delay);
-        self.first = said.first.unwrap_or(self.first);
-        self.maxfiles = said.maxfiles.map_or(self.maxfiles, |m| m.value.0);
-        self.pad = said.pad.map_or(self.pad, |digits| digits.min(40));
-        self.skip = said.skip.map(|v| v.0).or(self.skip.take());
-        self.sort = said.sort.map_or(self.sort, |s| match s.value {
+        self.append = given.append.unwrap_or(self.append);
+        self.level = given.compression_level.map(|l| l.value.0).or(self.level);
+        self.delay = given.delay.unwrap_or(self.delay);
+        self.first = given.first.unwrap_or(self.first);
+        self.maxfiles = given.maxfiles.map_or(self.maxfiles, |m| m.value.0);
+        self.pad = given.pad.map_or(self.pad, |digits| digits.min(40));
+        self.skip = given.skip.map(|v| v.0).or(self.skip.take());
+        self.sort = given.sort.map_or(self.sort, |s| match s.value {
             Or::Word(Order::Off) => Sort::Off,
             Or::Word(Order::Id) => Sort::Id,
             Or::Else(Column(column, descending)) => Sort::Column(column, descending),
@@ -343,16 +343,16 @@ impl Base {
     ///
     /// # Errors
     /// Unknown attributes.
-    pub fn select(&mut self, said: OfParticles, cx: &BuildCx) -> Result<()> {
-        self.elements = said.element.unwrap_or_else(|| std::mem::take(&mut self.elements));
-        self.pbc = said.pbc.unwrap_or(self.pbc);
-        self.refresh = said.refresh.or(self.refresh.take());
-        match said.region {
+    pub fn select(&mut self, given: OfParticles, cx: &BuildCx) -> Result<()> {
+        self.elements = given.element.unwrap_or_else(|| std::mem::take(&mut self.elements));
+        self.pbc = given.pbc.unwrap_or(self.pbc);
+        self.refresh = given.refresh.or(self.refresh.take());
+        match given.region {
             Some(Or::Word(Nothing::None)) => self.region = None,
             Some(Or::Else(region)) => self.region = Some(region),
             None => {}
         }
-        for test in said.thresh {
+        for test in given.thresh {
             match test {
                 Or::Word(Nothing::None) => self.thresholds.clear(),
                 Or::Else(Test { attribute: word, operator: Operator(compare), value }) => {

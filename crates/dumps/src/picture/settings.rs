@@ -271,26 +271,26 @@ impl Options {
         Ok(moves)
     }
 
-    fn set(&mut self, said: Settings) -> Result<()> {
-        if let Some(At { span, .. }) = said.atom.filter(|a| !a.value) {
+    fn set(&mut self, given: Settings) -> Result<()> {
+        if let Some(At { span, .. }) = given.atom.filter(|a| !a.value) {
             return fail(Code::NOT_SUPPORTED, span, "dump image atom no: there is nothing else to draw");
         }
-        if let Some(At { span, .. }) = said.axes.as_ref().filter(|a| a.value.0) {
+        if let Some(At { span, .. }) = given.axes.as_ref().filter(|a| a.value.0) {
             return fail(Code::NOT_SUPPORTED, *span, "dump image axes yes");
         }
-        self.place(&said)?;
-        self.dress(&said);
-        for (Types(lo, hi), Tint(colour)) in said.acolor {
+        self.place(&given)?;
+        self.dress(&given);
+        for (Types(lo, hi), Tint(colour)) in given.acolor {
             self.colours.extend((lo..=hi).map(|k| (k, colour)));
         }
-        match said.legend {
+        match given.legend {
             Some(Or::Word(YesNo::Yes)) => self.legend = true,
             Some(Or::Word(YesNo::No)) => self.legend = false,
             Some(Or::Else(Spoken(text))) => (self.legend, self.legend_text) = (true, Some(text)),
             None => {}
         }
-        self.title = said.title.map_or_else(|| std::mem::take(&mut self.title), |t| t.0);
-        if let Some((lo, hi)) = said.range {
+        self.title = given.title.map_or_else(|| std::mem::take(&mut self.title), |t| t.0);
+        if let Some((lo, hi)) = given.range {
             self.range = [
                 if let Or::Else(lo) = lo { End::Number(lo) } else { End::Extreme },
                 if let Or::Else(hi) = hi { End::Number(hi) } else { End::Extreme },
@@ -300,8 +300,8 @@ impl Options {
     }
 
     /// Takes what decides where the camera stands, and how large pictures are.
-    fn place(&mut self, said: &Settings) -> Result<()> {
-        if let Some(At { value: [Pixels(width), Pixels(height)], span, .. }) = said.size {
+    fn place(&mut self, given: &Settings) -> Result<()> {
+        if let Some(At { value: [Pixels(width), Pixels(height)], span, .. }) = given.size {
             let all = width as f64 * height as f64;
             let allowed = gate::beyond(all, |l| l.pixels, "pixels", &format!("a picture of {all}"));
             let fits = || memory::lacking(BYTES_PER_PIXEL * all, "a picture of this size");
@@ -310,45 +310,45 @@ impl Options {
             }
             (self.look.width, self.look.height) = (width, height);
         }
-        if let Some(At { value: up, span, unknown }) = said.up {
+        if let Some(At { value: up, span, unknown }) = given.up {
             if up == [0.0; 3] && !unknown {
                 return fail(Code::BAD_VALUE, span, "0 0 0 is no direction");
             }
             self.camera.up = up;
         }
-        if let Some([theta, phi]) = said.view {
+        if let Some([theta, phi]) = given.view {
             (self.camera.theta, self.camera.phi) = (theta, phi);
         }
-        self.camera.zoom = said.zoom.unwrap_or(self.camera.zoom);
-        self.camera.perspective = said.perspective.map_or(self.camera.perspective, |angle| angle.min(150.0));
-        if let Some(Anchor::S(centre) | Anchor::D(centre)) = said.center {
+        self.camera.zoom = given.zoom.unwrap_or(self.camera.zoom);
+        self.camera.perspective = given.perspective.map_or(self.camera.perspective, |angle| angle.min(150.0));
+        if let Some(Anchor::S(centre) | Anchor::D(centre)) = given.center {
             self.centre = Some(centre);
         }
-        self.framing = said.frame.unwrap_or(self.framing);
+        self.framing = given.frame.unwrap_or(self.framing);
         Ok(())
     }
 
     /// Takes what decides about appearance, not content.
-    fn dress(&mut self, said: &Settings) {
+    fn dress(&mut self, given: &Settings) {
         let look = &mut self.look;
-        if let Some(At { value: Tint(colour), .. }) = said.backcolor {
+        if let Some(At { value: Tint(colour), .. }) = given.backcolor {
             look.background = [colour; 2];
         }
-        let later = |b: &&At<Tint>| said.backcolor.as_ref().is_none_or(|a| a.span.start < b.span.start);
-        if let Some(At { value: Tint(colour), .. }) = said.backcolor2.as_ref().filter(later) {
+        let later = |b: &&At<Tint>| given.backcolor.as_ref().is_none_or(|a| a.span.start < b.span.start);
+        if let Some(At { value: Tint(colour), .. }) = given.backcolor2.as_ref().filter(later) {
             look.background[1] = *colour;
         }
-        look.ink = said.boxcolor.as_ref().map_or(look.ink, |c| c.0);
-        look.shiny = said.shiny.map_or(look.shiny, share);
-        look.samples = said.fsaa.map_or(look.samples, |smooth| if smooth { 2 } else { 1 });
+        look.ink = given.boxcolor.as_ref().map_or(look.ink, |c| c.0);
+        look.shiny = given.shiny.map_or(look.shiny, share);
+        look.samples = given.fsaa.map_or(look.samples, |smooth| if smooth { 2 } else { 1 });
         let part = |on: bool, strength: f64| if on { share(strength) } else { 0.0 };
-        look.haze = said.depthcue.as_ref().map_or(look.haze, |(on, s)| part(*on, s.0));
-        look.occlusion = said.ssao.as_ref().map_or(look.occlusion, |(on, _, s)| part(on.0, s.0));
-        self.map = said.map.unwrap_or(self.map);
-        self.time = said.time.unwrap_or(self.time);
-        self.walls = said.walls.unwrap_or(self.walls);
-        self.scale_bar = said.scalebar.unwrap_or(self.scale_bar);
-        self.box_edges = said.box_edges.as_ref().map_or(self.box_edges, |b| b.0);
+        look.haze = given.depthcue.as_ref().map_or(look.haze, |(on, s)| part(*on, s.0));
+        look.occlusion = given.ssao.as_ref().map_or(look.occlusion, |(on, _, s)| part(on.0, s.0));
+        self.map = given.map.unwrap_or(self.map);
+        self.time = given.time.unwrap_or(self.time);
+        self.walls = given.walls.unwrap_or(self.walls);
+        self.scale_bar = given.scalebar.unwrap_or(self.scale_bar);
+        self.box_edges = given.box_edges.as_ref().map_or(self.box_edges, |b| b.0);
     }
 }
 

@@ -187,11 +187,11 @@ pub trait Keywords: Sized {
 
 /// All [`Keywords`] of a line.
 #[derive(Clone, Debug)]
-pub struct Each<T>(pub Vec<Said<T>>);
+pub struct Each<T>(pub Vec<Given<T>>);
 
 /// What a keyword says.
 #[derive(Clone, Debug)]
-pub struct Said<T> {
+pub struct Given<T> {
     /// The keyword.
     pub word: Word,
     /// The place of the keyword and the first word behind it.
@@ -209,9 +209,9 @@ impl<T: Keywords> Words for Each<T> {
 
     fn keyword(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
         let span = word.span.to(args.here());
-        let said = T::keyword(word, args, cx)?;
-        let found = said.is_some();
-        self.0.extend(said.map(|value| Said { word: word.clone(), span, value }));
+        let given = T::keyword(word, args, cx)?;
+        let found = given.is_some();
+        self.0.extend(given.map(|value| Given { word: word.clone(), span, value }));
         Ok(found)
     }
 }

@@ -47,8 +47,8 @@ impl Types {
     ///
     /// # Errors
     /// Values that are no numbers, sets without names.
-    pub fn new(said: At<Source>) -> Result<Self> {
-        let (by, map) = match said.value {
+    pub fn new(given: At<Source>) -> Result<Self> {
+        let (by, map) = match given.value {
             Source::Physical(map) => (By::Physical, map),
             Source::Set(map) => (By::Set, map),
             Source::Cell(array, map) => (By::Cell(array), map),
@@ -59,12 +59,12 @@ impl Types {
         if matches!(by, By::Set) && map.is_empty() {
             return fail(
                 Code::MISSING_ARGUMENT,
-                said.span,
+                given.span,
                 "`types set` needs names of element sets and their types",
             );
         }
         let map = map.into_iter().map(|(name, to)| (name, to.0.map(|kind| kind.0))).collect();
-        Ok(Self { by, at: said.span, map })
+        Ok(Self { by, at: given.span, map })
     }
 
     /// The type of each cell; 0 for those that are left out.

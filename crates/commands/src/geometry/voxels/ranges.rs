@@ -24,9 +24,9 @@ impl Ranges {
     ///
     /// # Errors
     /// No range, ranges that are none, two with values in common.
-    pub fn new(said: &At<List>) -> Result<Self> {
+    pub fn new(given: &At<List>) -> Result<Self> {
         let mut r = Self::default();
-        for (range, kind) in &said.value.ranges {
+        for (range, kind) in &given.value.ranges {
             let (lo, hi) = ends(range)?;
             if let Some((x, y, _)) = r.list.iter().find(|(x, y, _)| lo <= *y && hi >= *x && !range.unknown) {
                 let text = format!(
@@ -42,7 +42,7 @@ impl Ranges {
         if r.list.is_empty() {
             return fail(
                 Code::MISSING_ARGUMENT,
-                said.span,
+                given.span,
                 "`types` needs ranges of grey values and their types, as `128:255 1`",
             );
         }
