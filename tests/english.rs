@@ -57,15 +57,9 @@ const REFUSED_NAMES: &[&str] = &[
 /// Lines that may keep a refused word: the file, and a part of the line (at most 40 of them).
 const EXCEPTIONS: &[(&str, &str)] = &[];
 
-/// Folders whose names are checked later.
-const NAMES_LATER: &[&str] = &["crates/words/"];
-
-/// Offenders that each part of the tree may still have.
-const REMAINING: &[(&str, usize)] = &[("crates/base", 8), ("crates/pairs", 2), ("docs", 1)];
-
 #[test]
 fn comments_strings_and_pages_use_plain_words() {
-    let (mut counts, mut found) = (BTreeMap::<String, usize>::new(), String::new());
+    let mut found = String::new();
     let mut used = vec![false; EXCEPTIONS.len()];
     for path in files() {
         let name = path.strip_prefix(root()).unwrap().to_str().unwrap().to_string();
@@ -82,16 +76,12 @@ fn comments_strings_and_pages_use_plain_words() {
                     used[k] = true;
                     continue;
                 }
-                *counts.entry(area(&name)).or_default() += 1;
                 let number = 1 + text[..start].matches('\n').count();
                 writeln!(found, "{name}:{number}: \"{word}\": {}", line.trim()).unwrap();
             }
         }
     }
-    println!("{found}{counts:#?}");
-    let allowed = |area: &str| REMAINING.iter().find(|(name, _)| *name == area).map_or(0, |(_, n)| *n);
-    let over: Vec<_> = counts.iter().filter(|(area, n)| **n > allowed(area)).collect();
-    assert!(over.is_empty(), "words that are not plain English: {over:?}\n{found}");
+    assert!(found.is_empty(), "words that are not plain English:\n{found}");
     let unused: Vec<_> = EXCEPTIONS.iter().zip(used).filter(|(_, used)| !used).map(|(e, _)| e).collect();
     assert!(unused.is_empty(), "exceptions without a line: {unused:?}");
     assert!(EXCEPTIONS.len() <= 40, "{} exceptions, 40 at most", EXCEPTIONS.len());
@@ -102,9 +92,6 @@ fn names_use_plain_words() {
     let mut found = BTreeMap::<String, usize>::new();
     for path in files().iter().filter(|path| path.extension().is_some_and(|e| e == "rs")) {
         let name = path.strip_prefix(root()).unwrap().to_str().unwrap();
-        if NAMES_LATER.iter().any(|folder| name.starts_with(folder)) {
-            continue;
-        }
         let text = fs::read_to_string(path).unwrap();
         for word in rust_names(&text) {
             let parts = parts(word);
@@ -274,12 +261,6 @@ fn words(text: &str) -> Vec<(usize, &str)> {
 /// Whether two words are neighbours: between them stand only space, the start of a comment line or a line that is continued.
 fn only_space(between: &str) -> bool {
     between.chars().all(|c| c.is_whitespace() || "/!\\>".contains(c))
-}
-
-/// The part of the tree that a file is counted for: a crate, or a folder at the root.
-fn area(name: &str) -> String {
-    let parts: Vec<&str> = name.split('/').collect();
-    if parts[0] == "crates" { parts[..2].join("/") } else { parts[0].to_string() }
 }
 
 /// All Rust files, the pages of `docs` and the pages at the root, sorted.
