@@ -5,7 +5,7 @@ use syn::{Attribute, Expr, Lit, LitInt, LitStr, Meta, Path};
 
 /// What a field, a variant or a type says of itself.
 #[derive(Default)]
-pub struct Said {
+pub struct Attributes {
     pub about: String,
     pub unit: String,
     what: Option<String>,
@@ -43,7 +43,7 @@ pub struct Said {
     pub refused: Vec<String>,
 }
 
-impl Said {
+impl Attributes {
     /// Reads the attributes of an item.
     pub fn read(attributes: &[Attribute]) -> syn::Result<Self> {
         let mut given = Self::default();

@@ -1,6 +1,6 @@
 //! An enum: one of several words, each with words of its own behind it.
 
-use super::attributes::{Said, imports, literals, wrong};
+use super::attributes::{Attributes, imports, literals, wrong};
 use super::parts::Field;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -17,13 +17,13 @@ struct Built {
 }
 
 pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> {
-    let own = Said::read(&input.attrs)?;
+    let own = Attributes::read(&input.attrs)?;
     if let Some(head) = &own.forms {
         return forms(input, data, &own, head);
     }
     let mut built = Built::default();
     for variant in &data.variants {
-        let given = Said::read(&variant.attrs)?;
+        let given = Attributes::read(&variant.attrs)?;
         if given.skip {
             continue;
         }
@@ -45,12 +45,12 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
 }
 
 /// A variant's word.
-fn word(given: &Said, variant: &Variant) -> String {
+fn word(given: &Attributes, variant: &Variant) -> String {
     given.word.clone().unwrap_or_else(|| variant.ident.to_string().to_lowercase())
 }
 
 /// The call that takes one of the words.
-fn taken(own: &Said, words: &[String]) -> TokenStream {
+fn taken(own: &Attributes, words: &[String]) -> TokenStream {
     let (known, refused) = (literals(words), literals(&own.refused));
     let what = match own.own_what() {
         Some(what) => quote!(#what),
@@ -63,7 +63,7 @@ fn taken(own: &Said, words: &[String]) -> TokenStream {
 }
 
 /// One of several words.
-fn choice(input: &DeriveInput, own: &Said, built: &Built) -> TokenStream {
+fn choice(input: &DeriveInput, own: &Attributes, built: &Built) -> TokenStream {
     let (ident, Built { words, abouts, parts, reads }) = (&input.ident, built);
     let (known, refused, taken) = (literals(words), literals(&own.refused), taken(own, words));
     quote! {
@@ -86,7 +86,7 @@ fn choice(input: &DeriveInput, own: &Said, built: &Built) -> TokenStream {
 }
 
 /// Keywords of a line, of which each counts.
-fn keywords(input: &DeriveInput, own: &Said, built: &Built) -> TokenStream {
+fn keywords(input: &DeriveInput, own: &Attributes, built: &Built) -> TokenStream {
     let (ident, Built { words, abouts, parts, reads }) = (&input.ident, built);
     let refused = literals(&own.refused);
     quote! {
@@ -109,7 +109,7 @@ fn keywords(input: &DeriveInput, own: &Said, built: &Built) -> TokenStream {
 }
 
 /// The variant of another type that each variant names.
-fn of(input: &DeriveInput, data: &DataEnum, own: &Said) -> TokenStream {
+fn of(input: &DeriveInput, data: &DataEnum, own: &Attributes) -> TokenStream {
     let (Some(of), ident) = (&own.of, &input.ident) else { return quote!() };
     let variants: Vec<_> = data.variants.iter().map(|v| &v.ident).collect();
     quote! {
@@ -124,11 +124,11 @@ fn of(input: &DeriveInput, data: &DataEnum, own: &Said) -> TokenStream {
 }
 
 /// Forms of a line: a word says which words and keywords stand behind it.
-fn forms(input: &DeriveInput, data: &DataEnum, own: &Said, head: &str) -> syn::Result<TokenStream> {
+fn forms(input: &DeriveInput, data: &DataEnum, own: &Attributes, head: &str) -> syn::Result<TokenStream> {
     let ident = &input.ident;
     let (mut words, mut forms, mut reads) = (vec![], vec![], vec![]);
     for variant in &data.variants {
-        let (given, name) = (Said::read(&variant.attrs)?, &variant.ident);
+        let (given, name) = (Attributes::read(&variant.attrs)?, &variant.ident);
         let word = word(&given, variant);
         let (head, about) = (format!("{head} {word}").trim().to_string(), &given.about);
         let foreign = match &own.foreign {
@@ -171,7 +171,7 @@ fn fields(variant: &Variant) -> syn::Result<(Vec<TokenStream>, TokenStream)> {
     let (mut parts, mut values) = (vec![], vec![]);
     for (k, field) in variant.fields.iter().enumerate() {
         let name = field.ident.as_ref().map_or_else(|| format!("value{}", k + 1), ToString::to_string);
-        let given = Said::read(&field.attrs)?;
+        let given = Attributes::read(&field.attrs)?;
         let value = match given.skip {
             true => quote!(Default::default()),
             false => {

@@ -1,6 +1,6 @@
 //! One field as words: what the grammar says of it, and the expression that reads it.
 
-use super::attributes::{Said, wrong};
+use super::attributes::{Attributes, wrong};
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::spanned::Spanned;
@@ -8,7 +8,7 @@ use syn::{Expr, GenericArgument, Lit, PathArguments, Type};
 
 /// A field's words.
 pub struct Field {
-    pub given: Said,
+    pub given: Attributes,
     /// Its placeholders, one for each word that a value has.
     names: Vec<String>,
     what: String,
@@ -27,7 +27,7 @@ enum Shape<'a> {
 
 impl Field {
     /// A field of this name, which stands in the syntax line unless the field says another.
-    pub fn new(given: Said, name: &str, ty: &Type) -> Self {
+    pub fn new(given: Attributes, name: &str, ty: &Type) -> Self {
         let names = given.name.as_deref().unwrap_or(name).split_whitespace().map(String::from).collect();
         let what = match is_switch(ty) && given.own_what().is_none() {
             true => given.keyword.clone().flatten().unwrap_or_else(|| name.to_string()),

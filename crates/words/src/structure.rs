@@ -1,6 +1,6 @@
 //! A struct: words in order, then keywords.
 
-use super::attributes::{Said, imports, literals, wrong};
+use super::attributes::{Attributes, imports, literals, wrong};
 use super::parts::Field;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -25,10 +25,10 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
     let Fields::Named(fields) = &data.fields else {
         return wrong(ident.span(), "the fields of a line of words have names");
     };
-    let own = Said::read(&input.attrs)?;
+    let own = Attributes::read(&input.attrs)?;
     let mut built = Built::default();
     for field in &fields.named {
-        let (Some(name), given) = (&field.ident, Said::read(&field.attrs)?) else { continue };
+        let (Some(name), given) = (&field.ident, Attributes::read(&field.attrs)?) else { continue };
         built.add(name, given, &field.ty)?;
     }
     let Built { parts, keywords, begin, arms, nested, fields } = built;
@@ -71,7 +71,7 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
 }
 
 impl Built {
-    fn add(&mut self, ident: &Ident, given: Said, ty: &syn::Type) -> syn::Result<()> {
+    fn add(&mut self, ident: &Ident, given: Attributes, ty: &syn::Type) -> syn::Result<()> {
         self.fields.push(ident.clone());
         if given.skip {
             self.begin.push(quote!(let #ident = Default::default();));

@@ -31,7 +31,7 @@ pub struct Line {
     special: Special,
 }
 
-/// What a line asks for.
+/// A parsed line.
 pub struct Gap {
     groups: [GroupId; 2],
     range: [f64; 2],
@@ -56,7 +56,7 @@ impl Mix {
 }
 
 impl Line {
-    /// What it asks for, of a line whose style stands at `style`.
+    /// The action of a line whose style stands at `style`.
     ///
     /// # Errors
     /// Particles without surfaces, an empty range.
