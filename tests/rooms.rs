@@ -23,7 +23,12 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("plan", &["base", "world"]),
     ("output", &["base", "world"]),
     ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "words", "world"]),
-    ("commands", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "styles", "world"]),
+    // Readers of files with bodies and scenes, and what makes particles of them.
+    ("geometry", &["base", "lang", "mesh", "output", "styles", "world"]),
+    (
+        "commands",
+        &["base", "bonded", "geometry", "lang", "mesh", "neigh", "output", "peri", "plan", "styles", "world"],
+    ),
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "output", "plan", "styles", "world"]),
@@ -32,8 +37,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "fixes",
         &[
-            "base", "commands", "computes", "contact", "lang", "mesh", "output", "pairs", "peri", "plan",
-            "styles", "world",
+            "base", "commands", "computes", "contact", "geometry", "lang", "mesh", "output", "pairs", "peri",
+            "plan", "styles", "world",
         ],
     ),
 ];

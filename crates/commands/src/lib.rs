@@ -20,7 +20,6 @@ mod delete_atoms;
 mod delete_bonds;
 mod dimension;
 mod displace_atoms;
-mod geometry;
 mod group;
 mod lattice;
 mod mass;

@@ -2,10 +2,10 @@
 
 mod file;
 
-use super::data::text::find;
 use super::data::words::{Offset, Offsets};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
+use perigrain_geometry::text::find;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, not_here};
 use perigrain_styles::words::{At, Form, Words, read};

@@ -2,11 +2,11 @@
 
 use super::data::body::{DataFile, How};
 use super::data::properties::{Section, fill};
-use super::data::text::find;
 use super::data::words::{Adding, Ids, Offsets, extra_types, ids, outside};
 use super::data::{Column, body};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Source, Span, fail};
+use perigrain_geometry::text::find;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, id};
 use perigrain_styles::words::{At, Form, Words, read};

@@ -1,15 +1,15 @@
 //! `read_mesh`: a particle for each cell of a volume mesh, at its centroid, with its volume.
 
-use super::geometry::body::{Body, FromFile};
-use super::geometry::enter::{Newcomers, off_plane};
-use super::geometry::file::File;
-use super::geometry::mesh::cell::{Fault, Shape, measure};
-use super::geometry::mesh::types::{Source, Types};
-use super::geometry::mesh::{self, Mesh};
-use super::geometry::words::{self, Making, Options};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_base::math::cformat::general;
+use perigrain_geometry::body::{Body, FromFile};
+use perigrain_geometry::enter::{Newcomers, off_plane};
+use perigrain_geometry::file::File;
+use perigrain_geometry::mesh::cell::{Fault, Shape, measure};
+use perigrain_geometry::mesh::types::{Source, Types};
+use perigrain_geometry::mesh::{self, Mesh};
+use perigrain_geometry::words::{self, Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
 use perigrain_styles::words::{At, Form, Words, read};

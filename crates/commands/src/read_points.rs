@@ -1,12 +1,12 @@
 //! `read_points`: particles from a table of points, its columns by name.
 
-use super::geometry::body::{Body, FromFile};
-use super::geometry::file::File;
-use super::geometry::points::{Table, no_column};
-use super::geometry::rows::{Property, Rows, is_elsewhere, property};
-use super::geometry::words::{Making, Options};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_geometry::body::{Body, FromFile};
+use perigrain_geometry::file::File;
+use perigrain_geometry::points::{Table, no_column};
+use perigrain_geometry::rows::{Property, Rows, is_elsewhere, property};
+use perigrain_geometry::words::{Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
 use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Value, Words, read};
@@ -98,6 +98,11 @@ impl Value for Columns {
                 return fail(Code::CONFLICT, name.span, text);
             };
             pairs.push((name.clone(), column.clone(), p));
+        }
+        if pairs.is_empty() {
+            let text = "`columns` needs a property and the name of its column";
+            let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), text);
+            return Err(d.help("write for example `columns x X_mm`").into());
         }
         Ok(Self(pairs))
     }

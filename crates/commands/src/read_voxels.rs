@@ -1,14 +1,14 @@
 //! `read_voxels`: particles from an image of grey values, by material.
 
-use super::geometry::body::{Body, FromFile};
-use super::geometry::enter::{Newcomers, off_plane};
-use super::geometry::voxels::blocks::{Blocks, Counter};
-use super::geometry::voxels::ranges::{List, Ranges};
-use super::geometry::voxels::{self, Image};
-use super::geometry::words::{Making, Options};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
+use perigrain_geometry::body::{Body, FromFile};
+use perigrain_geometry::enter::{Newcomers, off_plane};
+use perigrain_geometry::voxels::blocks::{Blocks, Counter};
+use perigrain_geometry::voxels::ranges::{List, Ranges};
+use perigrain_geometry::voxels::{self, Image};
+use perigrain_geometry::words::{Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
 use perigrain_styles::words::{At, Form, Kind, Value, Words, read};

@@ -71,7 +71,7 @@ enum Pair {
 
 /// How types are written.
 #[derive(Words)]
-#[word(what = "value of types", refused = "labels")]
+#[word(what = "write_data types", refused = "labels")]
 enum Types {
     /// Types are numbers.
     Numeric,

@@ -4,7 +4,7 @@ use super::taken::{order, span};
 use super::{Cell, Column, Film, Frame, Grid};
 use perigrain_base::diag::{Diagnostics, Result, Source};
 use perigrain_commands::data::dump::{Snapshot, next};
-use perigrain_commands::data::text::{Lines, load, number};
+use perigrain_geometry::text::{Lines, load, number};
 use perigrain_output::file::trouble;
 use std::path::Path;
 use std::sync::Arc;

@@ -2,16 +2,15 @@
 
 use super::places::New;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_base::math::body::{Quat, turn};
+use perigrain_base::math::body::Quat;
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_lang::Args;
 use perigrain_styles::BuildCx;
 use perigrain_styles::common;
 use perigrain_styles::molecules::{self, any_turn, fits, named};
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
+use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
 use perigrain_world::template::Numbering;
 use perigrain_world::{Template, World};
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The words of `mol` and `rotate`.
@@ -41,30 +40,6 @@ impl Value for Copies {
         let c = Self { set, seed: common::marsaglia_seed(args)?, turned: None, span: word.span };
         fits(c.template(), cx, c.span)?;
         Ok(c)
-    }
-}
-
-/// A turn about an axis.
-#[derive(Words)]
-pub struct Turned {
-    #[word(name = "ANGLE", what = "the angle [degrees]")]
-    angle: f64,
-    #[word(name = "X Y Z", what = "the axis")]
-    axis: [At<f64>; 3],
-}
-
-impl Turned {
-    /// The turn.
-    ///
-    /// # Errors
-    /// An axis without a direction.
-    pub fn quat(&self) -> Result<Quat> {
-        let axis = self.axis.map(|x| x.value);
-        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length == 0.0 {
-            return fail(Code::BAD_VALUE, self.axis[0].span, "the axis must not be zero");
-        }
-        Ok(turn(axis.map(|x| x / length), self.angle * PI / 180.0))
     }
 }
 

@@ -1,13 +1,13 @@
 //! The words of `create_atoms`.
 
 use super::mesh::Mode;
-use super::molecules::{Copies, Turned};
+use super::molecules::Copies;
 use super::{group, pack};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::words::{
-    At, Axis, Forms, Fraction, Kind, MarsagliaSeed, Nullable, OneType, Seed, Units, Value, Words,
+    At, Axis, Forms, Fraction, Kind, MarsagliaSeed, Nullable, OneType, Seed, Turned, Units, Value, Words,
 };
 use perigrain_world::Region;
 

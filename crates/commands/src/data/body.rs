@@ -3,9 +3,9 @@
 use super::header::{self, Header};
 use super::more::molecule_id;
 use super::properties::{Filled, Section};
-use super::text::{Line, Lines, not_here, number, under_heading, whole};
 use super::{Column, columns};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
+use perigrain_geometry::text::{Line, Lines, not_here, number, under_heading, whole};
 use perigrain_lang::Command;
 use perigrain_world::index::twice;
 use perigrain_world::{Angle, AtomStyle, Bond, Particles};

@@ -1,7 +1,7 @@
 //! LAMMPS' text dumps (`dump atom`, `dump custom`) as they are read: snapshots, their boxes and columns.
 
-use super::text::{Line, Lines, not_here, number, whole};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_geometry::text::{Line, Lines, not_here, number, whole};
 use perigrain_world::{Boundary, Domain};
 
 /// One snapshot: its head, and where its rows begin.

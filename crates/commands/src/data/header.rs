@@ -1,7 +1,7 @@
 //! The header of a data file: how many particles and types, and the box.
 
-use super::text::{Line, Lines, not_here, number, whole};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_geometry::text::{Line, Lines, not_here, number, whole};
 
 /// The content of the header.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,6 @@ pub mod dump;
 pub mod header;
 mod more;
 pub mod properties;
-pub mod text;
 pub mod words;
 pub mod write;
 

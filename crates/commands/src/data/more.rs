@@ -1,9 +1,9 @@
 //! The sections of a data file beside Atoms: Velocities, Bonds, Angles and their coefficients.
 
 use super::body::{Reader, id};
-use super::text::{Line, not_here, number, whole};
 use super::velocity_columns;
 use perigrain_base::diag::{Code, Result, fail};
+use perigrain_geometry::text::{Line, not_here, number, whole};
 use perigrain_lang::{Command, Word};
 use perigrain_world::index::Index;
 use perigrain_world::{Angle, Bond};

@@ -2,8 +2,8 @@
 
 use super::body::{ELSEWHERE, Reader, SECTIONS, id};
 use super::more::molecule_id;
-use super::text::{Line, number, whole};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_geometry::text::{Line, number, whole};
 use perigrain_lang::Args;
 use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
 use perigrain_styles::{BuildCx, Use, UseKind};

@@ -1,7 +1,7 @@
 //! A molecule file: header and sections.
 
-use crate::data::text::{Line, Lines, not_here, number, under_heading, whole};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
+use perigrain_geometry::text::{Line, Lines, not_here, number, under_heading, whole};
 use perigrain_world::Template;
 
 const SECTIONS: [&str; 9] = [

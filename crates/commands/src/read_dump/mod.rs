@@ -4,9 +4,9 @@ mod reel;
 mod snapshot;
 
 use super::data::dump::{self, Snapshot};
-use super::data::text::{Lines, comes, find};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_geometry::text::{Lines, comes, find};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{domain, on_particles};
 use perigrain_styles::words::{At, Form, Words, read};

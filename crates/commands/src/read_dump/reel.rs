@@ -1,10 +1,10 @@
 //! Snapshots of several dumps one after the other, as `rerun` takes them.
 
 use super::super::data::dump;
-use super::super::data::text::{Lines, comes, find};
 use super::Wish;
 use super::snapshot::{enter, particles};
 use perigrain_base::diag::{Code, Result, Source, fail};
+use perigrain_geometry::text::{Lines, comes, find};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_world::World;

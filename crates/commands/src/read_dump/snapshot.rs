@@ -1,9 +1,9 @@
 //! One snapshot of a dump on its way into the world.
 
 use super::super::data::dump::Snapshot;
-use super::super::data::text::{number, whole};
 use super::{Add, FIELDS, Wish};
 use perigrain_base::diag::{Code, Result, fail};
+use perigrain_geometry::text::{number, whole};
 use perigrain_styles::common::settle;
 use perigrain_world::index::{Index, twice};
 use perigrain_world::{Domain, World};

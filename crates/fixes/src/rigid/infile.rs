@@ -4,7 +4,7 @@ use super::Declared;
 use super::bodies::orient;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::add;
-use perigrain_commands::data::text::{Line, Lines, load, number, plain, whole};
+use perigrain_geometry::text::{Line, Lines, load, number, plain, whole};
 use perigrain_lang::Word;
 use perigrain_world::World;
 

@@ -13,7 +13,7 @@ pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
 pub use values::{
     At, AtomVariable, Axis, BondType, Fraction, GlobalValue, MarsagliaSeed, Nullable, OneType, Or, PerAtom,
-    Positive, Seed, Types, Units, Value, VelocityAxis, Whole,
+    Positive, Seed, Turned, Types, Units, Value, VelocityAxis, Whole,
 };
 
 use crate::common::{choice_or_refuse, left_over, not_here, unknown_style};

@@ -1,11 +1,13 @@
 //! Types of words: how each is read, and what kind of word it is.
 
-use super::Kind;
+use super::{Kind, Words};
 use crate::BuildCx;
 use crate::common::{self, variable_param};
 use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_base::math::body::{Quat, turn};
 use perigrain_lang::{Args, Param, ValueRef, Word};
 use perigrain_world::{GroupId, Key, Region, World};
+use std::f64::consts::PI;
 use std::path::PathBuf;
 
 /// What a word of a line, or a few words, can be read as.
@@ -382,5 +384,29 @@ impl<T> At<T> {
     pub fn read(args: &mut Args, value: impl FnOnce(&mut Args) -> Result<T>) -> Result<Self> {
         let (span, unknown) = (args.here(), args.peek().is_some_and(|word| word.unknown));
         Ok(Self { value: value(args)?, span, unknown })
+    }
+}
+
+/// A turn about an axis.
+#[derive(Words)]
+pub struct Turned {
+    #[word(name = "ANGLE", what = "the angle [degrees]")]
+    angle: f64,
+    #[word(name = "X Y Z", what = "the axis")]
+    axis: [At<f64>; 3],
+}
+
+impl Turned {
+    /// The turn.
+    ///
+    /// # Errors
+    /// An axis without a direction.
+    pub fn quat(&self) -> Result<Quat> {
+        let axis = self.axis.map(|x| x.value);
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length == 0.0 {
+            return fail(Code::BAD_VALUE, self.axis[0].span, "the axis must not be zero");
+        }
+        Ok(turn(axis.map(|x| x / length), self.angle * PI / 180.0))
     }
 }

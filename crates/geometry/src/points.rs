@@ -1,7 +1,7 @@
 //! Tables of points: a line of names, then a line of numbers for each point.
 
 use super::file::place;
-use crate::data::text::{Line, Lines, number};
+use crate::text::{Line, Lines, number};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 
 /// A table, read whole.

@@ -2,7 +2,7 @@
 
 use super::super::file::{File, not_read};
 use super::{Image, Info, cut_off, locate, passable, unreadable};
-use crate::data::text::{Line, Lines, whole};
+use crate::text::{Line, Lines, whole};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::gate;
 use perigrain_lang::Word;

@@ -3,7 +3,7 @@
 use super::super::file::{File, not_read};
 use super::cell::Shape;
 use super::{Element, Mesh, Numbered, gmsh4, no_element};
-use crate::data::text::{Line, Lines, number, whole};
+use crate::text::{Line, Lines, number, whole};
 use perigrain_base::diag::{Code, Diagnostics, Result, fail};
 use std::collections::BTreeMap;
 

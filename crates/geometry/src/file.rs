@@ -1,6 +1,6 @@
 //! A file with its bytes, and messages about places in it.
 
-use crate::data::text::find_bytes;
+use crate::text::find_bytes;
 pub use perigrain_base::diag::brought::{broken, not_read, place};
 use perigrain_base::diag::{Diagnostic, Diagnostics, FileId, Result, Source, Span};
 use perigrain_lang::Word;

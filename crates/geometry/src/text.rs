@@ -132,7 +132,8 @@ pub fn comes(w: &World, word: &Word, what: &str) -> Result<()> {
     Err(absent(word, &format!("the {what} `{name}` cannot be read: it is not there")))
 }
 
-pub(crate) fn absent(word: &Word, text: &str) -> Diagnostics {
+/// The refusal of a word whose thing is not in perigrain.
+pub fn absent(word: &Word, text: &str) -> Diagnostics {
     let d = Diagnostic::error(Code::NO_FILE, word.span, text);
     d.help("it is looked for in the working folder and beside the deck").into()
 }

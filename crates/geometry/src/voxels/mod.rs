@@ -7,7 +7,7 @@ mod stack;
 mod tiff;
 mod vti;
 
-use crate::data::text::absent;
+use crate::text::absent;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail, unseen};
 use perigrain_base::gate;
 use perigrain_lang::Word;

@@ -1,12 +1,11 @@
 //! The keywords that all bodies from files take: size, turn and place, type, density, group.
 
-use crate::create_atoms::molecules::Turned;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::body::{Quat, turned};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::common::free_id;
-use perigrain_styles::words::{At, OneType, Words};
+use perigrain_styles::words::{At, OneType, Turned, Words};
 
 /// Where the numbers of a file go: first they are multiplied, then turned about the origin, then shifted.
 #[derive(Clone, Copy)]

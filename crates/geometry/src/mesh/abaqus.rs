@@ -4,7 +4,7 @@ use super::super::file::not_read;
 use super::cell::Shape;
 use super::gmsh::unsigned;
 use super::{Element, Mesh, Numbered, no_element};
-use crate::data::text::{Line, Lines, number};
+use crate::text::{Line, Lines, number};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 
 /// Keywords that make or move nodes and elements in other ways.

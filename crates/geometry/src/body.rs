@@ -1,9 +1,9 @@
 //! The act of a line that makes particles from a file, as `read_mesh`, `read_points` and `read_voxels` have it in common.
 
 use super::words::Making;
-use crate::Act;
 use perigrain_base::diag::Result;
 use perigrain_styles::ActCx;
+use perigrain_styles::command::Act;
 
 /// A parsed line.
 pub trait Body {

@@ -2,7 +2,7 @@
 
 use super::tiff::{self, Page};
 use super::{Image, Info, locate, passable, unreadable};
-use crate::data::text::absent;
+use crate::text::absent;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::gate;
 use perigrain_lang::Word;

@@ -6,5 +6,6 @@ pub mod file;
 pub mod mesh;
 pub mod points;
 pub mod rows;
+pub mod text;
 pub mod voxels;
 pub mod words;

@@ -2,7 +2,7 @@
 
 use super::Element;
 use super::gmsh::{Reader, dimension, unsigned};
-use crate::data::text::{Line, whole};
+use crate::text::{Line, whole};
 use perigrain_base::diag::{Code, Result, fail};
 
 /// Reads the physical groups of all entities.
