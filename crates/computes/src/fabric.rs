@@ -39,8 +39,6 @@ impl Style for Fabric {
 
 #[derive(Words)]
 struct Line {
-    /// Which pairs count: those of spheres that touch, or those within the cutoff of their types, of which those that do not
-    /// touch have no force.
     cutoff: Cutoff,
     #[word(name = "tensor", least = 1)]
     tensors: Vec<Tensor>,

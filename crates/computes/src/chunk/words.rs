@@ -145,7 +145,6 @@ pub struct Spec {
 
 #[derive(Words)]
 pub struct Line {
-    /// The property that determines the chunk.
     #[word(name = "value", what = "a style of chunks, as `bin/1d` or `type`")]
     what: At<Or<Cut, PerParticle>>,
     /// Particles outside this region belong to no chunk.
