@@ -361,7 +361,7 @@ mod tests {
             let command = if e.page.kind == "command" { e.page.name } else { e.page.kind };
             let own = e.form.index_of(command) == Some(0);
             assert!(
-                own || ["pair_style", "bond_style", "command"].contains(&e.page.kind),
+                own || ["pair_style", "bond_style", "dump", "command"].contains(&e.page.kind),
                 "{}: {:?}",
                 e.page.title(),
                 e.form

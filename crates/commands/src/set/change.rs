@@ -160,6 +160,10 @@ impl OfVolume {
 
 /// Takes a bond type.
 fn bond(a: &mut Args, cx: &BuildCx) -> Result<u16> {
+    // Particles without bonds are refused at the keyword, whatever the type.
+    if !cx.world.particles.style.bonded {
+        return a.integer("the bond type").map(|_| 1);
+    }
     common::bond_type(a, cx.world.bonds.types)
 }
 

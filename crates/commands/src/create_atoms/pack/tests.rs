@@ -115,7 +115,7 @@ fn zero_overlap_shrinks_diameters() {
     let mut w = box_of(6.0);
     let printed = act(&mut w, "create_atoms 1 pack b 0.6 5 overlap 0 sizes uniform 0.7 1.1", &[]).unwrap();
     assert_eq!(printed[1], "  overlap of spheres that touch 0 % on average, 0 % at most");
-    assert!(printed[2].contains("smaller than asked for"), "{printed:?}");
+    assert!(printed[2].contains("smaller than requested"), "{printed:?}");
     let r: f64 = w.particles.radius.iter().copied().fold(0.0, f64::max);
     assert!(r < 0.55 && r > 0.52);
 }
