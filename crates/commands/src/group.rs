@@ -47,6 +47,7 @@ impl Style for Group {
 
 #[derive(Words)]
 #[word(forms = "group ID", what = "style of group", style)]
+#[allow(clippy::large_enum_variant)] // there is one at a time, while a line is read
 enum Line {
     /// Particles of these types.
     Type(OfTypes),

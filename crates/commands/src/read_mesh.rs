@@ -120,10 +120,10 @@ impl Reading {
         let types = cx.world.types;
         let kinds = match &self.types {
             Some(by) => by.of(&mesh, &used, self.making.kind, types)?,
-            None => vec![self.making.kind.unwrap_or(1); mesh.len()],
+            None => vec![self.making.kind.unwrap_or(1); mesh.count()],
         };
         self.log_summary(cx, &mesh, &used);
-        let chosen: Vec<usize> = (0..mesh.len()).filter(|&k| used[k] && kinds[k] != 0).collect();
+        let chosen: Vec<usize> = (0..mesh.count()).filter(|&k| used[k] && kinds[k] != 0).collect();
         let mut new = Newcomers::new(cx, &self.making, chosen.len())?;
         let mut corners: Vec<[f64; 3]> = vec![];
         for k in chosen {
@@ -154,7 +154,7 @@ impl Reading {
         if used.contains(&true) {
             return Ok(used);
         }
-        let (wanted, help) = match (solid, mesh.len()) {
+        let (wanted, help) = match (solid, mesh.count()) {
             (true, 1..) => ("solid cells", "`thickness H` makes particles of triangles and quads"),
             (true, 0) => ("cells", "Gmsh writes only what belongs to a physical group, where there is one"),
             (false, _) if cx.world.settings.two_dimensional => {

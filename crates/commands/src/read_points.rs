@@ -189,7 +189,7 @@ impl Reading {
         let (names, head) = Table::head(text)?;
         let (wanted, others) = self.wanted(cx, &names, head)?;
         let table = Table::read(text, wanted.iter().map(|(k, _)| *k).collect())?;
-        cx.print(format!("  {} points", table.len()));
+        cx.print(format!("  {} points", table.count()));
         if !others.is_empty() {
             cx.print(format!("  columns left out: {}", others.join(", ")));
         }

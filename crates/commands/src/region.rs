@@ -72,6 +72,7 @@ impl Style for RegionCommand {
 
 #[derive(Words)]
 #[word(forms = "region ID", what = "region style", style, refused = "grid tri")]
+#[allow(clippy::large_enum_variant)] // there is one at a time, while a line is read
 enum Line {
     /// A box along the axes.
     Block(shapes::Block),

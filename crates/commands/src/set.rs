@@ -56,6 +56,7 @@ struct Line {
 /// Which particles are set.
 #[derive(Words)]
 #[word(what = "keyword of set")]
+#[allow(clippy::large_enum_variant)] // there is one at a time, while a line is read
 enum Choice {
     /// Those with these ids.
     Atom(#[word(name = "A*B")] Ids),

@@ -172,7 +172,8 @@ impl ComputeStyle for CauchyAtom {
         } else {
             let OfNumbers { law: Law::Neohooke, young, nu: At { value: nu, span, unknown }, rest } =
                 read(args, cx)?;
-            if !unknown && !(nu > -1.0 && nu < 0.5) {
+            let possible = nu > -1.0 && nu < 0.5;
+            if !unknown && !possible {
                 return fail(Code::BAD_VALUE, span, "nu must lie between -1 and 0.5");
             }
             (Elastic { young, nu }, rest)

@@ -57,6 +57,7 @@ struct Line {
 /// The motion of the particles.
 #[derive(Words)]
 #[word(what = "motion")]
+#[allow(clippy::large_enum_variant)] // there is one at a time, while a line is read
 enum Motion {
     /// x = x0 + V t, v = V.
     Linear(#[word(name = "Vx Vy Vz", what = "{}")] [Nullable<f64>; 3]),

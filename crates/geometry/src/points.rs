@@ -106,7 +106,7 @@ impl Table {
     }
 
     /// The number of points.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.lines.len()
     }
 
@@ -155,7 +155,7 @@ mod tests {
             let (head, _) = Table::head(text).unwrap();
             assert_eq!(head.len(), names, "{text}");
             let t = Table::read(text, (0..names).collect()).unwrap();
-            assert_eq!((t.len(), t.row(0).len()), (1, names), "{text}");
+            assert_eq!((t.count(), t.row(0).len()), (1, names), "{text}");
         }
         assert_eq!(Table::head("\"a, b\",c\n").unwrap().0, ["a, b", "c"]);
     }

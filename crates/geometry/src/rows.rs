@@ -122,7 +122,7 @@ impl Rows<'_> {
             }
             x.map(f64::to_bits)
         };
-        let mut order: Vec<usize> = (0..self.table.len()).collect();
+        let mut order: Vec<usize> = (0..self.table.count()).collect();
         order.sort_unstable_by_key(|&k| (at(k), k));
         let pairs = order.windows(2).filter(|w| at(w[0]) == at(w[1]));
         let Some((second, first)) = pairs.map(|w| (w[1], w[0])).min() else { return Ok(()) };
@@ -199,9 +199,9 @@ impl Rows<'_> {
         let types = cx.world.types;
         let style = cx.world.particles.style;
         let placement = self.making.placement;
-        let mut new = Newcomers::new(cx, self.making, self.table.len())?;
+        let mut new = Newcomers::new(cx, self.making, self.table.count())?;
         let mut kept = vec![];
-        for k in 0..self.table.len() {
+        for k in 0..self.table.count() {
             let p = self.point(k, types)?;
             let ball = p.diameter.map(|d| PI / 6.0 * d * d * d);
             let volume = p.volume.or(ball).unwrap_or(1.0);

@@ -1,5 +1,7 @@
 //! A law that the crate does not have, in one file: a spring that stiffens. It runs on lattices and in lists, whole and while it breaks.
 
+#![allow(clippy::unwrap_used)]
+
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, cross, dot};
 use perigrain_peri::families::*;

@@ -36,6 +36,7 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
     let body = if own.keywords { keywords(input, &own, &built) } else { choice(input, &own, &built) };
     let (of, imports) = (of(input, data, &own), imports());
     Ok(quote! {
+        #[allow(clippy::needless_question_mark)]
         const _: () = {
             #imports
             #body
@@ -149,6 +150,7 @@ fn forms(input: &DeriveInput, data: &DataEnum, own: &Attributes, head: &str) -> 
     }
     let (taken, imports) = (taken(own, &words), imports());
     Ok(quote! {
+        #[allow(clippy::needless_question_mark)]
         const _: () = {
             #imports
             impl Forms for #ident {

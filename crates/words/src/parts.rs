@@ -98,11 +98,7 @@ impl Field {
         }
     }
 
-    fn of_one<'a>(
-        &self,
-        ty: &Type,
-        names: &mut dyn Iterator<Item = &'a String>,
-    ) -> syn::Result<Vec<TokenStream>> {
+    fn of_one(&self, ty: &Type, names: &mut dyn Iterator<Item = &String>) -> syn::Result<Vec<TokenStream>> {
         if let Shape::Placed(of) = shape(ty)? {
             return self.of_one(of, names);
         }

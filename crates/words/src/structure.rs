@@ -41,6 +41,7 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
         }),
     };
     Ok(quote! {
+        #[allow(clippy::needless_question_mark)]
         const _: () = {
             #imports
             impl Words for #ident {

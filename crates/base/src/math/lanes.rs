@@ -48,7 +48,7 @@ pub trait Lanes<const N: usize>: Real {
     /// # Panics
     /// If the column ends before.
     #[inline(always)]
-    fn from_column(self, column: &[f64], at: usize) -> Self {
+    fn like_column(self, column: &[f64], at: usize) -> Self {
         // SAFETY: as many numbers as there are lanes; there is a value in lanes, so the processor has what the form needs.
         unsafe { Self::read(column[at..at + N].as_ptr()) }
     }

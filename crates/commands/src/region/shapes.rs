@@ -224,7 +224,7 @@ impl<'a> Reader<'a> {
     fn bound(&mut self, bound: &Bound, d: usize, upper: bool) -> f64 {
         let domain = self.cx.world.domain.as_ref();
         match (bound, domain) {
-            (Bound::Number(p), _) => return self.number(p, self.spacing[d]),
+            (Bound::Number(p), _) => self.number(p, self.spacing[d]),
             // Of a leaning box, the upright one around it.
             (Bound::Edge, Some(domain)) => {
                 self.count += 1;

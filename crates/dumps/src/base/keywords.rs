@@ -123,9 +123,12 @@ enum Last {
 }
 
 /// A comparison.
-struct Operator(fn(f64, f64) -> bool);
+struct Operator(Comparison);
 
-const OPERATORS: [(&str, fn(f64, f64) -> bool); 7] = [
+/// Whether a value compares so with a threshold.
+type Comparison = fn(f64, f64) -> bool;
+
+const OPERATORS: [(&str, Comparison); 7] = [
     ("<", |a, b| a < b),
     ("<=", |a, b| a <= b),
     (">", |a, b| a > b),

@@ -238,7 +238,7 @@ impl<'a> Reader<'a> {
             let text = format!("element {id} has {} nodes, not {}", kind.nodes(), nodes.len());
             return fail(Code::SYNTAX, line.span(), text);
         }
-        let cell = self.mesh.len();
+        let cell = self.mesh.count();
         self.mesh.add(kind, &nodes, id, line.span())?;
         if matches!(kind, Element::Cell(..)) {
             self.cells.list.push((id, cell as u32));

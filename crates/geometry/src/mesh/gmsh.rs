@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
                 0 => 0,
                 _ => whole(&line, line.word(3), "the physical group")?,
             };
-            let cell = self.mesh.len() as u32;
+            let cell = self.mesh.count() as u32;
             self.element(&line, id, kind, 3 + tags)?;
             if let (Element::Cell(shape, _), true) = (kind, physical != 0) {
                 self.groups.entry((dimension(shape), physical)).or_default().push(cell);

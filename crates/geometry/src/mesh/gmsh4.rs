@@ -76,7 +76,7 @@ pub fn elements<'a>(r: &mut Reader<'a>, title: &Line<'a>) -> Result<()> {
         for _ in 0..count {
             let line = r.line(title)?;
             let id = unsigned(&line, line.word(0), "the number of the element")?;
-            let cell = r.mesh.len() as u32;
+            let cell = r.mesh.count() as u32;
             r.element(&line, id, kind, 1)?;
             have += 1;
             let Element::Cell(shape, _) = kind else { continue };

@@ -96,7 +96,7 @@ impl Mesh {
     }
 
     /// The number of cells.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.shapes.len()
     }
 
@@ -118,7 +118,7 @@ impl Mesh {
             corners.sort_unstable();
             corners
         };
-        let mut order: Vec<u32> = (0..self.len() as u32).collect();
+        let mut order: Vec<u32> = (0..self.count() as u32).collect();
         // The sum of corners first: sorted copies of them are made for the few that share it.
         let sum = |k: u32| self.corners(k as usize).iter().map(|c| u64::from(*c)).sum::<u64>();
         order.sort_unstable_by_key(|&k| (self.shapes[k as usize], sum(k), k));

@@ -32,7 +32,7 @@ const VTK: &str = "# vtk DataFile Version 3.0\ntets\nASCII\nDATASET UNSTRUCTURED
                    0 7 8\nVECTORS n float\n0 0 0 0 0 0 0 0 0\nPOINT_DATA 5\nSCALARS t float\nLOOKUP_TABLE default\n0 0 0 0 0\n";
 
 fn two_tetrahedra(mesh: &Mesh) {
-    assert_eq!((mesh.len(), mesh.points.len()), (2, 5));
+    assert_eq!((mesh.count(), mesh.points.len()), (2, 5));
     let at = |k: usize| mesh.corners(k).iter().map(|p| mesh.points[*p as usize]).collect::<Vec<_>>();
     let (v, _) = cell::measure(Shape::Tetrahedron, &at(0)).unwrap();
     let (w, x) = cell::measure(Shape::Tetrahedron, &at(1)).unwrap();

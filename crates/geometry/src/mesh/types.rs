@@ -72,13 +72,13 @@ impl Types {
     /// # Errors
     /// Groups that the file has not, cells in two groups of different types, cells in none.
     pub fn of(&self, mesh: &Mesh, used: &[bool], default: Option<u16>, types: usize) -> Result<Vec<u16>> {
-        let mut kinds: Vec<Option<u16>> = vec![None; mesh.len()];
+        let mut kinds: Vec<Option<u16>> = vec![None; mesh.count()];
         match &self.by {
             By::Cell(word) => self.by_array(mesh, used, word, types, &mut kinds)?,
             _ if self.map.is_empty() => self.by_number(mesh, used, types, &mut kinds)?,
             _ => self.by_name(mesh, used, &mut kinds)?,
         }
-        let without = || (0..mesh.len()).filter(|&k| used[k] && kinds[k].is_none());
+        let without = || (0..mesh.count()).filter(|&k| used[k] && kinds[k].is_none());
         let (count, first) = (without().count(), without().next());
         match (first, default) {
             (None, _) | (_, Some(_)) => {}

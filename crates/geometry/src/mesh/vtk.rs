@@ -319,5 +319,5 @@ pub fn on_cells(arrays: Vec<(String, Vec<f64>)>, grid: &Grid, mesh: &Mesh) -> Ve
         values.into_iter().zip(&kept).filter(|(_, keep)| **keep).map(|(x, _)| x).collect()
     };
     let arrays = arrays.into_iter().filter(|(_, values)| values.len() == kept.len());
-    arrays.map(|(name, values)| (name, pick(values))).filter(|(_, v)| v.len() == mesh.len()).collect()
+    arrays.map(|(name, values)| (name, pick(values))).filter(|(_, v)| v.len() == mesh.count()).collect()
 }

@@ -33,7 +33,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh> {
             places: vec![],
         };
         check(grid.ends.len(), count, "offsets", at)?;
-        let first = mesh.len();
+        let first = mesh.count();
         cells(&mut mesh, &grid, base, at)?;
         let own = document.arrays(piece, "CellData").filter(|a| a.components == 1);
         let own =

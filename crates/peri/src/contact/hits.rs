@@ -96,11 +96,11 @@ impl InLanes for Push<'_> {
         // SAFETY: the caller's promise.
         let zero = unsafe { V::all(0.0) };
         for at in (0..hits.count).step_by(N) {
-            let r = zero.from_column(&hits.square, at).sqrt();
-            let gap = zero.from_column(&hits.contact, at) - r;
+            let r = zero.like_column(&hits.square, at).sqrt();
+            let gap = zero.like_column(&hits.contact, at) - r;
             // No direction where two are at the same place.
             let apart = r.at_least(zero.like(f64::MIN_POSITIVE));
-            let pull = (zero.from_column(&hits.stiff, at) * gap / r).keep(apart);
+            let pull = (zero.like_column(&hits.stiff, at) * gap / r).keep(apart);
             pull.to_column(&mut hits.pull, at);
         }
     }

@@ -133,5 +133,5 @@ fn leaning<const N: usize, V: Lanes<N>>(d: [V; 3], bounds: &Bounds) -> [V; 3] {
         let near = bounds.nearest([lanes[0][k], lanes[1][k], lanes[2][k]]);
         (0..3).for_each(|axis| lanes[axis][k] = near[axis]);
     }
-    [d[0].from_column(&lanes[0], 0), d[1].from_column(&lanes[1], 0), d[2].from_column(&lanes[2], 0)]
+    [d[0].like_column(&lanes[0], 0), d[1].like_column(&lanes[1], 0), d[2].like_column(&lanes[2], 0)]
 }

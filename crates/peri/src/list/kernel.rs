@@ -263,7 +263,7 @@ pub fn stretch<const N: usize, V: Lanes<N>, const S: bool>(zero: V, b: &mut Bloc
     macro_rules! fill {
         (|$z:ident| $e:expr) => {{
             for at in steps::<N>(count) {
-                let $z = zero.from_column(z, at);
+                let $z = zero.like_column(z, at);
                 $e.to_column(out, at);
             }
         }};
@@ -319,10 +319,10 @@ pub unsafe fn scatter<const N: usize, V: Lanes<N>, const LEAST: bool>(b: &Block,
         let mut least = zero.like(f64::INFINITY);
         for at in steps::<N>(b.count) {
             let out = [
-                zero.from_column(&b.out[0], at),
-                zero.from_column(&b.out[1], at),
-                zero.from_column(&b.out[2], at),
-                if LEAST { zero.from_column(&b.measure, at) } else { zero },
+                zero.like_column(&b.out[0], at),
+                zero.like_column(&b.out[1], at),
+                zero.like_column(&b.out[2], at),
+                if LEAST { zero.like_column(&b.measure, at) } else { zero },
             ];
             let rows = V::to_rows(out);
             for lane in 0..N {

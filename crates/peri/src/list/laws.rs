@@ -106,10 +106,10 @@ fn stretched<const N: usize, V: Lanes<N>>(
     at: usize,
     [s, back, limited]: [bool; 3],
 ) -> Stretch<V> {
-    let share = zero.from_column(&b.share, at);
-    let s = if s { zero.from_column(&b.s, at) } else { share };
-    let before = if back { closed(zero.from_column(&b.before, at)).s } else { s };
-    let limit = if limited { zero.from_column(&b.limit, at) } else { s };
+    let share = zero.like_column(&b.share, at);
+    let s = if s { zero.like_column(&b.s, at) } else { share };
+    let before = if back { closed(zero.like_column(&b.before, at)).s } else { s };
+    let limit = if limited { zero.like_column(&b.limit, at) } else { s };
     Stretch { s, share, inverse: zero.like(1.0) - share, before, limit }
 }
 
@@ -212,7 +212,7 @@ impl<W: BondLaw> InLanes for Pull<'_, '_, '_, W> {
                 let ends: Ends<V> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
                 let before: [V; 2] = recall(a, place, W::MEMORY);
                 let mut now = before;
-                let omega = zero.from_column(&b.omega, at);
+                let omega = zero.like_column(&b.omega, at);
                 let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
                 if W::MEMORY > 0 && a.keep && (a.known || V::any(W::flows(&ends))) {
                     woken = true;
@@ -223,12 +223,12 @@ impl<W: BondLaw> InLanes for Pull<'_, '_, '_, W> {
                         k += 1;
                     }
                 }
-                let weight = zero.from_column(&b.weight, at);
-                let factor = weight * (volume * zero.from_column(&b.volume, at));
+                let weight = zero.like_column(&b.weight, at);
+                let factor = weight * (volume * zero.like_column(&b.volume, at));
                 let (near, far) = (near * factor, far * factor);
                 let mut d = 0;
                 while d < 3 {
-                    let y = zero.from_column(&b.y[d], at);
+                    let y = zero.like_column(&b.y[d], at);
                     sum[d].add(at, near, y);
                     (far * y).to_column(&mut b.out[d], at);
                     d += 1;
@@ -268,13 +268,13 @@ impl<T: Term> InLanes for AddUp<'_, '_, '_, T> {
             let mut sum = Sum([zero; 2]);
             for at in steps::<N>(b.count) {
                 let place = b.place(at);
-                let s = zero.from_column(&b.s, at);
+                let s = zero.like_column(&b.s, at);
                 let s = Stretch { s, share: s, inverse: s, before: s, limit: s };
                 let ends: Ends<V> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
                 let memory = recall(a, place, T::MEMORY);
-                let (near, far) = T::terms(&s, zero.from_column(&b.omega, at), &ends, &memory);
-                let one = zero.from_column(&b.weight, at) * zero.from_column(&b.square, at);
-                sum.add(at, one * zero.from_column(&b.volume, at), near);
+                let (near, far) = T::terms(&s, zero.like_column(&b.omega, at), &ends, &memory);
+                let one = zero.like_column(&b.weight, at) * zero.like_column(&b.square, at);
+                sum.add(at, one * zero.like_column(&b.volume, at), near);
                 (one * volume * far).to_column(&mut b.out[0], at);
             }
             for (target, out) in b.target[..b.count].iter().zip(&b.out[0]) {
@@ -328,15 +328,15 @@ impl<W: BondLaw> InLanes for Energies<'_, '_, '_, W> {
                     Angles { now: other[0], unrelaxed: other[1], relaxing: relaxing[1] },
                 ];
                 let mut memory = recall(a, place, W::MEMORY);
-                let omega = zero.from_column(&b.omega, at);
-                let weight = zero.from_column(&b.weight, at);
-                let partner_volume = zero.from_column(&b.volume, at);
+                let omega = zero.like_column(&b.omega, at);
+                let weight = zero.like_column(&b.weight, at);
+                let partner_volume = zero.like_column(&b.volume, at);
                 let both = volume * partner_volume;
                 let (mut near, mut far) = W::squares(&s, omega, &angles, &memory, &a.moment);
                 if look.states {
                     (near, far) = (near * ends[0][1], far * ends[1][1]);
                 }
-                let one = weight * zero.from_column(&b.square, at) * look.half;
+                let one = weight * zero.like_column(&b.square, at) * look.half;
                 (near, far) = match look.newton {
                     true => (near * one * both, far * one * both),
                     false => (near * one * partner_volume, far * one * volume),
@@ -351,9 +351,9 @@ impl<W: BondLaw> InLanes for Energies<'_, '_, '_, W> {
                 (near * push * both).to_column(&mut b.out[2], at);
                 (far * push * both).to_column(&mut b.out[3], at);
                 let y = [
-                    zero.from_column(&b.y[0], at),
-                    zero.from_column(&b.y[1], at),
-                    zero.from_column(&b.y[2], at),
+                    zero.like_column(&b.y[0], at),
+                    zero.like_column(&b.y[1], at),
+                    zero.like_column(&b.y[2], at),
                 ];
                 let p = [pull * y[0], pull * y[1], pull * y[2]];
                 let mut k = 0;

@@ -141,8 +141,8 @@ fn tiles_give_the_forces_of_lists() {
     for (k, (size, horizon)) in BRICKS.into_iter().enumerate() {
         let x0 = brick(size);
         for kind in if k == 0 { &LAWS[..] } else { &LAWS[..2] } {
-            let (tiled, bonds) = forces(&x0, families((&x0, horizon), *kind, Layout::Auto, true));
-            let (listed, same) = forces(&x0, families((&x0, horizon), *kind, Layout::List, true));
+            let (tiled, bonds) = forces(&x0, families((&x0, horizon), kind, Layout::Auto, true));
+            let (listed, same) = forces(&x0, families((&x0, horizon), kind, Layout::List, true));
             assert_eq!(bonds, same, "{kind:?}");
             let listed = listed.iter().flatten().flatten();
             let largest = listed.clone().fold(0.0, |most: f64, f| most.max(f.abs()));
@@ -163,10 +163,10 @@ fn same_bits_for_any_threads_with_and_without_skipping() {
             let layouts =
                 if LAWS[..3].contains(kind) { &[Layout::Auto, Layout::List][..] } else { &[Layout::Auto] };
             for &layout in layouts {
-                let once = forces(&x0, families((&x0, horizon), *kind, layout, true));
+                let once = forces(&x0, families((&x0, horizon), kind, layout, true));
                 for (count, skip) in [(1, false), (3, true), (7, false)] {
                     par::set_threads(count);
-                    let again = forces(&x0, families((&x0, horizon), *kind, layout, skip));
+                    let again = forces(&x0, families((&x0, horizon), kind, layout, skip));
                     par::set_threads(1);
                     assert_eq!(once, again, "{kind:?}, {layout:?}, {count} threads, skipping {skip}");
                 }
