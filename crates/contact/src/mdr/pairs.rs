@@ -63,7 +63,7 @@ impl Meetings {
         self.seen.iter_mut().zip(&self.open).for_each(|(c, open)| c.open = *open);
     }
 
-    /// Evaluates all contacts; `precomputed` receives the results that the rest of the law needs: [`PRECOMPUTED`] numbers
+    /// Evaluates all contacts; `precomputed` receives the results that the rest of the law needs: [`super::PRECOMPUTED`] numbers
     /// at the end of each row of `width`.
     pub fn press(
         &mut self,

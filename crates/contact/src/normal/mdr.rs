@@ -1,5 +1,5 @@
 //! `mdr E nu Y gamma psi_b e` (Zunker & Kamrin 2024): plastic grains; the contact histories hold the results
-//! of [`super::super::powder`].
+//! of [`crate::mdr`].
 
 use super::hertz::Hertz;
 use super::{Bound, Geometry, Normal, NormalLaw, Number, Push, Real, Role, Style};
