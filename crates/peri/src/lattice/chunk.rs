@@ -102,7 +102,7 @@ pub const CELLS: usize = 8;
 /// Energy and the six components of the virial.
 pub const SUMS: usize = 7;
 
-/// Degree that stands for the closed form; higher ones are those of [`wide`].
+/// Degree that stands for the closed form; higher ones are those of `wide`.
 pub const CLOSED: usize = 8;
 
 /// Displacements of some neighbouring cells, from the chunk's cell `here` on.

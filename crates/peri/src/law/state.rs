@@ -29,7 +29,7 @@ pub struct SiteState {
     pub touched: Vec<u8>,
     /// Whether a lattice row has ever had a bond with something to remember: first and last coordinate.
     pub awake: Vec<(i32, i32)>,
-    /// What the kernels read: up to [`COLUMNS`] columns, a stride apart.
+    /// What the kernels read: up to `COLUMNS` columns, a stride apart.
     #[serde(skip)]
     pub columns: Vec<f64>,
     /// What bonds remembered before this evaluation, where LAMMPS' energies need it.
