@@ -35,6 +35,8 @@ pub trait BondLaw: Sync + 'static {
     const LAZY: bool = false;
     /// Whether columns are those of linear elastic sites, arithmetic alone where all are of one material.
     const LINEAR: bool = false;
+    /// Whether sites remember a dilatation that relaxes.
+    const RELAXES: bool = false;
     /// The norm that says how much flows, if any does.
     const NORM: Option<Sum> = None;
     /// The pull on the first end and on the second, over ω w V; `memory` is brought up to date.

@@ -83,7 +83,7 @@ pub fn dilatations<W: BondLaw>(settling: &Settling, state: &mut SiteState, sites
     if settling.counted {
         state.freed.heat.resize(state.freed.gone.len(), 0.0);
     }
-    each(settling, state, sites, (W::COLUMNS, true), |site| {
+    each::<W, false>(settling, state, sites, |site| {
         site.theta = W::dilatation(site);
         W::columns(site)
     });
@@ -91,78 +91,86 @@ pub fn dilatations<W: BondLaw>(settling: &Settling, state: &mut SiteState, sites
 
 /// From the sums of norms to how much of each site's trial state flows, under a law.
 pub fn flow<W: BondLaw>(settling: &Settling, state: &mut SiteState, sites: &Sites) {
-    each(settling, state, sites, (W::COLUMNS, false), W::flow);
+    each::<W, true>(settling, state, sites, W::flow);
 }
 
-/// Settles each site that has bonds; if `clear`, others have no dilatation and zeros in `count` columns.
-fn each(
+/// Settles each site that has bonds; until they `FLOW`, others have no dilatation and zeros in their columns. What a law leaves as it is stays where
+/// it is: bodies of many sites have these columns in slow memory.
+fn each<W: BondLaw, const FLOW: bool>(
     settling: &Settling,
     state: &mut SiteState,
     sites: &Sites,
-    (count, clear): (usize, bool),
     settle: impl Fn(&mut Site) -> [f64; COLUMNS] + Sync,
 ) {
     let SiteState { weighted, spread, theta, before, unrelaxed, plastic, freed, columns, sums, .. } = state;
     let Freed { gone, slip, spread: gone_spread, sum: sum_before, heat } = freed;
     let of = |column: &[f64], at: usize| column.get(at).copied().unwrap_or(0.0);
-    let numbers = (sites.own(theta), sites.own(before), sites.own(unrelaxed), sites.own(plastic));
+    let relaxing = (!FLOW && W::RELAXES).then(|| (sites.own(before), sites.own(unrelaxed)));
+    let numbers = (sites.own(theta), relaxing, FLOW.then(|| sites.own(plastic)));
     let broken = (sites.some(slip), sites.some(sum_before), sites.some(heat));
     let columns = sites.columns(columns);
     par::each(
         (numbers, broken, columns),
-        |start, ((theta, before, unrelaxed, plastic), broken, mut columns)| {
+        |start, ((theta, mut relaxing, mut plastic), broken, mut columns)| {
             let (mut slip, mut sum_before, mut heat) = broken;
             for k in 0..theta.len() {
                 let (at, p) = (sites.pad + start + k, sites.particle[start + k]);
                 let m = weighted[at];
                 if p == u32::MAX || m <= 0.0 {
-                    if clear {
+                    if !FLOW {
                         theta[k] = 0.0;
-                        put(&mut columns, k, &[0.0; COLUMNS], count);
+                        put(&mut columns, k, &[0.0; COLUMNS], W::COLUMNS);
                     }
                     continue;
                 }
                 let own = settling.stiffness[usize::from(sites.kind[p as usize]) - 1];
                 let lost = of(gone, at);
-                let of_broken = |column: &Option<&mut [f64]>| column.as_ref().map_or(0.0, |column| column[k]);
+                let one = |column: &Option<&mut [f64]>| column.as_ref().map_or(0.0, |column| column[k]);
+                let unrelaxed = relaxing.as_ref().map_or((0.0, 0.0), |(before, left)| (before[k], left[k]));
                 let mut site = Site {
                     own,
                     weighted: m,
-                    spread: spread[at],
+                    spread: if FLOW { spread[at] } else { 0.0 },
                     sum: sums[at],
                     theta: theta[k],
-                    unrelaxed: Unrelaxed { before: before[k], left: unrelaxed[k] },
-                    plastic: plastic[k],
+                    unrelaxed: Unrelaxed { before: unrelaxed.0, left: unrelaxed.1 },
+                    plastic: one(&plastic),
                     free: (lost > 0.0).then(|| Free {
                         m,
                         gone: lost.min(m),
-                        slip: of_broken(&slip),
+                        slip: one(&slip),
                         bulk: own.bulk,
                         shear: own.shear,
                     }),
                     gone_spread: of(gone_spread, at),
-                    slip: of_broken(&slip),
-                    sum_before: of_broken(&sum_before),
-                    heat: of_broken(&heat),
+                    slip: one(&slip),
+                    sum_before: one(&sum_before),
+                    heat: one(&heat),
                     moment: &settling.moment,
                     advance: settling.advance,
                 };
-                put(&mut columns, k, &settle(&mut site), count);
+                put(&mut columns, k, &settle(&mut site), W::COLUMNS);
                 theta[k] = site.theta;
-                (before[k], unrelaxed[k]) = (site.unrelaxed.before, site.unrelaxed.left);
-                plastic[k] = site.plastic;
+                if let Some((before, left)) = &mut relaxing {
+                    (before[k], left[k]) = (site.unrelaxed.before, site.unrelaxed.left);
+                }
+                set(&mut plastic, k, site.plastic);
                 if site.free.is_some() {
-                    let kept =
-                        [(&mut slip, site.slip), (&mut sum_before, site.sum_before), (&mut heat, site.heat)];
-                    for (column, number) in kept {
-                        if let Some(column) = column {
-                            column[k] = number;
-                        }
-                    }
+                    set(&mut slip, k, site.slip);
+                    set(&mut sum_before, k, site.sum_before);
+                    set(&mut heat, k, site.heat);
                 }
             }
         },
     );
+}
+
+/// Puts a number to a column, if there is one.
+#[inline(always)]
+fn set(column: &mut Option<&mut [f64]>, at: usize, number: f64) {
+    if let Some(column) = column {
+        column[at] = number;
+    }
 }
 
 /// [`dilatations`] of a linear elastic body of one material: nothing but arithmetic for each site.

@@ -94,6 +94,7 @@ impl<const BACK: bool, const LAMMPS: bool> BondLaw for Viscous<BACK, LAMMPS> {
     const COLUMNS: usize = if LAMMPS { 3 } else { 2 };
     const MEMORY: usize = 1;
     const BACK: bool = BACK;
+    const RELAXES: bool = true;
     // The form that looks back is that of a run's first steps.
     const ALL_FORMS: bool = !BACK;
     #[inline(always)]
@@ -154,6 +155,7 @@ impl<const LAMMPS: bool> BondLaw for ViscousApart<LAMMPS> {
     const COLUMNS: usize = 6;
     const MEMORY: usize = 2;
     const BACK: bool = true;
+    const RELAXES: bool = true;
     const ALL_FORMS: bool = false;
     #[inline(always)]
     fn pull<R: Real>(
