@@ -121,7 +121,7 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
     }
     let Some((places, page)) = knowing::places(typed, known) else { return (0, vec![]) };
     let slot = Slot { command, typed, text: page.doc.text, known, folder, word };
-    let mut out = slot.behind_region(page.doc.syntax);
+    let mut out = slot.behind_region(page.written());
     let mut skip = 0;
     for offer in places.iter().flat_map(|place| &place.offers) {
         let (s, mut names) = slot.offered(offer);

@@ -66,7 +66,7 @@ impl Line {
 static FORMS: LazyLock<BTreeMap<String, Vec<Entry>>> = LazyLock::new(|| {
     let mut forms: BTreeMap<String, Vec<Entry>> = BTreeMap::new();
     for page in all().iter().filter(|p| p.kind != "topic") {
-        let written = page.doc.syntax.lines().filter(|l| !l.starts_with('#'));
+        let written = page.written().lines().filter(|l| !l.starts_with('#'));
         let written = written.map(|line| Line::Written(Form::read(line, page.name)));
         for form in page.declared().into_iter().map(Line::Declared).chain(written) {
             let Some(command) = form.first().map(String::from) else { continue };

@@ -14,7 +14,7 @@ use perigrain_dumps::DUMPS;
 use perigrain_fixes::FIXES;
 use perigrain_pairs::PAIRS;
 use perigrain_pairs::bond::BONDS;
-use perigrain_styles::words::Form;
+use perigrain_styles::words::{Form, Syntax};
 use perigrain_styles::{Doc, Style};
 use std::fmt::Write;
 use std::sync::LazyLock;
@@ -28,8 +28,6 @@ pub struct Page {
     pub name: &'static str,
     /// Its text.
     pub doc: Doc,
-    /// Its lines, where their words are declared.
-    pub forms: &'static [Form],
 }
 
 impl Page {
@@ -46,6 +44,15 @@ impl Page {
         format!("{}.md", self.title().replace([' ', '/'], "_"))
     }
 
+    /// The forms of its lines, where their words are declared.
+    fn forms(&self) -> Vec<Form> {
+        match self.doc.syntax {
+            Syntax::Behind(grammar) => vec![Form::behind(grammar)],
+            Syntax::Forms(forms) => forms.to_vec(),
+            Syntax::Written(_) => vec![],
+        }
+    }
+
     /// Its lines, where their words are declared.
     pub fn declared(&self) -> Vec<walk::Declared> {
         let head = match self.kind {
@@ -54,20 +61,28 @@ impl Page {
             "command" => self.name.to_string(),
             kind => format!("{kind} {}", self.name),
         };
-        self.forms.iter().map(|form| walk::Declared::new(form, &head)).collect()
+        self.forms().iter().map(|form| walk::Declared::new(form, &head)).collect()
     }
 
     /// Its syntax lines.
     pub fn syntax(&self) -> String {
-        match self.forms {
-            [] => self.doc.syntax.to_string(),
+        match self.doc.syntax {
+            Syntax::Written(lines) => lines.to_string(),
             _ => self.declared().iter().map(walk::Declared::line).collect::<Vec<_>>().join("\n"),
+        }
+    }
+
+    /// Its lines that are written by hand.
+    pub fn written(&self) -> &'static str {
+        match self.doc.syntax {
+            Syntax::Written(lines) => lines,
+            _ => "",
         }
     }
 
     /// The table of its declared words as Markdown, behind an empty line.
     pub fn table(&self) -> String {
-        let table = Form::table(self.forms);
+        let table = Form::table(&self.forms());
         if table.is_empty() { table } else { format!("\n{table}") }
     }
 
@@ -99,11 +114,10 @@ pub fn all() -> &'static [Page] {
 
 fn gathered() -> Vec<Page> {
     fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
-        table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc(), forms: s.words().leak() }).collect()
+        table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
     }
     fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
-        let forms = |name: &str| if name == "dump_modify" { modified().leak() } else { &[] as &[Form] };
-        table.iter().map(|&(name, doc)| Page { kind, name, doc, forms: forms(name) }).collect()
+        table.iter().map(|&(name, doc)| Page { kind, name, doc: with_dumps(name, doc) }).collect()
     }
     [
         own("topic", pages::TOPICS),
@@ -118,15 +132,21 @@ fn gathered() -> Vec<Page> {
     .concat()
 }
 
-/// The lines of `dump_modify`: what all dumps have, and what each style adds.
-fn modified() -> Vec<Form> {
-    let mut forms = perigrain_dumps::MODIFIED.to_vec();
-    for form in DUMPS.iter().flat_map(|dump| dump.words()).filter(|form| !form.head.is_empty()) {
-        if !forms.contains(&form) {
-            forms.push(form);
+/// The page of `dump_modify` with its lines: what all dumps have, and what each style adds. Other pages stay as they are.
+fn with_dumps(name: &str, doc: Doc) -> Doc {
+    if name != "dump_modify" {
+        return doc;
+    }
+    let mut all = perigrain_dumps::MODIFIED.to_vec();
+    for dump in DUMPS {
+        let Syntax::Forms(forms) = dump.doc().syntax else { continue };
+        for form in forms.iter().filter(|form| !form.head.is_empty()) {
+            if !all.contains(form) {
+                all.push(*form);
+            }
         }
     }
-    forms
+    Doc { syntax: Syntax::Forms(all.leak()), ..doc }
 }
 
 /// What a kind of page is called in a list.

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::{domain, setting};
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::angles::AngleZero;
 
@@ -28,7 +29,7 @@ impl Style for AngleStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "angle_style zero [nocoeff] | none",
+            syntax: Syntax::Written("angle_style zero [nocoeff] | none"),
             summary: "Says what angles between bonds do: nothing.",
             text: "Angles come from data files, molecule files and `create_bonds single/angle`; they are kept, counted (`angles`), written by `write_data` and \
                    `write_restart`, and go when one of their bonds or particles goes. `zero` says that they are meant to exert no forces; with \
@@ -46,7 +47,7 @@ impl Style for AngleCoeff {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "angle_coeff T [THETA]",
+            syntax: Syntax::Written("angle_coeff T [THETA]"),
             summary: "Coefficients of angle types.",
             text: "T is an angle type or a range such as `*` or `2*4`. THETA [degrees] goes into data files and means nothing else. Every angle type needs a \
                    line when a run begins and an `angle_style` is in force.",

@@ -4,6 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{before_box, setting};
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::AtomStyle;
 
@@ -32,7 +33,9 @@ impl Style for AtomStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "atom_style atomic | sphere [0|1] | peri | bond | angle | molecular | full | charge | dipole | bpm/sphere | hybrid STYLE STYLE …",
+            syntax: Syntax::Written(
+                "atom_style atomic | sphere [0|1] | peri | bond | angle | molecular | full | charge | dipole | bpm/sphere | hybrid STYLE STYLE …",
+            ),
             summary: "Says which properties particles have.",
             text: "`atomic`: mass by type. `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag that LAMMPS needs for radii that change (`fix adapt`) \
                    is read and not needed. `peri`: volume, \

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{before_box, setting};
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{Boundary, Face};
 
@@ -18,17 +18,13 @@ impl Style for BoundaryCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Says what the faces of the box do: periodic, fixed or shrink-wrapped.",
             text: "Each of X, Y, Z is one letter for both faces or two letters for the lower and the upper one: `p` periodic \
                    (always both), `f` fixed, `s` shrink-wrapped, `m` shrink-wrapped but never inside the box as created. Shrinking \
                    and wrapping happen when neighbour lists are rebuilt. Default: `p p p`.",
             example: "boundary f fs p",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

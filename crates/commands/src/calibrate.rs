@@ -29,7 +29,7 @@ use line::{Calibration, Head};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, populated};
-use perigrain_styles::words::{Form, Forms};
+use perigrain_styles::words::{Forms, Syntax};
 use perigrain_styles::{ActCx, BuildCx, Compute, Doc, Style};
 use perigrain_world::GroupId;
 use scene::Scene;
@@ -46,7 +46,7 @@ impl Style for Calibrate {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Calibration::FORMS),
             summary: "Stiffness and strength of bonded bodies without a run, and coefficients of bonds that give them.",
             text: DOC,
             example: "units si\natom_style hybrid sphere bond\nboundary f f f\nlattice fcc 1.4142e-3\n\
@@ -57,9 +57,6 @@ impl Style for Calibrate {
                       calibrate fit c all target K 2.0e4 vary bond 1 k low plate high plate\n\
                       print \"before: $(c_a[1]:%.5g) N/m, estimated $(c_b[1]:%.5g) N/m; now $(c_c[1]:%.5g) N/m with k = $(c_c[11]:%.5g) N/m\"",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        Calibration::FORMS.to_vec()
     }
 }
 

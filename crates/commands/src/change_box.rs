@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{bonds_across, bonds_fit};
-use perigrain_styles::words::{Each, Form, Given, Units, Words, read};
+use perigrain_styles::words::{Each, Given, Syntax, Units, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Boundary, Domain, GroupId};
 
@@ -21,7 +21,7 @@ impl Style for ChangeBox {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Changes size, shape and faces of the box.",
             text: "What is asked happens in order. Particles stay where they are unless `remap` is said. Image counts along a \
                    dimension that is no longer periodic become 0. At the end shrink-wrapped faces follow the particles and periodic \
@@ -31,10 +31,6 @@ impl Style for ChangeBox {
                    the state at the first run.",
             example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

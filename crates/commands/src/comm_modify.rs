@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::GroupId;
 
@@ -18,15 +18,11 @@ impl Style for CommModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Accepted for the sake of LAMMPS decks: every process has the whole box.",
             text: "All velocities are at hand, whatever `vel` says, and all particles, whatever their cutoffs.",
             example: "comm_modify vel yes",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -15,7 +15,7 @@ use pack::Pack;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, in_group, orthogonal, scales};
-use perigrain_styles::words::{At, Form, Forms, OneType, Units, Value};
+use perigrain_styles::words::{At, Forms, OneType, Syntax, Units, Value};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Particles, Region, World, memory};
 use places::{Maker, New, Place, Test};
@@ -34,7 +34,7 @@ impl Style for CreateAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Way::FORMS),
             summary: "Creates particles on lattice sites, at one place, at random places, on a surface, or densely packed.",
             text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in lo ≤ x < hi \
                    of the box; along periodic dimensions both faces move down by about 1e-6 of the edge length, so that exactly one \
@@ -61,10 +61,6 @@ impl Style for CreateAtoms {
                    gap` bonds packings.",
             example: "create_atoms 1 region disc subset 20 4711",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Way::FORMS.to_vec()
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair, Reach, View, pairs};
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{every_type, room_for_pairs};
-use perigrain_styles::words::{At, BondType, Form, Forms, Kind, Value, Words};
+use perigrain_styles::words::{At, BondType, Forms, Kind, Syntax, Value, Words};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Bond, GroupId, Partners, World};
@@ -24,7 +24,7 @@ impl Style for CreateBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Line::FORMS),
             summary: "Makes bonds between particles.",
             text: "Of `many` and `gap`: pairs that `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) take \
                    out of neighbour lists get no bond: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
@@ -36,10 +36,6 @@ impl Style for CreateBonds {
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nprint \"$(bonds) bonds\"",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Line::FORMS.to_vec()
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, setting};
-use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{At, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::region::{INFINITE, Shape};
 use perigrain_world::{Domain, Region, memory};
@@ -19,7 +19,7 @@ impl Style for CreateBox {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Creates the simulation box from a bounded region, for N particle types.",
             text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and `side in`. A \
                    prism becomes a triclinic box: its edges lean as those of the prism (tilts xy, xz and yz), and may lean \
@@ -29,10 +29,6 @@ impl Style for CreateBox {
                    Room for bonds per particle is not limited.",
             example: "create_box 3 world",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::stop;
 use perigrain_lang::{Args, Param};
 use perigrain_styles::common::{self, on_particles};
-use perigrain_styles::words::{At, AtomVariable, Form, Fraction, MarsagliaSeed, Nullable, Words, read};
+use perigrain_styles::words::{At, AtomVariable, Fraction, MarsagliaSeed, Nullable, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Domain, GroupId, Particles, Region};
 use std::collections::BTreeSet;
@@ -22,17 +22,13 @@ impl Style for DeleteAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Deletes the particles of a group or region, or those too near to others.",
             text: "As in LAMMPS the last particle moves into the hole. Peridynamic bonds of deleted particles are gone; of other \
                    bonds, one that has lost one end is an error of the next run. Where particles have bonds, ids stay (LAMMPS \
                    ignores `compress yes` then).",
             example: "delete_atoms region notch",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

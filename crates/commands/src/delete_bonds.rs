@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles, range_from};
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{GroupId, World};
@@ -19,7 +19,7 @@ impl Style for DeleteBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Turns bonds off, on again, or removes them.",
             text: "Meant are bonds with both ends in the group. Types are `A`, `*`, `A*`, `*B` or `A*B`. A bond turned off has its \
                    type negative: it exerts no force but still counts as bonded for `special_bonds`. `angle` and the like are \
@@ -28,10 +28,6 @@ impl Style for DeleteBonds {
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\ndelete_bonds all bond 1\ndelete_bonds all stats",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

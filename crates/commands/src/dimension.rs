@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{before_box, setting};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -17,17 +17,13 @@ impl Style for Dimension {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Says whether the scene has three dimensions or lies in the plane z = 0.",
             text: "In two dimensions the z faces are periodic, the box holds z = 0, lattices are flat, temperatures and \
                    pressures count two directions, and particles do not see images along z. Nothing keeps particles in the \
                    plane but what acts on them: `fix enforce2d` takes velocities and forces along z away.",
             example: "dimension 3",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

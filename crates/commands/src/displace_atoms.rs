@@ -6,7 +6,7 @@ use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param};
 use perigrain_styles::common::{self, on_particles};
-use perigrain_styles::words::{At, Axis, Form, PerAtom, Seed, Units, Words, read};
+use perigrain_styles::words::{At, Axis, PerAtom, Seed, Syntax, Units, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::contacts::Rolls;
 use perigrain_world::{GroupId, Turn};
@@ -21,7 +21,7 @@ impl Style for DisplaceAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves the particles of a group once.",
             text: "The particles of `rotate` are unwrapped across periodic faces; orientations of `bpm/sphere` particles turn \
                    along, and so do the springs of contacts between two of them (not under `compat lammps`), while velocities, \
@@ -29,10 +29,6 @@ impl Style for DisplaceAtoms {
                    as they are. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
             example: "displace_atoms ball move 0 0 -0.001 units box",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

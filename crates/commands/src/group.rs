@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param, ValueRef, Word};
 use perigrain_styles::common::{self, free_id, in_group, setting, whole};
 use perigrain_styles::surface::{check_volumes, choose};
 use perigrain_styles::words::{
-    Alternative, At, AtomVariable, Form, Forms, Kind, Part, Placeholder, Value, Words,
+    Alternative, At, AtomVariable, Forms, Kind, Part, Placeholder, Syntax, Value, Words,
 };
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use perigrain_world::region::Variable;
@@ -24,7 +24,7 @@ impl Style for Group {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Line::FORMS),
             summary: "Names a set of particles, or adds particles to it.",
             text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the particles \
                    named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. At most 32 groups, `all` among them.\n\n\
@@ -38,10 +38,6 @@ impl Style for Group {
                    unless `peri_modify repulsion no`. Hybrid particles do not turn: move them by `fix nve`.",
             example: "group bullet region ball",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Line::FORMS.to_vec()
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{setting, unknown_style};
 use perigrain_styles::words::{
-    Alternative, At, Axis, Form, Kind, Positive, Value, Words, alternatives, read,
+    Alternative, At, Axis, Kind, Positive, Syntax, Value, Words, alternatives, read,
 };
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::Lattice;
@@ -22,17 +22,13 @@ impl Style for LatticeCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Defines the points particles are created on, and the unit of length of `units lattice`.",
             text: "`sq sq2 hex` are for `dimension 2`, `sc bcc fcc hcp diamond` for three dimensions; `none` gives a unit of length \
                    and no points. The three directions of `orient` must be orthogonal and right-handed. The latest `lattice` also \
                    sets the partial-volume rule of the peridynamic styles.",
             example: "lattice custom 0.5 a1 1.0 0.0 0.0 basis 0.5 0.5 0.5",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::{domain, setting};
-use perigrain_styles::words::{Form, Types, Words, read};
+use perigrain_styles::words::{Syntax, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -17,16 +17,12 @@ impl Style for Mass {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sets the mass of all particles of a type (atom_style atomic).",
             text: "Particles of the styles sphere and peri have masses of their own: `set … mass` or `set … density`; where they \
                    are in a hybrid with bonds, the line is taken for LAMMPS' decks, without effect.",
             example: "mass * 1.0",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::words::{At, Each, Form, Given, Words, read_or};
+use perigrain_styles::words::{At, Each, Form, Given, Syntax, Words, read_or};
 use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Doc, Style};
 use perigrain_world::material::{Material, Strength};
 use perigrain_world::potentials;
@@ -17,7 +17,18 @@ impl Style for MaterialStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const {
+                    &[
+                        Form { head: "material ID", about: "Values of the line.", grammar: InLine::GRAMMAR },
+                        Form {
+                            head: "material ID file",
+                            about: "Values of a file, which those of the line replace.",
+                            grammar: FromFile::GRAMMAR,
+                        },
+                    ]
+                },
+            ),
             summary: "Gives engineering data a name, so that pair_coeff can turn them into coefficients.",
             text: "`E`, `nu` and `rho` are needed, in the line or in the file; without `Gc` or `s00` bonds never break.\n\n\
                    Numbers in the line are in the deck's units. A file carries its own units and is converted (`units si cgs micro \
@@ -26,17 +37,6 @@ impl Style for MaterialStyle {
                    laminate-ply-4.toml, soda-lime-glass.toml, steel.toml.",
             example: "material plate file brittle-plate.toml Gc 50",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![
-            Form { head: "material ID", about: "Values of the line.", grammar: InLine::GRAMMAR },
-            Form {
-                head: "material ID file",
-                about: "Values of a file, which those of the line replace.",
-                grammar: FromFile::GRAMMAR,
-            },
-        ]
     }
 }
 

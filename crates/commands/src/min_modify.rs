@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::Minimizer;
 use perigrain_world::minimizer::{Fire, FireIntegrator, ForceNorm, LineSearch};
@@ -19,17 +19,13 @@ impl Style for MinModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sets the numbers of `minimize`.",
             text: "`line` belongs to `cg` and `sd`; what comes behind it in the table belongs to `fire`, but for `norm`. Words that do not stand \
                    in a line stay as they are.\n\n\
                    The `forcezero` line search and what belongs to LAMMPS' spins are refused.",
             example: "min_modify dmax 1.0e-7 norm max integrator verlet tmax 6.0",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

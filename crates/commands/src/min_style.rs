@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{Form, Value, Words, read};
+use perigrain_styles::words::{Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::Minimizer;
 use perigrain_world::minimizer::MinStyle;
@@ -19,16 +19,12 @@ impl Style for MinStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Chooses the algorithm of `minimize`.",
             text: "`min_modify` sets their numbers; `min_style` puts all of them back to their defaults, as in LAMMPS. LAMMPS' \
                    other styles are refused by name.",
             example: "min_style fire",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use perigrain_geometry::text::find;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, not_here};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::Template;
 
@@ -22,7 +22,7 @@ impl Style for Molecule {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Reads templates of molecules and clumps of spheres from files.",
             text: "Each file describes one molecule: a title line, then `N atoms`, `N bonds`, `N angles` and, if wanted, `M mass`, \
                    `X Y Z com`, `XX YY ZZ XY XZ YZ inertia`, then sections, each with a blank line after its name and one line per \
@@ -36,10 +36,6 @@ impl Style for Molecule {
                       1 0.001\n2 0.001\n\"\"\" file pair.txt screen no\nmolecule pair pair.txt\n\
                       create_atoms 0 single 0 0 0.006 mol pair 4928 units box",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::common::{not_here, setting};
-use perigrain_styles::words::{At, Form, Grammar, Kind, OneType, Part, Placeholder, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, OneType, Part, Placeholder, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{GroupId, NeighborSettings};
 
@@ -18,7 +18,7 @@ impl Style for NeighModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Says when neighbour lists are rebuilt and which pairs they leave out.",
             text: "A rebuild is considered every N steps, not before `delay` steps after the last one; the delay must be a multiple \
                    of N. Wrapping into the box, shrink-wrapping and the test for lost particles happen then too. Lists of grains \
@@ -28,10 +28,6 @@ impl Style for NeighModify {
                    multi`; types and sizes are searched class by class here in any case.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -17,7 +17,7 @@ impl Style for Neighbor {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sets the extra reach of neighbour lists [length].",
             text: "Lists are rebuilt when a particle has moved half the skin (see `neigh_modify`). How they are built is \
                    perigrain's business: all words give the same lists, which search each size of particle by \
@@ -26,10 +26,6 @@ impl Style for Neighbor {
                    hold many times the pairs that can touch then.",
             example: "neighbor 0.5 bin",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_mesh::Sheet;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::triangles::{self, Placing};
-use perigrain_styles::words::{At, Form, Forms, Units, Words};
+use perigrain_styles::words::{At, Forms, Syntax, Units, Words};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Crack, Region};
 
@@ -20,7 +20,7 @@ impl Style for PeriCrack {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Line::FORMS),
             summary: "Cuts bonds: a notch or crack without taking particles away.",
             text: "Bonds across a periodic face of the box count where they begin: keep surfaces away from there. Before the first \
                    run the crack waits until the families are built, then and between runs particles count where they are. Cut \
@@ -29,10 +29,6 @@ impl Style for PeriCrack {
             example: "region slit block INF 0.002 INF INF INF INF units box\n\
                       peri_crack plane 0 0.0015 0 0 1 0 region slit units box",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Line::FORMS.to_vec()
     }
 }
 

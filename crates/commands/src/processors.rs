@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{before_box, setting, whole};
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -17,15 +17,11 @@ impl Style for Processors {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Accepted for the sake of LAMMPS decks: the box is not divided among processes.",
             text: "Must come before the box. Threads are set on the command line.",
             example: "processors * * 1",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Source, Span, fail};
 use perigrain_geometry::text::find;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, id};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
 use perigrain_world::{Domain, Particles, Promise, World, memory};
@@ -25,7 +25,7 @@ impl Style for ReadData {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Reads box, particles, velocities, masses and coefficients from a LAMMPS data file.",
             text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`. The header gives `N atoms`, `N atom \
                    types`, `xlo xhi`, `ylo yhi`, `zlo zhi`, for atom styles with bonds also `N bonds` and `N bond types`, with \
@@ -50,10 +50,6 @@ impl Style for ReadData {
                    dihedrals and impropers, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -12,7 +12,7 @@ use perigrain_geometry::mesh::{self, Mesh};
 use perigrain_geometry::words::{self, Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
@@ -25,7 +25,7 @@ impl Style for ReadMesh {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Makes a particle for each cell of a volume mesh, at its centroid, with its volume.",
             text: "Cells are tetrahedra, pyramids, wedges and hexahedra; with `thickness`, and always in a flat scene (`dimension \
                    2`), triangles and quads. What a file has besides (faces of a solid, lines, points) is left out, and the log \
@@ -47,10 +47,6 @@ impl Style for ReadMesh {
                    `peri/pmb` and `peri/lps`.",
             example: "read_mesh body.msh types physical rock 1 binder 2 density 2235.0 scale 0.001 shift 0 0 0.006",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_geometry::rows::{Property, Rows, is_elsewhere, property};
 use perigrain_geometry::words::{Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
-use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Syntax, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
@@ -22,7 +22,7 @@ impl Style for ReadPoints {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Makes particles from a table of points, as spreadsheets and scripts write them.",
             text: "The first line names the columns, each further line is a point; fields stand between commas, semicolons, tabs or blanks, \
                    names may have quotes, `#` opens a comment, and a name that ends in `.gz` a packed file. Columns are known by the names of \
@@ -39,10 +39,6 @@ impl Style for ReadPoints {
             example: "print \"\"\"x,y,z,Vol\n0,0,5,1\n0,1.5,5,2\"\"\" file points.csv screen no\n\
                       read_points points.csv columns volume Vol type 2 scale 0.001 density 2235.0",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

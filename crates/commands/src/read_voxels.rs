@@ -11,7 +11,7 @@ use perigrain_geometry::voxels::{self, Image};
 use perigrain_geometry::words::{Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
-use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{At, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
@@ -27,7 +27,7 @@ impl Style for ReadVoxels {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Makes particles of the voxels of an image, as a tomograph gives it: ranges of grey values become types.",
             text: "The extension selects the format:\n\n\
                    - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;\n\
@@ -48,10 +48,6 @@ impl Style for ReadVoxels {
                    voxels or blocks, for peridynamics, makes partial volumes and horizons of materials right.",
             example: "read_voxels stack.nrrd types 100:199 1 200:255 2 resample 0.001 density 2235.0 scale 0.001 shift -0.004 -0.004 0.0045",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, free_id, setting};
-use perigrain_styles::words::{At, Form, Forms, Kind, Nullable, Units, Value, Words};
+use perigrain_styles::words::{At, Forms, Kind, Nullable, Syntax, Units, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style, Use, UseKind};
 use perigrain_world::region::{Motion, Shape, Turn, Variable};
 use perigrain_world::{Key, Region, memory};
@@ -37,7 +37,7 @@ impl Style for RegionCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Line::FORMS),
             summary: "Names a volume of space.",
             text: "Surfaces belong to the inside. `INF` is far away, `EDGE` the face of the box as it is now. A radius takes the \
                    lattice spacing of x (of y for a cylinder or cone along x).\n\n\
@@ -63,10 +63,6 @@ impl Style for RegionCommand {
                       region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box move NULL NULL v_lift\n\
                       region gear mesh gear.obj scale 0.001 shift 0.0 0.0 0.002 units box",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Line::FORMS.to_vec()
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter, rigid_bodies};
 use perigrain_world::bonds::ascending;
 use perigrain_world::index::Index;
@@ -20,7 +20,7 @@ impl Style for Replicate {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Repeats the scene along the edges of its box.",
             text: "The box grows to NX, NY, NZ times its lengths, and each particle gets a copy in each repetition, with everything \
                    that belongs to it, places that it is held to or counts its way from moved along (`fix move`, `fix spring/self`, \
@@ -31,10 +31,6 @@ impl Style for Replicate {
             example: "units lj\nlattice sc 0.5\nregion cell block 0 2 0 2 0 2\ncreate_box 1 cell\ncreate_atoms 1 box\n\
                       mass 1 1.0\nreplicate 2 2 1\nprint \"$(atoms) particles\"",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::near::{Clusters, held_together};
-use perigrain_styles::words::{Form, Forms, Words, read};
+use perigrain_styles::words::{Forms, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{GroupId, World};
 use std::collections::BTreeMap;
@@ -26,15 +26,11 @@ impl Style for ResetAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Line::FORMS),
             summary: "Numbers particles or molecules anew, or brings image counts back to zero.",
             text: "`mol` and `image` need an atom_style with bonds; bonds that are turned off hold, too.",
             example: "reset_atoms id sort yes",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Line::FORMS.to_vec()
     }
 }
 
@@ -45,15 +41,11 @@ impl Style for ResetAtomIds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Ids::GRAMMAR),
             summary: "The old name of `reset_atoms id`.",
             text: "LAMMPS has renamed the command; both names do the same.",
             example: "reset_atom_ids",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Ids::GRAMMAR)]
     }
 }
 
@@ -64,15 +56,11 @@ impl Style for ResetMolIds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Molecules::GRAMMAR),
             summary: "The old name of `reset_atoms mol`.",
             text: "LAMMPS has renamed the command; both names do the same.",
             example: BONDED,
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Molecules::GRAMMAR)]
     }
 }
 

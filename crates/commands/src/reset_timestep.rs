@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -17,16 +17,12 @@ impl Style for ResetTimestep {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sets the step counter; elapsed time becomes N times the step size, or T.",
             text: "The scene is left alone. Refused while a fix counts steps: `ave/atom`, `ave/chunk`, `ave/time`, `dt/reset`, \
                    `pour` or `vector`; and while a dump has written snapshots into a file that keeps growing.",
             example: "reset_timestep 0",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

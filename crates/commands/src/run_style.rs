@@ -6,7 +6,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{At, Form, Forms, Kind, Or, Value, Words};
+use perigrain_styles::words::{At, Forms, Kind, Or, Syntax, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{MOST_SHORT, RunStyle, World};
 
@@ -23,7 +23,7 @@ impl Style for RunStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(Line::FORMS),
             summary: "How steps are made: all alike, several lengths within each other, or short ones for solids inside long ones for grains.",
             text: "`respa` is the multi-level scheme of Tuckerman, Berne & Martyna (1992). `timestep`, and whatever counts steps, \
                    means the outermost. The forces of a level kick by half of its step at both of its ends, and particles move in \
@@ -70,10 +70,6 @@ impl Style for RunStyleCommand {
                 run_style staggered m 4\n\
                 run 20",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        Line::FORMS.to_vec()
     }
 }
 

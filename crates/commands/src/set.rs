@@ -9,7 +9,7 @@ use change::{Change, Limit};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, bad_keyword, id_range, on_particles, variable_param};
-use perigrain_styles::words::{At, Each, Form, Given, Keywords, Kind, Types, Value, Words};
+use perigrain_styles::words::{At, Each, Given, Keywords, Kind, Syntax, Types, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::{GroupId, Region};
@@ -24,7 +24,7 @@ impl Style for Set {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Particles are chosen once for the whole line. A value is a number or an atom-style variable `v_name`. Of a `fix \
                    property/atom` any property can be set by its name (`i_NAME`, `d_NAME`, `temperature`).\n\n\
@@ -38,10 +38,6 @@ impl Style for Set {
                    more weak places unless L holds them together.",
             example: "set group plate density 2235.0 volume 1.25e-10",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

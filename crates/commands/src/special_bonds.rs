@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::setting;
-use perigrain_styles::words::{Each, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Each, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::bonds::Weights;
 
@@ -18,7 +18,7 @@ impl Style for SpecialBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Says whether pair forces act between particles that are one, two or three bonds apart.",
             text: "Each line begins anew from 0 0 0 for both kinds of weights. Peridynamic bonds are a matter of their own and have \
                    no such weights.\n\n\
@@ -27,10 +27,6 @@ impl Style for SpecialBonds {
                    electric forces; here only `create_bonds` looks at it.",
             example: "special_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_base::units::UnitSystem;
 use perigrain_lang::Args;
 use perigrain_styles::common::{before_box, setting};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The command.
@@ -18,16 +18,12 @@ impl Style for Units {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Says in which units all numbers of the deck are.",
             text: "Sets the constants of LAMMPS' unit system (Boltzmann's constant, conversion factors) and with them \
                    the default time step and neighbour skin. Must come before the box. Default: `lj`.",
             example: "units si",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

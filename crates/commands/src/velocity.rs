@@ -10,7 +10,7 @@ use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_lang::{Args, Param};
 use perigrain_styles::common::{self, on_particles, ramp};
-use perigrain_styles::words::{At, Axis, Form, Nullable, PerAtom, Seed, VelocityAxis, Words, read};
+use perigrain_styles::words::{At, Axis, Nullable, PerAtom, Seed, Syntax, VelocityAxis, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Flow, Motion, Style};
 use perigrain_world::{GroupId, World};
 
@@ -24,17 +24,13 @@ impl Style for Velocity {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Gives the particles of a group velocities.",
             text: "T = Σ m v² / ((3N − 3) k), in flat scenes (2N − 2). Velocities and coordinates of `set` and `ramp` are in \
                    lattice spacings (per time) unless `units box` is given: in SI decks with a fine lattice `units box` is nearly \
                    always meant; values of variables are not scaled.",
             example: "velocity bullet set 0.0 0.0 -35.0 units box",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

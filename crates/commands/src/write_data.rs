@@ -6,7 +6,7 @@ use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Args, Word};
 use perigrain_output::file::{Pattern, replace, trouble};
 use perigrain_styles::common::{domain, settle};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::Promise;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ impl Style for WriteData {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
             text: "The file has LAMMPS' sections and columns (see read_data), names the styles of a hybrid, as OVITO wants it, and \
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same bits. \
@@ -32,10 +32,6 @@ impl Style for WriteData {
                    `triclinic/general` are refused.",
             example: "write_data plate.*.data nocoeff",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

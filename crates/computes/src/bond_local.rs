@@ -10,7 +10,7 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::near::bonds_within;
 use perigrain_styles::pull::{Pull, Stretched, apart};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Alternative, Form, Kind, Value, Words, alternatives, one_in, read};
+use perigrain_styles::words::{Alternative, Kind, Syntax, Value, Words, alternatives, one_in, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, Fields, KIND, MASK, MASS, MEMO, TAG, TYPE_MASS, V, X};
 use perigrain_world::index::Index;
@@ -25,7 +25,7 @@ impl Style for BondLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Lengths, energies, forces and relative motion of bonds.",
             text: "Local vector for one value, array for several; a row for each bond with both ends in the group, in the order \
                    of compute property/local. There are no energies and forces of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
@@ -35,9 +35,6 @@ impl Style for BondLocal {
                       compute l all bond/local dist force\ncompute m all reduce max c_l[1] c_l[2] inputs local\n\
                       thermo_style custom step c_m[*]\nrun 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_neigh::list::{Reach, difference};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::within;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Kind, Or, Value, Whole, Words, read};
+use perigrain_styles::words::{At, Kind, Or, Syntax, Value, Whole, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
@@ -23,7 +23,7 @@ impl Style for CentroAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Centro-symmetry of each particle's neighbourhood.",
             text: "Per-atom vector in distance² units: of the N nearest neighbours, |R_i + R_j|² of all pairs, of which \
                    the N/2 smallest are added up (Kelchner, Plimpton & Hamilton, Phys. Rev. B 58, 1998, 11085): 0 on an undisturbed \
@@ -33,9 +33,6 @@ impl Style for CentroAtom {
                    most symmetric pair and of the next one (from the neighbour that is further back in the order of ids), and across both.",
             example: "pair_style zero 2.0\npair_coeff * *\ncompute c all centro/atom 6",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_neigh::list::Reach;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{Clusters, held_together, within};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
@@ -27,7 +27,7 @@ impl Style for ClusterAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Within::GRAMMAR),
             summary: "Clusters of particles that are close to each other.",
             text: "Per-atom vector: two particles of the group closer than the cutoff belong to one cluster; \
                    its number is the smallest id in it. 0 outside the group. Numbers are far apart: give them to \
@@ -35,9 +35,6 @@ impl Style for ClusterAtom {
                    cutoff may be longer than that of forces.",
             example: "compute c all cluster/atom 1.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Within::GRAMMAR)]
     }
 }
 
@@ -47,7 +44,7 @@ impl Style for FragmentAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Fragments: particles that bonds hold together.",
             text: "Per-atom vector: two particles of the group with an unbroken bond between them belong to one fragment; its \
                    number is the smallest id in it. A particle without any such bond has 0; 0 outside the group. Bonds are those of molecules, turned off or not, as in LAMMPS, and in addition those of \
@@ -55,9 +52,6 @@ impl Style for FragmentAtom {
                    `compute chunk/atom c_ID compress yes` fragments can be counted, weighed and followed.",
             example: "compute f all fragment/atom single yes",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -67,15 +61,12 @@ impl Style for AggregateAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Within::GRAMMAR),
             summary: "Clusters of particles that are close to each other or bonded.",
             text: "Per-atom vector as that of compute cluster/atom, but unbroken peridynamic bonds hold particles together, \
                    too, and so do the bonds of molecules.",
             example: "compute a all aggregate/atom 1.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Within::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId};
@@ -20,16 +20,13 @@ impl Style for Com {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Centre of mass of the group.",
             text: "Vector of 3 (intensive): Σ m x / Σ m with positions unwrapped across periodic faces, in distance \
                    units; zeros where the group has no mass. Under `-compat lammps` Σ m is \
                    that of the run's beginning, also once particles have been lost or have come.",
             example: "compute c ball com",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::touching;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X, X0};
 use perigrain_world::{GroupId, SlotId};
@@ -20,16 +20,13 @@ impl Style for ContactAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Number of spheres that each particle touches.",
             text: "Per-atom vector: how many particles are no further away than the sum of both radii; 0 \
                    outside the group. Pairs that `neigh_modify exclude` takes away do not count, contacts with walls neither. \
                    Cohesive contacts that hold across a gap are none here. Unlike LAMMPS it needs no pair style.",
             example: "compute touching all contact/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

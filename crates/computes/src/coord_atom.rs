@@ -7,7 +7,7 @@ use perigrain_neigh::list::Reach;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{one_image, within};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Types, Words, read};
+use perigrain_styles::words::{Syntax, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
@@ -21,16 +21,13 @@ impl Style for CoordAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Coordination number: neighbours of each particle within a distance.",
             text: "How many particles are closer than R; 0 outside the group. Per-atom vector \
                    without types or with one, with several a column for each. Unlike LAMMPS \
                    it needs no pair style, and R may be longer than the cutoff of forces (up to half a periodic length).",
             example: "compute n all coord/atom cutoff 1.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, KIND, MASK, TAG};
 use perigrain_world::index::Index;
@@ -20,15 +20,12 @@ impl Style for CountType {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "How many particles, or bonds, of each type there are.",
             text: "Global vector (intensive), a number for each type of particles or bonds. Bonds that have broken are gone, so that the scalar of `bond`, LAMMPS' number \
                    of bonds of type 0, is 0.",
             example: "compute kinds all count/type atom\nvariable grains equal c_kinds[2]",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::Clusters;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, TAG, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId, World};
@@ -31,7 +31,7 @@ impl Style for CrackTip {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "A crack that runs in a direction: its tip, length, speed, angle and number of arms.",
             text: "Global vector of 8: 1–3 the tip, 4 the length, 5 the speed, 6 the angle in degrees, 7 the number of arms, 8 the \
                    number of cracked particles; all 0 while nothing is cracked. The tip is the cracked particle that lies farthest in \
@@ -43,9 +43,6 @@ impl Style for CrackTip {
                    shatter.",
             example: "compute tip all crack 0 1 0 from 0 -0.004 0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

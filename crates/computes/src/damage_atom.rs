@@ -4,7 +4,7 @@ use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::{FAMILIES, MASK, VOLUME};
 
@@ -17,7 +17,7 @@ impl Style for DamageAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Damage of each peridynamic particle, from 0 (whole) to 1 (every bond broken).",
             text: "Per-atom vector: φ_i = 1 − Σ V_j over the live bonds / Σ V_j over the family at the first run \
                    (Silling & Askari 2005, equation 29), with plain volumes, without the partial-volume weights of the \
@@ -25,9 +25,6 @@ impl Style for DamageAtom {
                    `peri/…` or `bond_style bpm/peri`.",
             example: "compute broken all damage/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::{FAMILIES, MASK, SITES};
 
@@ -17,16 +17,13 @@ impl Style for DilatationAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Dilatation of each particle of a state-based peridynamic body.",
             text: "Per-atom vector: θ of the latest force evaluation, without dimension (see pair_style peri/lps). 0 \
                    before the first run, for particles without a family, and outside the group. Needs `pair_style peri/lps`, \
                    `peri/ves` or `peri/eps`, or `bond_style bpm/peri`.",
             example: "compute swell all dilatation/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
 use perigrain_styles::step_op::{StepOp, Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -22,7 +22,7 @@ impl Style for DisplaceAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Displacement of each particle since the compute was declared.",
             text: "Per-atom array of 4 columns in distance units: dx, dy, dz and their length, with positions unwrapped \
                    across periodic faces; 0 outside the group. Particles made later start where they are at the next run \
@@ -30,9 +30,6 @@ impl Style for DisplaceAtom {
                    that it has come some way.",
             example: "compute u all displace/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::swing;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
@@ -24,7 +24,7 @@ impl Style for DtCritical {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "The longest stable time steps of peridynamic solids, of grains in contact and of bonded particles.",
             text: "Global vector of four: 1 the step of the solids, 2 that of the grains, 3 m, the whole number of times the \
                    shorter of the solids' and of grains' and bonds' fits into the longer (at least 1), 4 that of the bonds; scalar: the shortest. \
@@ -45,9 +45,6 @@ impl Style for DtCritical {
                    others too, both act together: a `safety` of 0.8 and `dem` leave room for that.",
             example: "compute dtc all dt/critical pd silling safety 1.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::ledger;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -23,7 +23,7 @@ impl Style for EnergyLedger {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Energy by channel: what the scene holds, what has become heat and cracks, what came in, what is missing.",
             text: "Global vector, in energy units (joules in `units si`), true energies whatever forces are called: 1 kinetic, 2 \
                    rotational, 3 strain of all bonds, 4 elastic energy of contacts of particles with each other and with granular walls (normal and tangential \
@@ -50,9 +50,6 @@ impl Style for EnergyLedger {
                    Contacts book their work as they act; solids that relax or flow are evaluated a second time.",
             example: "compute e all energy/ledger",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::sum;
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, MASS, OMEGA, RADIUS};
 use perigrain_world::{GroupId, SlotId};
@@ -23,15 +23,12 @@ impl Style for ErotateSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Kinetic energy of the rotation of the group's spheres.",
             text: "Scalar (extensive): Σ ½ I ω² with I = 2/5 m R², in energy units. Particles without a radius \
                    contribute nothing.",
             example: "compute r all erotate/sphere",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::math::vec3::dot;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, MASS, OMEGA, RADIUS};
 use perigrain_world::{GroupId, SlotId};
@@ -21,15 +21,12 @@ impl Style for ErotateSphereAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Kinetic energy of each sphere's rotation.",
             text: "Per-atom vector: ½ I ω² with I = 2/5 m R², in energy units; 0 outside the group and for particles \
                    without a radius.",
             example: "compute spin all erotate/sphere/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

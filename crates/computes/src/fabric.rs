@@ -8,7 +8,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Interaction, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -25,15 +25,12 @@ impl Style for Fabric {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Tensors of the directions, lengths and forces of contacts.",
             text: "Scalar (extensive): the number of pairs. Vector (intensive) of xx yy zz xy xz yz for each tensor named, in that order, over the \
                    pairs with both ends in the group. With n the direction of a pair and r its distance, ⟨⟩ is the mean over all N pairs.",
             example: "compute fabric all fabric radius contact force/normal force/tangential",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

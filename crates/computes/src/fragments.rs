@@ -8,7 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::near::{Clusters, held_together};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{
@@ -27,7 +27,7 @@ impl Style for Fragments {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Spectrum of the fragments that unbroken bonds hold together: masses, velocities, eroded mass and volume.",
             text: "Fragments are those of compute fragment/atom within the group; a particle without any unbroken bond is one by itself. \
                    The heaviest is the body, the rest is eroded. Global vector of 8: 1 the number of fragments of at \
@@ -47,9 +47,6 @@ impl Style for Fragments {
                    is not.",
             example: "compute pieces plate fragments least 5 damage 0.6",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -19,16 +19,13 @@ impl Style for GlobalAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Gives each particle the element of a global vector that an index of its own names.",
             text: "Per-atom vector for one input, array for several; 0 where the index \
                    is below 1 or beyond the vector, and outside the group. With the chunk of each particle as index it shows \
                    every particle the value of its chunk.",
             example: "compute cc all chunk/atom type\ncompute com all com/chunk cc\ncompute g all global/atom c_cc c_com[3]",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Interaction, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -24,7 +24,7 @@ impl Style for GroupGroup {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Energy and force between two groups.",
             text: "Scalar and vector of 3 (both extensive): the energy of all pairs with one end in the group and the other in group2, and \
                    the force on the ends in the group, in energy and force units. Pairs are those of compute pair/local with the \
@@ -33,9 +33,6 @@ impl Style for GroupGroup {
                    in LAMMPS: `peri/lps`, `peri/ves`, `peri/eps`.",
             example: "compute push all group/group all",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

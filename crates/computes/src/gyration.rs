@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId};
@@ -20,7 +20,7 @@ impl Style for Gyration {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Radius of gyration of the group.",
             text: "Scalar (intensive), in distance units: R² = Σ m |x − x_cm|² / Σ m with positions unwrapped across \
                    periodic faces. Vector of 6 (intensive), squared distances: Σ m (x − x_cm)_a (x − x_cm)_b / Σ m for xx \
@@ -28,9 +28,6 @@ impl Style for Gyration {
                    beginning, also once particles have been lost or have come.",
             example: "compute g all gyration",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

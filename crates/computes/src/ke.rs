@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId};
@@ -20,16 +20,13 @@ impl Style for Ke {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Kinetic energy of the group's translation.",
             text: "Scalar (extensive): Σ ½ m v², in energy units. Rotation of spheres is not included (see \
                    `erotate/sphere`). For peridynamic particles in LAMMPS' convention m is the density, so that the \
                    sum is one of energy densities.",
             example: "compute k all ke",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId};
@@ -20,14 +20,11 @@ impl Style for KeAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Kinetic energy of each particle's translation.",
             text: "Per-atom vector: ½ m v², in energy units; 0 outside the group.",
             example: "compute hot all ke/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId};
@@ -20,14 +20,11 @@ impl Style for Momentum {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Linear momentum of the group.",
             text: "Vector of 3 (extensive): Σ m v, in mass · velocity units.",
             example: "compute p all momentum",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, count, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -21,15 +21,12 @@ impl Style for Msd {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Mean squared displacement of the group since the compute was declared.",
             text: "Vector of 4 (intensive) in squared distance units: the means of dx², dy², dz² and their sum, with \
                    positions unwrapped across periodic faces.",
             example: "compute m all msd com yes",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

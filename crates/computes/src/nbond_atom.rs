@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
-use perigrain_styles::words::{BondType, Form, Words, read};
+use perigrain_styles::words::{BondType, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, MASK, TAG};
 use perigrain_world::index::Index;
@@ -21,7 +21,7 @@ impl Style for NbondAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "How many bonds each particle has.",
             text: "Per-atom vector: the bonds of which a particle is an end; those that have broken or are turned off \
                    (`delete_bonds`) do not count. 0 outside the group; the other end may be outside. Bonds of `pair_style peri/…` are \
@@ -31,9 +31,6 @@ impl Style for NbondAtom {
                       bond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\ncompute n all nbond/atom\n\
                       compute most all reduce max c_n\nthermo_style custom step c_most\nrun 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

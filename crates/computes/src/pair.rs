@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{At, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::TALLY;
 use perigrain_world::{Key, SlotId};
@@ -19,15 +19,12 @@ impl Style for PairEnergy {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Potential energy of one pair style, as a sub-style of `hybrid`.",
             text: "Scalar (extensive), in energy units: what a pair style has tallied, 0 for granular styles as in LAMMPS. The group \
                    decides nothing.",
             example: "compute bonds all pair peri/pmb",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Interaction, OWN, Probe, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Alternative, Form, Kind, Value, Words, alternatives, read};
+use perigrain_styles::words::{Alternative, Kind, Syntax, Value, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -23,7 +23,7 @@ impl Style for PairLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Distance, force and more of every pair of particles.",
             text: "Local vector for one value, array for several; a row for each pair with both ends in the group, in the order of \
                    compute property/local: the particle of smaller id is the first.\n\n\
@@ -42,9 +42,6 @@ impl Style for PairLocal {
                    peridynamic sub-styles are no rows.",
             example: "compute c all pair/local dist force p4 cutoff radius",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::TALLY;
 use perigrain_world::{GroupId, SlotId};
@@ -19,16 +19,13 @@ impl Style for Pe {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(EnergyTerms::GRAMMAR),
             summary: "Potential energy of the whole scene.",
             text: "Scalar (extensive), in energy units. Without terms all count, with terms only those named; those that no \
                    style of the scene has are 0. The group is `all`. For peridynamic particles in LAMMPS' \
                    convention it is a sum of energy densities.",
             example: "compute bonds all pe pair",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(EnergyTerms::GRAMMAR)]
     }
 }
 

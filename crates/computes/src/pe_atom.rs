@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, TALLY};
 use perigrain_world::{GroupId, SlotId};
@@ -19,16 +19,13 @@ impl Style for PeAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(EnergyTerms::GRAMMAR),
             summary: "Potential energy of each particle.",
             text: "Per-atom vector, in energy units (energy density for peridynamic particles in LAMMPS' convention): \
                    half of the energy of each pair goes to either particle. Without terms all count, with terms only those named. No \
                    fix but `fix external` has energies per particle. 0 outside the group.",
             example: "compute w all pe/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(EnergyTerms::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{FAMILIES, MASK, TALLY, VOLUME};
 use perigrain_world::{GroupId, SlotId};
@@ -20,7 +20,7 @@ impl Style for PeriEnergyAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Elastic energy of each peridynamic particle, in units of energy.",
             text: "Per-atom vector, always an energy: where LAMMPS' convention makes forces and energies densities (coefficients given as numbers, \
                    `peri_modify force density`) the density times the particle's volume. Bonds count half for each end, \
@@ -28,9 +28,6 @@ impl Style for PeriEnergyAtom {
                    forces the same as `compute pe/atom pair`. 0 for particles without a volume and outside the group.",
             example: "compute e all peri/energy/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

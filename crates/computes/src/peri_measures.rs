@@ -9,7 +9,7 @@ use perigrain_peri::moduli::Elastic;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
 use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId};
@@ -29,7 +29,7 @@ impl Style for DefgradAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Deformation gradient of each peridynamic particle, from its unbroken bonds.",
             text: "Per-atom array of 10 columns: F_xx F_xy F_xz F_yx … F_zz, and J = det F, without dimension. \
                    F = (Σ ω w Y⊗ξ V_j) K⁻¹ with K = Σ ω w ξ⊗ξ V_j over the unbroken bonds, ξ a bond at the first run and Y \
@@ -44,9 +44,6 @@ impl Style for DefgradAtom {
             example: "compute F all peri/defgrad/atom",
         }
     }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
-    }
 }
 
 impl Style for StrainAtom {
@@ -55,16 +52,13 @@ impl Style for StrainAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Green–Lagrange strain of each peridynamic particle.",
             text: "Per-atom array of 6 columns xx yy zz xy xz yz: E = ½(FᵀF − 1), without dimension, F as that of compute \
                    peri/defgrad/atom; rotations have no strain. Shear components are half the change of angle. 0 where there is \
                    no F, NaN (or 0) in torn families: `torn` and `damage` as of that compute.",
             example: "compute E all peri/strain/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -74,7 +68,9 @@ impl Style for CauchyAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(OfNumbers::GRAMMAR), Form::behind(OfMaterial::GRAMMAR)] },
+            ),
             summary: "Cauchy stress of each peridynamic particle, as of a Neo-Hooke solid that is deformed alike.",
             text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
                    J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
@@ -85,9 +81,6 @@ impl Style for CauchyAtom {
                    positive; NaN (or 0) in torn families: `torn` and `damage` as of compute peri/defgrad/atom.",
             example: "compute S all peri/stress/atom neohooke 1.0e5 0.48",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfNumbers::GRAMMAR), Form::behind(OfMaterial::GRAMMAR)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::{FAMILIES, MASK, SITES};
 
@@ -17,16 +17,13 @@ impl Style for PlasticityAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Accumulated plastic multiplier of each particle under pair_style peri/eps.",
             text: "Per-atom vector: the sum of Δλ = (m/15G)(norm/limit − 1) over the steps in which the particle has flowed, \
                    as LAMMPS defines it (volume²/force·length² with ω = 1/|ξ|). 0 before the first run and outside the group. \
                    Needs `pair_style peri/eps` or `bond_style bpm/peri`.",
             example: "compute flow all plasticity/atom",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, TALLY};
 use perigrain_world::{GroupId, SlotId, World};
@@ -19,7 +19,7 @@ impl Style for Pressure {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pressure of the whole box and its tensor.",
             text: "Scalar (intensive), in pressure units: P = (dof k_B T + W_xx + W_yy + W_zz) / (3 V), with T and dof of \
                    compute temp-ID, the virial W of all pairs and bonds, and the volume V of the present box (area and 2 instead \
@@ -27,9 +27,6 @@ impl Style for Pressure {
                    count, with terms only those named; those that no style of the scene has are 0. The group is `all`. For peridynamic particles the virial carries one factor of volume, as in LAMMPS.",
             example: "compute p all pressure thermo_temp virial",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

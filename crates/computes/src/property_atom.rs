@@ -10,7 +10,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, unwrapped};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{BOND_FACTORS, HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
@@ -30,7 +30,7 @@ impl Style for PropertyAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Attributes of each particle.",
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. All are in the deck's units. LAMMPS' other \
                    attributes belong to atom styles that perigrain does not have and are refused.\n\n\
@@ -50,9 +50,6 @@ impl Style for PropertyAtom {
                    step, it is the largest number there is (1.8·10³⁰⁸), as in LAMMPS.",
             example: "compute r all property/atom radius",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{bonds, bonds_within, within};
 use perigrain_styles::probe::{Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Alternative, Form, Words, alternatives, read};
+use perigrain_styles::words::{Alternative, Syntax, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
@@ -26,7 +26,7 @@ impl Style for PropertyLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Ids and types of the two ends of every pair, contact or bond.",
             text: "Local vector for one attribute, array for several; a row for each pair with both ends in the group, in the \
                    order of their ids. `dump local` writes them, `compute reduce … inputs local` adds them up.\n\n\
@@ -37,9 +37,6 @@ impl Style for PropertyLocal {
                    styles have no pairs and lists here yet.",
             example: "compute b all property/local batom1 batom2",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

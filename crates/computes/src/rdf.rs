@@ -8,7 +8,7 @@ use perigrain_neigh::list::{Reach, difference};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{one_image, within};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Types, Words, read};
+use perigrain_styles::words::{Syntax, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -23,7 +23,7 @@ impl Style for Rdf {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Radial distribution functions g(r) and coordination numbers.",
             text: "Global array (intensive) of Nbin rows and 1 + 2 columns for each pair of types: the middle of the shell, in distance units; g(r), how many particles of jtype there are in the shell \
                    around one of itype beside how many there would be if they were spread evenly over the box; and how many \
@@ -33,9 +33,6 @@ impl Style for Rdf {
                    the run begins (grains of `fix freeze` do not count beside each other), of peridynamic ones the largest horizon.",
             example: "compute g all rdf 20 cutoff 1.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::Chosen;
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{F, MASK, REGIONS, V, X};
 use perigrain_world::{GroupId, Key, Region, SlotId, World};
@@ -24,7 +24,7 @@ impl Style for Reduce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sums, extremes and means of per-atom or local values over the group.",
             text: "One input gives a scalar, several a vector; sums are extensive, all else intensive. For an empty group: 0, but \
                    1e20 for `min` and `minabs` and −1e20 for `max`. NaNs never are extremes.\n\n\
@@ -33,9 +33,6 @@ impl Style for Reduce {
                    memory; perigrain's is the sum.",
             example: "compute worst all reduce max c_dmg",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -182,15 +179,12 @@ impl Style for ReduceRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfRegion::GRAMMAR),
             summary: "As compute reduce, for particles that are in a region at that moment.",
             text: "Results are those of compute reduce; a particle counts while it is in the group and inside \
                    the region.",
             example: "compute deep all reduce/region half max vz",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfRegion::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::rigid_bodies::{Body, bodies, bodies_key};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
 use perigrain_world::field::{MEMO, RIGID};
 use perigrain_world::{Numbers, SlotId};
@@ -24,14 +24,11 @@ impl Style for KeRigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Kinetic energy of the translation of rigid bodies.",
             text: "Scalar (extensive), in energy units: Σ ½ M v² of the centres of all bodies of the fix. The group decides nothing. 0 before bodies are set up, when a run begins.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single\ncompute k all ke/rigid body",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -41,14 +38,11 @@ impl Style for ErotateRigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Kinetic energy of the rotation of rigid bodies.",
             text: "Scalar (extensive), in energy units: Σ ½ ω · I ω about the centres of all bodies of the fix. The group decides nothing. 0 before bodies are set up, when a run begins.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single\ncompute r all erotate/rigid body",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

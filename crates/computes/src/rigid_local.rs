@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
 use perigrain_styles::rigid_bodies::{Body, bodies, body_column};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Form, Kind, Value, Words, alternatives, one_in, read};
+use perigrain_styles::words::{Alternative, At, Kind, Syntax, Value, Words, alternatives, one_in, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, MEMO, MOLECULE, RIGID, SLOTS, TAG, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -23,7 +23,7 @@ impl Style for RigidLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Attributes of each rigid body.",
             text: "Local vector for one attribute, array for several; a row for each body of the fix whose \
                    owner is in the group, in the order of the bodies. The owner is the particle nearest to the middle of the box around the \
@@ -32,9 +32,6 @@ impl Style for RigidLocal {
             example: "unfix motion\nset group plate diameter 0.0\nfix mine all property/atom mol\nset group plate mol 1\n\
                       fix body plate rigid/small molecule\ncompute b all rigid/local body mass x y z",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::SlotId;
 use perigrain_world::field::SLOTS;
@@ -19,16 +19,13 @@ impl Style for Slice {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes some elements of vectors.",
             text: "From each input the elements Nstart, Nstart + Nskip … below Nstop, counted from 1: as in LAMMPS 22Jul2025, \
                    Nstop itself is not among them, except where it is the only one (LAMMPS lacks the last one where Nskip does not divide Nstop − Nstart, or crashes). One input gives a vector, several an array with a \
                    column each. Whether values grow with the scene follows from the inputs. The group means nothing.",
             example: "compute diagonal all slice 1 4 1 c_thermo_press",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

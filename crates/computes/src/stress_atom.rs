@@ -8,7 +8,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Nullable, Words, read};
+use perigrain_styles::words::{Nullable, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TALLY, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId, World};
@@ -22,7 +22,7 @@ impl Style for StressAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Stress of each particle, times its volume.",
             text: "Per-atom array of 6 columns, xx yy zz xy xz yz, in pressure·volume units: −m v_a v_b − W_ab; 0 outside the group. \
                    The virial W gives each end of a pair half of d_a F_b, with all forces of the pair, also across its line \
@@ -32,9 +32,6 @@ impl Style for StressAtom {
                    particles the virial carries one factor of volume, as in LAMMPS.",
             example: "compute s all stress/atom NULL virial",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, count, sum};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -20,7 +20,7 @@ impl Style for Temp {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Temperature of the group's translation.",
             text: "Scalar (intensive): T = Σ m v² / (dof k_B) with dof = d N − `extra/dof`, where d is the dimension and \
                    `extra/dof` is d unless `compute_modify ID extra/dof n` says otherwise; 0 where dof is not \
@@ -29,9 +29,6 @@ impl Style for Temp {
                    otherwise.",
             example: "compute t all temp",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

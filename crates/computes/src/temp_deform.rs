@@ -8,7 +8,7 @@ use perigrain_base::math::vec3::add;
 use perigrain_lang::Args;
 use perigrain_styles::matter::count;
 use perigrain_styles::stretching::{Stretching, stretching};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, World};
 
@@ -21,7 +21,7 @@ impl Style for TempDeform {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Temperature of the group without the flow of a box that `fix deform` stretches.",
             text: "As `compute temp`, of velocities from which that of a point is taken away which goes with the box: of the lower face \
                    plus the rate of the length times how far up the particle is, in the dimensions that `fix deform` changes. It means something \
@@ -30,9 +30,6 @@ impl Style for TempDeform {
                    from the first change of a run on, as in LAMMPS.",
             example: "compute t all temp/deform",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

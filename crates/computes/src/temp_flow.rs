@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_styles::common::ramp;
 use perigrain_styles::matter::{Masses, count, sum};
-use perigrain_styles::words::{Axis, Form, Grammar, Units, VelocityAxis, Words, read};
+use perigrain_styles::words::{Axis, Grammar, Syntax, Units, VelocityAxis, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, World};
 
@@ -25,15 +25,12 @@ impl Style for TempCom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Temperature of the group without the motion of its centre of mass.",
             text: "As `compute temp`, of velocities from which that of the group's centre of mass is taken away. `velocity … temp ID bias \
                    yes` leaves this motion as it is.",
             example: "compute t ball temp/com",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 
@@ -43,16 +40,13 @@ impl Style for TempPartial {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Partial::GRAMMAR),
             summary: "Temperature of some components of velocity.",
             text: "As `compute temp`, of some components of velocity. Of n components the degrees of freedom are \
                    n N less n/d of what `compute temp` takes off in d dimensions. `velocity … temp ID bias yes` leaves the other \
                    components as they are.",
             example: "compute t all temp/partial 1 1 0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Partial::GRAMMAR)]
     }
 }
 
@@ -62,15 +56,12 @@ impl Style for TempRamp {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Ramp::GRAMMAR),
             summary: "Temperature of the group without a shear flow.",
             text: "As `compute temp`, of velocities from which a linear profile is taken away: one component is VLO at the coordinate CLO \
                    and VHI at CHI, constant beyond, as `velocity … ramp` makes it.",
             example: "compute t all temp/ramp vx 0.0 8.0 y 0.0 0.01 units box",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Ramp::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::memory;
 use perigrain_lang::Args;
 use perigrain_styles::matter::{Masses, count};
-use perigrain_styles::words::{At, Form, Kind, Value, Whole, Words, read};
+use perigrain_styles::words::{At, Kind, Syntax, Value, Whole, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{GroupId, World};
 
@@ -20,7 +20,7 @@ impl Style for TempProfile {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Temperature of the group without the mean velocity of each part of the box.",
             text: "As `compute temp`, of velocities from which components of the mean of their bin, weighted with mass, are taken \
                    away. Degrees of freedom: d N − s B − `extra/dof` of N particles, B bins and s components, `extra/dof` being d − s unless \
@@ -28,9 +28,6 @@ impl Style for TempProfile {
                    The rows of `out bin` are those of the bins, x varying fastest; temperatures are of d n − s − `extra/dof` n/N degrees of freedom; 0 where these are not positive.",
             example: "compute t all temp/profile 1 1 1 z 2",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

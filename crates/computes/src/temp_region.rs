@@ -5,7 +5,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::matter::{Chosen, sum};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, Key, Region, World};
 
@@ -18,7 +18,7 @@ impl Style for TempRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Temperature of the group's particles in a region.",
             text: "As `compute temp`, of the particles that are in the region at that moment: d N − `extra/dof` degrees of freedom, \
                    N being their number, `extra/dof` d unless `compute_modify` says otherwise. N is counted at each use, \
@@ -26,9 +26,6 @@ impl Style for TempRegion {
                    takes the velocities of all others of the group away whole.",
             example: "compute t all temp/region half",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::sum;
 use perigrain_styles::step_op::{Wanted, fill_sums_if};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -23,7 +23,7 @@ impl Style for TempSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Temperature of the group's translation and rotation, or of rotation alone.",
             text: "Scalar (intensive): T = Σ (m v² + I ω²)/(dof k_B) with I = 2/5 m R². Each sphere has 6 degrees of \
                    freedom (in two dimensions 3), of rotation alone 3 (1); a particle without a radius only those of its \
@@ -35,9 +35,6 @@ impl Style for TempSphere {
                    region. `velocity … temp ID bias yes` then leaves this flow as it is, and compute pressure has the rest as its kinetic part.",
             example: "compute drift all temp/com\ncompute t all temp/sphere bias drift",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

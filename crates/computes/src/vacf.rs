@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Whole, count, keep_places, sum};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, MASK, V};
 use perigrain_world::{GroupId, Key, SlotId, Vectors, World};
@@ -20,7 +20,7 @@ impl Style for Vacf {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Velocity autocorrelation of the group since the compute was declared.",
             text: "Vector of 4 (intensive) in squared velocity units: the means of v_x(t) v_x(0), the same along y and z, and their \
                    sum, v(0) being the velocities when the line was read, of particles made since those they began with. Restart \
@@ -28,9 +28,6 @@ impl Style for Vacf {
                    group had when the run began, also once particles have been lost or have come.",
             example: "compute v all vacf",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

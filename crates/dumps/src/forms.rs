@@ -7,7 +7,7 @@ use super::text::{Form, Layout, OfYaml, Text};
 use super::{Dump, DumpStyle, MODIFY};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form as Line, Words, read};
+use perigrain_styles::words::{Form as Line, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// `dump … xyz`.
@@ -25,16 +25,15 @@ impl Style for Xyz {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Line::behind(OfFile::GRAMMAR), Line::headed(MODIFY, Timed::GRAMMAR)] },
+            ),
             summary: "Writes the group's particles every N steps as an XYZ file.",
             text: "Each snapshot is the number of particles, a line of comment with the step, and a row `name x y z` per \
                    particle. The name is the type's number unless `dump_modify ID element A B …` names types. \
                    The only format is `format line \"%s %g %g %g\"`; the time stands in the comment. Rows are sorted by id unless set otherwise.",
             example: "dump 1 all xyz 100 grains.xyz",
         }
-    }
-    fn words(&self) -> Vec<Line> {
-        vec![Line::behind(OfFile::GRAMMAR), Line::headed(MODIFY, Timed::GRAMMAR)]
     }
 }
 
@@ -44,15 +43,14 @@ impl Style for Yaml {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, OfYaml::GRAMMAR)] },
+            ),
             summary: "Writes chosen attributes of the group's particles every N steps as YAML documents.",
             text: "Each snapshot is a YAML document that any YAML reader takes. With `thermo yes`, in the first snapshot of a second run \
                    LAMMPS repeats the last run's row; here it is that run's own.",
             example: "dump 1 all yaml 100 flow.yaml id type x y z",
         }
-    }
-    fn words(&self) -> Vec<Line> {
-        vec![Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, OfYaml::GRAMMAR)]
     }
 }
 
@@ -62,7 +60,9 @@ impl Style for Cfg {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, Formatted::GRAMMAR)] },
+            ),
             summary: "Writes the group's particles every N steps in the extended CFG format of AtomEye, one file each.",
             text: "The file name needs a `*`. The first five attributes are `mass type xs ys zs` or `mass type xsu ysu zsu`; \
                    all others of `dump custom` may follow as auxiliary properties. Types are written by name: `C` unless \
@@ -70,9 +70,6 @@ impl Style for Cfg {
                    in LAMMPS.",
             example: "dump 1 all cfg 100 flow.*.cfg mass type xs ys zs vx",
         }
-    }
-    fn words(&self) -> Vec<Line> {
-        vec![Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, Formatted::GRAMMAR)]
     }
 }
 

@@ -14,7 +14,7 @@ use perigrain_output::image::{self, Colour, Legend, ScaleBar, Scene, by_kind, ed
 use perigrain_output::movie::{Movie, Pace};
 use perigrain_plan::Op;
 use perigrain_styles::common::about;
-use perigrain_styles::words::{Form, Words, read_or};
+use perigrain_styles::words::{Form, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{World, outline};
 
@@ -27,15 +27,14 @@ impl Style for Image {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Later::GRAMMAR)] },
+            ),
             summary: "Draws the group's particles as shaded spheres every N steps.",
             text: PAGE,
             example: "dump cut all image 200 cut_*.png c_damage auto view 70 -60 map damage range 0 1\n\
                       dump_modify cut region half title \"brittle plate\"",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Later::GRAMMAR)]
     }
 }
 

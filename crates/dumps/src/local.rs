@@ -9,7 +9,7 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_output::dump::{Data, Field, Snapshot, sort_rows};
 use perigrain_output::formats::{Formats, Kind};
 use perigrain_plan::{Op, Stage};
-use perigrain_styles::words::{self, Form, Or, Words, read, read_or};
+use perigrain_styles::words::{self, Form, Or, Syntax, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style, Wants};
 
 /// `dump … local`.
@@ -21,16 +21,15 @@ impl Style for Local {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Own::GRAMMAR)] },
+            ),
             summary: "Writes local values (of pairs, bonds …) every N steps as text.",
             text: "One row per local value, in the order of the compute or fix that makes them; all columns must have the same \
                    number of rows. The group decides nothing: the compute does. The keywords of \
                    `dump_modify` that concern particles are refused.",
             example: "compute b all property/local batom1 batom2\ndump 1 all local 100 bonds.*.txt index c_b[1] c_b[2]",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Own::GRAMMAR)]
     }
 }
 

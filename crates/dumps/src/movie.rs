@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_output::dump::Target;
 use perigrain_output::file::Pattern;
 use perigrain_output::movie::{Pace, ffmpeg, is_own};
-use perigrain_styles::words::{Form, Words, read_or};
+use perigrain_styles::words::{Form, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Style};
 use std::path::Path;
 
@@ -23,7 +23,11 @@ impl Style for Movie {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const {
+                    &[Form::behind(<(Line, Paces)>::GRAMMAR), Form::headed(MODIFY, <(Later, Paces)>::GRAMMAR)]
+                },
+            ),
             summary: "Draws the group's particles every N steps and makes a movie of the pictures.",
             text: "Pictures and their keywords are those of `dump image`. There is one file, without `*` in its name, for \
                    all runs until `undump` or the end of the deck.\n\n\
@@ -33,9 +37,6 @@ impl Style for Movie {
                    is an animated PNG with the ending `.apng`.",
             example: "dump film all movie 10 crack.apng c_damage auto view 70 -60 map damage range 0 1 framerate 12",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(<(Line, Paces)>::GRAMMAR), Form::headed(MODIFY, <(Later, Paces)>::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use super::local::Line;
 use super::{Dump, DumpStyle, forms, local, text};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Grammar, Words};
+use perigrain_styles::words::{Grammar, Syntax, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// A style whose files are always compressed.
@@ -64,16 +64,13 @@ impl Style for Packed {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(self.grammar),
             summary: "The dump of the same name without `/gz`, compressed.",
             text: "The file name must end in `.gz`. `dump_modify ID compression_level N` says how tightly: from 0 (not at \
                    all) and 1 (fast) to 9, or -1 for the usual one, 6. All else is as without `/gz`, whose files are \
                    compressed, too, if their names end in `.gz`.",
             example: self.example,
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(self.grammar)]
     }
 }
 

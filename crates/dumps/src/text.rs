@@ -11,7 +11,7 @@ use perigrain_output::dump::{Field, Snapshot};
 use perigrain_output::formats::{Formats, Kind};
 use perigrain_output::forms;
 use perigrain_plan::Op;
-use perigrain_styles::words::{At, Form as Line, Or, Words, read, read_or};
+use perigrain_styles::words::{At, Form as Line, Or, Syntax, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 
 /// `dump … atom`.
@@ -39,15 +39,14 @@ impl Style for Atom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Line::behind(OfFile::GRAMMAR), Line::headed(MODIFY, OfAtom::GRAMMAR)] },
+            ),
             summary: "Writes id, type and position of the group's particles every N steps.",
             text: "Columns `id type xs ys zs`: positions are fractions of the box, 0 at the lower and 1 at the upper \
                    face. Everything else is as for `dump custom`.",
             example: "dump 1 all atom 100 flow.dump",
         }
-    }
-    fn words(&self) -> Vec<Line> {
-        vec![Line::behind(OfFile::GRAMMAR), Line::headed(MODIFY, OfAtom::GRAMMAR)]
     }
 }
 
@@ -57,14 +56,13 @@ impl Style for Custom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, Table::GRAMMAR)] },
+            ),
             summary: "Writes chosen attributes of the group's particles every N steps as text.",
             text: PAGE,
             example: "dump 1 all custom 100 plate.*.dump id type x y z c_damage\ndump_modify 1 thresh c_damage > 0.1",
         }
-    }
-    fn words(&self) -> Vec<Line> {
-        vec![Line::behind(Columns::GRAMMAR), Line::headed(MODIFY, Table::GRAMMAR)]
     }
 }
 

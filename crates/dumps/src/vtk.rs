@@ -10,7 +10,7 @@ use perigrain_output::dump::Data;
 use perigrain_output::formats::Kind;
 use perigrain_output::vtu::{self, Array, Series, Storage, Values};
 use perigrain_plan::Op;
-use perigrain_styles::words::{self, At, Form, Value, Words, read, read_or};
+use perigrain_styles::words::{self, At, Form, Syntax, Value, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 
 /// The style.
@@ -22,7 +22,9 @@ impl Style for Vtk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Own::GRAMMAR)] },
+            ),
             summary: "Writes points with data for ParaView every N steps, compressed, with a time series.",
             text: "Positions are the points. Three \
                    neighbouring attributes that differ in x, y, z become one vector: `vx vy vz` is `v`, `fx fy fz` is \
@@ -32,9 +34,6 @@ impl Style for Vtk {
                    ParaView. Only `.vtu` is written (appended raw data, zlib blocks made on all threads).",
             example: "dump v all vtk 500 plate_*.vtu id type vx vy vz c_damage",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Own::GRAMMAR)]
     }
 }
 

@@ -8,7 +8,9 @@ use coefficients::{Follows, OfBonds, OfPairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
-use perigrain_styles::words::{Alternative, At, Form, Grammar, Kind, Part, Placeholder, Value, Words, read};
+use perigrain_styles::words::{
+    Alternative, At, Grammar, Kind, Part, Placeholder, Syntax, Value, Words, read,
+};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{COLUMNS, LISTS, MASK, MASS, MEMO, RADIUS, SLOTS};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -23,7 +25,7 @@ impl Style for Adapt {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Lets the diameter of spheres or coefficients of forces follow variables during a run.",
             text: "The variables are evaluated in the setup of a run and at multiples of N. They are equal-style, and \
                    for `atom` atom-style as well (LAMMPS 22Jul2025 has none of these): a value for each particle. \
@@ -39,9 +41,6 @@ impl Style for Adapt {
                    `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.",
             example: "variable d equal ramp(0.001,0.0011)\nfix swell ball adapt 1 atom diameter v_d reset yes",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, PerAtom, Words, read};
+use perigrain_styles::words::{At, PerAtom, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, MASK, REGIONS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
@@ -20,7 +20,7 @@ impl Style for AddForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Adds a force to each particle of the group.",
             text: "Acts in the setup of a run too. `fix_modify ID virial yes` adds Σ f x (unwrapped) to the virial of \
                    pressures.\n\n\
@@ -29,9 +29,6 @@ impl Style for AddForce {
                    (extensive): the total force before the change.",
             example: "fix push grains addforce 0.0 0.0 -1.0e-3",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -10,7 +10,7 @@ use perigrain_styles::matter::{
     Chosen, Masses, centre, change_forces, check_masses, publish, sum, unwrapped,
 };
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -24,7 +24,7 @@ impl Style for AddTorque {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Adds forces that turn the group about its centre of mass as one body.",
             text: "With the angular velocity ω and the moments of inertia I of the group about its centre of mass, α = \
                    I⁻¹ (T − ω × I ω) and each particle at distance r from the centre gets the force m (α × r + ω × (ω × \
@@ -34,9 +34,6 @@ impl Style for AddTorque {
                    adds it to the potential energy. Vector of 3 (extensive): the group's torque before the change.",
             example: "fix spin plate addtorque 0 0 1.0e-6",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

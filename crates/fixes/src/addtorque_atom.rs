@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Chosen, change_torques, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, PerAtom, Words, read};
+use perigrain_styles::words::{PerAtom, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{MASK, REGIONS, SLOTS, TORQUE, X};
 use perigrain_world::{GroupId, World};
@@ -20,15 +20,12 @@ impl Style for AddTorqueAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Adds a torque to each sphere of the group.",
             text: "Acts in the setup of a run too. Vector of 3 (extensive): the total torque before the change. `fix \
                    addtorque` turns a group as one body instead.",
             example: "fix spin ball addtorque/atom 0.0 0.0 1.0e-9",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

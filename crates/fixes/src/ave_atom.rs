@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{COLUMNS, F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, Slot, World};
@@ -21,15 +21,12 @@ impl Style for AveAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Averages per-atom values over time for each particle of the group.",
             text: "At every multiple of Nfreq the average is offered as `f_ID` (one value) or `f_ID[k]` (several). 0 for \
                    particles outside the group and before the first average.",
             example: "fix mean all ave/atom 1 2 2 vx vy c_dmg",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

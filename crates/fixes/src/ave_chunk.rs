@@ -13,7 +13,7 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, F, KIND, MASK, MASS, MEMO, REGIONS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -28,7 +28,7 @@ impl Style for AveChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Averages values per particle by chunk and over time and writes them to a file.",
             text: "At every multiple of Nfreq the average is offered and written. Only particles of the group count.\n\n\
                    During the samples of an average the number of chunks stays as it is; with `ave running` and `window` for \
@@ -37,9 +37,6 @@ impl Style for AveChunk {
             example: "compute layers all chunk/atom bin/1d z lower 0.001 units box\n\
                       fix profile all ave/chunk 1 5 10 layers vz density/number file profile.txt",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -11,7 +11,7 @@ use perigrain_computes::reduce::BIG;
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, GlobalValue, Kind, Value, Words, read};
+use perigrain_styles::words::{At, GlobalValue, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, Slot, World};
@@ -99,14 +99,11 @@ impl Style for AveHisto {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Counts how often values fall into each of equal bins, over time.",
             text: PAGE,
             example: "fix h all ave/histo 1 1 1 -2.0 2.0 8 vx vy vz mode vector file speeds.txt beyond end",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 
@@ -116,15 +113,12 @@ impl Style for AveHistoWeight {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "As fix ave/histo, but each value counts as much as its weight.",
             text: "Exactly two values of the same length: the first is sorted into bins, the second is what it adds to its \
                    bin. Everything else is as for [fix ave/histo](fix_ave_histo.md).",
             example: "fix h all ave/histo/weight 1 1 1 -2.0 2.0 8 vz c_dmg mode vector",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

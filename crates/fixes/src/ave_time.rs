@@ -9,7 +9,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_output::Sheet;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, GlobalValue, Words, read};
+use perigrain_styles::words::{At, GlobalValue, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, SlotId, World};
@@ -25,7 +25,7 @@ impl Style for AveTime {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Averages single numbers or global vectors over time and writes them to a file.",
             text: "At every multiple of Nfreq the average is offered as `f_ID` and written; before the first one it is 0. The \
                    group means nothing.\n\n\
@@ -36,9 +36,6 @@ impl Style for AveTime {
                    with them (`# columns: step c_e[kinetic] …`, `# rows: …`), not with `compat lammps`.",
             example: "compute t all temp\nfix mean all ave/time 1 5 10 c_t c_t[*] v_force file mean.txt ave running",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Nullable, Words, read};
+use perigrain_styles::words::{Nullable, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, MASK, SLOTS, X};
@@ -21,15 +21,12 @@ impl Style for AveForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Gives all particles of the group the mean of their forces, plus a given force.",
             text: "f ← ⟨f⟩ + (fx, fy, fz): masses do not count. Forces of fixes declared later are not seen. Acts in \
                    the setup of a run too. Vector of 3 (extensive): the total force before the change.",
             example: "fix stiff foot aveforce NULL NULL 0.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::Op;
-use perigrain_styles::words::{Form, Grammar, Kind, Part, Placeholder, Value, Words, read};
+use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use std::path::PathBuf;
 
@@ -17,14 +17,11 @@ impl Style for Balance {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Accepted for the sake of LAMMPS decks: the box is not divided among processes.",
             text: "Threads share the work by themselves. The fix offers no values, and no file is written.",
             example: "fix share all balance 1000 1.1 shift xyz 20 1.05",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -10,7 +10,7 @@ use perigrain_styles::bond::BondForce;
 use perigrain_styles::matter::publish;
 use perigrain_styles::pull::{Stretched, apart, find, periods};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{BondType, Form, Fraction, MarsagliaSeed, Words, read};
+use perigrain_styles::words::{BondType, Fraction, MarsagliaSeed, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::bonds::ascending;
 use perigrain_world::field::{BONDS, BOX, LISTS, MASK, MEMO, SLOTS, TAG, V, X};
@@ -25,7 +25,7 @@ impl Style for BondBreak {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes bonds of a type away that are longer than a limit.",
             text: "At multiples of N, after particles have moved and before forces act, each particle of the group \
                    looks for the longest of its bonds of the type to others of the group that is longer than R; a bond \
@@ -42,9 +42,6 @@ impl Style for BondBreak {
                       fix cut all bond/break 10 1 1.05 prob 0.5 85784\n\
                       thermo_style custom step bonds f_cut[2]\nrun 100",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -10,7 +10,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, BondType, Form, Fraction, Kind, MarsagliaSeed, Value, Words, read_or};
+use perigrain_styles::words::{At, BondType, Fraction, Kind, MarsagliaSeed, Syntax, Value, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BONDS, BOX, COLUMNS, KIND, LISTS, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
 use perigrain_world::{Bond, GroupId, Key, Numbers, World};
@@ -24,7 +24,7 @@ impl Style for BondCreate {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Makes bonds between particles that have come close.",
             text: "At multiples of N, after particles have moved and before forces act, each particle of type itype of \
                    the group looks for the nearest one of type jtype of the group within R that it may be bonded to, \
@@ -48,9 +48,6 @@ impl Style for BondCreate {
                       fix glue all bond/create 10 1 1 1.2 1 iparam 1 1 jparam 1 1\n\
                       thermo_style custom step bonds f_glue[2]\nrun 100",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{CONTROLS, MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, World};
@@ -20,7 +20,7 @@ impl Style for Controller {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Steers an internal-style variable so that a value comes to a wanted one.",
             text: "Every N steps, with the error e = value − setpoint and τ = N Δt, the variable c changes by −α (Kp τ \
                    e + Ki τ² Σe + Kd Δe): proportional, integral and derivative term. At the first update the \
@@ -30,9 +30,6 @@ impl Style for Controller {
             example: "variable push internal 0.0\nvariable vnow equal vcm(plate,x)\n\
                       fix steer all controller 1 1.0e6 1.0 0.0 0.0 v_vnow 0.1 push",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, KIND, MASK, OMEGA, SLOTS, TORQUE, V};
 use perigrain_world::{GroupId, World};
@@ -22,7 +22,7 @@ impl Style for DampingCundall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes a part of each force and torque along motion, and adds it against motion.",
             text: "Each component of the force by itself: f ← f (1 − γ_l) where f v ≥ 0, f (1 + γ_l) elsewhere; torques and angular velocities \
                    likewise with γ_a (Cundall 1987; Yade and PFC have the same). The coefficients have no unit, the drag does not depend on speed, and \
@@ -31,9 +31,6 @@ impl Style for DampingCundall {
                    Only forces and torques computed before count: declare `fix gravity` after this fix to keep its acceleration whole.",
             example: "fix calm ball damping/cundall 0.2 0.2 scale 2 0.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

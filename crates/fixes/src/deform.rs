@@ -12,7 +12,7 @@ use op::{Move, Shape, store_streaming};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Tick, When};
-use perigrain_styles::words::{self, At, Form, Units, Words};
+use perigrain_styles::words::{self, At, Syntax, Units, Words};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
 use pressure::{Controls, Pressed};
@@ -27,7 +27,7 @@ impl Style for Deform {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Changes the lengths and tilts of the box during a run.",
             text: "Every N steps, at the end of the step, lengths and tilts are changed. The start of a dimension is \
                    the box at the run's beginning (with `run … start`, that at this line). All styles but `final` and \
@@ -43,9 +43,6 @@ impl Style for Deform {
                    LAMMPS.",
             example: "fix squeeze all deform 1 x scale 0.9999 remap x",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

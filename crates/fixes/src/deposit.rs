@@ -11,7 +11,7 @@ use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{self, Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
 use perigrain_styles::pair::ToCome;
-use perigrain_styles::words::{Form, Words};
+use perigrain_styles::words::{Syntax, Words};
 use perigrain_styles::{BuildCx, Doc, PlaceTest, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::X;
@@ -27,7 +27,7 @@ impl Style for Deposit {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Puts a new particle or molecule into the scene every M steps, N in all.",
             text: "At the next step and every M steps a place is drawn in the region, uniform or with `gaussian` around \
                    a point. It is taken if no particle is too near and, with `var` and `set` as in `create_atoms`, if \
@@ -42,9 +42,6 @@ impl Style for Deposit {
             example: "region high block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\n\
                       fix dep grains deposit 3 2 5 4711 region high vz -1 -1 near 0.0015 units box",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

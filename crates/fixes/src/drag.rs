@@ -7,7 +7,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::orthogonal;
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Nullable, Words, read};
+use perigrain_styles::words::{Nullable, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
 use perigrain_world::{GroupId, World};
@@ -21,15 +21,12 @@ impl Style for Drag {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pulls each particle of the group towards a point with a force of constant strength.",
             text: "Distances are those to the nearest periodic image. Acts in the setup of a run too. Vector of 3 \
                    (extensive): the total force that was added.",
             example: "fix home grains drag 0.0 0.0 NULL 1.0e-3 0.002",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::critical::{self, Estimate};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, swing};
 use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, TYPE_MASS, V, VOLUME, X};
 use perigrain_world::{GroupId, RunStyle, World};
@@ -20,7 +20,7 @@ impl Style for DtCritical {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sets the time step to a part of what peridynamic solids, contacts and bonds stand.",
             text: "In the setup of a run and every N steps the step becomes `safety` times the shortest of the limits \
                    of compute dt/critical. As bonds break and contacts come and go the limits change, and the step \
@@ -33,9 +33,6 @@ impl Style for DtCritical {
                    exact` costs some 50 to 200 force evaluations per look.",
             example: "fix ct all dt/critical 100 0.8 pd exact max 2.0e-7",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

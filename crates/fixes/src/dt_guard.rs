@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Rule};
 use perigrain_styles::ledger;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, World};
 
@@ -19,7 +19,7 @@ impl Style for DtGuard {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes back blocks of steps in which energy was made, and continues in shorter steps.",
             text: "Every step at which a fix or output acts ends a block, too. At its end, before anything is put out, \
                    the residual of compute energy/ledger is compared with that at the block's beginning: if it has \
@@ -34,9 +34,6 @@ impl Style for DtGuard {
                    first order in the step: some per cent. A block costs a copy of the scene.",
             example: "fix g all dt/guard 20 0.05 shrink 0.5 recover 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::matter::{Masses, check_masses};
-use perigrain_styles::words::{At, Form, Kind, Nullable, Units, Value, Words, read};
+use perigrain_styles::words::{At, Kind, Nullable, Syntax, Units, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, MASS, V};
 use perigrain_world::{GroupId, RunStyle, World};
@@ -21,7 +21,7 @@ impl Style for DtReset {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Chooses the time step so that no particle moves further than Xmax in one step.",
             text: "In the setup of a run and every N steps, for each particle: Δt = min(Xmax/|v|, √(2 Xmax m/|f|)), \
                    made smaller by Xmax/|v Δt + ½ f/m Δt²| where that is less than 1. The smallest over the group, \
@@ -33,9 +33,6 @@ impl Style for DtReset {
                    bonds stand, so that there it counts once.",
             example: "fix step all dt/reset 10 1.0e-10 1.0e-8 1.0e-6 units box",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

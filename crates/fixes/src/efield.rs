@@ -8,7 +8,7 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, change_forces, change_torques, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, CHARGE, F, Fields, IMAGE, MASK, MU, REGIONS, SLOTS, TORQUE, X};
 use perigrain_world::{AtomStyle, World};
@@ -22,7 +22,7 @@ impl Style for Efield {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pulls charges and turns dipole moments by an electric field.",
             text: "Charges feel q E; dipole moments of spheres (`atom_style hybrid sphere dipole`) the torque μ × E, \
                    which turns them where `fix nve/sphere … update dipole` moves the spheres. Acts in the setup of a \
@@ -33,9 +33,6 @@ impl Style for Efield {
             example: "units lj\natom_style hybrid sphere dipole\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1.0\n\
                       set group all diameter 1.0 density 1.0\nset group all dipole 0.0 0.0 0.5\nfix 1 all nve/sphere update dipole\nfix field all efield 1.0 0.0 0.0\nrun 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

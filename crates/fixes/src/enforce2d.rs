@@ -6,7 +6,7 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, MASK, OMEGA, TORQUE, V};
 use perigrain_world::{GroupId, World};
@@ -20,16 +20,13 @@ impl Style for Enforce2d {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Sets velocity and force along z to zero in two-dimensional scenes.",
             text: "Acts on vz and fz of the particles of the group and, for spheres, on the components of angular velocity \
                    and torque that would turn them out of the plane (x and y). Needs `dimension 2`. Forces of fixes \
                    declared later are not seen: declare it last. Acts in the setup of a run too.",
             example: "fix flat all enforce2d",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

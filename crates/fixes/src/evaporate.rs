@@ -7,7 +7,7 @@ use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Chosen, publish};
 use perigrain_styles::newcomers::Account;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Seed, Words, read};
+use perigrain_styles::words::{At, Seed, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::{MASK, X};
@@ -22,7 +22,7 @@ impl Style for Evaporate {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Deletes M particles of a region every N steps, chosen at random.",
             text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of \
                    them where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both \
@@ -31,9 +31,6 @@ impl Style for Evaporate {
                    are gone so far.",
             example: "fix dry grains evaporate 5 1 ball 4711",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

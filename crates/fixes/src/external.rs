@@ -6,7 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
 use perigrain_world::outside::{Each, HostCall, HostValues};
@@ -83,7 +83,7 @@ impl Style for External {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Adds forces that a program which hosts the run gives, such as a script in Python.",
             text: "Forces stay with their particles until they are written anew; those of new particles are 0. In \
                    minimizations the function is called at every evaluation and must say the energy of its forces. \
@@ -99,9 +99,6 @@ impl Style for External {
                    stay with their particles as forces do (LAMMPS forgets them with every step).",
             example: "fix probe grains external pf/array 1",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

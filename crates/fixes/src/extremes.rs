@@ -4,7 +4,7 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, SlotId, World};
@@ -19,15 +19,12 @@ impl Style for ExtremesStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Remembers the smallest and the largest value of quantities, looked at every N steps.",
             text: "`f_ID[2k-1]` is the smallest and `f_ID[2k]` the largest value the k-th quantity has had since the \
                    fix was declared; several runs count as one. The group is without meaning. Not in LAMMPS.",
             example: "fix peak all extremes 1 v_force",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::matter::publish_levels;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, SLOTS, TORQUE};
 use perigrain_world::{GroupId, World};
@@ -21,7 +21,7 @@ impl Style for Freeze {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Takes all force and torque from the group's spheres.",
             text: "What acts on these spheres is set to zero, so that they keep their velocity under any integrator; \
                    granular contacts with others take them for infinitely heavy. Only what was computed before counts: \
@@ -29,9 +29,6 @@ impl Style for Freeze {
                    Several at a time hold a group each (LAMMPS has one). Vector of 3 (extensive): the total force on its own group before the change.",
             example: "fix still ball freeze",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

@@ -10,7 +10,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick, When};
 use perigrain_styles::matter::{check_masses, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Pull, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, MASS, SLOTS, X};
 use perigrain_world::{GroupId, World};
@@ -24,7 +24,7 @@ impl Style for Gravity {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pulls every particle of the group with the same acceleration.",
             text: "f ← f + m g e, with e the unit vector of the direction. Each parameter is a number or `v_name` of an \
                    equal-style variable, evaluated each step. The particles' mass counts: for peridynamic particles in \
@@ -33,9 +33,6 @@ impl Style for Gravity {
                    energy yes` adds it to the potential energy.",
             example: "fix g all gravity 9.81 vector 0 0 -1",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

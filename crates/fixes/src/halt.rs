@@ -7,7 +7,7 @@ use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Alternative, At, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{CLOCK, SLOTS};
 use perigrain_world::{Halt, World};
@@ -22,14 +22,11 @@ impl Style for HaltFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Ends the run when a quantity passes a value; looked at every N steps.",
             text: "The step at which the run ends gets no extra thermo row. The group means nothing.",
             example: "fix enough all halt 1 v_speed > 1000.0 error continue",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

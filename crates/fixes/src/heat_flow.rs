@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
@@ -22,16 +22,13 @@ impl Style for HeatFlow {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Changes the temperature of particles by the heat that flows into them.",
             text: "T += Δt q/(m c_p) at the end of each step, with the heat flow q of contacts in energy/time units. \
                    Needs `fix ID all property/atom temperature heatflow`.",
             example: "fix warm all property/atom temperature heatflow\nset group ball temperature 300\n\
                       fix flow ball heat/flow constant 840",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

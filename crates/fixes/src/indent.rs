@@ -10,7 +10,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form as Declaration, Units, Words, read};
+use perigrain_styles::words::{Syntax, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
 use perigrain_world::{GroupId, World};
@@ -25,7 +25,7 @@ impl Style for Indent {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pushes particles out of a sphere, cylinder, cone or half-space.",
             text: "Across periodic faces the nearest image counts. Variables are evaluated each step. LAMMPS \
                    22Jul2025's forces of a cone go away from its middle and its energies are negative: so it is under \
@@ -35,9 +35,6 @@ impl Style for Indent {
                    energy. Vector of 3 (extensive): the force on the indenter.",
             example: "fix ball all indent 4.0e20 sphere 0.0 0.0 v_z 0.003 units box",
         }
-    }
-    fn words(&self) -> Vec<Declaration> {
-        vec![Declaration::behind(Line::GRAMMAR)]
     }
 }
 

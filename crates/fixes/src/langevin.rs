@@ -8,7 +8,7 @@ use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Form, Kind, PerAtom, Positive, Types, Value, Words, read};
+use perigrain_styles::words::{Alternative, At, Kind, PerAtom, Positive, Syntax, Types, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
     COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, RANK, SLOTS, TORQUE, TYPE_MASS, V,
@@ -24,7 +24,7 @@ impl Style for Langevin {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Friction and random forces of a bath of some temperature.",
             text: "f ← f − m/damp v + √(24 k_B T m/(damp Δt)) (u − ½), with u uniform between 0 and 1 for each particle \
                    and direction. T goes from Tstart to Tstop during a run (`run … start stop`). Something else must \
@@ -39,9 +39,6 @@ impl Style for Langevin {
                    `fix_modify ID temp` with a temperature that takes a flow away is refused.",
             example: "fix bath grains langevin 300.0 300.0 1.0e-3 48279 omega yes",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, MASK};
 use perigrain_world::{GroupId, World};
@@ -21,16 +21,13 @@ impl Style for LineForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Leaves of each force only the part along the direction (x, y, z).",
             text: "f ← (f·n) n with n = (x, y, z) of length 1. A particle that starts at rest, or with a velocity along \
                    the line, stays on its line. Forces of fixes declared later are not seen. Acts in the setup of a run \
                    too.",
             example: "fix rail foot lineforce 0.0 1.0 1.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Masses, Whole, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -23,16 +23,13 @@ impl Style for Momentum {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes the drift of a group, its rotation, or both away every N steps.",
             text: "At least one of `linear` and `angular` must be there. Under `-compat lammps` the group's mass is \
                    that of the run's beginning, also once particles have been lost or have come: some of the drift \
                    stays.",
             example: "fix calm plate momentum 10 linear 1 1 0 angular",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -13,7 +13,7 @@ use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Kind, Nullable, PerAtom, Units, Value, Words, read};
+use perigrain_styles::words::{Kind, Nullable, PerAtom, Syntax, Units, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, SlotId, Vectors, World};
@@ -28,7 +28,7 @@ impl Style for Move {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves particles on a prescribed path, whatever the forces on them.",
             text: "t is the time since the fix was declared and x0 the position then (unwrapped). Where a component is \
                    `NULL` (for `variable`: both) it is integrated as by fix nve. It moves the particles itself: they \
@@ -39,9 +39,6 @@ impl Style for Move {
                    makes the particles jump, and so does perigrain under `-compat lammps`.",
             example: "fix grip top move linear 0.0 0.0 3.0 units box",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

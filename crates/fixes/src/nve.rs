@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, KIND, MASK, MASS, TRAVEL, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -21,7 +21,7 @@ impl Style for Nve {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Moves the particles of the group by velocity Verlet.",
             text: "Each step: v += Δt/2 · f/m, then x += Δt · v, then new forces, then again v += Δt/2 · f/m \
                    (Swope et al. 1982). Printed velocities belong to whole steps. For peridynamic particles \
@@ -29,9 +29,6 @@ impl Style for Nve {
                    turned: for that use `nve/sphere`.",
             example: "fix 1 all nve",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

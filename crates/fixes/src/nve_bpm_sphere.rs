@@ -4,7 +4,7 @@ use super::nve_sphere::{Line, ORIENTED, declared};
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Words};
+use perigrain_styles::words::{Syntax, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -16,7 +16,7 @@ impl Style for NveBpmSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves and turns the group's spheres by velocity Verlet, with their orientations.",
             text: "As `fix nve/sphere`; after the first half kick orientations follow the spins, q̇ = ½ ω q over Δt \
                    with the ω of the middle of the step, extrapolated from one step and two halves (Richardson) and \
@@ -25,9 +25,6 @@ impl Style for NveBpmSphere {
             example: "units lj\natom_style bpm/sphere\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 2 2 2\n\
                       set group all omega 0 0 0.5\nfix 1 all nve/bpm/sphere\nrun 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -23,15 +23,12 @@ impl Style for NveLimit {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves the particles of the group by velocity Verlet, none farther than xmax in a step.",
             text: "Meant for scenes that start with heavy overlaps; energy is not kept. Scalar (extensive): how often a \
                    velocity has been shortened since the fix was declared.",
             example: "fix 1 all nve/limit 1.0e-5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{MASK, V, X};
 use perigrain_world::{GroupId, World};
@@ -20,14 +20,11 @@ impl Style for NveNoForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Moves the particles of the group with their present velocity; forces do not change it.",
             text: "x ← x + Δt v. For walls of particles that are moved along, with a velocity given by `velocity … set`.",
             example: "fix drive foot nve/noforce",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

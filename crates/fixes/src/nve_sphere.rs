@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, KIND, MASK, MASS, OMEGA, QUAT, RADIUS, TORQUE, TRAVEL, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
@@ -29,7 +29,7 @@ impl Style for NveSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves and turns the group's spheres by velocity Verlet.",
             text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). \
                    Orientations stay as they are: spheres with bonds that bend and twist need `fix nve/bpm/sphere`. \
@@ -37,9 +37,6 @@ impl Style for NveSphere {
                    hybrid sphere dipole`).",
             example: "fix 1 all nve/sphere",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -4,7 +4,7 @@ use super::lineforce::{Held, Line};
 use super::{Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -16,16 +16,13 @@ impl Style for PlaneForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes the part of each force along the direction (x, y, z) away.",
             text: "f ← f − (f·n) n with n = (x, y, z) of length 1, the normal of the plane. A particle that starts at \
                    rest, or with a velocity in the plane, stays in its plane. Forces of fixes declared later are not \
                    seen. Acts in the setup of a run too.",
             example: "fix flat foot planeforce 0.0 0.0 1.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_output::Sheet;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{At, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, FORMULAS, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, TORQUE};
@@ -22,14 +22,11 @@ impl Style for Print {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Prints a text with the values of variables and formulas in it every N steps.",
             text: "Prints at the start of a run too if that step is a multiple of N. The group means nothing.",
             example: "fix say all print 1 \"step $(step): ke $(ke:%.4g)\" file said.txt screen no",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

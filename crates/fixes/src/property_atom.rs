@@ -4,7 +4,7 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::Op;
-use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::properties::MOLECULE;
@@ -19,7 +19,7 @@ impl Style for PropertyAtomFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Gives all particles properties of the deck's own.",
             text: "Properties are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME \
                    value` (or `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix \
@@ -29,9 +29,6 @@ impl Style for PropertyAtomFix {
                    reads it. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
             example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::outside::{Host, Invoked};
@@ -20,7 +20,7 @@ impl Style for PythonInvoke {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Calls a function in Python at every step that N divides, where Python hosts the run.",
             text: "It is called neither in the setup of a run, as in LAMMPS, nor in minimizations. The \
                    group decides nothing.\n\n\
@@ -32,9 +32,6 @@ impl Style for PythonInvoke {
                    terminal there is no Python: the fix is refused.",
             example: "fix watch all python/invoke 10 end_of_step watch",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

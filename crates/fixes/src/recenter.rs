@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::scales;
 use perigrain_styles::matter::{Whole, centre, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, Form, Kind, Value, Words, read};
+use perigrain_styles::words::{Alternative, Kind, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, Key, Numbers, World};
@@ -23,7 +23,7 @@ impl Style for Recenter {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Shifts particles every step so that the centre of mass of the group stays at a place.",
             text: "Velocities stay. Acts after the time integration of fixes declared before: declare it after them. \
                    Under `-compat lammps` the group's mass is that of the run's beginning, also once particles have \
@@ -31,9 +31,6 @@ impl Style for Recenter {
                    the shift.",
             example: "fix still plate recenter INIT INIT NULL",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -25,7 +25,7 @@ use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read_or};
+use perigrain_styles::words::{At, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
     self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, RIGID, SLOTS, TAG, TALLY,
@@ -50,7 +50,7 @@ impl Style for Rigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Large::GRAMMAR),
             summary: "Lets groups of particles move as rigid bodies.",
             text: "Each body needs two particles at least. Mass, centre and moments of inertia are those of the \
                    particles, spheres being solid; overlaps count twice. Forces and torques on a body are the sums of \
@@ -80,9 +80,6 @@ impl Style for Rigid {
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single torque * off off on",
         }
     }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Large::GRAMMAR)]
-    }
 }
 
 impl Style for RigidSmall {
@@ -91,7 +88,7 @@ impl Style for RigidSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Small::GRAMMAR),
             summary: "Lets molecules move as rigid bodies, as many as there are.",
             text: "As `fix rigid`, without its array. Particles that join the group during a run become bodies of their \
                    own, molecule by molecule, with the next rebuild of neighbour lists. In `infile` the number of a \
@@ -105,9 +102,6 @@ impl Style for RigidSmall {
                       mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
                       fix 1 all rigid/small molecule\nthermo_style custom step f_1\nrun 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Small::GRAMMAR)]
     }
 }
 

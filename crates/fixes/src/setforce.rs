@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Nullable, PerAtom, Words, read};
+use perigrain_styles::words::{Nullable, PerAtom, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, MASK, REGIONS, SLOTS, X};
@@ -21,15 +21,12 @@ impl Style for SetForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Replaces components of the force on each particle of the group.",
             text: "Only forces computed before count: those of pair styles and of fixes declared earlier. Acts in the \
                    setup of a run too. Vector of 3 (extensive): the total force before the change.",
             example: "fix clamp foot setforce 0.0 0.0 0.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{change_torques, publish_levels};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Nullable, PerAtom, Words, read};
+use perigrain_styles::words::{Nullable, PerAtom, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::World;
 use perigrain_world::field::{MASK, REGIONS, SLOTS, TORQUE, X};
@@ -21,16 +21,13 @@ impl Style for SetTorqueAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Replaces components of the torque on each sphere of the group.",
             text: "Only torques computed before count: those of pair styles and of fixes declared earlier. `0 0 0` for \
                    spheres that do not spin keeps them from spinning (`fix freeze` holds places as well). Acts in the \
                    setup of a run too. Vector of 3 (extensive): the total torque before the change.",
             example: "fix still ball settorque/atom 0.0 NULL 0.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

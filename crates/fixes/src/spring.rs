@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{Chosen, Masses, Whole, change_forces, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Nullable, Words, read};
+use perigrain_styles::words::{At, Nullable, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, World};
@@ -21,7 +21,7 @@ impl Style for Spring {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pulls the centre of mass of a group to a point, or two groups together.",
             text: "A coordinate that is `NULL` does not count. The force is shared out by mass, so that the group is \
                    not turned or strained; centres are taken unwrapped. Acts in the setup of a run too. Under `-compat \
@@ -31,9 +31,6 @@ impl Style for Spring {
                    the spring is shorter than R0.",
             example: "fix pull ball spring tether 50.0 0.0 0.0 NULL 0.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

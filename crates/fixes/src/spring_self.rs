@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Chosen, change_forces, keep_places, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, PerAtom, Value, Words, read};
+use perigrain_styles::words::{At, PerAtom, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, MASK, SLOTS, X};
 use perigrain_world::{GroupId, Key, Vectors, World};
@@ -20,16 +20,13 @@ impl Style for SpringSelf {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Ties each particle of the group to the place where it was when the fix was declared.",
             text: "f ← f − K (x − x0), with unwrapped positions. Particles that join the group later are tied where \
                    they are then. Acts in the setup of a run too. Scalar (extensive): the energy Σ K (x − x0)²/2, which \
                    `fix_modify ID energy yes` adds to the potential energy.",
             example: "fix hold foot spring/self 10.0 xy",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Grammar};
+use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, SLOTS};
 use perigrain_world::{GroupId, World};
@@ -19,15 +19,12 @@ impl Style for StoreForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Grammar::NONE),
             summary: "Keeps the force on each particle before later fixes change it.",
             text: "Per-atom array, 3 columns: the force at this place in the order of fixes, those of pair styles and of \
                    fixes declared before; 0 outside the group. Useful before `setforce`. Acts in the setup of a run too.",
             example: "fix felt foot store/force\nfix clamp foot setforce 0.0 0.0 0.0",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Grammar::NONE)]
     }
 }
 

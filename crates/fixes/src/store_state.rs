@@ -7,7 +7,7 @@ use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::centre;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, Slot, SlotId, World};
@@ -21,14 +21,11 @@ impl Style for StoreState {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Keeps per-atom attributes and values as they were at one moment, or every N steps.",
             text: "Per-atom vector for one input, array for several; 0 for particles outside the group and those that come later.",
             example: "fix start all store/state 0 xu yu zu\ncompute far all reduce max f_start[1]",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, GlobalValue, Words, read};
+use perigrain_styles::words::{GlobalValue, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Key, Numbers, Slot, World};
@@ -20,16 +20,13 @@ impl Style for VectorFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Keeps single numbers every Nevery steps as a vector that grows.",
             text: "At multiples of Nevery, the start of the first run among them, each value adds an element: one value \
                    gives a vector, several an array with a row per time and a column per value. For formulas such as \
                    `trap(f_ID)`. The group means nothing.",
             example: "fix keep all vector 1 v_force v_speed",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
-use perigrain_styles::words::{Form, Types, Words, read};
+use perigrain_styles::words::{Syntax, Types, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{F, KIND, MASK, V};
@@ -19,16 +19,13 @@ impl Style for Viscous {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Slows particles down by a drag proportional to their velocity.",
             text: "f ← f − γ v; for peridynamic particles in LAMMPS' convention γ is a force density over a velocity. \
                    Velocities are those of the half step at which forces are computed; in the setup of a run those of the \
                    whole step.",
             example: "fix calm all viscous 1.0e-3 scale 2 0.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

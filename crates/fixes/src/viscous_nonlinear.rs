@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, MASK, RADIUS, V};
 use perigrain_world::{GroupId, World};
@@ -22,7 +22,7 @@ impl Style for ViscousNonlinear {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Fluid::GRAMMAR),
             summary: "Slows spheres down by the drag of a fluid around them.",
             text: "A fluid that rests, or flows at V, pulls at each sphere by F = −C_d ρ π r² |u| u/2, u = v − V, with \
                    the drag coefficient of Schiller and Naumann (1933) C_d = 24/Re (1 + 0.15 Re^0.687), Re = 2 ρ |u| \
@@ -32,9 +32,6 @@ impl Style for ViscousNonlinear {
                    (`real`, `metal` …) are refused.",
             example: "fix air ball viscous/nonlinear 1.2 1.8e-5 velocity 0.0 0.0 0.4",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Fluid::GRAMMAR)]
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{KIND, MASK, OMEGA, SLOTS, TORQUE};
@@ -19,15 +19,12 @@ impl Style for ViscousSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Slows the spin of spheres by a torque proportional to their angular velocity.",
             text: "T ← T − γ ω. Angular velocities are those of the half step at which forces are computed; in the setup of a \
                    run those of the whole step.",
             example: "fix calm ball viscous/sphere 1.0e-9 scale 2 0.5",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Form, Units, Words, read};
+use perigrain_styles::words::{Alternative, At, Syntax, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, Fields, MASK, RADIUS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
@@ -77,14 +77,11 @@ impl Style for FlatWall {
     fn doc(&self) -> Doc {
         let [text, example] = &PAGES[self.0];
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(if self.is_morse() { Morses::GRAMMAR } else { Wells::GRAMMAR }),
             summary: "Flat walls that push and pull particles without friction.",
             text,
             example,
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(if self.is_morse() { Morses::GRAMMAR } else { Wells::GRAMMAR })]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Units, Words, read};
+use perigrain_styles::words::{Syntax, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{MASK, SLOTS, V, X};
 use perigrain_world::{GroupId, World};
@@ -21,7 +21,7 @@ impl Style for WallReflect {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Throws particles back that have gone through flat walls.",
             text: "After the drift of a step a particle of the group whose centre is at a distance d beyond a wall is \
                    put as far inside, and its velocity across the wall changes sign. Up to six walls. A moving wall \
@@ -31,9 +31,6 @@ impl Style for WallReflect {
                    respa`, in which LAMMPS silently reflects no particle.",
             example: "fix floor grains wall/reflect zlo -0.001 zhi EDGE units box",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -8,7 +8,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, RADIUS, REGIONS, SLOTS, TAG, TALLY, X};
 use perigrain_world::region::{Look, Near};
@@ -24,7 +24,7 @@ impl Style for WallRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "The surface of a region as a smooth wall that pushes and pulls particles.",
             text: "A particle of the group whose centre is at a distance r < cutoff from the surface of the region feels the force −dE/dr \
                    along the line from the nearest point of the surface; each face that is so near acts, as do the planes of a block \
@@ -41,9 +41,6 @@ impl Style for WallRegion {
                       set group all diameter 1.0\nset group all density 1.0\nfix 1 all nve\nfix shell all wall/region ball lj93 1.0 1.0 2.5\nfix_modify shell energy yes\n\
                       thermo_style custom step pe f_shell f_shell[3]\nrun 100",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

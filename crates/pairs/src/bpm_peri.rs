@@ -9,6 +9,7 @@ use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::near::room_for_pairs;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
@@ -27,7 +28,7 @@ impl Style for BpmPeriStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style bpm/peri\npair_coeff I J k horizon",
+            syntax: Syntax::Written("pair_style bpm/peri\npair_coeff I J k horizon"),
             summary: "Short-range repulsion of particles whose peridynamic bond is broken or never was.",
             text: "F = 15 k V̄ (d − r)/δ pushes particles apart while r < d = 1.35 lattice spacings (`lattice`), V̄ being the mean of \
                    both volumes `d_vfrac`, δ the horizon, and the energy ½ F (d − r). With `bond_style bpm/peri force newton` it is \

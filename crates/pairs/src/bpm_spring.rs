@@ -5,6 +5,7 @@ use super::{Mix, Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_lang::Args;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::{Fields, V};
 
@@ -17,7 +18,7 @@ impl Style for BpmSpringStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style bpm/spring\npair_coeff I J k rc gamma",
+            syntax: Syntax::Written("pair_style bpm/spring\npair_coeff I J k rc gamma"),
             summary: "Damped repulsion within a distance, for particles of bonded solids.",
             text: "F = k (rc − r) − γ (1 − (r/rc)⁸) r̂·v pushes particles apart while r < rc, with the energy k (rc − r)²/2. Bonded particles \
                    are left out, or count in part, as `special_bonds` says. Two types without a line of their own take the geometric means of k and γ, and a cutoff \

@@ -3,6 +3,7 @@
 use super::{Pair, PairStyle, granular};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -15,7 +16,9 @@ impl Style for GranHertzHistory {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style gran/hertz/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] [arms radius|middle]",
+            syntax: Syntax::Written(
+                "pair_style gran/hertz/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] [arms radius|middle]",
+            ),
             summary: "Contacts of spheres: Hertz along the normal, a spring across it, damping, friction.",
             text: "F_n = a (Kn δ − m̄ gamma_n v_n) along the normal for an overlap δ > 0, a = √(δ R_i R_j/(R_i + R_j)), \
                    m̄ = m_i m_j/(m_i + m_j); across it F_t = −a (Kt ξ + m̄ gamma_t v_t), at most xmu F_n and nothing where F_n pulls (`compat lammps`: xmu |F_n|). ξ is the \

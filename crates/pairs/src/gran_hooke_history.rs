@@ -3,6 +3,7 @@
 use super::{Pair, PairStyle, granular};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -15,8 +16,10 @@ impl Style for GranHookeHistory {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style gran/hooke/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] \
+            syntax: Syntax::Written(
+                "pair_style gran/hooke/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] \
                      [arms radius|middle]",
+            ),
             summary: "Contacts of spheres: linear springs along and across the normal, damping, friction.",
             text: "F_n = Kn δ − m̄ gamma_n v_n along the normal for an overlap δ > 0, m̄ = m_i m_j/(m_i + m_j); across \
                    it F_t = −Kt ξ − m̄ gamma_t v_t, at most xmu F_n and nothing where F_n pulls (`compat lammps`: xmu |F_n|). ξ is the slip accumulated while the contact \

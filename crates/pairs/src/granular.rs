@@ -14,6 +14,7 @@ use super::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_contact::normal::{STYLES, Style as Normal};
 use perigrain_lang::Args;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 use std::sync::LazyLock;
 
@@ -27,7 +28,7 @@ impl Style for GranularStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: &PAGE[0],
+            syntax: Syntax::Written(&PAGE[0]),
             summary: "Contacts of spheres: a law along the normal, damping, friction, rolling and twisting resistance.",
             text: &PAGE[1],
             example: "pair_style granular\n\

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest}
 use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style, lammps};
 use perigrain_world::World;
 use std::collections::BTreeMap;
@@ -27,7 +28,9 @@ impl Style for Hybrid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style hybrid style args style args …\npair_coeff i j style|none args",
+            syntax: Syntax::Written(
+                "pair_style hybrid style args style args …\npair_coeff i j style|none args",
+            ),
             summary: "Different pair styles for different pairs of types.",
             text: TEXT,
             example: "pair_style hybrid peri/pmb granular\n\
@@ -43,7 +46,9 @@ impl Style for Overlay {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style hybrid/overlay style args style args …\npair_coeff i j style|none args",
+            syntax: Syntax::Written(
+                "pair_style hybrid/overlay style args style args …\npair_coeff i j style|none args",
+            ),
             summary: "Several pair styles whose forces add up.",
             text: TEXT,
             example: "pair_style hybrid/overlay peri/pmb granular\n\

@@ -5,6 +5,7 @@ use super::{Mix, Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::Fields;
 use std::f64::consts::PI;
@@ -18,7 +19,7 @@ impl Style for SoftStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style soft CUTOFF\npair_coeff I J A [CUTOFF]",
+            syntax: Syntax::Written("pair_style soft CUTOFF\npair_coeff I J A [CUTOFF]"),
             summary: "A soft push that takes points apart which lie in each other.",
             text: "E = A (1 + cos(π r/rc)) for r < rc, and F = A (π/rc) sin(π r/rc) apart: at most 2 A however near two points are, so that what was \
                    placed at random can be taken apart before a harder law acts. As in LAMMPS, A of two types without a line of their own is the \

@@ -4,6 +4,7 @@ use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use std::collections::BTreeMap;
@@ -17,7 +18,7 @@ impl Style for ZeroStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style zero CUTOFF [nocoeff] [full]\npair_coeff I J [CUTOFF]",
+            syntax: Syntax::Written("pair_style zero CUTOFF [nocoeff] [full]\npair_coeff I J [CUTOFF]"),
             summary: "No forces between particles.",
             text: "Says that pairs are meant to exert no forces, as in scenes of bonds alone. LAMMPS builds neighbour lists up to \
                    the cutoff; here they are not needed. With `nocoeff` pair_coeff accepts any words.",

@@ -53,10 +53,10 @@ pub use pair::{Pair, PairStyle, TypePairs};
 pub use seal::{FORMULAS, Gravity, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 
 /// What the manual says of a style.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doc {
-    /// The line to write, as `fix ID group gravity magnitude vector x y z`.
-    pub syntax: &'static str,
+    /// The lines to write.
+    pub syntax: words::Syntax,
     /// What it does, in one sentence.
     pub summary: &'static str,
     /// The page's text (Markdown): parameters with units, equations, sources, differences from LAMMPS.
@@ -71,8 +71,4 @@ pub trait Style: Sync {
     fn name(&self) -> &'static str;
     /// Its page.
     fn doc(&self) -> Doc;
-    /// The words of its lines; without any `Doc::syntax` has the lines.
-    fn words(&self) -> Vec<words::Form> {
-        vec![]
-    }
 }

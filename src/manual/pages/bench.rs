@@ -2,12 +2,15 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const BENCH: Entry = (
     "bench",
     Doc {
-        syntax: "perigrain bench DECK -each NAME VALUE… … -measure WORD… [-against finest [NAME…]|file FILE|form FORM…] [-norm NORM] [-repeat N] [-threads N…] [SWITCH…]\n\
+        syntax: Syntax::Written(
+            "perigrain bench DECK -each NAME VALUE… … -measure WORD… [-against finest [NAME…]|file FILE|form FORM…] [-norm NORM] [-repeat N] [-threads N…] [SWITCH…]\n\
             perigrain bench -suite [-list] [-only PATTERN] [-deck] [-lammps PATH] [-threads N] [-repeat N] [-out DIR] [-anew] [-markdown FILE]",
+        ),
         summary: "A deck over knobs such as time step and spacing: wall time against error, observed orders, the Pareto front.",
         text: TEXT,
         example: "perigrain bench in.ball -each dt 0.04 0.02 0.01 0.005 -measure ke v_height\n\

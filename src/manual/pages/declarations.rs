@@ -2,11 +2,12 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const PAIR_STYLE: Entry = (
     "pair_style",
     Doc {
-        syntax: "pair_style STYLE word …\npair_style none",
+        syntax: Syntax::Written("pair_style STYLE word …\npair_style none"),
         summary: "Chooses the forces between particles.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc pair_style peri/pmb`. Another \
             style forgets the coefficients of the old one, and so does `hybrid`; the same style again keeps them. With `none`, or without the command, particles do not \
@@ -18,7 +19,7 @@ pub(super) const PAIR_STYLE: Entry = (
 pub(super) const PAIR_COEFF: Entry = (
     "pair_coeff",
     Doc {
-        syntax: "pair_coeff I J word …",
+        syntax: Syntax::Written("pair_coeff I J word …"),
         summary: "Gives the coefficients of the pair style for some types.",
         text: "`I` and `J` are types or ranges: `2`, `*`, `2*`, `*4`, `2*4`. Only pairs with i ≤ j count, so the smaller \
             type comes first; a line that names none is refused. A later line replaces what an earlier one gave. What the \
@@ -32,7 +33,7 @@ pub(super) const PAIR_COEFF: Entry = (
 pub(super) const PAIR_MODIFY: Entry = (
     "pair_modify",
     Doc {
-        syntax: "pair_modify [pair STYLE] keyword value …",
+        syntax: Syntax::Written("pair_modify [pair STYLE] keyword value …"),
         summary: "How types are mixed, and options of LAMMPS' pair styles that have no effect here.",
         text: "`mix geometric|arithmetic|sixthpower` is the rule by which `soft` and `bpm/spring` mix the cutoffs of two types without a \
             line of their own. `shift yes|no`, `tail yes|no`, `table N`, `tabinner R`, \
@@ -47,7 +48,7 @@ pub(super) const PAIR_MODIFY: Entry = (
 pub(super) const BOND_STYLE: Entry = (
     "bond_style",
     Doc {
-        syntax: "bond_style STYLE word …\nbond_style none",
+        syntax: Syntax::Written("bond_style STYLE word …\nbond_style none"),
         summary: "Chooses the forces along bonds.",
         text: "Each style has a page of its own, as `perigrain doc bond_style harmonic`. Needs an atom style with bonds. A new \
             `bond_style` forgets the coefficients of the old one; with `none`, or without the command, bonds exert no forces and \
@@ -61,7 +62,7 @@ pub(super) const BOND_STYLE: Entry = (
 pub(super) const BOND_COEFF: Entry = (
     "bond_coeff",
     Doc {
-        syntax: "bond_coeff T word …",
+        syntax: Syntax::Written("bond_coeff T word …"),
         summary: "Gives the coefficients of the bond style for some bond types.",
         text: "`T` is a bond type or a range: `2`, `*`, `2*`, `*4`, `2*4`. What the words are is on the page of the bond style; \
             with `hybrid` they begin with the name of the sub-style. It needs `bond_style` and the box before it, and every \
@@ -75,7 +76,9 @@ pub(super) const BOND_COEFF: Entry = (
 pub(super) const PERI_MODIFY: Entry = (
     "peri_modify",
     Doc {
-        syntax: "peri_modify [force density|newton] [volume lammps|none|full] [surface no|energy|tensor] [horizon lattice|own] [nofail region ID]…",
+        syntax: Syntax::Written(
+            "peri_modify [force density|newton] [volume lammps|none|full] [surface no|energy|tensor] [horizon lattice|own] [nofail region ID]…",
+        ),
         summary: "Sets options of the peridynamic pair styles.",
         text: "`force density` keeps LAMMPS' force densities with the density in the place of mass; `newton` makes forces \
             true forces and masses ρV, so that grains and bodies exchange momentum and energies add up in one scene. \
@@ -89,7 +92,7 @@ pub(super) const PERI_MODIFY: Entry = (
 pub(super) const FIX: Entry = (
     "fix",
     Doc {
-        syntax: "fix ID group STYLE word …",
+        syntax: Syntax::Written("fix ID group STYLE word …"),
         summary: "Declares something that is done to particles in every step.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc fix nve`. The ID has \
             letters, digits and underscores. Within a stage of the step, fixes act in the order of their lines. The same \
@@ -102,7 +105,7 @@ pub(super) const FIX: Entry = (
 pub(super) const FIX_MODIFY: Entry = (
     "fix_modify",
     Doc {
-        syntax: "fix_modify ID [energy yes|no] [respa M] [keyword value …]",
+        syntax: Syntax::Written("fix_modify ID [energy yes|no] [respa M] [keyword value …]"),
         summary: "Sets options of a fix.",
         text: "`energy yes` adds the energy of the fix to the potential energy `pe`; it is refused for a fix that has \
             none. `respa M` names the level of steps in which addforce, addtorque, aveforce, drag, gravity, indent, setforce, \
@@ -116,7 +119,7 @@ pub(super) const FIX_MODIFY: Entry = (
 pub(super) const UNFIX: Entry = (
     "unfix",
     Doc {
-        syntax: "unfix ID",
+        syntax: Syntax::Written("unfix ID"),
         summary: "Removes a fix.",
         text: "What it has done to the particles stays. Thermo columns, dumps and variables that name it are refused at \
             the next run.",
@@ -127,7 +130,7 @@ pub(super) const UNFIX: Entry = (
 pub(super) const COMPUTE: Entry = (
     "compute",
     Doc {
-        syntax: "compute ID group STYLE word …",
+        syntax: Syntax::Written("compute ID group STYLE word …"),
         summary: "Declares a quantity to be computed from the particles.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc compute reduce`. A compute \
             costs nothing until something reads it, and is computed at most once in a step. `c_ID` is its number or its \
@@ -142,7 +145,7 @@ pub(super) const COMPUTE: Entry = (
 pub(super) const COMPUTE_MODIFY: Entry = (
     "compute_modify",
     Doc {
-        syntax: "compute_modify ID keyword value …",
+        syntax: Syntax::Written("compute_modify ID keyword value …"),
         summary: "Sets options of a compute.",
         text: "Only `compute temp` has options: `extra/dof N` (or `extra`) sets the number of degrees of freedom that are \
             taken off, 3 without it; `dynamic/dof yes|no` (or `dynamic`) is read, and the particles are counted anew each \
@@ -154,7 +157,7 @@ pub(super) const COMPUTE_MODIFY: Entry = (
 pub(super) const UNCOMPUTE: Entry = (
     "uncompute",
     Doc {
-        syntax: "uncompute ID",
+        syntax: Syntax::Written("uncompute ID"),
         summary: "Removes a compute.",
         text: "Thermo columns, dumps and variables that name it are refused at the next run.",
         example: "compute energy all ke\nuncompute energy",
@@ -164,7 +167,7 @@ pub(super) const UNCOMPUTE: Entry = (
 pub(super) const DUMP: Entry = (
     "dump",
     Doc {
-        syntax: "dump ID group STYLE N FILE word …",
+        syntax: Syntax::Written("dump ID group STYLE N FILE word …"),
         summary: "Writes snapshots of particles every N steps.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc dump custom`. Snapshots are \
             written at steps that are multiples of `N`, the first step of a run among them. A `*` in the file name becomes \
@@ -177,7 +180,7 @@ pub(super) const DUMP: Entry = (
 pub(super) const DUMP_MODIFY: Entry = (
     "dump_modify",
     Doc {
-        syntax: "",
+        syntax: Syntax::Forms(&perigrain_dumps::MODIFIED),
         summary: "Sets options of a dump.",
         text: "The first line has the keywords of all dumps, the second those of all dumps of particles, the others those that \
             styles add, each on its page too. LAMMPS' further keywords are refused by name. In LAMMPS a dump is unsorted \
@@ -190,7 +193,7 @@ pub(super) const DUMP_MODIFY: Entry = (
 pub(super) const UNDUMP: Entry = (
     "undump",
     Doc {
-        syntax: "undump ID",
+        syntax: Syntax::Written("undump ID"),
         summary: "Ends a dump.",
         text: "Its file is complete and stays.",
         example: "dump 1 all atom 1 flow.txt\nrun 1\nundump 1",

@@ -2,11 +2,14 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const FORMULAS: Entry = (
     "formulas",
     Doc {
-        syntax: "# formulas stand in\nvariable NAME equal formula\nvariable NAME atom formula\ncommand $(formula) $(formula:%.3f)",
+        syntax: Syntax::Written(
+            "# formulas stand in\nvariable NAME equal formula\nvariable NAME atom formula\ncommand $(formula) $(formula:%.3f)",
+        ),
         summary: "What a formula may contain: operators, functions, thermo keywords, particles, groups, computes.",
         text: TEXT,
         example: "variable speed equal sqrt(vcm(ball,x)^2+vcm(ball,z)^2)\n\

@@ -2,11 +2,14 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const DECKS: Entry = (
     "decks",
     Doc {
-        syntax: "# decks hold one command per line\ncommand word word …\ncommand word $x ${name} $(formula) \"words in quotes\" &\n    word",
+        syntax: Syntax::Written(
+            "# decks hold one command per line\ncommand word word …\ncommand word $x ${name} $(formula) \"words in quotes\" &\n    word",
+        ),
         summary: "How a deck is written: lines, words, quotes, values put in.",
         text: "A deck is executed line by line from the top; a line that is refused changes nothing and ends the \
             deck. `#` outside quotes starts a comment. `&` at the end of a line joins the next one to it. Words are \
@@ -33,7 +36,8 @@ pub(super) const DECKS: Entry = (
 pub(super) const VARIABLE: Entry = (
     "variable",
     Doc {
-        syntax: "variable NAME equal formula\n\
+        syntax: Syntax::Written(
+            "variable NAME equal formula\n\
             variable NAME atom formula\n\
             variable NAME vector formula | [1,3,7]\n\
             variable NAME index value …\n\
@@ -49,6 +53,7 @@ pub(super) const VARIABLE: Entry = (
             variable NAME universe value …\n\
             variable NAME uloop N [pad]\n\
             variable NAME delete",
+        ),
         summary: "Defines a variable: a formula, a list to loop over, a text, a file.",
         text: "- `equal`: a [formula](formulas.md) that yields one number. It is kept as a formula and evaluated at \
             each use, so `${NAME}` after a run sees the new state; as text it has 15 digits (`%.15g`).\n\
@@ -96,7 +101,9 @@ pub(super) const VARIABLE: Entry = (
 pub(super) const IF: Entry = (
     "if",
     Doc {
-        syntax: "if \"condition\" then \"command\" … [elif \"condition\" \"command\" …] … [else \"command\" …]",
+        syntax: Syntax::Written(
+            "if \"condition\" then \"command\" … [elif \"condition\" \"command\" …] … [else \"command\" …]",
+        ),
         summary: "Carries out commands if a condition holds.",
         text: "A condition compares numbers with `== != < <= > >=` or names with `== !=`, joined by `&& || |^` \
             (exclusive or) and `!`, with parentheses; a number alone is true when it is not zero. Values are put into the \
@@ -113,7 +120,7 @@ pub(super) const IF: Entry = (
 pub(super) const LABEL: Entry = (
     "label",
     Doc {
-        syntax: "label NAME",
+        syntax: Syntax::Written("label NAME"),
         summary: "Marks a place in a deck for `jump`.",
         text: "It does nothing by itself. When a `jump` looks for `NAME`, all lines up to the first `label NAME` are \
             passed over.",
@@ -124,7 +131,7 @@ pub(super) const LABEL: Entry = (
 pub(super) const JUMP: Entry = (
     "jump",
     Doc {
-        syntax: "jump FILE|SELF [LABEL]",
+        syntax: Syntax::Written("jump FILE|SELF [LABEL]"),
         summary: "Continues in another file, or at a label.",
         text: "Reading continues at the top of `FILE` (`SELF`: the present one), with `LABEL` at the first `label LABEL` \
             after that. There is no way back: `include` is the command that returns. A `jump` right after a `next` that \
@@ -141,7 +148,7 @@ pub(super) const JUMP: Entry = (
 pub(super) const NEXT: Entry = (
     "next",
     Doc {
-        syntax: "next NAME …",
+        syntax: Syntax::Written("next NAME …"),
         summary: "Moves variables with several values to their next one.",
         text: "All variables of one line must be of the same style, `index loop file atomfile universe` or `uloop`, and \
             move together (`universe` and `uloop` count as one style). When one of them has no further value it is \
@@ -153,7 +160,7 @@ pub(super) const NEXT: Entry = (
 pub(super) const INCLUDE: Entry = (
     "include",
     Doc {
-        syntax: "include FILE",
+        syntax: Syntax::Written("include FILE"),
         summary: "Executes another file, then continues.",
         text: "The file is looked for in the working folder, then beside the deck. Files and then-commands may nest 100 deep, so a file that \
             includes itself is refused. `if … then \"include FILE\"` includes under a condition.",
@@ -164,7 +171,7 @@ pub(super) const INCLUDE: Entry = (
 pub(super) const QUIT: Entry = (
     "quit",
     Doc {
-        syntax: "quit [status]",
+        syntax: Syntax::Written("quit [status]"),
         summary: "Ends the deck.",
         text: "All files are finished and the program ends with the exit code `status` (0; numbers beyond 0 … 255 \
             are cut to that range). Inside `run … every` it ends the run as well.",

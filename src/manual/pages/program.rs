@@ -2,11 +2,13 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const PERIGRAIN: Entry = (
     "perigrain",
     Doc {
-        syntax: "perigrain DECK [switch …]\n\
+        syntax: Syntax::Written(
+            "perigrain DECK [switch …]\n\
             perigrain [switch …] < DECK\n\
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
@@ -23,6 +25,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain man [FOLDER]\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
+        ),
         summary: "The program: how it is called, its switches and exit codes.",
         text: TEXT,
         example: "perigrain in.plate -var v 70 -log plate.log\n\

@@ -2,11 +2,13 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const PROMPT: Entry = (
     "prompt",
     Doc {
-        syntax: "perigrain repl [DECK] [switch …]   # the prompt, after DECK if there is one\n\
+        syntax: Syntax::Written(
+            "perigrain repl [DECK] [switch …]   # the prompt, after DECK if there is one\n\
             help [NAME …]\n\
             :plan\n\
             :graph [FILE.dot]\n\
@@ -16,6 +18,7 @@ pub(super) const PROMPT: Entry = (
             :undo [N]\n\
             :save FILE\n\
             :quit",
+        ),
         summary: "The interactive session: lines of a deck are executed as they are typed.",
         text: TEXT,
         example: "perigrain repl",

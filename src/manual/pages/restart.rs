@@ -2,11 +2,12 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const RESTART: Entry = (
     "restart",
     Doc {
-        syntax: "restart N ROOT\nrestart N FILE1 FILE2\nrestart 0",
+        syntax: Syntax::Written("restart N ROOT\nrestart N FILE1 FILE2\nrestart 0"),
         summary: "Writes restart files during a run.",
         text: "At steps that are multiples of `N`, but not where a run begins. With one name every step has a file of its \
             own: `*` in the name becomes the step, else `.` and the step are appended. With two names the files are \
@@ -26,7 +27,7 @@ pub(super) const RESTART: Entry = (
 pub(super) const WRITE_RESTART: Entry = (
     "write_restart",
     Doc {
-        syntax: "write_restart FILE",
+        syntax: Syntax::Written("write_restart FILE"),
         summary: "Writes a restart file now.",
         text: "`*` in the name becomes the step. Writing changes nothing in the scene (LAMMPS wraps particles into the box and \
             rebuilds its lists). See `read_restart` and `restart`.",
@@ -37,7 +38,7 @@ pub(super) const WRITE_RESTART: Entry = (
 pub(super) const READ_RESTART: Entry = (
     "read_restart",
     Doc {
-        syntax: "read_restart FILE",
+        syntax: Syntax::Written("read_restart FILE"),
         summary: "Continues from a restart file: box, particles, bonds, contacts, settings.",
         text: "It takes the place of `create_box` or `read_data`. A `*` in the name stands for the latest step. The file holds \
             the whole scene: clock and time step, units, boundary, box, lattice, types, particles with their forces, groups, \
@@ -62,7 +63,9 @@ pub(super) const READ_RESTART: Entry = (
 pub(super) const RERUN: Entry = (
     "rerun",
     Doc {
-        syntax: "rerun FILE … [first N] [last N] [every N] [skip N] [start N] [stop N] [post yes|no] dump FIELD … [keyword value …]",
+        syntax: Syntax::Written(
+            "rerun FILE … [first N] [last N] [every N] [skip N] [start N] [stop N] [post yes|no] dump FIELD … [keyword value …]",
+        ),
         summary: "Computes forces and output for the snapshots of dumps, without motion.",
         text: "The files are text dumps, read one after the other; what stands after `dump` is as for `read_dump`, without file \
             and step. Snapshots before the step `first` or behind `last` are left out, and so are those whose step is not \

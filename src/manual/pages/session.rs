@@ -2,11 +2,14 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const RUN: Entry = (
     "run",
     Doc {
-        syntax: "run N [upto] [start N1] [stop N2] [pre yes|no] [post yes|no] [every M \"command\" …]",
+        syntax: Syntax::Written(
+            "run N [upto] [start N1] [stop N2] [pre yes|no] [post yes|no] [every M \"command\" …]",
+        ),
         summary: "Makes time steps.",
         text: "Checks all declarations together, seals them into a step plan (`perigrain plan` prints it), and makes `N` \
             steps. With `upto`, `N` is the step to arrive at. `run 0` computes forces, energies and output of the present \
@@ -33,7 +36,7 @@ pub(super) const RUN: Entry = (
 pub(super) const MINIMIZE: Entry = (
     "minimize",
     Doc {
-        syntax: "minimize ETOL FTOL MAXITER MAXEVAL",
+        syntax: Syntax::Written("minimize ETOL FTOL MAXITER MAXEVAL"),
         summary: "Moves particles until the energy is lowest.",
         text: "Stops when the energy changes by less than the part `ETOL` in an iteration, when the forces together are \
             shorter than `FTOL` [force; force density for peridynamic particles in LAMMPS' convention], after `MAXITER` \
@@ -57,7 +60,7 @@ pub(super) const MINIMIZE: Entry = (
 pub(super) const PRINT: Entry = (
     "print",
     Doc {
-        syntax: "print \"text\" [file NAME] [append NAME] [screen yes|no] [universe yes|no]",
+        syntax: Syntax::Written("print \"text\" [file NAME] [append NAME] [screen yes|no] [universe yes|no]"),
         summary: "Writes a line to screen and log, or to a file too.",
         text: "Values are put into the text when it is printed: `$x`, `${name}`, `$(formula:%.3f)`. Text in `\"\"\"…\"\"\"` \
             may have several lines. `file` starts a file anew, `append` adds to it. `screen no` keeps the line off the \
@@ -71,7 +74,7 @@ pub(super) const PRINT: Entry = (
 pub(super) const LOG: Entry = (
     "log",
     Doc {
-        syntax: "log FILE [append] | none",
+        syntax: Syntax::Written("log FILE [append] | none"),
         summary: "Changes the log file.",
         text: "The present log is finished and `FILE` continues from here, written anew or, with `append`, behind what it \
             holds. `none` ends logging. The first log is `log.lammps`, or what `-log` says.",
@@ -82,7 +85,7 @@ pub(super) const LOG: Entry = (
 pub(super) const ECHO: Entry = (
     "echo",
     Doc {
-        syntax: "echo none|screen|log|both",
+        syntax: Syntax::Written("echo none|screen|log|both"),
         summary: "Chooses where each line of the deck is repeated.",
         text: "Without it the log has them, the screen has not. A line with values put in is repeated as written and \
             after each value.",
@@ -93,7 +96,7 @@ pub(super) const ECHO: Entry = (
 pub(super) const CLEAR: Entry = (
     "clear",
     Doc {
-        syntax: "clear",
+        syntax: Syntax::Written("clear"),
         summary: "Forgets the scene: box, particles, all declarations and settings.",
         text: "Variables, the log and `compat` stay. What follows starts a new scene with `units` and so on. Dumps end \
             here; a file of the same name is written anew by the next scene.",
@@ -106,7 +109,7 @@ pub(super) const CLEAR: Entry = (
 pub(super) const COMPAT: Entry = (
     "compat",
     Doc {
-        syntax: "compat lammps[/2025|/2026]|none",
+        syntax: Syntax::Written("compat lammps[/2025|/2026]|none"),
         summary: "Gives LAMMPS' numbers also where LAMMPS is wrong.",
         text: "The same as `-compat lammps` on the command line. [Coming from LAMMPS](../coming-from-lammps.md) lists what \
             it changes and by how much; the log lists what concerns the deck. `none` goes back. LAMMPS has no such \
@@ -120,13 +123,15 @@ pub(super) const COMPAT: Entry = (
 pub(super) const SHELL: Entry = (
     "shell",
     Doc {
-        syntax: "shell cd FOLDER\n\
+        syntax: Syntax::Written(
+            "shell cd FOLDER\n\
             shell mkdir FOLDER …\n\
             shell rmdir FOLDER …\n\
             shell mv OLD NEW\n\
             shell rm [-f] FILE …\n\
             shell putenv NAME=VALUE …\n\
             shell COMMAND WORD …",
+        ),
         summary: "Works with folders, files and the system's shell.",
         text: "`cd` changes the working folder, to which all further file names refer. `mkdir` and `rmdir` make and remove \
             folders (empty ones), `mv` and `rm` rename and remove files; `putenv` sets environment variables for `variable \
@@ -141,7 +146,7 @@ pub(super) const SHELL: Entry = (
 pub(super) const INFO: Entry = (
     "info",
     Doc {
-        syntax: "info [out screen|log|append FILE|overwrite FILE] category …",
+        syntax: Syntax::Written("info [out screen|log|append FILE|overwrite FILE] category …"),
         summary: "Shows what the session holds.",
         text: "Categories: `system` (units, atom style, particles, box, time step), `groups` `regions` `computes` `dumps` \
             `fixes` `variables` `coeffs` (which pairs of types have coefficients), `memory`, `communication` (threads), \
@@ -155,7 +160,7 @@ pub(super) const INFO: Entry = (
 pub(super) const TIMER: Entry = (
     "timer",
     Doc {
-        syntax: "timer [off|loop|normal|full] [sync|nosync] [timeout H:MM:SS|off] [every N]",
+        syntax: Syntax::Written("timer [off|loop|normal|full] [sync|nosync] [timeout H:MM:SS|off] [every N]"),
         summary: "Limits the time that runs may take; chooses how much is said about time.",
         text: "- `timeout`: runs end at the first step that is a multiple of `every` (10) after this much time, counted from \
             this line; further runs are passed over. `SS`, `MM:SS` or `H:MM:SS`; `off` takes the limit back. `is_timeout()` \
@@ -169,7 +174,7 @@ pub(super) const TIMER: Entry = (
 pub(super) const PARTITION: Entry = (
     "partition",
     Doc {
-        syntax: "partition yes|no N command word …",
+        syntax: Syntax::Written("partition yes|no N command word …"),
         summary: "Carries out a command on some of the partitions.",
         text: "Partitions are the processes that `-partition` on the command line makes; without it there is one, with the number 1. N is a \
             number or a range: `*`, `*3`, `2*`, `2*3`. With `yes` the command is carried out in the partitions that N means as if it \
@@ -181,10 +186,12 @@ pub(super) const PARTITION: Entry = (
 pub(super) const SWEEP: Entry = (
     "sweep",
     Doc {
-        syntax: "sweep each NAME VALUE … [each NAME VALUE …] [zip NAME NAME …] [table FILE] [report WORD …]\n\
+        syntax: Syntax::Written(
+            "sweep each NAME VALUE … [each NAME VALUE …] [zip NAME NAME …] [table FILE] [report WORD …]\n\
             perigrain sweep DECK [-each NAME VALUE …] [-zip NAME NAME …] [-table FILE] [-report WORD …]\n\
             \u{20}                    [-jobs N] [-threads N] [-out DIR] [-retry N] [-anew] [switch …]\n\
             perigrain sweep DIR -status",
+        ),
         summary: "Many runs of the deck side by side, each with other values of variables, and one table of what they give.",
         text: SWEEP_TEXT,
         example: "sweep each v 10 20 30 each angle 0..90:30 report v_force pe\n\
@@ -212,7 +219,7 @@ const SWEEP_TEXT: &str = "`each` gives a list of values for an index variable; s
 pub(super) const SUFFIX: Entry = (
     "suffix",
     Doc {
-        syntax: "suffix off|on|gpu|intel|kk|omp|opt\nsuffix hybrid SUFFIX SUFFIX",
+        syntax: Syntax::Written("suffix off|on|gpu|intel|kk|omp|opt\nsuffix hybrid SUFFIX SUFFIX"),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "LAMMPS chooses variants of styles with it. Here kernels are chosen by what the scene and the processor \
             offer; a note in the log says once that the line does nothing.",
@@ -223,7 +230,7 @@ pub(super) const SUFFIX: Entry = (
 pub(super) const PACKAGE: Entry = (
     "package",
     Doc {
-        syntax: "package gpu|intel|kokkos|omp|opt word …",
+        syntax: Syntax::Written("package gpu|intel|kokkos|omp|opt word …"),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "A note in the log says so once. Threads are set by `-threads N` (or `-pk omp N`) on the command line.",
         example: "package omp 4",
@@ -233,7 +240,7 @@ pub(super) const PACKAGE: Entry = (
 pub(super) const COMM_STYLE: Entry = (
     "comm_style",
     Doc {
-        syntax: "comm_style brick|tiled",
+        syntax: Syntax::Written("comm_style brick|tiled"),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "The box is not divided among processes; a note in the log says once that the line does nothing.",
         example: "comm_style tiled",
@@ -243,7 +250,9 @@ pub(super) const COMM_STYLE: Entry = (
 pub(super) const BALANCE: Entry = (
     "balance",
     Doc {
-        syntax: "balance thresh x|y|z uniform|cut … | shift dims N stop | rcb [weight style word …] [out FILE]",
+        syntax: Syntax::Written(
+            "balance thresh x|y|z uniform|cut … | shift dims N stop | rcb [weight style word …] [out FILE]",
+        ),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "LAMMPS moves the borders between its processes; here threads share the work by themselves. The line is read \
             whole, and a note in the log says once that it does nothing.",
@@ -254,7 +263,7 @@ pub(super) const BALANCE: Entry = (
 pub(super) const WRITE_DUMP: Entry = (
     "write_dump",
     Doc {
-        syntax: "write_dump group style FILE [attribute …] [modify keyword value …]",
+        syntax: Syntax::Written("write_dump group style FILE [attribute …] [modify keyword value …]"),
         summary: "Writes one snapshot now.",
         text: "Style, attributes and the options after `modify` are those of `dump` and `dump_modify`; the file needs no \
             `*`. Values of computes and variables are computed for the present state; energies per particle need a `run 0` \

@@ -2,11 +2,12 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const THERMO: Entry = (
     "thermo",
     Doc {
-        syntax: "thermo N | v_name",
+        syntax: Syntax::Written("thermo N | v_name"),
         summary: "Prints a row of the step table every N steps.",
         text: "Rows are printed at the multiples of `N`, and always at the first and last step of a run; with 0 (as \
             without the command) only there. `v_name` of an equal-style variable names the next \
@@ -18,7 +19,7 @@ pub(super) const THERMO: Entry = (
 pub(super) const THERMO_STYLE: Entry = (
     "thermo_style",
     Doc {
-        syntax: "thermo_style one|multi|yaml\nthermo_style custom column …",
+        syntax: Syntax::Written("thermo_style one|multi|yaml\nthermo_style custom column …"),
         summary: "Chooses the columns of the step table.",
         text: COLUMNS,
         example: "compute d all reduce max c_dmg\n\
@@ -52,7 +53,9 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
 pub(super) const THERMO_MODIFY: Entry = (
     "thermo_modify",
     Doc {
-        syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore] [energy error|warn|ignore]",
+        syntax: Syntax::Written(
+            "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore] [energy error|warn|ignore]",
+        ),
         summary: "Sets how the step table looks and what it uses.",
         text: "- `norm`: energies per particle; without it yes in `units lj` and no elsewhere;\n\
             - `flush yes`: every row reaches the log file at once; without it rows that come faster than ten in a second wait for the next one;\n\

@@ -2,11 +2,14 @@
 
 use super::Entry;
 use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
 
 pub(super) const VERIFY: Entry = (
     "verify",
     Doc {
-        syntax: "perigrain verify [-list] [-only PATTERN] [-deck] [-threads N] [-json FILE] [-junit FILE] [-html FILE] [-markdown FILE]",
+        syntax: Syntax::Written(
+            "perigrain verify [-list] [-only PATTERN] [-deck] [-threads N] [-json FILE] [-junit FILE] [-html FILE] [-markdown FILE]",
+        ),
         summary: "Published cases and closed forms, run by the program, with a verdict in the exit code.",
         text: TEXT,
         example: "perigrain verify -list\n\

@@ -9,7 +9,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_geometry::text::{Lines, comes, find};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{domain, on_particles};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 pub use reel::{Reel, Rerun};
 use snapshot::{enter, particles};
@@ -27,7 +27,7 @@ impl Style for ReadDump {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Takes positions, velocities, image flags or forces from a snapshot of a text dump.",
             text: "The file is one of `dump atom` or `dump custom`, packed with gzip if its name ends in `.gz`; it needs a column \
                    `id`. For `x` the first of the columns `x xs xu xsu` is taken (scaled, unwrapped, both), likewise for `y` and \
@@ -36,10 +36,6 @@ impl Style for ReadDump {
                    stay as they are. The formats xyz, molfile and adios and files per processor are refused.",
             example: "write_dump all custom now.dump id type x y z vx vy vz\nread_dump now.dump 0 x y z vx vy vz",
         }
-    }
-
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

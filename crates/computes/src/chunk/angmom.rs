@@ -6,7 +6,7 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::matter::solid;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -18,7 +18,7 @@ impl Style for AngmomChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Angular momentum of each chunk about its centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m r × v over the particles of the chunk that are in the \
                    group, with r from their centre of mass and positions unwrapped across periodic faces, in mass distance velocity \
@@ -26,9 +26,6 @@ impl Style for AngmomChunk {
                    they are points).",
             example: "compute cc all chunk/atom type\ncompute l all angmom/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

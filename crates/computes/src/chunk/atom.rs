@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words};
+use perigrain_styles::words::{Syntax, Words};
 use perigrain_styles::{BuildCx, Chunking, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, MOLECULE, REGIONS, SLOTS, X};
 use perigrain_world::{Fields, SlotId, World};
@@ -21,7 +21,7 @@ impl Style for ChunkAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Numbers particles into chunks, for computes and fixes that work chunk by chunk.",
             text: "Per-atom vector: the chunk of each particle from 1 to Nchunk, 0 for none.\n\n\
                    A value per particle, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` or `v_name`, is rounded towards zero. With `compress yes` \
@@ -33,9 +33,6 @@ impl Style for ChunkAtom {
                    does what LAMMPS' manual says.",
             example: "compute cc all chunk/atom bin/1d z lower 0.1 units reduced",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -21,16 +21,13 @@ impl Style for ComChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Centre of mass of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m x / Σ m over the particles of the chunk that \
                    are in the group, with positions unwrapped across periodic faces, in distance units; zeros for chunks \
                    without mass.",
             example: "compute cc all chunk/atom type\ncompute c all com/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

@@ -14,7 +14,7 @@ use perigrain_styles::common::orthogonal;
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::probe::{Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{Bins, BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
@@ -31,7 +31,7 @@ impl Style for ContinuumChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Fields of density, velocity, stress and more, coarse-grained at the centres of bins.",
             text: "Global array (intensive): a row per bin of a `compute chunk/atom` (`bin/1d`, `bin/2d`, `bin/3d`, without `compress`), a column per field. \
                    Fields are those of Goldhirsch (2010) at the centres of the bins, with the kernel W(r) = a (exp(−r²/2w²) − exp(−c²/2w²)) of \
@@ -58,9 +58,6 @@ impl Style for ContinuumChunk {
             example: "compute cc all chunk/atom bin/1d z lower 0.5 units box\n\
                       compute c all continuum/chunk cc 1.5 0.5 density velocity/* stress/zz",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

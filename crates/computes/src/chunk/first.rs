@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{check_masses, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
@@ -26,7 +26,7 @@ impl Style for MsdChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Squared displacement of each chunk's centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 4 columns in distance² units: dx², dy², dz² and their sum, of the centre of \
                    mass of the chunk's particles that are in the group since the first run after this line began; positions are \
@@ -34,9 +34,6 @@ impl Style for MsdChunk {
                    particles of a chunk are to stay) of the `compute chunk/atom`. Restart files hold the beginning.",
             example: "compute cc all chunk/atom type nchunk once\ncompute m all msd/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 
@@ -46,7 +43,7 @@ impl Style for VacfChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Velocity autocorrelation of each chunk's centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 4 columns in velocity² units: the products of the three components of the \
                    velocity of the centre of mass, of the chunk's particles that are in the group, with what they were when the first \
@@ -54,9 +51,6 @@ impl Style for VacfChunk {
                    hold the beginning.",
             example: "compute cc all chunk/atom type nchunk once\ncompute v all vacf/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{SIX, dot};
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::World;
 
@@ -19,16 +19,13 @@ impl Style for GyrationChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Radius of gyration of each chunk.",
             text: "Global vector (intensive) of length Nchunk: √(Σ m r² / Σ m) over the particles of the chunk that are in the group, \
                    with r from their centre of mass and positions unwrapped across periodic faces, in distance units. Zeros for chunks without \
                    mass.",
             example: "compute cc all chunk/atom type\ncompute g all gyration/chunk cc tensor",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

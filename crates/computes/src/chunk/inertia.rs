@@ -6,7 +6,7 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::matter::solid;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -18,7 +18,7 @@ impl Style for InertiaChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Inertia tensor of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 6 columns xx, yy, zz, xy, yz, xz: Σ m (r² δ_ab − r_a r_b) over the \
                    particles of the chunk that are in the group, with r from their centre of mass and positions unwrapped across \
@@ -26,9 +26,6 @@ impl Style for InertiaChunk {
                    under `compat lammps/2025`, they are points).",
             example: "compute cc all chunk/atom type\ncompute i all inertia/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::diag::Result;
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::Args;
 use perigrain_styles::matter::solid;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::World;
 
@@ -20,7 +20,7 @@ impl Style for OmegaChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Angular velocity of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: the ω with I ω = L, I and L being the chunk's inertia tensor \
                    and angular momentum (compute inertia/chunk, angmom/chunk), in radians per time. About axes whose moment is \
@@ -28,9 +28,6 @@ impl Style for OmegaChunk {
                    and about the line through two (LAMMPS, and `compat lammps`, does so only where det I is below 10⁻⁶).",
             example: "compute cc all chunk/atom type\ncompute w all omega/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{At, Form, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -20,7 +20,7 @@ impl Style for PropertyChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Attributes of chunks.",
             text: "Global vector of length Nchunk for one attribute, array for several (intensive). \
                    Coordinates are the middle of the bin along the axes in the order in which they were given, in distance \
@@ -28,9 +28,6 @@ impl Style for PropertyChunk {
                    radius, then the place along the axis.",
             example: "compute cc all chunk/atom bin/1d z lower 1.0\ncompute p all property/chunk cc count coord1",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

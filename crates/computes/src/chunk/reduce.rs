@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -20,15 +20,12 @@ impl Style for ReduceChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Sums and extremes of per-atom values, chunk by chunk.",
             text: "Global vector of length Nchunk for one input, array for several (intensive). Only particles of the \
                    group count. A chunk without particles has the sum 0, the minimum 1e20 and the maximum −1e20.",
             example: "compute cc all chunk/atom type\ncompute k all ke/atom\ncompute s all reduce/chunk cc sum c_k",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

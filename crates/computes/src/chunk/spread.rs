@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
@@ -20,15 +20,12 @@ impl Style for SpreadAtom {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Gives each particle what is known of its chunk.",
             text: "Per-atom vector for one input, array for several. Each particle of the group has the row of its chunk; 0 outside all chunks and where an input has fewer rows. Whether an \
                    input has rows of the same chunks is not checked.",
             example: "compute cc all chunk/atom type\ncompute c all com/chunk cc\ncompute s all chunk/spread/atom cc c_c[*]",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

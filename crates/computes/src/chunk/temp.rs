@@ -10,7 +10,7 @@ use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
@@ -24,7 +24,7 @@ impl Style for TempChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Temperature of particles in chunks, and of each chunk.",
             text: "Scalar (intensive): T = Σ m v²/(dof k_B) over the particles of the group that are in chunks, dof = N `adof` + Nchunk \
                    `cdof`; 0 where dof is not positive. Vector of 6 (extensive): Σ m v_a v_b for xx yy zz xy xz yz, in energy units. With \
@@ -34,9 +34,6 @@ impl Style for TempChunk {
                    motion if this is their temperature, as in LAMMPS. With `com yes` it cannot be the bias of other commands, unlike in LAMMPS.",
             example: "compute cc all chunk/atom type\ncompute t all temp/chunk cc temp internal com yes",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::cross;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::World;
 
@@ -19,7 +19,7 @@ impl Style for TorqueChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Torque on each chunk about its centre of mass.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ r × f over the particles of the chunk that are in the \
                    group, with r from their centre of mass and positions unwrapped across periodic faces, in force distance units \
@@ -27,9 +27,6 @@ impl Style for TorqueChunk {
                    in LAMMPS.",
             example: "compute cc all chunk/atom type\ncompute t all torque/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

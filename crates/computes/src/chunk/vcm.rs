@@ -5,7 +5,7 @@ use super::com::Means;
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,15 +17,12 @@ impl Style for VcmChunk {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(OfChunks::GRAMMAR),
             summary: "Velocity of the centre of mass of each chunk.",
             text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m v / Σ m over the particles of the chunk that \
                    are in the group, in velocity units; zeros for chunks without mass.",
             example: "compute cc all chunk/atom type\ncompute v all vcm/chunk cc",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(OfChunks::GRAMMAR)]
     }
 }
 

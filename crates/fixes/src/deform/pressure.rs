@@ -4,7 +4,7 @@ use super::{Declared, Fix, FixStyle, Handling, Motion, declared, lean};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::words::{At, Form, Or, Words, read_or};
+use perigrain_styles::words::{At, Or, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::World;
 
@@ -17,7 +17,7 @@ impl Style for DeformPressure {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "A deforming box of which pressures steer lengths and tilts.",
             text: "As [fix deform](fix_deform.md), with pressures that steer lengths and tilts. N steps lie between two \
                    changes; the pressure is the one at the end of the step.\n\n\
@@ -29,9 +29,6 @@ impl Style for DeformPressure {
                    as their velocity, as in LAMMPS. `box` and `vol/balance/p` are not here: they are refused.",
             example: "fix hold all deform/pressure 1 x pressure 0.0 1e-3 max/rate 0.1 remap x",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

@@ -11,7 +11,7 @@ use perigrain_plan::Op;
 use perigrain_styles::molecules::{Inserted, Molecules, Offset};
 use perigrain_styles::newcomers::{Account, Ids};
 use perigrain_styles::pair::ToCome;
-use perigrain_styles::words::{At, Form, Grammar, Kind, Part, Placeholder, Seed, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Seed, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Pull, SealCx, Shape, Style};
 use perigrain_world::{GroupId, Key, Numbers, World};
 use rain::Rain;
@@ -28,7 +28,7 @@ impl Style for Pour {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Pours N spheres into the scene, batch by batch, under gravity.",
             text: "The region is filled to the volume fraction with spheres that touch no other one, and again when \
                    these have fallen out of it, until there are N new ones in `all` and the fix's group. How many and \
@@ -45,9 +45,6 @@ impl Style for Pour {
             example: "region slot block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\nfix g all gravity 9.81 vector 0 0 -1\n\
                       fix rain grains pour 20 2 4711 region slot diam range 0.0004 0.0006 dens 2500 2500 vol 0.2 50",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Line::GRAMMAR)]
     }
 }
 

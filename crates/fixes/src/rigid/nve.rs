@@ -5,7 +5,7 @@ use super::{large, small};
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::{Form, Words};
+use perigrain_styles::words::{Syntax, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// `fix rigid/nve`.
@@ -20,7 +20,7 @@ impl Style for RigidNve {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Large::GRAMMAR),
             summary: "Rigid bodies as fix rigid, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid` in everything, but for how orientations move: a step is split into exact rotations about the principal axes \
                    (Miller et al., J. Chem. Phys. 116, 2002, 8649). It is symplectic, so that energy does not drift in long runs; \
@@ -28,9 +28,6 @@ impl Style for RigidNve {
                    LAMMPS takes others, and its numbers differ by the error of a step. The ensembles nvt, npt and nph are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid/nve single torque * off off on",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Large::GRAMMAR)]
     }
 }
 
@@ -40,7 +37,7 @@ impl Style for RigidNveSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Small::GRAMMAR),
             summary: "Molecules as rigid bodies as fix rigid/small, turned by the NO_SQUISH rotations, which keep energy better.",
             text: "As `fix rigid/small`, with the rotations of `fix rigid/nve`. The scalar is the temperature here too, where LAMMPS \
                    (and `compat lammps`) gives an energy.",
@@ -49,9 +46,6 @@ impl Style for RigidNveSmall {
                       mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
                       fix 1 all rigid/nve/small molecule\nthermo_style custom step f_1\nrun 10",
         }
-    }
-    fn words(&self) -> Vec<Form> {
-        vec![Form::behind(Small::GRAMMAR)]
     }
 }
 

@@ -9,7 +9,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::walls::{Planes, Tube, Wall};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Stage, Tick};
-use perigrain_styles::words::{At, Axis, Each, Form as Declaration, Kind, Nullable, Value, Words, read};
+use perigrain_styles::words::{At, Axis, Each, Kind, Nullable, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{INFINITE, Region, Shape};
 use perigrain_world::{Face, Key, Numbers, Outline, World};
@@ -25,7 +25,7 @@ impl Style for WallGran {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Flat walls across an axis, or a cylinder about z, on which grains lean.",
             text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r \
                    the distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and \
@@ -49,9 +49,6 @@ impl Style for WallGran {
             example: "fix floor grains wall/gran granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
                       NULL 1.0 0.5 zplane -0.002 NULL",
         }
-    }
-    fn words(&self) -> Vec<Declaration> {
-        vec![Declaration::behind(Line::GRAMMAR)]
     }
 }
 

@@ -15,7 +15,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_mesh::Facets;
 use perigrain_plan::Tick;
 use perigrain_styles::triangles::{self, Placing};
-use perigrain_styles::words::{At, Form as Declaration, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Key, Numbers, Outline, World};
 use std::sync::Arc;
@@ -30,7 +30,7 @@ impl Style for WallMesh {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "A surface of triangles from a file as a wall on which grains lean, at rest or moving.",
             text: "Not in LAMMPS. Forces as those of `fix wall/gran` on a plane, with the nearest point of the surface: \
                    from both sides, whatever the order of corners. A face counts where it is the nearest of its \
@@ -50,9 +50,6 @@ impl Style for WallMesh {
             example: "fix blade grains wall/mesh granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
                       NULL 1.0 0.5 mesh blade.stl scale 0.001 shift 0 0 -0.0025 move rotate 0 0 0 0 0 1 0.5",
         }
-    }
-    fn words(&self) -> Vec<Declaration> {
-        vec![Declaration::behind(Line::GRAMMAR)]
     }
 }
 

@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::walls::{Near, Wall};
 use perigrain_lang::Args;
 use perigrain_plan::Tick;
-use perigrain_styles::words::{At, Form as Declaration, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{Look, Shape};
 use perigrain_world::{Key, Numbers, Outline, Region, World};
@@ -22,7 +22,7 @@ impl Style for WallGranRegion {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "",
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "The surface of a region as a wall on which grains lean, at rest or moving.",
             text: "As `fix wall/gran`, with the surface of a region of any shape. Grains inside feel every face they \
                    touch, grains outside (`side out`) the nearest point; a region with `open` faces is a shell that is \
@@ -45,9 +45,6 @@ impl Style for WallGranRegion {
                       fix funnel grains wall/gran/region granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential \
                       mindlin NULL 1.0 0.5 region funnel",
         }
-    }
-    fn words(&self) -> Vec<Declaration> {
-        vec![Declaration::behind(Line::GRAMMAR)]
     }
 }
 

@@ -14,6 +14,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Swing};
 use perigrain_styles::matter::Masses;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, KIND, MASS, OMEGA, QUAT, RADIUS, TYPE_MASS};
 use perigrain_world::{Bond, World};
@@ -29,8 +30,10 @@ impl Style for BpmBeam {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no] [store/local ID N value …]\n\
+            syntax: Syntax::Written(
+                "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no] [store/local ID N value …]\n\
                      bond_coeff T E nu radius R|ratio L [strength S1 S2 [moment B] [weibull M SEED]] [damping Z|ZN ZS ZT ZB]",
+            ),
             summary: "Cylindrical beams between spheres whose forces and torques derive from an energy.",
             text: with_store!(
                 "Each bond is a cylinder between two centres, of Young's modulus E, Poisson's ratio nu and the radius R, or L times the radius of \

@@ -13,6 +13,7 @@ use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Swing};
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, OMEGA, QUAT};
 use perigrain_world::{Bond, World};
@@ -27,8 +28,10 @@ impl Style for BpmRotational {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/rotational [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
+            syntax: Syntax::Written(
+                "bond_style bpm/rotational [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
                      bond_coeff T kr ks kt kb frc fsc ttc tbc gn gs gr gt",
+            ),
             summary: "Bonds between spheres that stretch, shear, twist, bend and break.",
             text: with_store!(
                 "A run notes length and direction of each bond when it first meets it. Against them stand the stretch r − r0, the shear angle γ \

@@ -12,6 +12,7 @@ use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Stiffness, Swing};
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
@@ -25,7 +26,9 @@ impl Style for BpmSpring {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [volume/factor yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma [av]",
+            syntax: Syntax::Written(
+                "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [volume/factor yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma [av]",
+            ),
             summary: "Damped springs that break at a strain.",
             text: with_store!(
                 "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \

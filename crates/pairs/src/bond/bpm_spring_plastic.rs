@@ -12,6 +12,7 @@ use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Standing, Stiffness, Swing};
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::bonds::ascending;
 use perigrain_world::{Bond, World};
@@ -26,8 +27,10 @@ impl Style for BpmSpringPlastic {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/spring/plastic [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
+            syntax: Syntax::Written(
+                "bond_style bpm/spring/plastic [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
                      bond_coeff T k ec gamma ep",
+            ),
             summary: "Damped springs that yield at one strain and break at another.",
             text: with_store!(
                 "F = w (k (r − req) + γ r̂·v) as `bond_style bpm/spring` has it, with a length at rest req that begins as the distance r0 at which a run first \

@@ -8,6 +8,7 @@ use perigrain_bonded::spring::Harmonic;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::Stiffness;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{Fields, MEMO};
@@ -23,7 +24,7 @@ impl Style for HarmonicStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style harmonic\nbond_coeff T K r0",
+            syntax: Syntax::Written("bond_style harmonic\nbond_coeff T K r0"),
             summary: "Springs along bonds.",
             text: "E = K (r − r0)²: the usual ½ is in K [energy/length²], r0 is a length. The force at length r is 2 K (r − r0).",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Stiffness, Swing};
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::Fields;
@@ -19,7 +20,9 @@ impl Style for Hybrid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style hybrid STYLE args STYLE args …\nbond_coeff T STYLE|none args",
+            syntax: Syntax::Written(
+                "bond_style hybrid STYLE args STYLE args …\nbond_coeff T STYLE|none args",
+            ),
             summary: "Different bond styles for different bond types.",
             text: "`bond_coeff T none` leaves the bonds of a type without forces. A later line for the same type replaces the \
                    earlier one. Each sub-style can be named once.",

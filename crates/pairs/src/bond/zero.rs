@@ -5,6 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ impl Style for ZeroStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style zero [nocoeff]\nbond_coeff T [r0]",
+            syntax: Syntax::Written("bond_style zero [nocoeff]\nbond_coeff T [r0]"),
             summary: "Bonds without forces: they join particles only in name.",
             text: "`bond_coeff` may give a length, which goes into data files and means nothing else; with `nocoeff` whatever \
                    stands there is taken, so that one deck serves for several styles.",

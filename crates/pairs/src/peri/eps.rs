@@ -5,6 +5,7 @@ use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,10 +18,12 @@ impl Style for PeriEps {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style peri/eps\n\
+            syntax: Syntax::Written(
+                "pair_style peri/eps\n\
                      pair_coeff i j K G horizon s00 alpha yield\n\
                      pair_coeff i j material ID horizon H yield Y [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric",
+            ),
             summary: "State-based plasticity: solids that flow at a yield stress (von Mises, no hardening).",
             text: "As `peri/lps`, but each end of a bond has a plastic extension e_p, and t_d = (15Gω/m)(e − θ|ξ|/3 − e_p). \
                 Where the norm √(Σ t_d² w V_j) of a particle exceeds its limit, all its t_d are scaled back to the limit \

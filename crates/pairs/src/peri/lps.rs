@@ -5,6 +5,7 @@ use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,11 +18,13 @@ impl Style for PeriLps {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style peri/lps\n\
+            syntax: Syntax::Written(
+                "pair_style peri/lps\n\
                      pair_coeff i j K G horizon s00 alpha\n\
                      pair_coeff i j material ID horizon H [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric\n\
                      peri_modify [force density|newton] [volume lammps|none|full] [influence inverse|one|gaussian] [surface no|tensor] [horizon lattice|own] [broken compress no|yes] [nofail region ID]… [repulsion yes|no] [family exclude|broken]",
+            ),
             summary: "State-based peridynamics: linear elastic solids of any Poisson's ratio, with bonds that break.",
             text: "With e the change of length of a bond of reference length |ξ|, ω its influence and w the partial volume \
                 weight, a particle has the weighted volume m = Σ ω w |ξ|² V_j of its family at the first run and the \

@@ -5,6 +5,7 @@ use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,10 +18,12 @@ impl Style for PeriPmbPlastic {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style peri/pmb/plastic\n\
+            syntax: Syntax::Written(
+                "pair_style peri/pmb/plastic\n\
                      pair_coeff i j c horizon s00 alpha syc [plastic|nonlinear]\n\
                      pair_coeff i j material ID horizon H syc value [plastic|nonlinear] [form bulk|shear|young] [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric",
+            ),
             summary: "Bond-based peridynamics whose bonds are perfectly plastic in compression.",
             text: "As `peri/pmb`, but a bond never pushes with more than c |syc| (Walayat et al. 2023, equation 6); `syc` is a \
                 stretch below zero. The paper does not say what happens on the way back. `plastic` (the default): the bond \

@@ -5,6 +5,7 @@ use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,11 +18,13 @@ impl Style for PeriPmb {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style peri/pmb\n\
+            syntax: Syntax::Written(
+                "pair_style peri/pmb\n\
                      pair_coeff i j c horizon s00 alpha\n\
                      pair_coeff i j material ID horizon H [form bulk|shear|young] [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric\n\
                      peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [influence one|inverse|gaussian] [surface no|energy|tensor] [horizon lattice|own] [broken compress no|yes] [nofail region ID]… [repulsion yes|no] [family exclude|broken]",
+            ),
             summary: "Bond-based peridynamics: elastic bonds that break when stretched too far.",
             text: "Every particle has bonds to all others within the `horizon` δ at the first run. A bond of reference \
                 length |ξ| and stretch s = (r − |ξ|)/|ξ| pulls with the force density `c` s w V_j; w is the partial \

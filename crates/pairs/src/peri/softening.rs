@@ -7,6 +7,7 @@ use perigrain_lang::Args;
 use perigrain_peri::law;
 use perigrain_peri::law::style::Curve;
 use perigrain_peri::moduli::curve_area;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -19,10 +20,12 @@ impl Style for PeriPmbSoftening {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style peri/pmb/softening [linear|exponential]\n\
+            syntax: Syntax::Written(
+                "pair_style peri/pmb/softening [linear|exponential]\n\
                      pair_coeff i j c horizon peak G\n\
                      pair_coeff i j material ID horizon H [peak value] [form bulk|shear|young]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric",
+            ),
             summary: "Bond-based peridynamics whose bonds soften beyond a peak: concrete, ceramics, rock.",
             text: "Up to the stretch `peak` a bond is that of `peri/pmb`. Beyond it the force falls, `linear` (the default) as \
                 c p (s_f − s)/(s_f − p), or `exponential` as c p exp(−(s − p)/a), p being the peak. How far is settled by the \

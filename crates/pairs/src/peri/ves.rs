@@ -5,6 +5,7 @@ use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -17,10 +18,12 @@ impl Style for PeriVes {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style peri/ves\n\
+            syntax: Syntax::Written(
+                "pair_style peri/ves\n\
                      pair_coeff i j K G horizon s00 alpha lambda tau\n\
                      pair_coeff i j material ID horizon H lambda L tau T [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric",
+            ),
             summary: "State-based viscoelasticity: a share of the shear stiffness relaxes.",
             text: "As `peri/lps`, but of the deviatoric extension e_d = e − θ|ξ|/3 the share `lambda` sits in a Maxwell \
                 element: t_d = (15Gω/m) ((1 − λ) e_d + λ D), where D, the element's extension, follows dD/dt = de_d/dt − D/τ \

@@ -155,6 +155,17 @@ pub struct Form {
     pub grammar: &'static Grammar,
 }
 
+/// The lines of a style.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Syntax {
+    /// One line: words behind what always stands before a style of its kind, as `fix ID group viscous`.
+    Behind(&'static Grammar),
+    /// Several forms of the line, or lines of several commands.
+    Forms(&'static [Form]),
+    /// Lines written by hand, as `run N [upto] [pre no]`; irregular ones alone.
+    Written(&'static str),
+}
+
 impl Form {
     /// Words behind what always stands before a style of its kind.
     pub const fn behind(grammar: &'static Grammar) -> Self {

@@ -7,7 +7,7 @@ mod grammar;
 mod values;
 
 pub use crate::BuildCx;
-pub use grammar::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder, alternatives};
+pub use grammar::{Alternative, Form, Grammar, Keyword, Kind, Part, Placeholder, Syntax, alternatives};
 pub use perigrain_base::diag::Result;
 pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;

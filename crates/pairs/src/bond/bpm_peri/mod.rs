@@ -12,6 +12,7 @@ use perigrain_lang::Args;
 use perigrain_peri::families::{Moduli, PmbCoeff};
 use perigrain_peri::law::{LAWS, PMB, Style as BondLaw};
 use perigrain_plan::Op;
+use perigrain_styles::words::Syntax;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::columns::VOLUME_PROPERTY;
@@ -26,11 +27,13 @@ impl Style for BpmPeri {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/peri [force density|newton]\n\
+            syntax: Syntax::Written(
+                "bond_style bpm/peri [force density|newton]\n\
                      bond_coeff T pmb c horizon s00 alpha\n\
                      bond_coeff T lps K G horizon s00 alpha\n\
                      bond_coeff T ves K G lambda tau horizon s00 alpha\n\
                      bond_coeff T eps K G yield horizon s00 alpha",
+            ),
             summary: "Peridynamic bonds, of laws pmb, lps, ves and eps, that are made and taken away like any others.",
             text: include_str!("page.md"),
             example: "units si\natom_style bond\nlattice sc 5.0e-4\nregion b block -0.004 0.004 -0.002 0.002 -0.002 0.002 units box\n\
