@@ -118,7 +118,10 @@ fn join(o: &Options) -> Result<Option<Arc<dyn Comm>>, Usage> {
 #[cfg(unix)]
 fn local(o: &Options) -> Result<Option<Arc<dyn Comm>>, Usage> {
     if let Some(seat) = comm::Seat::given() {
-        return seat.take().map(|ranks| Some(Arc::new(ranks) as Arc<dyn Comm>)).map_err(Usage::new);
+        return seat
+            .take()
+            .map(|ranks| Some(Arc::new(ranks) as Arc<dyn Comm>))
+            .map_err(|why| Usage::new(why.to_string()));
     }
     let Some(size) = o.ranks.filter(|n| *n > 1) else { return Ok(None) };
     refuse("`-ranks` would start more of them")?;
@@ -143,7 +146,7 @@ fn local(o: &Options) -> Result<Option<Arc<dyn Comm>>, Usage> {
 }
 
 /// The launcher's processes find no way to each other.
-fn unjoined(by: &Launched, why: &str) -> Usage {
+fn unjoined(by: &Launched, why: &comm::Error) -> Usage {
     let (host, rank, size) = (comm::host(), by.rank, by.size);
     if rank > 0 {
         // The first rank prints it for all; if only that rank has a library, this one does.

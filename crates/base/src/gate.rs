@@ -12,7 +12,6 @@ use crate::comm;
 use crate::diag::{Code, Diagnostic};
 use crate::memory;
 use std::collections::BTreeSet;
-use std::fmt;
 use std::fs::{self, File, ReadDir};
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
@@ -82,16 +81,9 @@ pub fn limits() -> Option<Limits> {
 }
 
 /// Reason for refusing access to a file.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
 struct Refusal(String);
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Refusal {}
 
 fn refuse<T>(why: String) -> Result<T> {
     Err(Error::new(ErrorKind::PermissionDenied, Refusal(why)))

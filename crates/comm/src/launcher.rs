@@ -1,6 +1,6 @@
 //! Detects how this process was started: by a launcher of several ranks, or by itself.
 
-use super::Comm;
+use super::{Comm, Error};
 use std::sync::Arc;
 
 /// Variables that launchers set: number of ranks, this rank; and the launcher's name.
@@ -58,18 +58,11 @@ pub fn set_apart(command: &mut std::process::Command) {
 /// # Errors
 /// No usable MPI library; a library with another number of ranks than the launcher.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-pub fn open(by: &Launched) -> Result<Arc<dyn Comm>, String> {
+pub fn open(by: &Launched) -> Result<Arc<dyn Comm>, Error> {
     let mpi = super::Mpi::open()?;
     if mpi.size() != by.size {
-        // A library of another kind than the launcher's sees a single rank in each process.
-        return Err(format!(
-            "{} is loaded, which sees {} rank{} where {} has started {}: it is not the launcher's library",
-            mpi.library(),
-            mpi.size(),
-            if mpi.size() == 1 { "" } else { "s" },
-            by.by,
-            by.size
-        ));
+        let (library, seen) = (mpi.library(), mpi.size());
+        return Err(Error::Other { library, seen, launcher: by.by, started: by.size });
     }
     Ok(Arc::new(mpi))
 }
@@ -79,8 +72,8 @@ pub fn open(by: &Launched) -> Result<Arc<dyn Comm>, String> {
 /// # Errors
 /// Always: MPI libraries are loaded at run time on Linux only.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-pub fn open(_by: &Launched) -> Result<Arc<dyn Comm>, String> {
-    Err("MPI libraries are loaded on Linux alone".into())
+pub fn open(_by: &Launched) -> Result<Arc<dyn Comm>, Error> {
+    Err(Error::NotLinux)
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ mod mpi;
 
 mod alone;
 pub mod broadcast;
+mod error;
 mod host;
 mod launcher;
 #[cfg(unix)]
@@ -28,6 +29,7 @@ pub mod rows;
 mod swap;
 
 pub use alone::Alone;
+pub use error::Error;
 pub use host::{describe, file_of, host, nodes};
 pub use launcher::{Launched, launched, open, set_apart};
 #[cfg(unix)]

@@ -6,7 +6,7 @@
 
 use super::mail::Mail;
 use super::swap::{self, Coming, Going, GoneRank};
-use super::{Comm, Gone, lost};
+use super::{Comm, Error, Gone, lost};
 use std::io::{ErrorKind, Read, Write};
 use std::os::fd::{AsRawFd, FromRawFd, RawFd};
 use std::os::unix::net::UnixStream;
@@ -65,8 +65,8 @@ impl Seat {
     ///
     /// # Errors
     /// A variable that was not set by this program.
-    pub fn take(self) -> Result<Local, String> {
-        let wrong = || format!("{SEAT} is `{}`, which no perigrain has set", self.0);
+    pub fn take(self) -> Result<Local, Error> {
+        let wrong = || Error::Seat { variable: SEAT, value: self.0.clone() };
         let numbers: Option<Vec<RawFd>> = self.0.split(' ').map(|n| n.parse().ok()).collect();
         let numbers = numbers.filter(|n| n.len() > 2).ok_or_else(wrong)?;
         let (rank, sockets) = (numbers[0] as usize, &numbers[1..]);
@@ -81,7 +81,7 @@ impl Seat {
         let sockets: Vec<_> = sockets.iter().enumerate().map(own).collect();
         for socket in sockets.iter().flatten() {
             // Programs started by a deck must not inherit it.
-            inherited(socket.as_raw_fd(), false).map_err(|e| format!("a socket to another rank: {e}"))?;
+            inherited(socket.as_raw_fd(), false)?;
         }
         Ok(Local::new(rank, sockets, true, vec![]))
     }

@@ -27,7 +27,7 @@ mod vtp;
 pub use check::Fault;
 pub use columns::Columns;
 pub use facets::{Facets, Near, area};
-pub use read::{Format, Surface, Unreadable, read};
+pub use read::{Error, Format, Surface, read};
 pub use sheet::Sheet;
 pub use solid::Solid;
 

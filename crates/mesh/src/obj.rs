@@ -2,6 +2,7 @@
 
 use super::Triangle;
 use super::read::fan;
+use thiserror::Error;
 
 /// Skipped lines: appearance, groups, and elements that are not surfaces (points and lines).
 const PASSED: [&str; 14] = [
@@ -21,46 +22,70 @@ const PASSED: [&str; 14] = [
     "lod",
 ];
 
+/// Why a file is no OBJ file.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Error {
+    #[error("it is no text")]
+    NoText,
+    #[error("line {0}: {1}")]
+    Line(usize, Line),
+}
+
+/// What is wrong in a line.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Line {
+    #[error("a corner needs three numbers")]
+    Corner,
+    #[error("a face needs three corners")]
+    Face,
+    #[error("there is no corner `{0}` above")]
+    NotAbove(String),
+    #[error("there is no corner {0}")]
+    NoCorner(usize),
+    #[error("`{0}` is no line of a surface of polygons")]
+    Unknown(String),
+}
+
 /// Reads an OBJ file: the first object's name and the triangles.
-pub fn read(bytes: &[u8]) -> Result<(String, Vec<Triangle>), String> {
-    let text = std::str::from_utf8(bytes).map_err(|_| "it is no text".to_string())?;
+pub fn read(bytes: &[u8]) -> Result<(String, Vec<Triangle>), Error> {
+    let text = std::str::from_utf8(bytes).map_err(|_| Error::NoText)?;
     let (mut points, mut triangles, mut name) = (vec![], vec![], None);
     let mut polygon = vec![];
     for (n, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or("");
         let words: Vec<&str> = line.split_whitespace().collect();
-        let wrong = |what: String| Err(format!("line {}: {what}", n + 1));
+        let wrong = |what| Err(Error::Line(n + 1, what));
         match words.as_slice() {
             [] => {}
             // A fourth number is a weight; six numbers are a corner with a colour.
             ["v", x, y, z, ..] => {
                 let numbers = [x, y, z].map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite()));
                 let [Some(x), Some(y), Some(z)] = numbers else {
-                    return wrong("a corner needs three numbers".into());
+                    return wrong(Line::Corner);
                 };
                 points.push([x, y, z]);
             }
-            ["v", ..] => return wrong("a corner needs three numbers".into()),
+            ["v", ..] => return wrong(Line::Corner),
             ["f", corners @ ..] => {
                 if corners.len() < 3 {
-                    return wrong("a face needs three corners".into());
+                    return wrong(Line::Face);
                 }
                 polygon.clear();
                 for corner in corners {
                     match place(corner, points.len()) {
                         Some(k) => polygon.push(k),
-                        None => return wrong(format!("there is no corner `{corner}` above")),
+                        None => return wrong(Line::NotAbove((*corner).into())),
                     }
                 }
                 if let Err(k) = fan(&polygon, &points, &mut triangles) {
-                    return wrong(format!("there is no corner {}", k + 1));
+                    return wrong(Line::NoCorner(k + 1));
                 }
             }
             ["o", rest @ ..] => {
                 name.get_or_insert_with(|| rest.join(" "));
             }
             [word, ..] if PASSED.contains(word) => {}
-            [word, ..] => return wrong(format!("`{word}` is no line of a surface of polygons")),
+            [word, ..] => return wrong(Line::Unknown((*word).into())),
         }
     }
     Ok((name.unwrap_or_default(), triangles))
@@ -89,7 +114,7 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused_with_their_line() {
-        let refusal = |text: &str| read(text.as_bytes()).unwrap_err();
+        let refusal = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
         assert!(refusal("v 0 0\n").contains("line 1") && refusal("v 0 0 inf\n").contains("three numbers"));
         assert!(refusal("v 0 0 0\nf 1 2 3\n").contains("line 2: there is no corner `2`"));
         assert!(refusal("v 0 0 0\nf 1 1 -2\n").contains("`-2`") && refusal("f 0 0 0\n").contains("`0`"));

@@ -2,12 +2,68 @@
 
 use super::Triangle;
 use super::read::fan;
+use thiserror::Error;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Encoding {
     Text,
     Little,
     Big,
+}
+
+/// Why a file is no PLY file.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Error {
+    #[error("it is no text, but says so")]
+    NoText,
+    #[error("its triangles are strips (`tristrips`): write them as faces")]
+    Strips,
+    #[error("its header ends without `end_header`")]
+    OpenHeader,
+    #[error("its header has no line `format`")]
+    NoFormat,
+    #[error("line {0} is no text")]
+    LineNoText(usize),
+    #[error("line {0}: {1}")]
+    Line(usize, Line),
+    #[error("it ends, or has a word that is no number, in row {0} of `{1}`")]
+    Cut(u64, String),
+    #[error("row {0} of `{1}`: {2}")]
+    Row(u64, String, Row),
+    #[error("its corners have no `{0}`")]
+    NoColumn(&'static str),
+    #[error("its corners end in a list")]
+    CornersWithList,
+    #[error("its faces have no list `vertex_indices`")]
+    NoCorners,
+}
+
+/// What is wrong in a line of the header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Line {
+    #[error("it does not begin with `ply`")]
+    First,
+    #[error("a format is ascii, binary_little_endian or binary_big_endian")]
+    Format,
+    #[error("an element needs a number of rows")]
+    Rows,
+    #[error("this is no kind of number")]
+    Kind,
+    #[error("a property needs a kind and a name")]
+    Property,
+    #[error("a property belongs to an element")]
+    Outside,
+    #[error("this is no line of a PLY header")]
+    Unknown,
+}
+
+/// What is wrong in the row of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum Row {
+    #[error("a face needs three corners")]
+    Face,
+    #[error("there is no corner {0}")]
+    NoCorner(f64),
 }
 
 /// A number type: its size, and whether it is floating-point or signed.
@@ -79,11 +135,11 @@ fn kind(word: &str) -> Option<Kind> {
 }
 
 /// Reads a PLY file.
-pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
+pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, Error> {
     let (encoding, elements, body) = header(bytes)?;
     let mut numbers = match encoding {
         Encoding::Text => {
-            let text = std::str::from_utf8(body).map_err(|_| "it is no text, but says so".to_string())?;
+            let text = std::str::from_utf8(body).map_err(|_| Error::NoText)?;
             Numbers::Text(text.split_ascii_whitespace())
         }
         _ => Numbers::Bytes(body, encoding == Encoding::Big),
@@ -93,7 +149,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
         match element.name.as_str() {
             "vertex" => corners(element, &mut numbers, &mut points)?,
             "face" => faces(element, &mut numbers, &points, &mut triangles)?,
-            "tristrips" => return Err("its triangles are strips (`tristrips`): write them as faces".into()),
+            "tristrips" => return Err(Error::Strips),
             // Edges, materials and other elements are skipped.
             _ => rows(element, &mut numbers, |_, _| {}, |_, _| Ok(()))?,
         }
@@ -103,31 +159,31 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
 
 type Header<'b> = (Encoding, Vec<Element>, &'b [u8]);
 
-fn header(bytes: &[u8]) -> Result<Header<'_>, String> {
+fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
     let (mut rest, mut encoding) = (bytes, None);
     let mut elements: Vec<Element> = vec![];
     for n in 1.. {
         let Some(end) = rest.iter().position(|b| *b == b'\n') else {
-            return Err("its header ends without `end_header`".into());
+            return Err(Error::OpenHeader);
         };
-        let line = std::str::from_utf8(&rest[..end]).map_err(|_| format!("line {n} is no text"))?;
+        let line = std::str::from_utf8(&rest[..end]).map_err(|_| Error::LineNoText(n))?;
         rest = &rest[end + 1..];
         let words: Vec<&str> = line.split_whitespace().collect();
-        let wrong = |what: &str| Err(format!("line {n}: {what}"));
+        let wrong = |what| Err(Error::Line(n, what));
         match words.as_slice() {
             ["ply"] if n == 1 => {}
-            _ if n == 1 => return wrong("it does not begin with `ply`"),
+            _ if n == 1 => return wrong(Line::First),
             ["comment" | "obj_info", ..] | [] => {}
             ["format", word, "1.0"] => {
                 encoding = Some(match *word {
                     "ascii" => Encoding::Text,
                     "binary_little_endian" => Encoding::Little,
                     "binary_big_endian" => Encoding::Big,
-                    _ => return wrong("a format is ascii, binary_little_endian or binary_big_endian"),
+                    _ => return wrong(Line::Format),
                 });
             }
             ["element", name, count] => {
-                let Ok(count) = count.parse() else { return wrong("an element needs a number of rows") };
+                let Ok(count) = count.parse() else { return wrong(Line::Rows) };
                 elements.push(Element { name: (*name).into(), count, properties: vec![] });
             }
             ["property", words @ ..] => {
@@ -136,26 +192,26 @@ fn header(bytes: &[u8]) -> Result<Header<'_>, String> {
                         (Some(count), Some(of)) if !count.float => {
                             Property { name: (*name).into(), list: Some(count), kind: of }
                         }
-                        _ => return wrong("this is no kind of number"),
+                        _ => return wrong(Line::Kind),
                     },
                     [of, name] => match kind(of) {
                         Some(of) => Property { name: (*name).into(), list: None, kind: of },
-                        None => return wrong("this is no kind of number"),
+                        None => return wrong(Line::Kind),
                     },
-                    _ => return wrong("a property needs a kind and a name"),
+                    _ => return wrong(Line::Property),
                 };
                 match elements.last_mut() {
                     Some(element) => element.properties.push(property),
-                    None => return wrong("a property belongs to an element"),
+                    None => return wrong(Line::Outside),
                 }
             }
             ["end_header"] => break,
-            _ => return wrong("this is no line of a PLY header"),
+            _ => return wrong(Line::Unknown),
         }
     }
     match encoding {
         Some(encoding) => Ok((encoding, elements, rest)),
-        None => Err("its header has no line `format`".into()),
+        None => Err(Error::NoFormat),
     }
 }
 
@@ -164,15 +220,14 @@ fn rows(
     element: &Element,
     numbers: &mut Numbers,
     mut single: impl FnMut(usize, f64),
-    mut listed: impl FnMut(usize, &[f64]) -> Result<(), String>,
-) -> Result<(), String> {
+    mut listed: impl FnMut(usize, &[f64]) -> Result<(), Row>,
+) -> Result<(), Error> {
     let mut list = vec![];
     if element.properties.is_empty() {
         return Ok(());
     }
     for row in 0..element.count {
-        let cut =
-            || format!("it ends, or has a word that is no number, in row {} of `{}`", row + 1, element.name);
+        let cut = || Error::Cut(row + 1, element.name.clone());
         for (k, property) in element.properties.iter().enumerate() {
             let Some(count) = property.list else {
                 single(k, numbers.next(property.kind).ok_or_else(cut)?);
@@ -183,16 +238,16 @@ fn rows(
             for _ in 0..count as u64 {
                 list.push(numbers.next(property.kind).ok_or_else(cut)?);
             }
-            listed(k, &list).map_err(|what| format!("row {} of `{}`: {what}", row + 1, element.name))?;
+            listed(k, &list).map_err(|what| Error::Row(row + 1, element.name.clone(), what))?;
         }
     }
     Ok(())
 }
 
-fn corners(element: &Element, numbers: &mut Numbers, points: &mut Vec<[f64; 3]>) -> Result<(), String> {
-    let at = |name: &str| {
+fn corners(element: &Element, numbers: &mut Numbers, points: &mut Vec<[f64; 3]>) -> Result<(), Error> {
+    let at = |name| {
         let found = element.properties.iter().position(|p| p.name == name && p.list.is_none());
-        found.ok_or_else(|| format!("its corners have no `{name}`"))
+        found.ok_or(Error::NoColumn(name))
     };
     let (columns, last) = ([at("x")?, at("y")?, at("z")?], element.properties.len() - 1);
     let mut place = [0.0; 3];
@@ -206,7 +261,7 @@ fn corners(element: &Element, numbers: &mut Numbers, points: &mut Vec<[f64; 3]>)
         }
     };
     if ends_in_list {
-        return Err("its corners end in a list".into());
+        return Err(Error::CornersWithList);
     }
     rows(element, numbers, single, |_, _| Ok(()))
 }
@@ -216,11 +271,11 @@ fn faces(
     numbers: &mut Numbers,
     points: &[[f64; 3]],
     triangles: &mut Vec<Triangle>,
-) -> Result<(), String> {
+) -> Result<(), Error> {
     let named =
         |p: &Property| matches!(p.name.as_str(), "vertex_indices" | "vertex_index") && p.list.is_some();
     let Some(column) = element.properties.iter().position(named) else {
-        return Err("its faces have no list `vertex_indices`".into());
+        return Err(Error::NoCorners);
     };
     let mut polygon = vec![];
     rows(
@@ -232,7 +287,7 @@ fn faces(
                 return Ok(());
             }
             if list.len() < 3 {
-                return Err("a face needs three corners".into());
+                return Err(Row::Face);
             }
             polygon.clear();
             for x in list {
@@ -241,10 +296,10 @@ fn faces(
                 polygon.push(if whole {
                     *x as usize
                 } else {
-                    return Err(format!("there is no corner {x}"));
+                    return Err(Row::NoCorner(*x));
                 });
             }
-            fan(&polygon, points, triangles).map_err(|k| format!("there is no corner {k}"))
+            fan(&polygon, points, triangles).map_err(|k| Row::NoCorner(k as f64))
         },
     )
 }
@@ -291,7 +346,7 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused() {
-        let refusal = |text: &str| read(text.as_bytes()).unwrap_err();
+        let refusal = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
         assert!(refusal("ply\nformat ascii 1.0\n").contains("end_header"));
         assert!(refusal("ply\nformat ascii 2.0\n").contains("line 2"));
         assert!(refusal("ply\nproperty float x\n").contains("line 2"));
@@ -301,7 +356,7 @@ mod tests {
         assert!(refusal(&format!("{text}3 0 1 3\n")).contains("no corner 3"));
         assert!(refusal(&format!("{text}2 0 1\n")).contains("three corners"));
         let whole = binary(true);
-        assert!(read(&whole[..whole.len() - 1]).unwrap_err().contains("row 1 of `face`"));
+        assert!(read(&whole[..whole.len() - 1]).unwrap_err().to_string().contains("row 1 of `face`"));
         // A number of rows that no file has.
         assert!(refusal(&text.replace("vertex 3", "vertex 99999999999")).contains("row 4"));
     }

@@ -2,6 +2,7 @@
 
 use super::check::flat;
 use super::{Triangle, obj, ply, stl, vtp};
+use thiserror::Error;
 
 /// File formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,20 +58,29 @@ impl Surface {
     }
 }
 
-/// Reason why a file cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unreadable {
-    /// Assumed format.
-    pub format: Format,
-    /// The error.
-    pub what: String,
-}
-
-impl Unreadable {
-    /// The message for a file of this name.
-    pub fn of(&self, file: &str) -> String {
-        format!("`{file}` is no {} file: {}", self.format.name(), self.what)
-    }
+/// Why the triangles of a file cannot be read. Messages continue the file's name: `gear.stl` "is no STL file: …".
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Error {
+    /// No STL file, as text or binary.
+    #[error("is no STL file: {0}")]
+    Stl(#[from] stl::Error),
+    /// No OBJ file.
+    #[error("is no OBJ file: {0}")]
+    Obj(#[from] obj::Error),
+    /// No PLY file.
+    #[error("is no PLY file: {0}")]
+    Ply(#[from] ply::Error),
+    /// No VTP file.
+    #[error("is no VTP file: {0}")]
+    Vtp(#[from] vtp::Error),
+    /// A corner at no place.
+    #[error("is no {name} file: triangle {number} has a coordinate that is no finite number", name = .format.name())]
+    NotFinite {
+        /// The format of the file.
+        format: Format,
+        /// The number of the triangle, from 1.
+        number: usize,
+    },
 }
 
 /// Reads the triangles of a file: PLY and VTP are recognized by their first bytes, OBJ by the file name
@@ -78,30 +88,24 @@ impl Unreadable {
 ///
 /// # Errors
 /// The error, with line or position.
-pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Unreadable> {
+pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Error> {
     let start = bytes.trim_ascii_start();
     let ends = |end: &str| file.len() >= end.len() && file.to_ascii_lowercase().ends_with(end);
     let mut comments = 0;
-    let (format, found) = if bytes.starts_with(b"ply") || ends(".ply") {
-        (Format::Ply, ply::read(bytes).map(|t| (String::new(), t)))
+    let (format, name, triangles) = if bytes.starts_with(b"ply") || ends(".ply") {
+        (Format::Ply, String::new(), ply::read(bytes)?)
     } else if start.starts_with(b"<") || ends(".vtp") {
-        (Format::Vtp, vtp::read(bytes).map(|t| (String::new(), t)))
+        (Format::Vtp, String::new(), vtp::read(bytes)?)
     } else if ends(".obj") {
-        (Format::Obj, obj::read(bytes))
+        let (name, triangles) = obj::read(bytes)?;
+        (Format::Obj, name, triangles)
     } else {
-        let binary = stl::is_binary(bytes);
-        (
-            Format::Stl(binary),
-            stl::read(bytes).map(|read| {
-                comments = read.comments;
-                (read.name, read.triangles)
-            }),
-        )
+        let read = stl::read(bytes)?;
+        comments = read.comments;
+        (Format::Stl(stl::is_binary(bytes)), read.name, read.triangles)
     };
-    let (name, triangles) = found.map_err(|what| Unreadable { format, what })?;
     if let Some(bad) = triangles.iter().position(|t| !t.as_flattened().iter().all(|x| x.is_finite())) {
-        let what = format!("triangle {} has a coordinate that is no finite number", bad + 1);
-        return Err(Unreadable { format, what });
+        return Err(Error::NotFinite { format, number: bad + 1 });
     }
     Ok(Surface { name, format, triangles, left_out: vec![], comments })
 }

@@ -2,6 +2,8 @@
 
 use super::Triangle;
 use std::borrow::Cow;
+use std::fmt;
+use thiserror::Error;
 
 /// Contents of a file.
 #[derive(Debug, Default, PartialEq)]
@@ -14,7 +16,48 @@ pub struct Read {
     pub comments: usize,
 }
 
-type Found = Result<Read, String>;
+/// Why a file is no STL file.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Error {
+    #[error("it is neither a text nor a whole binary STL file{0}")]
+    NoText(Announced),
+    #[error("its first line does not begin with `solid`, and it is no whole binary STL file{0}")]
+    NoSolid(Announced),
+    #[error("it ends without `endsolid`")]
+    Open,
+    #[error("line {0}: {1}")]
+    Line(usize, Line),
+}
+
+/// What is wrong in a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Line {
+    #[error("a solid begins with `solid`")]
+    Outside,
+    #[error("a corner needs three numbers")]
+    Corner,
+    #[error("a facet needs three corners")]
+    Facet,
+    #[error("this is no line of an STL file")]
+    Unknown,
+}
+
+/// The size of the file beside the one that a binary header in it would mean, if it has one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Announced {
+    triangles: Option<u32>,
+    bytes: usize,
+}
+
+impl fmt::Display for Announced {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Some(count), has) = (self.triangles, self.bytes) else { return Ok(()) };
+        let wanted = length(count);
+        write!(f, " (as one it announces {count} triangles in {wanted} bytes, and has {has})")
+    }
+}
+
+type Found = Result<Read, Error>;
 
 /// Reads an STL file of either kind.
 pub fn read(bytes: &[u8]) -> Found {
@@ -23,12 +66,9 @@ pub fn read(bytes: &[u8]) -> Found {
         let name = header.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string();
         return Ok(Read { name, triangles: binary(&bytes[84..]), comments: 0 });
     }
-    let announced = announced(bytes).map_or(String::new(), |count| {
-        let wanted = 84 + 50 * u64::from(count);
-        format!(" (as one it announces {count} triangles in {wanted} bytes, and has {})", bytes.len())
-    });
+    let announced = Announced { triangles: announced(bytes), bytes: bytes.len() };
     let Ok(text) = std::str::from_utf8(bytes) else {
-        return Err(format!("it is neither a text nor a whole binary STL file{announced}"));
+        return Err(Error::NoText(announced));
     };
     let mut text = Cow::Borrowed(text.trim_start_matches('\u{feff}'));
     if text.contains("SOLID") || text.contains("FACET") {
@@ -36,8 +76,7 @@ pub fn read(bytes: &[u8]) -> Found {
     }
     let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     if !first.unwrap_or("").starts_with("solid") {
-        let text = "its first line does not begin with `solid`, and it is no whole binary STL file";
-        return Err(format!("{text}{announced}"));
+        return Err(Error::NoSolid(announced));
     }
     ascii(&text)
 }
@@ -47,9 +86,14 @@ fn announced(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?))
 }
 
+/// The size in bytes of a binary file of so many triangles.
+fn length(triangles: u32) -> u64 {
+    84 + 50 * u64::from(triangles)
+}
+
 /// Whether the file length fits the number of triangles in its header.
 pub fn is_binary(bytes: &[u8]) -> bool {
-    announced(bytes).is_some_and(|count| count > 0 && bytes.len() as u64 == 84 + 50 * u64::from(count))
+    announced(bytes).is_some_and(|count| count > 0 && bytes.len() as u64 == length(count))
 }
 
 fn binary(records: &[u8]) -> Vec<Triangle> {
@@ -68,7 +112,7 @@ fn ascii(text: &str) -> Found {
     let mut comments = 0;
     for (n, line) in text.lines().enumerate() {
         let words: Vec<&str> = line.split_whitespace().collect();
-        let wrong = |what: &str| Err(format!("line {}: {what}", n + 1));
+        let wrong = |what| Err(Error::Line(n + 1, what));
         match words.as_slice() {
             [] => {}
             [word, ..] if word.starts_with('#') => comments += 1,
@@ -77,12 +121,12 @@ fn ascii(text: &str) -> Found {
                 open = true;
             }
             ["endsolid", ..] if open => open = false,
-            _ if !open => return wrong("a solid begins with `solid`"),
+            _ if !open => return wrong(Line::Outside),
             ["outer", "loop"] | ["facet", ..] | ["endfacet"] => {}
             ["vertex", x, y, z] => {
                 let numbers = [x, y, z].map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite()));
                 let [Some(x), Some(y), Some(z)] = numbers else {
-                    return wrong("a corner needs three numbers");
+                    return wrong(Line::Corner);
                 };
                 corners.push([x, y, z]);
             }
@@ -91,13 +135,13 @@ fn ascii(text: &str) -> Found {
                     triangles.push([*a, *b, *c]);
                     corners.clear();
                 }
-                _ => return wrong("a facet needs three corners"),
+                _ => return wrong(Line::Facet),
             },
-            _ => return wrong("this is no line of an STL file"),
+            _ => return wrong(Line::Unknown),
         }
     }
     if open {
-        return Err("it ends without `endsolid`".into());
+        return Err(Error::Open);
     }
     Ok(Read { name: name.unwrap_or_default(), triangles, comments })
 }
@@ -144,14 +188,17 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused_with_their_line() {
-        let refusal = |text: &str| read(text.as_bytes()).unwrap_err();
+        let refusal = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
         assert!(refusal("").contains("solid") && refusal("solid a\nvertex 1 2\n").contains("line 2"));
         assert!(refusal("solid a\nouter loop\nvertex 1 2 3\nendloop\n").contains("line 4"));
         assert!(refusal("solid a\nvertex 1 2 nan\n").contains("three numbers"));
         assert!(refusal(&TEXT.replace("endsolid one\n", "")).contains("endsolid"));
         assert!(refusal(&format!("{TEXT}vertex 1 2 3\n")).contains("line 10"));
         assert!(
-            read(&packed()[..130]).unwrap_err().contains("announces 1 triangles in 134 bytes, and has 130")
+            read(&packed()[..130])
+                .unwrap_err()
+                .to_string()
+                .contains("announces 1 triangles in 134 bytes, and has 130")
         );
     }
 }

@@ -4,6 +4,7 @@ use super::Triangle;
 use super::read::fan;
 use super::vtk::xml::{self, Document};
 use perigrain_base::diag::{Diagnostics, FileId};
+use thiserror::Error;
 
 /// Rows of faces: their corners, and the end of each row.
 #[derive(Default)]
@@ -19,9 +20,25 @@ struct Piece {
     strips: Cells,
 }
 
+/// Why a file is no VTP file.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Error {
+    /// What reading the XML says, with line or byte.
+    #[error("{0}")]
+    Xml(String),
+    #[error("the number of its coordinates is no multiple of three")]
+    Coordinates,
+    #[error("there is no point {0}")]
+    NoPoint(f64),
+    #[error("no row of faces can end at {0}")]
+    RowEnd(f64),
+    #[error("its rows of faces end before their corners do")]
+    Rows,
+}
+
 /// Reads a VTP file.
-pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
-    let problem = |e: Diagnostics| sentence(&e, bytes);
+pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, Error> {
+    let problem = |e: Diagnostics| Error::Xml(sentence(&e, bytes));
     let document = Document::read(bytes, "PolyData").map_err(problem)?;
     let mut triangles = vec![];
     for piece in &document.pieces {
@@ -52,10 +69,10 @@ impl Piece {
         Ok(Self { points: numbers("Points", "")?, polys: cells("Polys")?, strips: cells("Strips")? })
     }
 
-    fn add_to(self, triangles: &mut Vec<Triangle>) -> Result<(), String> {
+    fn add_to(self, triangles: &mut Vec<Triangle>) -> Result<(), Error> {
         let (points, rest) = self.points.as_chunks::<3>();
         if !rest.is_empty() {
-            return Err("the number of its coordinates is no multiple of three".into());
+            return Err(Error::Coordinates);
         }
         self.polys.each(points.len(), |face| fan(face, points, triangles))?;
         self.strips.each(points.len(), |strip| {
@@ -71,24 +88,20 @@ impl Piece {
 
 impl Cells {
     /// Calls `with` for the corners of each row.
-    fn each(&self, points: usize, mut with: impl FnMut(&[usize]) -> Result<(), usize>) -> Result<(), String> {
+    fn each(&self, points: usize, mut with: impl FnMut(&[usize]) -> Result<(), usize>) -> Result<(), Error> {
         let mut corners = vec![];
         for x in &self.connectivity {
             let whole = *x >= 0.0 && *x < points as f64;
-            corners.push(if whole { *x as usize } else { return Err(format!("there is no point {x}")) });
+            corners.push(if whole { *x as usize } else { return Err(Error::NoPoint(*x)) });
         }
         let mut from = 0;
         for end in &self.offsets {
             let to = *end as usize;
-            let row = corners.get(from..to).ok_or_else(|| format!("no row of faces can end at {end}"))?;
-            with(row).map_err(|k| format!("there is no point {k}"))?;
+            let row = corners.get(from..to).ok_or(Error::RowEnd(*end))?;
+            with(row).map_err(|k| Error::NoPoint(k as f64))?;
             from = to;
         }
-        if from == corners.len() {
-            Ok(())
-        } else {
-            Err("its rows of faces end before their corners do".into())
-        }
+        if from == corners.len() { Ok(()) } else { Err(Error::Rows) }
     }
 }
 

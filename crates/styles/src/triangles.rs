@@ -114,7 +114,7 @@ pub fn read(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
         }
     };
     match perigrain_mesh::read(&file.text, &bytes) {
-        Err(bad) => fail(Code::NO_FILE, file.span, bad.of(&file.text)),
+        Err(bad) => fail(Code::NO_FILE, file.span, format!("`{}` {bad}", file.text)),
         Ok(surface) if surface.triangles.is_empty() => {
             fail(Code::BAD_VALUE, file.span, format!("`{}` holds no triangles", file.text))
         }

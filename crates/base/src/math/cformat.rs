@@ -71,21 +71,14 @@ pub struct Format {
 }
 
 /// Why a format string is invalid.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
 pub struct FormatError {
     /// Byte of the string where the error begins.
     pub at: usize,
     /// The message, lower case, no full stop.
     pub message: String,
 }
-
-impl std::fmt::Display for FormatError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for FormatError {}
 
 /// A value for a conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use super::abi::{Abi, Constants};
 use super::{Handle, c_char, c_int, c_void};
+use crate::Error;
 use crate::launcher::CHOICE;
 use std::ffi::{CStr, CString};
 
@@ -95,7 +96,7 @@ fn names(chosen: Option<String>, open_first: bool) -> Vec<String> {
 ///
 /// # Errors
 /// None of the names can be loaded, or the loaded file is not an MPI library.
-pub(super) fn find() -> Result<Library, String> {
+pub(super) fn find() -> Result<Library, Error> {
     let open = std::env::var_os("OMPI_COMM_WORLD_SIZE").is_some();
     let mut why = vec![];
     for name in names(std::env::var(CHOICE).ok(), open) {
@@ -107,9 +108,7 @@ pub(super) fn find() -> Result<Library, String> {
             why.push(trouble());
             continue;
         }
-        let f = Functions::of(&library).map_err(|lacking| {
-            format!("`{name}` has no {lacking}: it is no MPI library that perigrain knows")
-        })?;
+        let f = Functions::of(&library).map_err(|lacking| Error::NoMpi { file: name.clone(), lacking })?;
         let address = |name: &str| symbol(library, name);
         let abi = if name.contains("_abi") && address("MPI_Abi_get_version") != 0 {
             Abi::Standard
@@ -120,7 +119,7 @@ pub(super) fn find() -> Result<Library, String> {
         };
         return Ok(Library { f, constants: Constants::of(abi, address) });
     }
-    Err(why.join("; "))
+    Err(Error::NoLibrary(why))
 }
 
 /// The reason why a library could not be loaded.

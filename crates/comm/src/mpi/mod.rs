@@ -6,7 +6,7 @@ mod abi;
 mod library;
 mod mail;
 
-use super::{Comm, Gone};
+use super::{Comm, Error, Gone};
 use abi::Constants;
 use library::{Functions, Library};
 use mail::Mail;
@@ -45,7 +45,7 @@ impl Mpi {
     ///
     /// # Errors
     /// No library, or one that lacks a function or supports calls by a single thread only.
-    pub fn open() -> Result<Self, String> {
+    pub fn open() -> Result<Self, Error> {
         let Library { f, constants: c, .. } = library::find()?;
         let version = version(&f);
         let mut granted = 0;
@@ -54,10 +54,10 @@ impl Mpi {
             (f.MPI_Init_thread)(std::ptr::null_mut(), std::ptr::null_mut(), c.serialized, &mut granted)
         };
         if failed != 0 {
-            return Err(format!("{version}: MPI_Init_thread fails with {failed}"));
+            return Err(Error::Init(version, failed));
         }
         if granted < c.serialized {
-            return Err(format!("{version} allows no calls by another thread than the first"));
+            return Err(Error::OneThread(version));
         }
         let (mut rank, mut size, mut last) = (0, 0, 0);
         // SAFETY: each call writes its last argument.
@@ -74,7 +74,7 @@ impl Mpi {
     }
 
     /// Checks that the constants fit the library; wrong ones would produce wrong numbers later.
-    fn proves_itself(&self) -> Result<(), String> {
+    fn proves_itself(&self) -> Result<(), Error> {
         let (n, me) = (self.size, self.rank);
         let mut sum = [1i64, me as i64];
         self.sum(&mut sum);
@@ -86,11 +86,7 @@ impl Mpi {
         let right = sum == [n as i64, (n * (n - 1) / 2) as i64]
             && most == [(n - 1) as f64, 0.0]
             && u64::from_le_bytes(came) == left as u64;
-        if right {
-            Ok(())
-        } else {
-            Err(format!("{} does not add up: its interface is unknown", self.version))
-        }
+        if right { Ok(()) } else { Err(Error::Unknown(self.version.clone())) }
     }
 }
 

@@ -101,7 +101,7 @@ fn text_polygons_and_strips_are_read() {
                 </VTKFile>";
     let [a, b, c, d] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.25]];
     assert_eq!(read(text.as_bytes()), Ok(vec![[a, b, d], [d, b, c]]));
-    let refusal = |from: &str, to: &str| read(text.replace(from, to).as_bytes()).unwrap_err();
+    let refusal = |from: &str, to: &str| read(text.replace(from, to).as_bytes()).unwrap_err().to_string();
     assert!(refusal("PolyData'", "UnstructuredGrid'").contains("UnstructuredGrid"));
     assert!(refusal("0 1 3 2", "0 1 4 2").contains("no point 4"));
     assert!(refusal(">4<", ">5<").contains("end at 5"));
