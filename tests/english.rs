@@ -267,7 +267,7 @@ fn only_space(between: &str) -> bool {
 fn files() -> Vec<PathBuf> {
     let mut found = vec![];
     let mut folders: Vec<PathBuf> =
-        ["src", "crates", "tests", "benches", "fuzz", "docs"].iter().map(|name| root().join(name)).collect();
+        ["src", "crates", "tests", "benches", "fuzz", "docs", "examples"].iter().map(|name| root().join(name)).collect();
     while let Some(folder) = folders.pop() {
         let Ok(entries) = fs::read_dir(&folder) else { continue };
         for path in entries.map(|entry| entry.unwrap().path()) {
