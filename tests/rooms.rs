@@ -14,6 +14,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("words", &[]),
     ("base", &["comm"]),
     ("bonded", &["base"]),
+    // Equilibria of whole bodies, and the limit of their step.
+    ("statics", &["base", "bonded"]),
     ("lang", &["base"]),
     ("mesh", &["base"]),
     ("neigh", &["base"]),
@@ -22,12 +24,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("contact", &["base", "neigh", "peri", "world"]),
     ("plan", &["base", "world"]),
     ("output", &["base", "world"]),
-    ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "words", "world"]),
+    (
+        "styles",
+        &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "statics", "words", "world"],
+    ),
     // Readers of files with bodies and scenes, and what makes particles of them.
     ("geometry", &["base", "lang", "mesh", "output", "styles", "world"]),
     (
         "commands",
-        &["base", "bonded", "geometry", "lang", "mesh", "neigh", "output", "peri", "plan", "styles", "world"],
+        &[
+            "base", "bonded", "geometry", "lang", "mesh", "neigh", "output", "peri", "plan", "statics",
+            "styles", "world",
+        ],
     ),
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),

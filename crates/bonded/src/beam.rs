@@ -11,8 +11,7 @@
 //! has exactly zero force. No angles are computed.
 
 use crate::law::{Acts, BondLaw, Ends, Motion};
-use crate::network::Modes;
-use crate::stiffness::{Beam, Shear, Stiffness};
+use crate::stiffness::{Beam, Modes, Shear, Stiffness};
 use crate::sweep::{Out, Sweep, all};
 use perigrain_base::math::body::{after, back, turned};
 use perigrain_base::math::real::Real;

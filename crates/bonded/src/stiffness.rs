@@ -34,6 +34,9 @@ impl Stiffness {
     }
 }
 
+/// Energies of stretch, shear, bend and twist [energy].
+pub type Modes = [f64; 4];
+
 /// Model of a beam's shear stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Shear {

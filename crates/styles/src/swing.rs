@@ -6,8 +6,8 @@ use crate::pull::{apart, find, periods};
 use crate::words::Words;
 use perigrain_base::diag::{Result, Span};
 use perigrain_base::math::vec3::{Vec3, length};
-use perigrain_bonded::limit::Swinging;
-use perigrain_bonded::network::Network;
+use perigrain_statics::network::Network;
+use perigrain_statics::stable_step::Swinging;
 use perigrain_world::World;
 
 /// How the step of bonded particles is found.

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use perigrain_base::diag::{Code, Diagnostic, Result, Source, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::stop;
-use perigrain_bonded::network::Modes;
+use perigrain_bonded::stiffness::Modes;
 use perigrain_lang::{Command, Word};
 use perigrain_styles::{ActCx, BondForce};
 use std::sync::Arc;

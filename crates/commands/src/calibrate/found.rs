@@ -2,8 +2,8 @@
 
 use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
-use perigrain_bonded::six::{Matrix6, Six};
 use perigrain_plan::{Op, Stage, When};
+use perigrain_statics::six::{Matrix6, Six};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{Compute, SealCx, Shape};
 use perigrain_world::field::{COLUMNS, MEMO};

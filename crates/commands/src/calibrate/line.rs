@@ -2,9 +2,9 @@
 
 use super::kinds::{Map, Method, Quantity, Shape, Solver, Target};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
-use perigrain_bonded::ends::Hold;
-use perigrain_bonded::strength::Avalanche;
 use perigrain_lang::{Args, Word};
+use perigrain_statics::ends::Hold;
+use perigrain_statics::strength::Avalanche;
 use perigrain_styles::BuildCx;
 use perigrain_styles::words::{At, Axis, Forms, Kind, Or, Positive, Value, Words};
 use perigrain_world::GroupId;

@@ -13,14 +13,14 @@ use super::strength::{self, Tested, broken};
 use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_bonded::coarse::Coarse;
-use perigrain_bonded::dsm::MOST;
-use perigrain_bonded::ends::slope;
-use perigrain_bonded::network::Modes;
-use perigrain_bonded::pcg::{Preconditioner, solve};
-use perigrain_bonded::periodic::Cell;
-use perigrain_bonded::shares::change;
-use perigrain_bonded::six::{Matrix6, Six};
+use perigrain_bonded::stiffness::Modes;
+use perigrain_statics::coarse::Coarse;
+use perigrain_statics::dsm::MOST;
+use perigrain_statics::ends::slope;
+use perigrain_statics::energy_shares::change;
+use perigrain_statics::pcg::{Preconditioner, solve};
+use perigrain_statics::periodic::Cell;
+use perigrain_statics::six::{Matrix6, Six};
 use perigrain_styles::{ActCx, BondForce};
 use perigrain_world::World;
 
@@ -293,7 +293,7 @@ fn tolerance(words: &Words) -> f64 {
 
 /// K, E, ν and G of a cell.
 fn of_cell(c: &Matrix6) -> [f64; 4] {
-    perigrain_bonded::tensor::Moduli::new(c)
+    perigrain_statics::tensor::Moduli::new(c)
         .map_or([f64::NAN; 4], |m| [m.bulk, m.mean_young(), m.mean_poisson(), m.shear])
 }
 

@@ -3,8 +3,9 @@
 use super::words::{Shape, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::{Vec3, length};
-use perigrain_bonded::ends::Sample;
-use perigrain_bonded::network::{Modes, Network};
+use perigrain_bonded::stiffness::Modes;
+use perigrain_statics::ends::Sample;
+use perigrain_statics::network::Network;
 use perigrain_styles::BondForce;
 use perigrain_styles::bond::Loaded;
 use perigrain_styles::pull::{apart, find, periods};

@@ -5,17 +5,17 @@ use super::touch::{self, Hertz};
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::Vec3;
-use perigrain_bonded::contacts::Contacts;
-use perigrain_bonded::dsm::{Stop, relax};
-use perigrain_bonded::ends::{Ends, Held, Hold, affine, poisson};
-use perigrain_bonded::network::Modes;
-use perigrain_bonded::newton::{Body, End, Found};
-use perigrain_bonded::parts::{Carried, Load};
-use perigrain_bonded::periodic::mean_field;
-use perigrain_bonded::precond::Blocks;
-use perigrain_bonded::six::Six;
-use perigrain_bonded::tensor::Moduli;
-use perigrain_bonded::walls::Walls;
+use perigrain_bonded::stiffness::Modes;
+use perigrain_statics::contacts::Contacts;
+use perigrain_statics::dsm::{Stop, relax};
+use perigrain_statics::ends::{Ends, Held, Hold, affine, poisson};
+use perigrain_statics::load_steps::{Carried, Load};
+use perigrain_statics::newton::{Body, End, Found};
+use perigrain_statics::periodic::mean_field;
+use perigrain_statics::precond::Blocks;
+use perigrain_statics::six::Six;
+use perigrain_statics::tensor::Moduli;
+use perigrain_statics::walls::Walls;
 use perigrain_world::{GroupId, World};
 
 /// A body between held ends.

@@ -8,7 +8,7 @@ use super::touch::Hertz;
 use super::words::{Method, Words};
 use perigrain_base::diag::{Code, Diagnostic};
 use perigrain_base::math::cformat::general;
-use perigrain_bonded::ends::Hold;
+use perigrain_statics::ends::Hold;
 use perigrain_styles::ActCx;
 use std::f64::consts::PI;
 

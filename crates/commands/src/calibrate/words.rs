@@ -4,8 +4,8 @@ use super::conflicts;
 pub use super::kinds::{Map, Method, Quantity, Shape, Solver, Target, Vary};
 use super::line::{Breaks, Calibration, Contacts, Head, Load, Sizes, Solution};
 use perigrain_base::diag::{Code, Result, Span, fail};
-use perigrain_bonded::ends::Hold;
-use perigrain_bonded::strength::Avalanche;
+use perigrain_statics::ends::Hold;
+use perigrain_statics::strength::Avalanche;
 use perigrain_styles::BuildCx;
 use perigrain_styles::words::Or;
 

@@ -7,12 +7,13 @@
 use super::coarse::Coarse;
 use super::dsm::MOST;
 use super::ends::Held;
-use super::network::{Modes, Network};
+use super::network::Network;
 use super::pairs::Lists;
 use super::pcg::{MARGIN, Preconditioner, solve};
 use super::precond::Blocks;
 use super::six::Six;
 use perigrain_base::par;
+use perigrain_bonded::stiffness::Modes;
 
 /// Relative distance within which bonds break together: equal up to rounding.
 const TOGETHER: f64 = 1e-9;

@@ -1,9 +1,10 @@
 //! Distribution of the energy of a strained body over bonds and modes, and sensitivities: K = 2U/Δ² and U is
 //! stationary in the field, so that ∂ln K/∂ln p = Σ_bonds Σ_modes U ∂ln k/∂ln p / U.
 
-use super::network::{Modes, Moved, Network, plus};
+use super::network::{Moved, Network, plus};
 use super::six::Six;
 use perigrain_base::par;
+use perigrain_bonded::stiffness::Modes;
 
 /// Energies by kind of bond: `kind(bond)` is below `kinds`.
 pub fn by_kind(

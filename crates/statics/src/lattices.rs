@@ -1,9 +1,9 @@
 //! Bodies for tests: lattices and random networks of beams.
 
 use super::network::Network;
-use super::stiffness::{Beam, Shear, Stiffness};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::{Vec3, length, sub};
+use perigrain_bonded::stiffness::{Beam, Shear, Stiffness};
 
 /// Centres, and bonds with vectors from the first end to the second.
 #[derive(Clone, Default)]

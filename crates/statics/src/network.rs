@@ -3,15 +3,15 @@
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent of beams between
 //! spheres at rest.
 
-use super::beam::{Pulled, pulled};
-use super::law::Ends;
 use super::pairs::{Pairs, Ties};
 use super::six::{Matrix6, Packed, Six, packed, unit};
-use super::stiffness::Stiffness;
 use perigrain_base::math::body::{Quat, turn_by};
 use perigrain_base::math::forest;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 use perigrain_base::par;
+use perigrain_bonded::beam::{Pulled, pulled};
+use perigrain_bonded::law::Ends;
+use perigrain_bonded::stiffness::{Modes, Stiffness};
 
 /// Bonds between particles, which are indices from 0.
 #[derive(Clone, Debug, Default)]
@@ -83,9 +83,6 @@ pub fn halves(a: &Six) -> (Vec3, Vec3) {
 pub fn row(u: Vec3, theta: Vec3) -> Six {
     [u[0], u[1], u[2], theta[0], theta[1], theta[2]]
 }
-
-/// Energies of stretch, shear, bend and twist [energy].
-pub type Modes = [f64; 4];
 
 impl Network {
     /// For bonds between these ends; `bond(k)` returns the vector from the first end to the second and the
@@ -166,7 +163,7 @@ impl Network {
     }
 
     /// out = the resisting forces and torques in a field of any size, with rotations as vectors; from the
-    /// potential of [`crate::beam`].
+    /// potential of [`perigrain_bonded::beam`].
     pub fn forces(&self, u: &[Six], out: &mut [Six]) {
         let turns = turns(u);
         par::each(&mut *out, |_, rows: &mut [Six]| rows.fill([0.0; 6]));

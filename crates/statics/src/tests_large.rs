@@ -3,15 +3,15 @@
 use super::contact::Contact;
 use super::contacts::Contacts;
 use super::lattices::{FCC, lattice};
+use super::load_steps::Load;
 use super::network::Network;
 use super::newton::{Body, End};
-use super::parts::Load;
 use super::six::Six;
-use super::stiffness::Stiffness;
 use super::walls::Walls;
 use perigrain_base::math::body::{after, turn_by, turned};
 use perigrain_base::math::vec3::{Vec3, add, dot, length, scale, sub};
 use perigrain_base::par;
+use perigrain_bonded::stiffness::Stiffness;
 
 fn near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");

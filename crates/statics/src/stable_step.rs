@@ -117,7 +117,7 @@ fn rows(m: &Matrix6) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stiffness::Stiffness;
+    use perigrain_bonded::stiffness::Stiffness;
 
     /// The standard bond of the documentation of bonded particles, along x, between spheres of 1 mm.
     fn pair(k: Stiffness, damping: Option<Stiffness>) -> Swinging {

@@ -2,13 +2,13 @@
 
 use super::dsm::{Answer, Stop, relax};
 use super::ends::{Ends, Held, Hold, Sample, affine, poisson, reaction};
+use super::energy_shares;
 use super::lattices::{Body, SC, block, lattice, random, standard};
 use super::network::Network;
 use super::pcg::{Preconditioner, solve};
 use super::precond::Blocks;
-use super::shares;
-use super::stiffness::{Beam, Shear, Stiffness};
 use perigrain_base::par;
+use perigrain_bonded::stiffness::{Beam, Shear, Stiffness};
 
 /// Results of a test of a body along z.
 struct Tested {
@@ -230,14 +230,15 @@ fn shares_of_the_energy_are_logarithmic_derivatives() {
     };
     let base = [2e9, 0.3e-3, 0.2];
     let t = solved(base[0], base[1], base[2]);
-    let kinds =
-        shares::by_kind(&t.network, &t.answer.field, 2, |k| usize::from(t.network.pairs.origin[k] % 5 < 2));
+    let kinds = energy_shares::by_kind(&t.network, &t.answer.field, 2, |k| {
+        usize::from(t.network.pairs.origin[k] % 5 < 2)
+    });
     let total: f64 = kinds.iter().flatten().sum();
     near(total, t.answer.energy(), 1e-13);
     let of = |d: [f64; 4]| {
         let moved = |k: usize| [t.network.moved(k, &t.answer.field, None); 2];
         let d = |k: usize| if t.network.pairs.origin[k] % 5 < 2 { d } else { [0.0; 4] };
-        shares::change(&t.network, moved, d) / (2.0 * total)
+        energy_shares::change(&t.network, moved, d) / (2.0 * total)
     };
     near(of([1.0; 4]), kinds[1].iter().sum::<f64>() / total, 1e-13);
     // E; r: 2 from stretch and shear, 4 from bend and twist; ν: G ~ 1/(1 + ν).

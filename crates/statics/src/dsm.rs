@@ -6,10 +6,11 @@
 use super::certificate::Certificate;
 use super::coarse::Coarse;
 use super::ends::{Held, WHOLE};
-use super::network::{Modes, Network};
+use super::network::Network;
 use super::pcg::{MARGIN, Preconditioner, Solved, solve};
 use super::precond::Blocks;
 use super::six::Six;
+use perigrain_bonded::stiffness::Modes;
 
 /// Termination criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]

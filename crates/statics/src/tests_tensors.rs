@@ -7,10 +7,10 @@ use super::periodic::{Cell, mean_field};
 use super::precond::Blocks;
 use super::six::Matrix6;
 use super::ste::{Estimate, Layers};
-use super::stiffness::{Beam, Shear};
 use super::tensor::Moduli;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::math::vec3::{Vec3, length};
+use perigrain_bonded::stiffness::{Beam, Shear};
 
 fn near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");

@@ -6,8 +6,8 @@ use super::network::Network;
 use super::pcg::{Preconditioner, solve};
 use super::precond::Blocks;
 use super::strength::{Avalanche, Limits, Path, crumble};
-use super::weibull;
 use perigrain_base::par;
+use perigrain_bonded::weibull;
 
 /// A body pulled along z by its grips, with strengths in tension alone; returns `delta` and the path.
 fn pull(
