@@ -43,7 +43,7 @@ mod unused;
 pub mod whole;
 
 use crate::graph::Graph;
-use crate::graph::build::DECLARATIONS;
+use crate::graph::catalogue::DECLARATIONS;
 use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
 pub use ahead::{Ahead, steps_ahead};
@@ -57,7 +57,6 @@ pub use overlay::{Overlay, absolute};
 use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fail};
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_base::{letters, memory};
-use perigrain_commands::COMMANDS;
 use perigrain_lang::{Command, Flow, Line, Script, Vars, plain_value};
 use perigrain_output::log::Log;
 use perigrain_plan::StepPlan;
@@ -169,7 +168,7 @@ impl Session {
         let mut s = Self {
             sources: Sources::default(),
             vars: Vars::new(),
-            graph: Graph::default(),
+            graph: Graph { tables: options.tables.clone(), ..Graph::default() },
             world: World::default(),
             notes: Diagnostics::default(),
             options,
@@ -254,7 +253,7 @@ impl Session {
         s.no_skipping = self.options.no_skipping;
         s.portable = self.options.portable;
         self.world.folder = self.options.folder.clone();
-        self.graph = Graph::default();
+        self.graph = Graph { tables: self.options.tables.clone(), ..Graph::default() };
         // Variables outlive `clear`.
         self.graph.variables = commands::variable_kinds(&self.vars);
         self.plan = None;
@@ -409,7 +408,8 @@ impl Session {
             return self.cut_short(&stop, line, cmd.span, &problems).map(|()| None);
         }
         outcome.map_err(|e| {
-            checking::with_origins(belongs::add_places(self.sources.adopt(e), cmd).at(cmd.span), cmd)
+            let placed = belongs::add_places(self.sources.adopt(e), cmd, &self.graph.tables);
+            checking::with_origins(placed.at(cmd.span), cmd)
         })
     }
 
@@ -477,10 +477,10 @@ impl Session {
             self.rerun(cmd)?;
         } else if DECLARATIONS.contains(&name) {
             self.declare(cmd)?;
-        } else if let Some(style) = COMMANDS.iter().find(|c| c.name() == name) {
-            self.act(cmd, *style)?;
+        } else if let Some(style) = self.graph.tables.command(name) {
+            self.act(cmd, style)?;
         } else if !self.own_command(cmd)? {
-            return Err(belongs::unknown_command(cmd));
+            return Err(belongs::unknown_command(cmd, &self.graph.tables));
         }
         Ok(None)
     }

@@ -5,7 +5,7 @@ mod scene;
 
 use perigrain::cli::manual::pages;
 use perigrain::diag::render;
-use perigrain::graph::build::DECLARATIONS;
+use perigrain::graph::catalogue::DECLARATIONS;
 use perigrain::output::log::Log;
 use perigrain::session::{Mode, OWN, Options, Session};
 use scene::{Folder, SCENE, deck, hosted, is_for_the_shell};

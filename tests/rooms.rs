@@ -30,13 +30,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     // Readers of files with bodies and scenes, and what makes particles of them.
     ("geometry", &["base", "lang", "mesh", "output", "styles", "world"]),
-    (
-        "commands",
-        &[
-            "base", "bonded", "geometry", "lang", "mesh", "neigh", "output", "peri", "plan", "statics",
-            "styles", "world",
-        ],
-    ),
+    ("commands", &["base", "geometry", "lang", "mesh", "neigh", "output", "styles", "world"]),
+    // One command with all that belongs to it.
+    ("calibrate", &["base", "bonded", "lang", "neigh", "output", "plan", "statics", "styles", "world"]),
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "output", "plan", "styles", "world"]),

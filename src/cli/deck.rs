@@ -138,6 +138,7 @@ pub(super) fn settled(o: &Options, mode: Mode, log: &Log) -> Result<session::Opt
         folder,
         partition: partitions::of(o),
         overlay: Default::default(),
+        tables: Default::default(),
         limit: o.timeout.map(|time| session::Limit { time, restart: last_restart(o) }),
     })
 }

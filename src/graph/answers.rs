@@ -1,10 +1,12 @@
 //! Answers to formulas about the session itself: masks, settings, which features exist and are in use.
 
+use super::catalogue::{CATEGORIES as STYLES, Tables};
+use super::measure;
 use super::node::Graph;
-use super::{catalogue, measure};
 use perigrain_base::diag::{Code, Diagnostic, Result, nearest};
 use perigrain_lang::{Question, Value, Word};
 use perigrain_world::{Newton, World};
+use std::sync::Arc;
 
 /// 1 for every particle in the group and in the region, else 0.
 ///
@@ -53,7 +55,7 @@ pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
 }
 
 /// What a deck has declared, by name: enough to answer for it inside a step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct Declared {
     pair: Option<&'static str>,
     /// The pair style can be probed for single pairs of particles.
@@ -62,6 +64,7 @@ pub struct Declared {
     computes: Vec<String>,
     fixes: Vec<String>,
     dumps: Vec<String>,
+    tables: Arc<Tables>,
 }
 
 impl Declared {
@@ -76,6 +79,7 @@ impl Declared {
             computes: graph.computes.iter().map(|c| c.id.clone()).collect(),
             fixes: graph.fixes.iter().map(|f| f.id.clone()).collect(),
             dumps: graph.dumps.iter().map(|d| d.id.clone()).collect(),
+            tables: graph.tables.clone(),
         }
     }
 }
@@ -93,7 +97,7 @@ pub fn answer(
 ) -> Result<bool> {
     match question {
         Question::Active => active(w, declared, category, name),
-        Question::Available => available(category, name),
+        Question::Available => available(declared, category, name),
         Question::Defined => defined(w, declared, category, &name.text),
     }
 }
@@ -154,18 +158,17 @@ fn active(w: &World, declared: &Declared, category: &Word, name: &Word) -> Resul
     }
 }
 
-fn available(category: &Word, name: &Word) -> Result<bool> {
+fn available(declared: &Declared, category: &Word, name: &Word) -> Result<bool> {
     let (category_name, name) = (category.text.as_str(), name.text.as_str());
     if category_name == "feature" {
         return Ok(["gzip", "png", "exceptions"].contains(&name));
     }
     // LAMMPS' manual has `pair_style` where LAMMPS reads `pair`.
     let of = if category_name == "pair_style" { "pair" } else { category_name };
-    match catalogue::styles(of) {
+    match declared.tables.names(of) {
         Some(names) => Ok(names.contains(&name)),
         None => {
-            let known: Vec<&str> =
-                catalogue::CATEGORIES.into_iter().chain(["pair_style", "feature"]).collect();
+            let known: Vec<&str> = STYLES.into_iter().chain(["pair_style", "feature"]).collect();
             among("category of is_available()", category, &known)
         }
     }

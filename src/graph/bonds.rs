@@ -4,7 +4,7 @@ use super::declaration::{Context, Declared, needs_box, style};
 use super::node::{BondNode, FixNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_lang::Args;
-use perigrain_pairs::bond::{BONDS, BROUGHT, BondForce};
+use perigrain_pairs::bond::{BROUGHT, BondForce};
 use perigrain_styles::Fix;
 use perigrain_world::{GroupId, World};
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub fn bond_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
         let d = Diagnostic::error(Code::CONFLICT, args.name_span(), text);
         return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
     }
-    let style = style(BONDS, "bond", args)?;
+    let style = style(&graph.tables.bonds, "bond", args)?;
     let force = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     bring_along(graph, w, force.fixes(), cx.span)?;

@@ -5,36 +5,10 @@ use super::node::{ComputeNode, FixNode, Graph};
 use super::pair_modify::pair_modify;
 use super::{bonds, dumps, pairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_computes::COMPUTES;
-use perigrain_fixes::FIXES;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::UseKind;
 use perigrain_world::{GroupId, World};
 use std::cell::RefCell;
-
-/// The commands that declare.
-pub const DECLARATIONS: [&str; 20] = [
-    "bond_style",
-    "bond_coeff",
-    "pair_style",
-    "pair_coeff",
-    "pair_modify",
-    "peri_modify",
-    "fix",
-    "unfix",
-    "fix_modify",
-    "compute",
-    "uncompute",
-    "compute_modify",
-    "dump",
-    "undump",
-    "dump_modify",
-    "thermo",
-    "thermo_style",
-    "thermo_modify",
-    "restart",
-    "write_dump",
-];
 
 /// Handles one declaring line. The caller has a copy of nothing: every change happens last, after all checks.
 ///
@@ -95,7 +69,7 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     let (id, id_span) = id_of(args, "fix")?;
     let group_word = args.expect("the fix's group")?;
     let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(FIXES, "fix", args)?;
+    let style = style(&graph.tables.fixes, "fix", args)?;
     let fix = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
     let node = FixNode {
@@ -221,7 +195,7 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
     }
     let group_word = args.expect("the compute's group")?;
     let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(COMPUTES, "compute", args)?;
+    let style = style(&graph.tables.computes, "compute", args)?;
     let compute = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
     w.inherit(&format!("compute {id}"), |w| compute.declare(w))?;
@@ -241,7 +215,9 @@ pub fn bring(
     group: GroupId,
     span: Span,
 ) -> Result<()> {
-    let Some(style) = COMPUTES.iter().find(|c| c.name() == style) else { return Ok(()) };
+    let Some(style) = graph.tables.computes.iter().copied().find(|c| c.name() == style) else {
+        return Ok(());
+    };
     let args: Vec<Word> = words.split_whitespace().map(|word| Word::new(word, span)).collect();
     let cmd = Command { name: Word::new("compute", span), args, span, text: String::new() };
     let (notes, uses) = (RefCell::default(), RefCell::default());

@@ -3,7 +3,6 @@
 use super::declaration::{Context, Declared, deletes, find, needs_box, provides, style};
 use super::node::{DumpNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_dumps::DUMPS;
 use perigrain_lang::Args;
 use perigrain_styles::UseKind;
 use perigrain_world::{GroupId, World};
@@ -30,7 +29,7 @@ pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> 
     }
     let group_word = args.expect("the dump's group")?;
     let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(DUMPS, "dump", args)?;
+    let style = style(&graph.tables.dumps, "dump", args)?;
     let every = args.integer_from(1, "the dump's interval")?;
     let file = args.peek().map_or(String::new(), |word| word.text.clone());
     let dump = style.build(args, &cx.build(graph, w, id, group))?;
@@ -78,7 +77,7 @@ pub fn once_dump(
     needs_box(w, args)?;
     let group_word = args.expect("the group to write")?;
     let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;
-    let style = style(DUMPS, "dump", args)?;
+    let style = style(&graph.tables.dumps, "dump", args)?;
     let build = cx.build(graph, w, "WRITE_DUMP", group);
     let mut line = args.until(|word| word == "modify");
     let mut dump = style.build(&mut line, &build)?;

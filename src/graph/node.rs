@@ -1,5 +1,6 @@
 //! What is in force, each with the line it came from.
 
+use super::catalogue::Tables;
 use super::record::Record;
 use super::restarts::Restarts;
 use super::thermo::Thermo;
@@ -87,6 +88,8 @@ pub struct DumpNode {
 /// Everything declared so far, and every line as a node.
 #[derive(Clone, Default)]
 pub struct Graph {
+    /// The styles that lines may name.
+    pub tables: std::sync::Arc<Tables>,
     /// The pair style.
     pub pair: Option<PairNode>,
     /// The bond style.

@@ -5,7 +5,6 @@ use super::declaration::{Context, Declared, keep_line, needs_box, style};
 use super::node::{Graph, PairNode};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Command, Word};
-use perigrain_pairs::PAIRS;
 use perigrain_world::{GroupId, World};
 
 /// `pair_style STYLE …`, `pair_style none`. The same style again keeps its coefficients, as in LAMMPS; a `hybrid` does not.
@@ -51,7 +50,7 @@ fn choose(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Re
         w.touch();
         return Ok(());
     }
-    let style = style(PAIRS, "pair", args)?;
+    let style = style(&graph.tables.pairs, "pair", args)?;
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     match args.peek() {
         Some(word) if !style.options().is_empty() => return Err(args.unknown(word, style.options())),

@@ -8,12 +8,8 @@ mod pages;
 pub mod syntax;
 pub mod walk;
 
-use perigrain_commands::COMMANDS;
-use perigrain_computes::COMPUTES;
+use crate::graph::catalogue::Tables;
 use perigrain_dumps::DUMPS;
-use perigrain_fixes::FIXES;
-use perigrain_pairs::PAIRS;
-use perigrain_pairs::bond::BONDS;
 use perigrain_styles::words::{Form, Syntax};
 use perigrain_styles::{Doc, Style};
 use std::fmt::Write;
@@ -119,15 +115,16 @@ fn gathered() -> Vec<Page> {
     fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
         table.iter().map(|&(name, doc)| Page { kind, name, doc: with_dumps(name, doc) }).collect()
     }
+    let tables = Tables::default();
     [
         own("topic", pages::TOPICS),
-        of("command", COMMANDS),
+        of("command", &tables.commands),
         own("command", pages::COMMANDS),
-        of("pair_style", PAIRS),
-        of("bond_style", BONDS),
-        of("fix", FIXES),
-        of("compute", COMPUTES),
-        of("dump", DUMPS),
+        of("pair_style", &tables.pairs),
+        of("bond_style", &tables.bonds),
+        of("fix", &tables.fixes),
+        of("compute", &tables.computes),
+        of("dump", &tables.dumps),
     ]
     .concat()
 }

@@ -8,7 +8,6 @@ use crate::graph::declaration::Context;
 use crate::graph::env::DeckValues;
 use crate::graph::regions::place_following;
 use perigrain_base::diag::Result;
-use perigrain_commands::COMMANDS;
 use perigrain_lang::{Args, Command};
 use perigrain_styles::{ActCx, CommandStyle};
 use perigrain_world::{GroupId, Promise};
@@ -102,9 +101,8 @@ impl Session {
         let provides = commands::provided(cmd).filter(|_| deleted.is_none());
         self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
         for (line, text) in then {
-            let style = COMMANDS.iter().find(|c| c.name() == line.name.text);
-            let outcome = match style {
-                Some(style) => self.act(&line, *style),
+            let outcome = match self.graph.tables.command(&line.name.text) {
+                Some(style) => self.act(&line, style),
                 None => self.declare(&line),
             };
             outcome.map_err(|e| e.at(line.span).within(&text))?;

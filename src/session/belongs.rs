@@ -1,6 +1,6 @@
 //! Unknown words of a line: similar words, and the place where the word belongs if it is known elsewhere.
 
-use crate::graph::catalogue::styles;
+use crate::graph::catalogue::Tables;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, nearest};
 use perigrain_contact::{Damping, Friction, normal};
 use perigrain_lang::{Command, Word};
@@ -19,7 +19,7 @@ const LINES: [(&str, &str, &str); 6] = [
 /// Adds to each problem with a word of the line where that word belongs.
 ///
 /// Words behind an unexpected one are its own numbers and not reported.
-pub(super) fn add_places(problems: Diagnostics, cmd: &Command) -> Diagnostics {
+pub(super) fn add_places(problems: Diagnostics, cmd: &Command, tables: &Tables) -> Diagnostics {
     let mut explained = false;
     let mut kept = vec![];
     for d in problems.0 {
@@ -28,7 +28,8 @@ pub(super) fn add_places(problems: Diagnostics, cmd: &Command) -> Diagnostics {
         }
         // The line itself may know better what to write.
         let led = d.help.iter().any(|help| help.starts_with("write "));
-        let home = at_fault(&d, cmd).filter(|_| !led).and_then(|word| home(&word.text, &cmd.name.text));
+        let home =
+            at_fault(&d, cmd).filter(|_| !led).and_then(|word| home(&word.text, &cmd.name.text, tables));
         explained |= home.is_some();
         kept.push(match home {
             Some(home) => instead(d, home),
@@ -52,12 +53,12 @@ fn instead(mut d: Diagnostic, home: String) -> Diagnostic {
 }
 
 /// The refusal of a line whose first word is no command.
-pub(super) fn unknown_command(cmd: &Command) -> Diagnostics {
+pub(super) fn unknown_command(cmd: &Command, tables: &Tables) -> Diagnostics {
     let name = cmd.name.text.as_str();
     if let Some(refusal) = lammps::refusal("command", "command", &cmd.name) {
         return refusal;
     }
-    let known = styles("command").unwrap_or_default();
+    let known = tables.names("command").unwrap_or_default();
     let d = Diagnostic::error(Code::UNKNOWN_COMMAND, cmd.name.span, format!("unknown command `{name}`"));
     match nearest(name, known) {
         Some(n) => d.help(format!("did you mean `{n}`?")),
@@ -67,7 +68,7 @@ pub(super) fn unknown_command(cmd: &Command) -> Diagnostics {
 }
 
 /// Where a word belongs that `command` does not know.
-fn home(word: &str, command: &str) -> Option<String> {
+fn home(word: &str, command: &str, tables: &Tables) -> Option<String> {
     // These give no hint of what was meant.
     if word == "none" || word == "zero" {
         return None;
@@ -84,7 +85,7 @@ fn home(word: &str, command: &str) -> Option<String> {
     if Damping::ALL.into_iter().any(|damping| damping.name() == word) {
         return model("damping model of granular contacts", "MODEL … damping ");
     }
-    let known = |category| styles(category).is_some_and(|names| names.contains(&word));
+    let known = |category| tables.names(category).is_some_and(|names| names.contains(&word));
     if let Some((_, kind, line)) = LINES.into_iter().find(|(of, kind, _)| *kind != command && known(of)) {
         return Some(format!("`{word}` is a style of `{kind}`: write `{line}{word} …`"));
     }
@@ -98,6 +99,7 @@ mod tests {
 
     #[test]
     fn words_know_where_they_belong() {
+        let tables = Tables::default();
         for (word, command, part) in [
             ("hertz/material", "pair_style", "a normal model of granular contacts: it stands in pair_coeff"),
             ("mindlin", "fix", "`pair_coeff * * MODEL … tangential mindlin …`"),
@@ -109,9 +111,11 @@ mod tests {
             ("block", "fix", "write `region ID block …`"),
             ("run", "thermo", "`run` is a command"),
         ] {
-            let home = home(word, command).unwrap_or_default();
+            let home = home(word, command, &tables).unwrap_or_default();
             assert!(home.contains(part), "{word}: {home}");
         }
-        assert_eq!((home("none", "fix"), home("blokc", "fix"), home("run", "run")), (None, None, None));
+        for (word, command) in [("none", "fix"), ("blokc", "fix"), ("run", "run")] {
+            assert_eq!(home(word, command, &tables), None);
+        }
     }
 }

@@ -8,7 +8,7 @@ mod outside;
 
 use super::Session;
 use super::flow::LIGHT;
-use crate::graph::catalogue;
+use crate::graph::catalogue::Tables;
 use crate::graph::env::DeckEnv;
 use crate::graph::node::FixNode;
 pub use columns::Column;
@@ -219,9 +219,9 @@ impl Session {
         self.world.slots.invalidate();
     }
 
-    /// The styles of a category, under LAMMPS' names for these; `None` if there is no such category.
+    /// The program's own styles of a category, under LAMMPS' names for these; `None` if there is no such category.
     pub fn styles(category: &str) -> Option<Vec<&'static str>> {
-        catalogue::styles(category)
+        Tables::default().names(category)
     }
 
     /// The ids of a category: compute, dump, fix, group, molecule, region, variable; `None` if there is no such category.

@@ -1,7 +1,7 @@
 //! `info`: what the session holds, in LAMMPS' categories.
 
 use super::{Session, timer};
-use crate::graph::catalogue;
+use crate::graph::catalogue::{self, Tables};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Word};
 use std::fmt::Write;
@@ -56,7 +56,7 @@ impl Session {
             let category = category(word)?;
             if category == "styles" {
                 let which = styles(args);
-                text += &list_of_styles(which);
+                text += &list_of_styles(&self.graph.tables, which);
                 continue;
             }
             match category {
@@ -111,7 +111,7 @@ impl Session {
                 "\nTotal time information:\n Wall time:    {}\n",
                 timer::clock(self.born.elapsed().as_secs())
             ),
-            "styles" => list_of_styles("all"),
+            "styles" => list_of_styles(&self.graph.tables, "all"),
             "accelerator" => {
                 "\nAccelerator configuration:\nnone: perigrain has no such packages\n".to_owned()
             }
@@ -255,10 +255,10 @@ fn styles(args: &mut Args) -> &'static str {
     found
 }
 
-fn list_of_styles(which: &str) -> String {
+fn list_of_styles(tables: &Tables, which: &str) -> String {
     let mut text = "\nStyles information:\n".to_owned();
     for kind in catalogue::CATEGORIES.into_iter().filter(|kind| which == "all" || which == *kind) {
-        let mut names = catalogue::styles(kind).unwrap_or_default();
+        let mut names = tables.names(kind).unwrap_or_default();
         names.sort_unstable();
         let title = kind[..1].to_uppercase() + &kind[1..];
         let _ = writeln!(text, "\n{title} styles:\n\n{}", names.join(" "));

@@ -1,10 +1,12 @@
 //! How a session is set up.
 
 use super::{Limit, Overlay};
+use crate::graph::catalogue::Tables;
 use perigrain_lang::Partition;
 use perigrain_output::log::Log;
 use perigrain_world::Compat;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The mode of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,6 +45,8 @@ pub struct Options {
     pub partition: Option<Partition>,
     /// Texts that count in place of files, where lines are read.
     pub overlay: Overlay,
+    /// The styles that decks may name: the program's own, and what a host program adds.
+    pub tables: Arc<Tables>,
     /// How long runs may take in all.
     pub limit: Option<Limit>,
 }
@@ -60,6 +64,7 @@ impl Default for Options {
             folder: PathBuf::new(),
             partition: None,
             overlay: Overlay::default(),
+            tables: Arc::default(),
             limit: None,
         }
     }

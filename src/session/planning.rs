@@ -5,7 +5,6 @@ use super::running::Pass;
 use super::{Mode, Session};
 use crate::graph::FixNode;
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, Span};
-use perigrain_commands::COMMANDS;
 use perigrain_lang::{Command, Line, Script};
 use perigrain_plan::explain;
 use std::fmt::Write;
@@ -169,7 +168,7 @@ impl Session {
         refused.causes(raw, e);
         match cmd.map(|c| c.name.text.as_str()) {
             Some("run" | "minimize" | "rerun") => self.unsee(false),
-            Some(name) if self.planning() && COMMANDS.iter().any(|c| c.name() == name) => {
+            Some(name) if self.planning() && self.graph.tables.command(name).is_some() => {
                 let unseen = &mut self.world.parts.unseen;
                 (unseen.particles, unseen.vague) = (true, true);
             }

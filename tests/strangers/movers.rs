@@ -1,14 +1,13 @@
 //! K1: whatever moves or turns particles as a whole turns everything that has a direction.
 
 use super::{numbers, run, text};
+use perigrain::graph::catalogue::Tables;
 use perigrain::session::{Options, Session};
 use perigrain::world::columns::under;
 use perigrain::world::field::UNDER;
 use perigrain::world::{Compat, Particles, Under, World};
 use perigrain_base::math::body::{Quat, after, back, turn, turned};
 use perigrain_base::math::vec3::{Vec3, length, sub};
-use perigrain_commands::COMMANDS;
-use perigrain_fixes::FIXES;
 use std::process::Command;
 
 // LAMMPS 22Jul2025 on the same decks: forces up to 8.3e-5 N and torques up to 1.5e-4 N m, which are the roundings of its acos; before
@@ -299,12 +298,13 @@ fn mover(name: &str) -> bool {
 /// Ops that move particles are listed in `tests/stated.rs`.
 #[test]
 fn every_command_is_known_to_move_particles_or_not() {
-    for command in COMMANDS {
+    let tables = Tables::default();
+    for command in &tables.commands {
         let name = command.name();
         assert!(mover(name) != STAY.contains(&name), "say in MOVERS or STAY what `{name}` does to particles");
     }
     for (name, ..) in MOVERS {
-        let mut there = COMMANDS.iter().map(|c| c.name()).chain(FIXES.iter().map(|f| f.name()));
+        let mut there = tables.commands.iter().map(|c| c.name()).chain(tables.fixes.iter().map(|f| f.name()));
         assert!(there.any(|n| n == *name), "{name} is gone");
     }
 }

@@ -9,7 +9,6 @@ mod angle_style;
 mod atom_modify;
 mod atom_style;
 mod boundary;
-mod calibrate;
 mod change_box;
 mod comm_modify;
 pub mod create_atoms;
@@ -101,7 +100,6 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &neigh_modify::NeighModify,
     &write_data::WriteData,
     &create_bonds::CreateBonds,
-    &calibrate::Calibrate,
     &delete_bonds::DeleteBonds,
     &special_bonds::SpecialBonds,
     &angle_style::AngleStyleCommand,

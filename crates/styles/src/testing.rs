@@ -1,5 +1,7 @@
 //! A bench for unit tests of styles: a small world, lines as a deck has them, and a sealing without a graph.
 
+pub mod lines;
+
 use super::{
     BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Pair, PlaceTest, Pull, Reading, SealCx, Shape,
     Text, UseKind, Wants,

@@ -56,8 +56,8 @@ pub fn warn_softer(cx: &ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>
 
 #[cfg(test)]
 mod tests {
-    use crate::calibrate::testing::{Beams, act};
     use crate::testing::scene as world_of;
+    use crate::testing::{Beams, act};
     use std::collections::BTreeMap;
 
     #[test]

@@ -1,7 +1,6 @@
 //! Lines of `calibrate` on small scenes.
 
-use super::super::testing::scene as world_of;
-use super::testing::{Beams, Law, act, act_with};
+use super::testing::{Beams, Law, act, act_with, scene as world_of};
 use perigrain_world::{Key, World};
 use std::collections::BTreeMap;
 

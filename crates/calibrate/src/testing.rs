@@ -1,13 +1,14 @@
 //! Lines of `calibrate` acted on a bare world, with a bond style of beams and a law of contacts.
 
-use super::super::testing::command;
 use super::Calibrate;
 use perigrain_base::diag::{Diagnostics, Result, fail};
 use perigrain_bonded::stiffness::{Beam, Shear, Stiffness};
+use perigrain_commands::COMMANDS;
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::Op;
 use perigrain_styles::probe::{Interaction, Probe, Request};
 use perigrain_styles::pull::{Pull, Stretched};
+use perigrain_styles::testing::lines::{self, command};
 use perigrain_styles::{
     ActCx, BondForce, BuildCx, CommandStyle, Flow, Motion, Names, SealCx, Shape, UseKind, Values,
 };
@@ -141,6 +142,11 @@ impl Values for Declared {
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
         self.0.clone().map(|b| Box::new(b) as Box<dyn BondForce>)
     }
+}
+
+/// The world after these lines, each of which must work.
+pub fn scene(text: &str) -> World {
+    lines::scene(COMMANDS, text)
 }
 
 /// The results of a line: its numbers, its log lines, the lines it left for later, its warnings.

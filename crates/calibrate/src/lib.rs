@@ -1,4 +1,10 @@
 //! `calibrate`: stiffness and strength of bonded bodies without a run, and coefficients of bonds that give them.
+//!
+//! The command reads its line, makes a body of the scene and leaves the work to `statics`; results are kept in the world. The
+//! crate knows no other command.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod cell;
 mod conflicts;
@@ -23,18 +29,20 @@ mod tests_large;
 mod touch;
 mod words;
 
-use super::{Act, CommandStyle};
 use found::Found;
 use line::{Calibration, Head};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, populated};
 use perigrain_styles::words::{Forms, Syntax};
-use perigrain_styles::{ActCx, BuildCx, Compute, Doc, Style};
+use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Compute, Doc, Style};
 use perigrain_world::GroupId;
 use scene::Scene;
 use touch::Hertz;
 use words::{Solver, Words};
+
+/// The commands of this crate.
+pub const COMMANDS: &[&dyn CommandStyle] = &[&Calibrate];
 
 /// The command.
 pub struct Calibrate;
