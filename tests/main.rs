@@ -1,6 +1,8 @@
 //! Tests that need the program or the whole library, in one binary.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+#[path = "additions/main.rs"]
+mod additions;
 mod at_hand;
 mod bench;
 mod bonded;

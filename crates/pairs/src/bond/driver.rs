@@ -33,13 +33,19 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
     fn coeffs(&self, kind: u16) -> Option<Coeffs<C, Self>>;
 
     /// Whether the length at rest is that at which a run first meets the bond.
-    fn measures(&self) -> bool;
+    fn measures(&self) -> bool {
+        false
+    }
 
     /// Whether some bond is damped.
-    fn damped(&self) -> bool;
+    fn damped(&self) -> bool {
+        false
+    }
 
     /// Whether bonds break.
-    fn breaks(&self) -> bool;
+    fn breaks(&self) -> bool {
+        false
+    }
 
     /// What changes in the columns before forces are evaluated. Bonds whose memory has changed, with what it is now.
     fn prepare(&self, _columns: &mut Columns<C>, _body: &Body, _dimension: i32) -> Vec<(usize, f64)> {

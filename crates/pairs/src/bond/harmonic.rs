@@ -89,15 +89,6 @@ impl Driven<0> for Adapting {
     fn coeffs(&self, kind: u16) -> Option<[f64; 2]> {
         self.adapted.get(&kind).copied()
     }
-    fn measures(&self) -> bool {
-        false
-    }
-    fn damped(&self) -> bool {
-        false
-    }
-    fn breaks(&self) -> bool {
-        false
-    }
     fn own(&self, _w: &World, _k: &[f64; 2], _bond: &Bond, _ends: [usize; 2]) -> [f64; 0] {
         []
     }

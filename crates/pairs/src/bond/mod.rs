@@ -17,7 +17,7 @@ pub mod bpm_peri;
 mod bpm_rotational;
 mod bpm_spring;
 mod bpm_spring_plastic;
-mod driver;
+pub mod driver;
 mod harmonic;
 mod hybrid;
 mod options;
