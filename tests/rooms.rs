@@ -24,17 +24,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("contact", &["base", "neigh", "peri", "world"]),
     ("plan", &["base", "world"]),
     ("output", &["base", "world"]),
-    (
-        "styles",
-        &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "statics", "words", "world"],
-    ),
+    ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "words", "world"]),
     // Readers of files with bodies and scenes, and what makes particles of them.
     ("geometry", &["base", "lang", "mesh", "output", "styles", "world"]),
     ("commands", &["base", "geometry", "lang", "mesh", "neigh", "output", "styles", "world"]),
     // One command with all that belongs to it.
     ("calibrate", &["base", "bonded", "lang", "neigh", "output", "plan", "statics", "styles", "world"]),
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
-    ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
+    ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "statics", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "output", "plan", "styles", "world"]),
     // The Python module knows the program, and of what is below only what that shows.
     ("py", &[]),

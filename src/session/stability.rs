@@ -2,9 +2,9 @@
 
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use perigrain_computes::swing::swinging;
 use perigrain_styles::Pair;
 use perigrain_styles::pair::{Deck, Scales, ToCome};
-use perigrain_styles::swing::swinging;
 use perigrain_world::RunStyle;
 
 /// So many grains from which it matters how long lists are.

@@ -10,12 +10,18 @@ mod new_fix;
 
 use perigrain::graph::catalogue::Tables;
 use perigrain::session::{Options, Session};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// A session of the program with one more style.
 fn session(add: impl FnOnce(&mut Tables)) -> Session {
     let mut tables = Tables::default();
     add(&mut tables);
+    for kind in ["pair", "bond", "fix", "compute", "dump", "command"] {
+        let names = tables.names(kind).unwrap();
+        let new = names.iter().collect::<BTreeSet<_>>().len();
+        assert_eq!(names.len(), new, "a {kind} that the program has");
+    }
     Session::new(Options { tables: Arc::new(tables), ..Options::default() }).unwrap()
 }
 

@@ -1,12 +1,11 @@
 //! compute dt/critical: the longest stable steps of solids, of grains and of bonded particles.
 
-use super::{Compute, ComputeStyle};
+use super::{Compute, ComputeStyle, swing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::step_op::{Wanted, fill};
-use perigrain_styles::swing;
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{

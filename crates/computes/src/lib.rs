@@ -50,6 +50,7 @@ mod rigid_energy;
 mod rigid_local;
 mod slice;
 mod stress_atom;
+pub mod swing;
 mod temp;
 mod temp_deform;
 pub mod temp_flow;

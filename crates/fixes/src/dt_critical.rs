@@ -3,11 +3,12 @@
 use super::time_step::Follower;
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
+use perigrain_computes::swing;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::words::{At, Syntax, Words, read};
-use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, swing};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, TYPE_MASS, V, VOLUME, X};
 use perigrain_world::{GroupId, RunStyle, World};
 

@@ -36,7 +36,6 @@ pub mod seal;
 pub mod step_op;
 pub mod stretching;
 pub mod surface;
-pub mod swing;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod triangles;

@@ -1,13 +1,13 @@
 //! The longest stable step of particles that a bond style joins, as they stand.
 
-use crate::bond::{BondForce, Standing, Swing};
-use crate::matter::Masses;
-use crate::pull::{apart, find, periods};
-use crate::words::Words;
 use perigrain_base::diag::{Result, Span};
 use perigrain_base::math::vec3::{Vec3, length};
 use perigrain_statics::network::Network;
 use perigrain_statics::stable_step::Swinging;
+use perigrain_styles::bond::{BondForce, Standing, Swing};
+use perigrain_styles::matter::Masses;
+use perigrain_styles::pull::{apart, find, periods};
+use perigrain_styles::words::Words;
 use perigrain_world::World;
 
 /// How the step of bonded particles is found.
