@@ -7,6 +7,8 @@ use perigrain_dumps::DUMPS;
 use perigrain_fixes::FIXES;
 use perigrain_pairs::PAIRS;
 use perigrain_pairs::bond::BONDS;
+use perigrain_styles::Style;
+use perigrain_world::Registration;
 use perigrain_world::minimizer::MinStyle;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
@@ -75,4 +77,14 @@ pub fn styles(category: &str) -> Option<Vec<&'static str>> {
         "command" => COMMANDS.iter().map(|s| s.name()).chain(DECLARATIONS).chain(SESSION_COMMANDS).collect(),
         _ => return None,
     })
+}
+
+/// State of all styles that has a role for others or that a motion of matter changes.
+pub fn registrations() -> impl Iterator<Item = &'static Registration> + Clone {
+    fn of<S: Style + ?Sized>(
+        table: &'static [&'static S],
+    ) -> impl Iterator<Item = &'static Registration> + Clone {
+        table.iter().flat_map(|style| style.registrations()).copied()
+    }
+    of(FIXES).chain(of(COMPUTES)).chain(of(DUMPS)).chain(of(PAIRS)).chain(of(BONDS)).chain(of(COMMANDS))
 }

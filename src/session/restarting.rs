@@ -3,6 +3,7 @@
 use super::{Session, refuse};
 use crate::graph::Role;
 use crate::graph::build::declare;
+use crate::graph::catalogue::registrations;
 use crate::graph::declaration::Context;
 use crate::graph::regions::place_all;
 use crate::graph::restarts::writing::{claimable, save};
@@ -160,6 +161,7 @@ impl Session {
     fn enter(&mut self, saved: Saved, span: Span) -> Result<()> {
         let Saved { mut world, ran, standing, pair, declared } = saved;
         world.fall_back();
+        world.register(registrations());
         let resume = resume(&world, declared);
         let old = &mut self.world;
         let (settings, now) = (&mut world.settings, &old.settings);

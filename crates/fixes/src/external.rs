@@ -10,7 +10,10 @@ use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
 use perigrain_world::outside::{Each, HostCall, HostValues};
-use perigrain_world::{GroupId, Key, Numbers, Outside, Vectors, World};
+use perigrain_world::{GroupId, Key, Numbers, Outside, Registration, Under, Vectors, World};
+
+/// Forces and virials from the host.
+static VALUES: Registration = Registration::moved("external/", "", Under::Anew);
 
 /// The style.
 pub struct External;
@@ -31,7 +34,8 @@ impl Kept {
     /// The columns of a fix.
     pub fn new(id: &str) -> Self {
         let key = Key::<()>::new(&name(id));
-        Self { energy: key.with("/energy"), virial: ["/normal", "/shear"].map(|part| key.with(part)) }
+        let virial = ["/normal", "/shear"].map(|part| VALUES.key(&format!("{key}{part}")));
+        Self { energy: key.with("/energy"), virial }
     }
 
     /// Stores the values; those beyond the last particle are ignored.
@@ -134,7 +138,7 @@ impl FixStyle for External {
             Mode::Callback(every) => Some(every),
             Mode::Array => None,
         };
-        let key = Key::new(&name(cx.id));
+        let key = VALUES.key(&name(cx.id));
         let (id, kept) = (cx.id.to_string(), Kept::new(cx.id));
         Ok(Box::new(Declared { id, group: cx.group, key, kept, call, apply, virial: true, length: 0 }))
     }

@@ -9,7 +9,7 @@ use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
 use perigrain_world::contacts::PairWork;
-use perigrain_world::{BODY_ENERGY, Constant, Named, World};
+use perigrain_world::{Constant, Named, Under, World};
 use powers::Powers;
 
 /// What does work on particles besides their mutual forces.
@@ -25,15 +25,24 @@ pub enum Channel {
 
 /// Columns of the forces of each channel at the present step.
 static FORCES: [Constant<Vec<Vec3>>; 3] =
-    [Constant::new("ledger/walls"), Constant::new("ledger/gravity"), Constant::new("ledger/imposed")];
+    [forces("ledger/walls"), forces("ledger/gravity"), forces("ledger/imposed")];
 /// And of their torques.
-static TORQUES: [Constant<Vec<Vec3>>; 3] = [
-    Constant::new("ledger/walls torque"),
-    Constant::new("ledger/gravity torque"),
-    Constant::new("ledger/imposed torque"),
-];
+static TORQUES: [Constant<Vec<Vec3>>; 3] =
+    [forces("ledger/walls torque"), forces("ledger/gravity torque"), forces("ledger/imposed torque")];
 /// Forces and torques as they were before the next fix.
-static BEFORE: [Constant<Vec<Vec3>>; 2] = [Constant::new("ledger/force"), Constant::new("ledger/torque")];
+static BEFORE: [Constant<Vec<Vec3>>; 2] = [forces("ledger/force"), forces("ledger/torque")];
+
+const fn forces(name: &'static str) -> Constant<Vec<Vec3>> {
+    Constant::moved(name, Under::Anew)
+}
+
+/// The role of what rigid bodies with masses of their own have beyond their particles: twice their kinetic energies of translation and of
+/// rotation [mass velocity²], and the power of gravity on them.
+pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
+
+/// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
+pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
+
 /// The name of the book in the world's memory.
 static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 

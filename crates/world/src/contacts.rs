@@ -1,6 +1,7 @@
 //! Contact history by pair: the state of grains that touch each other or a wall.
 
-use super::named::{Constant, Key, Named};
+use super::moving::Under;
+use super::named::{Key, Named};
 use perigrain_base::math::vec3::Vec3;
 
 /// Contacts of the last step in the order of their keys, with the history of each.
@@ -34,12 +35,8 @@ pub fn mirror(history: &mut [f64]) {
     history.iter_mut().take(3).for_each(|a| *a = -*a);
 }
 
-/// Under this name contacts of plastic grains are kept (normal model `mdr`), besides those of their pair style.
-pub static PLASTIC: Constant<Contacts> = Constant::new("mdr");
-
-/// Turns the history of a contact of plastic grains around, from one grain's view to the other's: first its own side, then the
-/// other's, then what they have in common.
-pub fn turn_plastic(history: &mut [f64]) {
+/// Turns a contact's history of two sides ([`Under::Sides`]) around, from one grain's view to the other's.
+pub fn swap_sides(history: &mut [f64]) {
     let half = history.len() / 2;
     (0..half).for_each(|k| history.swap(k, half + k));
 }
@@ -74,8 +71,7 @@ impl Contacts {
         types: impl Fn([u32; 2]) -> Option<[u16; 2]>,
         turn: impl Fn(Vec3) -> Vec3,
     ) {
-        // The history of plastic grains has no direction.
-        if own == *PLASTIC || self.width < 3 {
+        if own.under() == Some(Under::Sides) || self.width < 3 {
             return;
         }
         for (key, row) in self.keys.iter().zip(self.history.chunks_exact_mut(self.width)) {

@@ -38,6 +38,7 @@ pub mod properties;
 pub mod reading;
 pub mod rebuild;
 pub mod region;
+pub mod registration;
 pub mod resume;
 pub mod settings;
 pub mod share;
@@ -81,6 +82,7 @@ pub use promises::{Promise, Promises};
 pub use properties::Properties;
 pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
+pub use registration::Registration;
 pub use resume::{DeclaredLine, Resume};
 pub use settings::{Compat, MOST_SHORT, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use share::{Dealings, Share};
@@ -92,18 +94,8 @@ pub use tracked::{Lent, Tracked};
 pub use travel::{Seen, Travel};
 pub use unseen::Unseen;
 
-/// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
-pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
-
-/// The role in `memo` of how fast a fix deforms the box.
-pub static RATES: Constant<Vec<f64>> = Constant::new("/rates");
-
 /// The role of columns that hold the mass of the rigid body a particle belongs to, 0 for none.
 pub static CONTACT_MASS: Constant<Vec<f64>> = Constant::new("/contact mass");
-
-/// The role of what rigid bodies with masses of their own have beyond their particles: twice their kinetic energies of translation and of
-/// rotation [mass velocity²], and the power of gravity on them.
-pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
 
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]

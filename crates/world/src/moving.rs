@@ -1,11 +1,12 @@
 //! How each field changes when particles are moved as one piece, and the functions that move them by that rule.
 //!
-//! [`field`](super::field) states for each field, [`columns::under`] for each named column, what a motion of matter does to it.
+//! [`field`](super::field) states for each field, the [`Registration`](super::Registration) of its owner for each vector column, what a
+//! motion of matter does to it.
 //! All code that moves particles as a whole follows these rules: [`World::carry`] where they are placed elsewhere between two
 //! runs, [`Grip`] where something holds them while it moves, [`World::lay`] where they are created, [`World::shift_copies`] where
 //! a scene is replicated. `docs/decisions/movers.md` has the table.
 
-use super::columns::{self, Columns};
+use super::columns::Columns;
 use super::contacts::{Contacts, Rolls};
 use super::named::Key;
 use super::region::{Angle, turned};
@@ -35,7 +36,9 @@ pub enum Under {
     Anchor,
     /// Values of one moment, kept as they were then.
     Record,
-    /// Columns by name: see [`columns::under`].
+    /// History of pairs without direction, first that of one side, then that of the other, then what both have in common: nothing.
+    Sides,
+    /// Columns: see [`Key::under`].
     Columns,
 }
 
@@ -188,7 +191,7 @@ impl Columns {
     /// Turns what the members keep in columns: see [`World::carry`].
     fn carry(&mut self, turn: &Turn, members: &[usize]) {
         for (key, column) in self.vectors_mut() {
-            match columns::under(key.text()) {
+            match key.under() {
                 Some(Under::Place) => members.iter().for_each(|&i| column[i] = turn.place(column[i])),
                 Some(Under::Springs) => members.iter().for_each(|&i| column[i] = turn.vector(column[i])),
                 _ => {}
@@ -198,8 +201,8 @@ impl Columns {
 
     /// Moves what belongs to a place in space: see [`World::shift_copies`].
     fn shift(&mut self, of: std::ops::Range<usize>, shift: Vec3) {
-        let held = |name| matches!(columns::under(name), Some(Under::Anchor | Under::Place));
-        for (_, column) in self.vectors_mut().filter(|(key, _)| held(key.text())) {
+        let held = |key: Vectors| matches!(key.under(), Some(Under::Anchor | Under::Place));
+        for (_, column) in self.vectors_mut().filter(|(key, _)| held(*key)) {
             column[of.clone()].iter_mut().for_each(|x| *x = add(*x, shift));
         }
     }
@@ -236,8 +239,8 @@ pub struct Grip {
 impl Grip {
     /// Under this name.
     pub fn new(name: &str) -> Self {
-        let moment = Key::new(&format!("{name}/moment"));
-        Self { real: Key::new(name), others: Key::new(name), moment }
+        let held = |name: &str| Key::new(name).moved(Under::Nothing);
+        Self { real: Key::new(name), others: held(name), moment: held(&format!("{name}/moment")) }
     }
 
     /// Whether it holds particle `i`.

@@ -1,6 +1,6 @@
 //! State by name: a name becomes a handle once, outside of steps, and the handle finds its entry by number.
 
-use super::{BODY_ENERGY, CONTACT_MASS, COUPLED, RATES};
+use super::moving::Under;
 use serde::de::Deserialize;
 use serde::ser::SerializeMap;
 use std::collections::BTreeMap;
@@ -12,22 +12,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 struct Name {
     number: usize,
     text: &'static str,
-    role: Option<&'static Name>,
-}
-
-/// How names begin and end whose ends are roles.
-const ROLES: [(&str, &Constant<Vec<f64>>); 4] =
-    [("langevin/", &COUPLED), ("deform/", &RATES), ("rigid/", &CONTACT_MASS), ("rigid/", &BODY_ENERGY)];
-
-/// What entries of several fixes are to all others: `temperature` of `property/atom/ID/temperature`.
-fn role(text: &str) -> Option<&str> {
-    if let Some(property) = text.strip_prefix("property/atom/") {
-        return property.split_once('/').map(|(_, name)| name);
-    }
-    let of = |(begin, end): &(&str, &Constant<_>)| {
-        text.strip_prefix(begin)?.ends_with(end.text).then_some(end.text)
-    };
-    ROLES.iter().find_map(of)
+    /// What entries of several owners are to all others: `temperature` of `property/atom/ID/temperature`. The owner registers it.
+    role: OnceLock<&'static Name>,
+    /// What a motion of matter does to the entry, as the owner registers it.
+    under: OnceLock<Under>,
 }
 
 static NAMES: Mutex<BTreeMap<&'static str, &'static Name>> = Mutex::new(BTreeMap::new());
@@ -57,14 +45,29 @@ impl<T> Key<T> {
         if let Some(name) = NAMES.lock().unwrap_or_else(PoisonError::into_inner).get(text) {
             return Self { name, of: PhantomData };
         }
-        let role = role(text).map(|role| Self::known(role).name);
         let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
         let number = names.len();
+        let new = |text: &&'static str| -> &'static Name {
+            Box::leak(Box::new(Name { number, text, role: OnceLock::new(), under: OnceLock::new() }))
+        };
         // Another thread may have been faster.
-        let name = *names
-            .entry(text.to_string().leak())
-            .or_insert_with_key(|text| Box::leak(Box::new(Name { number, text, role })));
+        let name = *names.entry(text.to_string().leak()).or_insert_with_key(new);
         Self { name, of: PhantomData }
+    }
+
+    /// Registers the role of this name. A name has one role: later registrations have to agree.
+    pub(crate) fn in_role(self, role: &str) -> Self {
+        let role = Self::known(role).name;
+        let first = self.name.role.get_or_init(|| role);
+        debug_assert_eq!(first.number, role.number, "`{self}` has two roles");
+        self
+    }
+
+    /// Registers what a motion of matter does to the entry of this name.
+    pub(crate) fn moved(self, under: Under) -> Self {
+        let first = self.name.under.get_or_init(|| under);
+        debug_assert_eq!(*first, under, "motions of matter change `{self}` in two ways");
+        self
     }
 
     /// The handle of this name with `tail` behind it, for values of any kind.
@@ -79,12 +82,17 @@ impl<T> Key<T> {
 
     /// Whether it is known to others as this.
     pub fn plays(self, role: Self) -> bool {
-        self.name.role.is_some_and(|own| own.number == role.name.number)
+        self.name.role.get().is_some_and(|own| own.number == role.name.number)
     }
 
     /// What it is known as to others, if it is.
     pub fn role(self) -> Option<Self> {
-        self.name.role.map(|name| Self { name, of: PhantomData })
+        self.name.role.get().map(|name| Self { name, of: PhantomData })
+    }
+
+    /// What a motion of matter does to its entry, if its owner has registered that.
+    pub fn under(self) -> Option<Under> {
+        self.name.under.get().copied()
     }
 
     /// The name.
@@ -96,20 +104,36 @@ impl<T> Key<T> {
 /// The handle of a name that the program itself has, for a constant; made when it is first used.
 pub struct Constant<T> {
     text: &'static str,
+    role: Option<&'static str>,
+    under: Option<Under>,
     key: OnceLock<Key<T>>,
 }
 
 impl<T> Constant<T> {
     /// That of this name.
     pub const fn new(text: &'static str) -> Self {
-        Self { text, key: OnceLock::new() }
+        Self { text, role: None, under: None, key: OnceLock::new() }
+    }
+
+    /// That of this name, which has a role.
+    pub const fn in_role(text: &'static str, role: &'static str) -> Self {
+        Self { text, role: Some(role), under: None, key: OnceLock::new() }
+    }
+
+    /// That of this name, whose entry a motion of matter changes as `under` states.
+    pub const fn moved(text: &'static str, under: Under) -> Self {
+        Self { text, role: None, under: Some(under), key: OnceLock::new() }
     }
 }
 
 impl<T> std::ops::Deref for Constant<T> {
     type Target = Key<T>;
     fn deref(&self) -> &Key<T> {
-        self.key.get_or_init(|| Key::known(self.text))
+        self.key.get_or_init(|| {
+            let key = Key::known(self.text);
+            let key = self.role.map_or(key, |role| key.in_role(role));
+            self.under.map_or(key, |under| key.moved(under))
+        })
     }
 }
 
@@ -413,7 +437,8 @@ mod tests {
         assert!(!all.contains(a) && !all.contains(b) && !all.is_empty());
         all.clear();
         assert!(all.is_empty() && all == Named::default());
-        let (one, two) = (Key::new("property/atom/f/d_b"), Key::new("property/atom/g/d2_c/1"));
+        let [one, two] = [("test/f/d_b", "d_b"), ("test/g/d2_c/1", "d2_c/1")]
+            .map(|(text, role)| Key::new(text).in_role(role));
         all.extend([(two, 2.0), (one, 1.0), (b, 0.0)]);
         assert!(all.playing(Key::new("d2_c/1")).eq([(two, &2.0)]) && one.role() == Some(Key::new("d_b")));
         assert_eq!((b.role(), all.playing(Key::new("test/b")).count()), (None, 0));

@@ -3,8 +3,8 @@
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions};
+use perigrain_styles::peri_view::BOND_FACTORS;
 use perigrain_world::World;
-use perigrain_world::columns::BOND_FACTORS;
 
 /// Which factors the scene has.
 #[derive(Clone, Copy, Debug, Default)]
