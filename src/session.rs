@@ -58,6 +58,7 @@ use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fai
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_base::{letters, memory};
 use perigrain_commands::COMMANDS;
+use perigrain_fixes::python_invoke::HOST;
 use perigrain_lang::{Command, Flow, Line, Script, Vars, plain_value};
 use perigrain_output::log::Log;
 use perigrain_plan::StepPlan;
@@ -238,15 +239,15 @@ impl Session {
         let (stop, deadline, limit_every, agreed) =
             (old.stop.clone(), old.deadline, old.limit_every, old.agreed);
         let compat = self.options.compat;
-        let promised = std::mem::take(&mut self.world.parts.promised);
+        let promised = std::mem::take(&mut self.world.promised);
         let read_files = std::mem::take(&mut self.world.read_files);
-        let host = self.world.parts.host.take();
+        let host = self.world.facts.remove(*HOST);
         self.world = World::default();
-        self.world.parts.host = host;
+        host.map(|host| self.world.facts.insert(*HOST, host));
         self.world.read_files = read_files;
-        self.world.parts.promised = promised;
-        self.world.parts.promised.instead = self.looking();
-        self.world.parts.unseen = self.sight();
+        self.world.promised = promised;
+        self.world.promised.instead = self.looking();
+        *self.world.unseen = self.sight();
         let s = &mut self.world.settings;
         s.compat = compat;
         (s.stop, s.deadline, s.limit_every, s.agreed) = (stop, deadline, limit_every, agreed);

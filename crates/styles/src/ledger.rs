@@ -8,7 +8,7 @@ use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
-use perigrain_world::contacts::PairWork;
+use perigrain_world::contacts::{PairWork, WallTouch};
 use perigrain_world::{Constant, Named, Under, World};
 use powers::Powers;
 
@@ -42,6 +42,12 @@ pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
 
 /// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
 pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
+
+/// Contacts with each wall at the last step, by the fix's ID; only while there is a ledger.
+pub static WALL_TOUCHES: Constant<Named<Vec<WallTouch>>> = Constant::new("ledger/wall touches");
+
+/// What the contacts of each pair style did at the last step; only while there is a ledger.
+pub static PAIR_WORK: Constant<Named<PairWork>> = Constant::new("ledger/pair work");
 
 /// The name of the book in the world's memory.
 static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
@@ -91,7 +97,8 @@ struct Pairs {
 impl Pairs {
     /// At the present velocities.
     fn measure(w: &World, step: i64) -> Self {
-        let work = w.parts.pair_work.iter().flat_map(Named::values).filter(|work| work.step == step);
+        let work =
+            w.facts.get(*PAIR_WORK).into_iter().flat_map(Named::values).filter(|work| work.step == step);
         work.fold(Self::default(), |sum, work| sum.plus(Self::of_style(w, work)))
     }
 
@@ -147,7 +154,7 @@ impl Walls {
     /// At the present velocities.
     fn measure(w: &World) -> Self {
         let (p, mut sum) = (&w.particles, Self::default());
-        for c in w.parts.wall_touches.iter().flat_map(Named::values).flatten() {
+        for c in w.facts.get(*WALL_TOUCHES).into_iter().flat_map(Named::values).flatten() {
             let i = c.grain as usize;
             let (true_one, v) = (scale(w, i), sub(p.v[i], c.velocity));
             let (along, central) = (dot(v, c.normal), dot(c.force, c.normal));
@@ -219,8 +226,8 @@ pub fn open(w: &mut World) -> Result<()> {
         families.counts_losses = true;
     }
     w.bonds.counts_losses |= w.memo.contains(*BOOK);
-    w.parts.wall_touches.get_or_insert_default();
-    w.parts.pair_work.get_or_insert_default();
+    w.facts.get_or_default(*WALL_TOUCHES);
+    w.facts.get_or_default(*PAIR_WORK);
     Ok(())
 }
 
@@ -238,8 +245,8 @@ fn of_bodies(w: &World) -> [f64; 3] {
 /// Discards the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
-    w.parts.wall_touches = None;
-    w.parts.pair_work = None;
+    w.facts.remove(*WALL_TOUCHES);
+    w.facts.remove(*PAIR_WORK);
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 

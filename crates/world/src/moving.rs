@@ -116,7 +116,14 @@ impl World {
             read_files: _,
             share: _,
             dealings: _,
-            parts: _,
+            facts: _,
+            changed: _,
+            notes: _,
+            outlines: _,
+            promised: _,
+            unseen: _,
+            restored: _,
+            resume: _,
         } = self;
         if turns {
             turn_springs(contacts, particles, turn, rolls, &members);

@@ -57,9 +57,15 @@ impl World {
             (field::LISTS, self.rebuild.take_marks()),
             (field::TRAVEL, self.travel.take_marks()),
             (field::CLOCK, self.clock.take_marks()),
-            (field::FACTS, self.parts.take_marks()),
+            (field::FACTS, self.facts.take_marks()),
+            (field::FACTS, self.changed.take_marks()),
+            (field::FACTS, self.notes.take_marks()),
+            (field::FACTS, self.outlines.take_marks()),
+            (field::FACTS, self.promised.take_marks()),
+            (field::FACTS, self.unseen.take_marks()),
+            (field::FACTS, self.restored.take_marks()),
         ];
-        debug_assert_eq!(fields.len(), field::FIELDS.len());
+        debug_assert_eq!(fields.iter().fold(Fields::NONE, |all, (field, _)| all | *field), Fields::ALL);
         let mut all = Touched::default();
         for (field, (read, written)) in fields {
             all.read |= if read { field } else { Fields::NONE };

@@ -98,7 +98,7 @@ impl Op for Write {
 /// The disk's.
 pub fn save(path: &Path, w: &World, ran: bool, pair: &[DeclaredLine], declared: &[String]) -> Result<()> {
     let ran = ran && !w.clock.minimizing;
-    let standing = ran && (w.clock.running || !w.parts.changed);
+    let standing = ran && (w.clock.running || !*w.changed);
     write(path, &Saving { world: w, ran, standing, pair, declared })
 }
 

@@ -4,8 +4,11 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Grains, Sweep};
 use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, PRECOMPUTED, SIDES, State, begin, undo};
 use perigrain_plan::Tick;
-use perigrain_world::World;
 use perigrain_world::contacts::Contacts;
+use perigrain_world::{Constant, World};
+
+/// What the plastic grains of the pair style in force are made of: E, ν, Y, ψ_b and restitution.
+pub static PLASTIC_GRAIN: Constant<[f64; 5]> = Constant::new("mdr/material");
 
 /// Plastic grains of one pair style.
 pub struct Press {

@@ -88,7 +88,7 @@ impl Scatter {
         let strength = self.strength.then(|| one(0, "the critical stretch"));
         let stiffness = self.stiffness.then(|| one(1, "the micro-modulus"));
         let notes = strength.into_iter().chain(stiffness);
-        notes.for_each(|text| w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text)));
+        notes.for_each(|text| w.notes.push(Diagnostic::note(Code::MATERIAL, None, text)));
     }
 }
 

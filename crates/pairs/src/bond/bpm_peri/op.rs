@@ -113,7 +113,7 @@ impl Force {
         let text = format!(
             "the time step {dt} is far beyond the stable {stable:.3e}: bond_style bpm/peri has forces per volume, as LAMMPS' manual states them"
         );
-        w.parts.notes.push(
+        w.notes.push(
             Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
                 .help("where masses are density times volume write `bond_style bpm/peri force newton`"),
         );
