@@ -67,6 +67,11 @@ impl Columns {
         })
     }
 
+    /// The names of the vector columns.
+    pub fn vector_keys(&self) -> impl Iterator<Item = Vectors> {
+        self.vectors.keys()
+    }
+
     /// The vector columns with their names, to be changed.
     pub fn vectors_mut(&mut self) -> impl Iterator<Item = (Vectors, &mut Vec<[f64; 3]>)> {
         self.vectors.iter_mut()
