@@ -327,7 +327,7 @@ impl Op for ClearForces {
             ..About::new(
                 "clear forces",
                 Stage::PreForce,
-                Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS),
+                Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS).only(&[HEATFLOW.text()]),
             )
         }
     }

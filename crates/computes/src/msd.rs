@@ -120,7 +120,9 @@ impl Compute for Declared {
             Needs::new()
                 .read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND)
                 .write(SLOTS)
-                .keep(COLUMNS | MEMO),
+                .keep(COLUMNS | MEMO)
+                .only(&[key.text()])
+                .only(&self.origin.names()),
             move |w: &mut World, t| {
                 let (shift, bit) = (me.shift(w), me.group.bit());
                 if me.average {

@@ -22,6 +22,11 @@ impl Origin {
         Self { places: PLACES.key(&own), known: Key::new(&format!("{own} known")) }
     }
 
+    /// The names of the columns.
+    pub fn names(self) -> [&'static str; 2] {
+        [self.places.text(), self.known.text()]
+    }
+
     /// Stores the current unwrapped position of every particle, less `shift`.
     pub fn capture(self, w: &mut World, shift: [f64; 3]) {
         self.forget(w);

@@ -44,6 +44,11 @@ impl Kept {
         Self { energy: key.with("/energy"), virial }
     }
 
+    fn names(self) -> [&'static str; 3] {
+        let [normal, shear] = self.virial;
+        [self.energy.text(), normal.text(), shear.text()]
+    }
+
     /// Stores the values; those beyond the last particle are ignored.
     ///
     /// # Errors
@@ -190,6 +195,7 @@ impl Fix for Declared {
             Some(_) => access.read(TAG).write(COLUMNS),
             None => access.read(COLUMNS),
         };
+        let access = access.only(&[self.key.text()]).only(&self.kept.names());
         let op = StepOp::new(format!("fix {} external", self.id), Stage::PostForce, access, move |w, t| {
             let outside = w.facts.get(program(own.key)).cloned();
             let due = |every: i64| t.step % every == 0;

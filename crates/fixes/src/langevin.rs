@@ -223,6 +223,12 @@ fn by_creation(w: &World, group: GroupId) -> Vec<usize> {
 }
 
 impl Declared {
+    /// The names of its state.
+    fn names(&self) -> [&'static str; 4] {
+        let [forces, torques] = self.columns;
+        [self.key.text(), self.coupled.text(), forces.text(), torques.text()]
+    }
+
     /// √T for each of these particles.
     fn roots(&self, w: &World, members: &[usize], start: Reading, span: Span) -> Result<Vec<f64>> {
         if let Param::Number(start) = self.start {
@@ -368,10 +374,11 @@ impl Fix for Declared {
         let access = Needs::new()
             .read(V | OMEGA | MASS | RADIUS | KIND | MASK | RANK | MEMO | TYPE_MASS | SLOTS)
             .add(F | TORQUE)
-            .keep(MEMO | COLUMNS);
+            .keep(MEMO | COLUMNS)
+            .only(&self.names());
         let push = StepOp::new(name.clone(), Stage::PostForce, access, move |w, t| me.act(w, t, start, span));
-        let (me, access) =
-            (self.clone(), Needs::new().read(V | MASK | MEMO | COLUMNS).write(SLOTS).keep(MEMO));
+        let access = Needs::new().read(V | MASK | MEMO | COLUMNS).write(SLOTS).keep(MEMO).only(&self.names());
+        let me = self.clone();
         let count = StepOp::new(name, Stage::EndOfStep, access, move |w, t| {
             match me.tally {
                 true => me.count(w, t, slot),

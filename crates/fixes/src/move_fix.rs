@@ -209,7 +209,9 @@ impl Fix for Declared {
         let access = Needs::new()
             .read(F | MASS | MASK | BOX | COLUMNS | SLOTS | TYPE_MASS | KIND)
             .write(X | V | OMEGA | SLOTS | lie)
-            .keep(MEMO);
+            .keep(MEMO)
+            .only(&[key.text()])
+            .only(&me.turn.names());
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access, move |w, t| {
             if t.setup {
                 show_starts(w, key.of(), slot, t);

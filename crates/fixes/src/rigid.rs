@@ -231,6 +231,13 @@ impl Keys {
         let virials = VIRIALS.each_ref().map(|part| part.key(&own));
         Self { bodies, virial, virials, body, mass, place, energy, turn }
     }
+
+    fn names(&self) -> [&'static str; 10] {
+        let ([xx, xy], [turn, moment]) = (self.virials.map(Key::text), self.turn.names());
+        let numbers = [self.bodies, self.virial, self.body, self.mass, self.energy].map(Key::text);
+        let [bodies, virial, body, mass, energy] = numbers;
+        [bodies, virial, xx, xy, body, mass, self.place.text(), energy, turn, moment]
+    }
 }
 
 #[derive(Clone)]
@@ -354,7 +361,8 @@ impl Fix for Declared {
                         | TYPE_MASS
                         | lie,
                 )
-                .keep(MEMO | RIGID | field::COLUMNS),
+                .keep(MEMO | RIGID | field::COLUMNS)
+                .only(&self.keys.names()),
             move |w, t| {
                 if t.setup && !t.unchanged {
                     me.begin(w, span)?;
@@ -372,6 +380,7 @@ impl Fix for Declared {
         let weight = Weight::find(self, cx)?;
         let pulled = if weight.is_none() { Fields::NONE } else { MASK | SLOTS };
         let (me, mut crew) = (self.clone(), Crew::of(self));
+        let names = self.keys.names();
         let access = || {
             Needs::new()
                 .read(pulled)
@@ -390,6 +399,7 @@ impl Fix for Declared {
                 )
                 .write(X | V | OMEGA | SLOTS | lie)
                 .keep(MEMO | RIGID | field::COLUMNS)
+                .only(&names)
         };
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
             if me.shares(w, t) {

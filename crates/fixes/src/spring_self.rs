@@ -118,7 +118,8 @@ impl Fix for Declared {
         keep_places(cx.world(), key, self.group, unwrapped);
         let stiffness = cx.param(&self.stiffness, Stage::PostForce, &When::Always)?;
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Needs::new().read(X | IMAGE | MASK | BOX | COLUMNS).add(F).write(SLOTS);
+        let access =
+            Needs::new().read(X | IMAGE | MASK | BOX | COLUMNS).add(F).write(SLOTS).only(&[key.text()]);
         let op =
             StepOp::new(format!("fix {} spring/self", self.id), Stage::PostForce, access, move |w, t| {
                 if t.unchanged {

@@ -250,6 +250,11 @@ pub fn forget(w: &mut World) {
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 
+/// The names of the columns of forces and torques.
+pub fn columns() -> Vec<&'static str> {
+    FORCES.iter().chain(&TORQUES).chain(&BEFORE).map(|key| key.text()).collect()
+}
+
 /// Before the fixes of a step change forces.
 pub fn begin(w: &mut World, t: &Tick) {
     if t.unchanged {

@@ -1,7 +1,8 @@
 //! Named per-particle columns beyond the core ones: they follow every reordering and deletion.
 
+use super::acting::by_name;
 use super::moving::Under;
-use super::named::{self, Constant, Key, Named, Numbers, Vectors};
+use super::named::{Constant, Key, Named, Numbers, Vectors};
 use std::borrow::Cow;
 
 /// The property of fix property/atom that holds temperatures.
@@ -84,7 +85,7 @@ impl Columns {
             Some((head, k)) => Cow::Owned(format!("{head}/{k}")),
             None => Cow::Borrowed(word),
         };
-        named::by_name(&name);
+        by_name(&name);
         self.scalars.keys().find(|key| key.role().is_some_and(|role| role.text() == name))
     }
 
@@ -148,6 +149,12 @@ impl Columns {
     pub fn put(&mut self, mut more: Columns) {
         self.scalars.extend(more.scalars.split_off(|_| false));
         self.vectors.extend(more.vectors.split_off(|_| false));
+    }
+
+    /// The names of the columns that were read or written since the last call.
+    #[cfg(debug_assertions)]
+    pub(crate) fn take_touched(&self) -> impl Iterator<Item = Numbers> {
+        self.scalars.take_touched().chain(self.vectors.take_touched())
     }
 
     /// All names.

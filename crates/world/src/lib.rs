@@ -6,6 +6,7 @@
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod acting;
 pub mod adapted;
 pub mod allowed;
 pub mod angles;

@@ -269,6 +269,11 @@ impl Grip {
         Self { real: Key::new(name), others: held(name), moment: held(&format!("{name}/moment")) }
     }
 
+    /// The names of its columns.
+    pub fn names(self) -> [&'static str; 2] {
+        [self.real.text(), self.moment.text()]
+    }
+
     /// Whether it holds particle `i`.
     pub fn holds(self, w: &World, i: usize) -> bool {
         self.of(&w.columns, i).is_some()

@@ -1,12 +1,12 @@
 //! How styles register state that has a role for others, or that a motion of matter changes.
 
+use super::acting::by_name;
 use super::moving::Under;
-use super::named::{Constant, Key, by_name};
+use super::named::{Constant, Key};
 use super::{Numbers, World};
 
-/// State that a style keeps under names of one form, `BEGIN…END`. The style makes the keys here, and its
-/// [`Style::state`](../perigrain_styles/trait.Style.html) lists the registration, so that names from a restart file have the same
-/// role before the deck declares the style again.
+/// State that a style keeps under names of one form, `BEGIN…END`. The style makes the keys with [`Registration::key`], and its
+/// `Style::registrations` lists them, so that names from a restart file are registered before the deck declares the style again.
 pub struct Registration {
     begin: &'static str,
     end: &'static str,

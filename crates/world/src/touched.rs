@@ -1,17 +1,20 @@
 //! Which fields of a scene were read and written since the last query; only debug builds record this.
 
+use super::Numbers;
 use super::World;
 #[cfg(debug_assertions)]
 use super::field;
 use super::field::Fields;
 
 /// What was read and what was written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Touched {
     /// Read.
     pub read: Fields,
     /// Written, or borrowed to be written.
     pub written: Fields,
+    /// The columns and entries of the memo among these.
+    pub names: Vec<Numbers>,
 }
 
 impl World {
@@ -71,6 +74,11 @@ impl World {
             all.read |= if read { field } else { Fields::NONE };
             all.written |= if written { field } else { Fields::NONE };
         }
+        // Entries looked at without a trace of their field have marks as well.
+        let fields = all.read | all.written;
+        let columns = self.columns.past().take_touched().filter(|_| fields.has(field::COLUMNS));
+        all.names = columns.collect();
+        all.names.extend(self.memo.past().take_touched().filter(|_| fields.has(field::MEMO)));
         all
     }
 }

@@ -133,7 +133,7 @@ impl Fix for Store {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let slot = cx.slot(&format!("f_{}", self.id));
-        let mut access = Needs::new().write(SLOTS).keep(MEMO);
+        let mut access = Needs::new().write(SLOTS).keep(MEMO).only(&[self.rows.text(), self.first.text()]);
         if self.looks_back() {
             access = access.read(X).keep(COLUMNS);
         }
