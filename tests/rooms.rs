@@ -2,6 +2,12 @@
 
 mod circles;
 
+use perigrain_computes::COMPUTES;
+use perigrain_dumps::DUMPS;
+use perigrain_fixes::FIXES;
+use perigrain_pairs::PAIRS;
+use perigrain_pairs::bond::BONDS;
+use perigrain_styles::Style;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -165,6 +171,40 @@ fn no_state_is_found_by_a_string_inside_a_step() {
     found.sort();
     let known: Vec<&str> = BY_STRING.iter().map(|(name, _)| *name).collect();
     assert_eq!(found, known, "maps by string in the world: steps find state by handles (`Named`)");
+}
+
+/// Words of the world that are names of styles as well.
+const WORDS_OF_THE_WORLD: &[(&str, &str)] = &[
+    ("hybrid", "an atom style"),
+    ("image", "the field of crossings of periodic faces"),
+    ("pair", "coefficients of a pair style, beside those of a bond style"),
+    ("rigid", "the field of rigid bodies"),
+];
+
+#[test]
+fn the_world_names_no_style() {
+    fn names<S: Style + ?Sized>(table: &[&S]) -> Vec<&'static str> {
+        table.iter().map(|style| style.name()).collect()
+    }
+    let styles = [names(FIXES), names(COMPUTES), names(PAIRS), names(BONDS), names(DUMPS)].concat();
+    let mut wrong = String::new();
+    for file in rust_files("crates/world/src") {
+        let text = fs::read_to_string(&file).unwrap();
+        let code = &text[..text.find("#[cfg(test)]\nmod ").unwrap_or(text.len())];
+        let lines = code.lines().map(str::trim).filter(|line| !line.starts_with("//"));
+        for literal in lines.flat_map(|line| line.split('"').skip(1).step_by(2)) {
+            let known = WORDS_OF_THE_WORLD.iter().any(|(word, _)| *word == literal);
+            let begins = |name: &&&str| {
+                literal
+                    .strip_prefix(**name)
+                    .is_some_and(|rest| rest.is_empty() || rest.starts_with(['/', ' ']))
+            };
+            if let Some(style) = styles.iter().find(begins).filter(|_| !known) {
+                writeln!(wrong, "{}: `{literal}` is the style `{style}`", file.display()).unwrap();
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "styles own their state and register it (`Registration`):\n{wrong}");
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn bring_along(
     let old: Vec<FixNode> = graph.fixes.extract_if(.., |f| f.style == BROUGHT).collect();
     // A restart file repeats the line, and so does the deck: state kept then is valid.
     let again = |id: &str, fix: &dyn Fix| {
-        let (restored, shape) = (w.parts.resume.is_some(), fix.shape());
+        let (restored, shape) = (w.resume.is_some(), fix.shape());
         restored
             && old.iter().any(|o| {
                 o.id == id && (o.fix.shape().local, o.fix.shape().every) == (shape.local, shape.every)

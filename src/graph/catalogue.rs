@@ -7,6 +7,7 @@ use perigrain_fixes::FIXES;
 use perigrain_pairs::PAIRS;
 use perigrain_pairs::bond::BONDS;
 use perigrain_styles::{BondStyle, CommandStyle, ComputeStyle, DumpStyle, FixStyle, PairStyle, Style};
+use perigrain_world::Registration;
 use perigrain_world::minimizer::MinStyle;
 
 /// The commands that declare.
@@ -136,6 +137,17 @@ impl Tables {
             "command" => names(&self.commands).chain(DECLARATIONS).chain(SESSION_COMMANDS).collect(),
             _ => return None,
         })
+    }
+
+    /// State of all styles that has a role for others or that a motion of matter changes.
+    pub fn registrations(&self) -> impl Iterator<Item = &'static Registration> + Clone {
+        fn of<S: Style + ?Sized>(
+            table: &[&'static S],
+        ) -> impl Iterator<Item = &'static Registration> + Clone {
+            table.iter().flat_map(|style| style.registrations()).copied()
+        }
+        let forces = of(&self.pairs).chain(of(&self.bonds));
+        of(&self.fixes).chain(of(&self.computes)).chain(of(&self.dumps)).chain(forces).chain(of(&self.commands))
     }
 }
 

@@ -27,7 +27,7 @@ pub struct DeckEnv<'a> {
 
 /// Whether only a run determines a keyword's value, where a scene is only checked.
 fn hidden(w: &World, name: &str) -> bool {
-    let u = &w.parts.unseen;
+    let u = &w.unseen;
     let follows =
         |d: &Domain| d.boundary.0.iter().flatten().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin));
     // Faces that follow particles are where these are.
@@ -100,7 +100,7 @@ impl DeckEnv<'_> {
         plan.request_sums(&mut wanted);
         let tally = &self.w.tally;
         // LAMMPS checks the step alone, and returns what the last run has left of particles that were changed since.
-        let stands = tally.step == Some(t.step) && (!self.w.parts.changed || self.w.settings.lammps());
+        let stands = tally.step == Some(t.step) && (!*self.w.changed || self.w.settings.lammps());
         let short = (wanted.energy && !stands)
             || (wanted.virial && !(stands && tally.with_virial))
             || (wanted.atom_energy && !(stands && tally.with_atoms))
@@ -123,7 +123,7 @@ impl DeckEnv<'_> {
 impl DeckEnv<'_> {
     /// Whether only a run determines the state of particles.
     fn blind(&self) -> bool {
-        self.w.parts.unseen.particles
+        self.w.unseen.particles
     }
 
     /// The result of `read` for the slot of a reference, filled for this moment; unknown where only a run determines it.
@@ -213,7 +213,7 @@ impl Env for DeckEnv<'_> {
     }
 
     fn may_be_written(&self, path: &str) -> bool {
-        self.w.parts.promised.may_come(path)
+        self.w.promised.may_come(path)
     }
 
     fn control(&self, name: &str) -> Option<f64> {

@@ -1,7 +1,8 @@
 //! Thermo keywords: what each is computed from, and its value.
 
 use perigrain_base::comm;
-use perigrain_world::{COUPLED, Clock, Slot, SlotId, World};
+use perigrain_styles::ledger::COUPLED;
+use perigrain_world::{Clock, Slot, SlotId, World};
 
 /// What a keyword's value is computed from besides the world itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -21,7 +21,8 @@ pub fn wanted(s: &Sealer) -> bool {
 
 /// Before the fixes of a step.
 pub fn begin(s: &mut Sealer) {
-    let access = Needs::new().read(F | TORQUE | BONDS).write(FAMILIES | BONDS).keep(COLUMNS);
+    let access =
+        Needs::new().read(F | TORQUE | BONDS).write(FAMILIES | BONDS).keep(COLUMNS).only(&ledger::columns());
     let op = StepOp::new("ledger begins", Stage::PostForce, access, |w, t| {
         ledger::begin(w, t);
         Ok(())
@@ -66,7 +67,7 @@ impl Marks {
     /// Puts what waits into the plan.
     pub fn set(&mut self, s: &mut Sealer) {
         let Some(Mark { channel, changed, ids, span }) = self.waiting.take() else { return };
-        let access = Needs::new().read(F | TORQUE).keep(COLUMNS);
+        let access = Needs::new().read(F | TORQUE).keep(COLUMNS).only(&ledger::columns());
         let name = format!("ledger of fix {}", ids.join(", "));
         let op = StepOp::new(name, Stage::PostForce, access, move |w, t| {
             ledger::mark(w, t, channel, changed);

@@ -9,7 +9,7 @@ use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
 use perigrain_world::index::Index;
-use perigrain_world::{Domain, Extent, Kept, NeighborSettings, Particles, Seen, World, extent};
+use perigrain_world::{Constant, Domain, Extent, Kept, NeighborSettings, Particles, Seen, World, extent};
 
 /// Wraps, shrinks, checks for lost particles and marks lists for a rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -271,7 +271,7 @@ fn warn_of_bonds(w: &mut World, t: &Tick) {
     if torn > 0 {
         let text =
             format!("{torn} bonds have lost one of their ends, at step {}: they exert no force", t.step);
-        w.parts.notes.push(Diagnostic::warning(Code::LOST, None, text));
+        w.notes.push(Diagnostic::warning(Code::LOST, None, text));
     }
 }
 
@@ -313,6 +313,9 @@ fn hold(w: &mut World) {
     }
 }
 
+/// Forces and torques of the coming step have been set to zero already.
+static CLEARED: Constant<()> = Constant::new("clear forces/done");
+
 /// Forces and torques to zero; the tally starts.
 pub struct ClearForces;
 
@@ -324,12 +327,12 @@ impl Op for ClearForces {
             ..About::new(
                 "clear forces",
                 Stage::PreForce,
-                Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS),
+                Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS).only(&[HEATFLOW.text()]),
             )
         }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let cleared = std::mem::take(&mut w.parts.cleared);
+        let cleared = w.facts.remove(*CLEARED).is_some();
         if t.setup || !cleared {
             w.particles.f.fill([0.0; 3]);
             w.particles.torque.fill([0.0; 3]);
@@ -356,6 +359,6 @@ impl Op for ClearForces {
         Way::Alone
     }
     fn fused(&mut self, w: &mut World, _: &Tick, _: BlockSums) {
-        w.parts.cleared = true;
+        w.facts.insert(*CLEARED, ());
     }
 }

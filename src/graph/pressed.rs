@@ -4,14 +4,14 @@ use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::SealCx;
+use perigrain_styles::critical::LOOK;
 use perigrain_styles::pressed::exceeded;
 use perigrain_styles::probe::Probe;
-use perigrain_world::contacts::{LOOK, Pressed};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
     TRAVEL, V, VOLUME, X, X0,
 };
-use perigrain_world::{RunStyle, World};
+use perigrain_world::{Constant, RunStyle, World};
 
 /// Equations of motion, and whether they turn particles. Rigid bodies are heavier than their particles, and what is led does not swing.
 const MOVING: [(&str, bool); 4] =
@@ -97,6 +97,19 @@ impl Look {
     }
 }
 
+/// The last examination of pressed contacts, and the step they allow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pressed {
+    /// When.
+    step: i64,
+    /// The time step then.
+    dt: f64,
+    /// Whether the warning that it is too long has been given.
+    warned: bool,
+}
+
+static PRESSED: Constant<Pressed> = Constant::new("contact watch/pressed");
+
 impl Op for Look {
     fn about(&self) -> About {
         let reads = X | V | OMEGA | RADIUS | MASS | KIND | MASK | TAG | VOLUME | X0;
@@ -107,7 +120,7 @@ impl Op for Look {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let same = w.parts.pressed.filter(|p| p.dt == t.dt);
+        let same = w.facts.get(*PRESSED).copied().filter(|p| p.dt == t.dt);
         // An examination takes as long as some 15 steps: a continued run repeats it at its beginning and end only this long after
         // the last.
         let soon = same.is_some_and(|p| (0..LOOK).contains(&(t.step - p.step)));
@@ -117,10 +130,10 @@ impl Op for Look {
         }
         let Self { probes, movers, .. } = self;
         let limit = exceeded(w, probes, |i| movers.of(w.particles.mask[i]), step_of(w, t.dt))?;
-        w.parts.pressed = Some(Pressed { step: t.step, dt: t.dt, warned: limit.is_some() });
+        w.facts.insert(*PRESSED, Pressed { step: t.step, dt: t.dt, warned: limit.is_some() });
         if let Some(limit) = limit {
             let problem = self.problem(w, t, limit);
-            w.parts.notes.push(problem);
+            w.notes.push(problem);
         }
         Ok(())
     }

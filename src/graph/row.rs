@@ -3,11 +3,12 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::Value;
 use perigrain_output::log::Log;
+use perigrain_output::table_row::{LATEST_ROW, RowValue, TableRow};
 use perigrain_output::thermo::{Column, Kind, Layout, memory_line};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::Reading;
+use perigrain_world::World;
 use perigrain_world::field::{FACTS, LISTS, SLOTS};
-use perigrain_world::{RowValue, TableRow, World};
 use std::sync::Arc;
 
 /// Prints a row.
@@ -115,7 +116,8 @@ impl Op for Row {
             n => self.log.line_or(&row, Some(&self.layout.row_of(n, t.step, cpu, atoms, &values)))?,
         }
         self.log.row(|| self.kept(w, t));
-        w.parts.row = Some(Arc::new(self.repeated(w, t)));
+        let row = Arc::new(self.repeated(w, t));
+        w.facts.insert(*LATEST_ROW, row);
         if self.layout.flush { self.log.flush() } else { Ok(()) }
     }
     fn finish(&mut self, _w: &mut World) -> Result<()> {

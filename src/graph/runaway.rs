@@ -15,7 +15,7 @@ use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
     TALLY, TRAVEL, TYPE_MASS, V, X, X0,
 };
-use perigrain_world::{Fields, RunStyle, World};
+use perigrain_world::{Constant, Fields, RunStyle, World};
 
 /// The ratio to the energy at the beginning of the run from which on the energy is beyond reason: of a scene without external
 /// work, or kinetic energy where speeds are beyond reason too.
@@ -29,6 +29,9 @@ const FASTER: f64 = 10.0;
 
 /// The interval in steps at which a run is looked at besides the rows of the step table.
 const INTERVAL: i64 = 1000;
+
+/// All energy of a scene of grains as the run began, where nothing does work on it.
+static BUDGET: Constant<f64> = Constant::new("energy watch/budget");
 
 /// Fixes that do no work on particles, or take energy alone.
 const IDLE: [&str; 22] = [
@@ -88,7 +91,7 @@ pub fn seal(s: &mut Sealer, rows: &When) -> Result<()> {
     let probes = if grains { s.probes()? } else { vec![] };
     if !grains {
         // What a run does that something drives is in no budget.
-        s.world().parts.budget = None;
+        s.world().facts.remove(*BUDGET);
     }
     let op = Look {
         how,
@@ -187,16 +190,21 @@ impl Look {
             return Ok(tallied.then_some(kinetic + strain));
         }
         if t.unchanged
-            && let Some(budget) = w.parts.budget
+            && let Some(budget) = w.facts.get(*BUDGET)
         {
-            return Ok(Some(budget));
+            return Ok(Some(*budget));
         }
         let mut held = 0.0;
         for probe in &mut self.probes {
             held += probe.held(w)?.iter().sum::<f64>();
         }
-        w.parts.budget = tallied.then_some(kinetic + strain + held);
-        Ok(w.parts.budget)
+        if !tallied {
+            w.facts.remove(*BUDGET);
+            return Ok(None);
+        }
+        let budget = kinetic + strain + held;
+        w.facts.insert(*BUDGET, budget);
+        Ok(Some(budget))
     }
 
     /// What is beyond reason, if something is.

@@ -9,6 +9,7 @@ use super::values::{Evaluate, Keyword, Once, groups_alone, reads};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_output::log::Log;
+use perigrain_pairs::PLASTIC_GRAIN;
 use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
 use perigrain_styles::fix::Facts;
 use perigrain_styles::probe::Probe;
@@ -133,7 +134,7 @@ impl<'a> Sealer<'a> {
 
     /// Whether the pair style in force has plastic grains.
     pub fn grains_are_plastic(&self) -> bool {
-        self.world.parts.plastic.is_some()
+        self.world.facts.has(*PLASTIC_GRAIN)
     }
 
     /// The probes of single pairs, see [`Pair::probes`](perigrain_styles::Pair::probes).

@@ -10,7 +10,7 @@ use crate::graph::regions::place_following;
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 use perigrain_styles::{ActCx, CommandStyle};
-use perigrain_world::{GroupId, Promise};
+use perigrain_world::{GroupId, Promise, World};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ impl Session {
             let mut args = Args::new(cmd);
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
             args.finish()?;
-            self.world.parts.unseen.vague |= self.planning() && depends_on_a_run(cmd);
+            self.world.unseen.vague |= self.planning() && depends_on_a_run(cmd);
             let settles = act.settles().to_vec();
             left = act.leaves();
             if act.needs_particles() && self.passes(left.is_some()) {
@@ -126,22 +126,22 @@ impl Session {
     /// A scene read from a file that the deck would have written is known as far as the scene was that went into it; what
     /// other commands read from such a file is not.
     fn inherit_sight(&mut self, cmd: &Command) {
-        let parts = &mut *self.world.parts;
+        let World { promised, unseen, .. } = &mut self.world;
         for word in &cmd.args {
-            let (particles, vague) = match parts.promised.get(&word.text) {
-                Some(Promise::Scene(stored, _)) => (stored.parts.unseen.particles, stored.parts.unseen.vague),
+            let (particles, vague) = match promised.get(&word.text) {
+                Some(Promise::Scene(stored, _)) => (stored.unseen.particles, stored.unseen.vague),
                 Some(Promise::Text(_)) if cmd.name.text == "read_data" => continue,
                 Some(_) if !cmd.name.text.starts_with("write_") => (true, true),
                 _ => continue,
             };
-            parts.unseen.particles |= particles;
-            parts.unseen.vague |= vague;
+            unseen.particles |= particles;
+            unseen.vague |= vague;
         }
     }
 
     /// Whether an act on particles is passed over: in a check, and in a plan where its effect depends on a run.
     fn passes(&self, leaves: bool) -> bool {
-        let unseen = self.world.parts.unseen;
+        let unseen = *self.world.unseen;
         // A result of what the particles are by then is not known.
         if self.options.mode == Mode::Check || (unseen.particles && leaves) {
             return true;

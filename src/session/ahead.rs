@@ -36,7 +36,7 @@ pub(super) struct Foreseen {
 impl Session {
     /// Takes note of a `run` line of a deck that is only read.
     pub(super) fn foresee(&mut self, cmd: &Command, steps: i64) {
-        let upto = cmd.args.iter().any(|w| w.text == "upto") && self.world.parts.unseen.step;
+        let upto = cmd.args.iter().any(|w| w.text == "upto") && self.world.unseen.step;
         let open = upto || cmd.args.iter().any(|w| w.unknown);
         let halts = self.graph.fixes.iter().any(|f| f.style == "halt");
         let seen = &mut self.foreseen;

@@ -143,7 +143,7 @@ impl Session {
         if self.looking() {
             if let Some(name) = file {
                 let text = (!unknown && !word.unknown).then_some(text);
-                self.world.parts.promised.print(&name.text, text, append);
+                self.world.promised.print(&name.text, text, append);
             }
             return Ok(());
         }
@@ -166,7 +166,7 @@ impl Session {
         let append = args.eat("append");
         args.finish()?;
         if self.looking() {
-            self.world.parts.promised.keep(&word.text, Promise::Unseen);
+            self.world.promised.keep(&word.text, Promise::Unseen);
             return Ok(());
         }
         match word.text.as_str() {

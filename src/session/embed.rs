@@ -18,9 +18,10 @@ pub use making::Newcomers;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail, nearest};
 use perigrain_lang::{Expr, Kind, RefKind, Value, ValueRef, substitute};
 use perigrain_output::rows::Table;
+use perigrain_output::table_row::{LATEST_ROW, TableRow};
 use perigrain_output::thermo;
 use perigrain_styles::Names;
-use perigrain_world::{Slot, TableRow};
+use perigrain_world::Slot;
 
 /// The present value of a variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,7 +182,7 @@ impl Session {
 
     /// The latest row of the step table.
     pub fn table_row(&self) -> Option<&TableRow> {
-        self.world.parts.row.as_deref()
+        self.world.facts.get(*LATEST_ROW).map(|row| &**row)
     }
 
     /// From now on all rows of step tables are kept for [`Session::table_rows`].

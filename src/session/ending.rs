@@ -181,7 +181,7 @@ impl Session {
     /// Reports that a line was the last one because of a signal; a run reports that itself. The state after the last run is saved
     /// if the scene has not changed since.
     pub(super) fn report_interrupt(&mut self, line: &Line) -> Result<()> {
-        if let Some(plan) = self.plan.as_mut().filter(|_| self.ran && !self.world.parts.changed) {
+        if let Some(plan) = self.plan.as_mut().filter(|_| self.ran && !*self.world.changed) {
             plan.part(&mut self.world)?;
         }
         let text = self.place_of(line).map_or("Interrupted".into(), |place| {

@@ -17,7 +17,7 @@ impl Session {
     pub(super) fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
         self.refuse_jump(cmd)?;
         // a copy: the world is borrowed for the formulas in the line
-        let promised = self.world.parts.promised.clone();
+        let promised = self.world.promised.past().clone();
         let (folder, read) = (&self.options.folder, self.world.read_files.clone());
         let overlay = &self.options.overlay;
         // A plan makes the particles of the first run, which may take long by itself.

@@ -67,7 +67,7 @@ impl Session {
         let _ = write!(text, "{LINE}");
         if self.looking() {
             if let Target::File(word, append) = target {
-                self.world.parts.promised.print(&word.text, Some(text), append);
+                self.world.promised.print(&word.text, Some(text), append);
             }
             return Ok(());
         }

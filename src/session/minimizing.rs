@@ -97,7 +97,7 @@ impl Session {
         let outcome = minimize::minimize(&mut plan, &mut self.world, watch, (&read, normalized), goal);
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
         // Energies belong to the scene now; the next run computes forces anew, as velocities may have changed since.
-        self.world.parts.changed &= outcome.is_err();
+        *self.world.changed &= outcome.is_err();
         self.ran = false;
         let saved = match &outcome {
             Ok((_, stats)) if stats.stop != Stop::Iterations => self.save_early(&mut plan),

@@ -105,7 +105,7 @@ impl Session {
 
     /// Whether the scene is only checked and only a run determines the present state of particles.
     pub(super) fn unsure(&self) -> bool {
-        self.world.parts.unseen.particles
+        self.world.unseen.particles
     }
 
     /// Notes what is no longer known after a run that was not made. `ends` is whether its last step is known.
@@ -116,7 +116,7 @@ impl Session {
         let deforms = fixes.iter().any(|f| facts(f).deforms != [false; 6]);
         let halts = fixes.iter().any(|f| f.style == "halt") || w.settings.deadline.is_some();
         let hurries = fixes.iter().any(|f| f.style.starts_with("dt/"));
-        let u = &mut self.world.parts.unseen;
+        let u = &mut self.world.unseen;
         u.particles = true;
         u.space |= deforms;
         u.step |= halts || !ends;
@@ -151,7 +151,7 @@ impl Session {
         let cmd = line.and_then(|l| l.command.as_deref());
         let words = || cmd.into_iter().flat_map(|c| c.args.iter().chain([&c.name]));
         let stands_in = cmd.is_some_and(depends_on_a_run);
-        let later = self.planning() && words().any(|w| self.world.parts.promised.get(&w.text).is_some());
+        let later = self.planning() && words().any(|w| self.world.promised.get(&w.text).is_some());
         e.0.iter().all(|d| {
             let at_stand_in = words().any(|w| w.unknown && Some(w.span) == d.span);
             let of_values = is_of_values(d.code) && (stands_in || (self.planning() && self.unsure()));
@@ -169,7 +169,7 @@ impl Session {
         match cmd.map(|c| c.name.text.as_str()) {
             Some("run" | "minimize" | "rerun") => self.unsee(false),
             Some(name) if self.planning() && self.graph.tables.command(name).is_some() => {
-                let unseen = &mut self.world.parts.unseen;
+                let unseen = &mut self.world.unseen;
                 (unseen.particles, unseen.vague) = (true, true);
             }
             _ => {}

@@ -3,6 +3,7 @@
 use super::Session;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_fixes::python_invoke::HOST;
 use perigrain_lang::python::{Functions, PythonCommand, Source, read_command};
 use perigrain_lang::{Args, Word};
 use perigrain_world::outside::Host;
@@ -16,7 +17,7 @@ impl Session {
 
     /// Has this program's functions be called within steps (`fix python/invoke`) from now on.
     pub fn set_host(&mut self, program: Arc<dyn Host>) {
-        self.world.parts.host = Some(program);
+        self.world.facts.insert(*HOST, program);
     }
 
     /// The command `python`.

@@ -34,7 +34,7 @@ impl Session {
         let c = &mut self.world.clock;
         let (first, last) = (reel.first, reel.last);
         (c.began, c.step) = (None, first);
-        self.world.parts.resume = None;
+        self.world.resume = None;
         self.world.slots.invalidate();
         if self.planning() {
             self.plan_of(cmd.span, Pass::Rerun)?;

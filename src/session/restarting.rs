@@ -9,9 +9,10 @@ use crate::graph::restarts::writing::{claimable, save};
 use crate::graph::restarts::{one_process, pattern};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::gate;
+use perigrain_fixes::python_invoke::HOST;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_output::restart::{Saved, fingerprint, read, resume};
-use perigrain_world::{DeclaredLine, Halt, Key, Numbers, Particles, Parts, Promise, Unseen, World};
+use perigrain_world::{DeclaredLine, Halt, Key, Numbers, Particles, Promise, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -56,7 +57,7 @@ impl Session {
     /// Where nothing is written: files that a line would have written, for the lines that read them.
     pub(super) fn promise_restart(&mut self, name: String) {
         let scene = Promise::Scene(Arc::new(self.world.clone()), self.graph.force_lines());
-        self.world.parts.promised.keep(&name, scene);
+        self.world.promised.keep(&name, scene);
     }
 
     /// Where nothing is written: files that a run would have written.
@@ -65,7 +66,7 @@ impl Session {
         let fixes = self.graph.fixes.iter().filter_map(|f| f.fix.facts(&self.world).file);
         let fixes: Vec<String> = fixes.filter_map(|path| path.to_str().map(str::to_string)).collect();
         let dumps = self.graph.dumps.iter().map(|d| &d.file);
-        let promised = &mut self.world.parts.promised;
+        let promised = &mut self.world.promised;
         fixes.iter().chain(dumps).for_each(|name| promised.keep(name, Promise::Unseen));
     }
 
@@ -116,13 +117,10 @@ impl Session {
         if !self.looking() {
             return Ok(None);
         }
-        let promised = &self.world.parts.promised;
+        let promised = &self.world.promised;
         Ok(match promised.get(name) {
             Some(Promise::Scene(world, pair)) => Some(Saved {
-                world: World {
-                    parts: Parts { unseen: world.parts.unseen, ..Parts::default() }.into(),
-                    ..World::clone(world)
-                },
+                world: world.stored(),
                 ran: false,
                 standing: false,
                 pair: pair.clone(),
@@ -160,6 +158,7 @@ impl Session {
     fn enter(&mut self, saved: Saved, span: Span) -> Result<()> {
         let Saved { mut world, ran, standing, pair, declared } = saved;
         world.fall_back();
+        world.register(self.graph.tables.registrations());
         let resume = resume(&world, declared);
         let old = &mut self.world;
         let (settings, now) = (&mut world.settings, &old.settings);
@@ -173,22 +172,21 @@ impl Session {
         }
         world.folder = std::mem::take(&mut old.folder);
         world.read_files = std::mem::take(&mut old.read_files);
-        world.parts.promised = std::mem::take(&mut old.parts.promised);
-        world.parts.host = old.parts.host.take();
+        world.promised = std::mem::take(&mut old.promised);
+        old.facts.remove(*HOST).map(|host| world.facts.insert(*HOST, host));
         (world.clock.running, world.clock.halt) = (false, Halt::No);
         let state = world.memo.keys().map(Key::text).chain(world.columns.names()).filter(|n| claimable(n));
         let names = world.regions.keys().map(|n| format!("region/{n}"));
         let names = names.chain(world.materials.keys().map(|n| format!("material/{n}")));
-        world.parts.restored = names.chain(state.map(str::to_string)).collect();
+        world.restored = names.chain(state.map(str::to_string)).collect();
         if self.checking() {
-            world.parts.unseen = Unseen { space: world.parts.unseen.space, ..Unseen::in_a_check() };
+            *world.unseen = Unseen { space: world.unseen.space, ..Unseen::in_a_check() };
         }
         self.world = world;
         self.scenes += 1;
         self.replay(&pair, span)?;
-        let parts = &mut self.world.parts;
-        parts.changed = true;
-        parts.resume = standing.then(|| Arc::new(resume));
+        self.world.touch();
+        self.world.resume = standing.then(|| Arc::new(resume));
         self.ran = ran;
         if self.checking() {
             without_particles(&mut self.world);
@@ -238,7 +236,7 @@ impl Session {
     /// becomes of state that no fix has claimed.
     pub(super) fn settle_resume(&mut self, span: Span) -> Result<()> {
         self.drop_unclaimed(span);
-        let Some(resume) = self.world.parts.resume.take() else { return Ok(()) };
+        let Some(resume) = self.world.resume.take() else { return Ok(()) };
         place_all(&mut self.world, &self.graph, &self.vars);
         let declared = self.graph.declared();
         let other = declared.iter().find(|l| !resume.declared.contains(l));
@@ -251,7 +249,7 @@ impl Session {
                 "settings, particles or bonds are not those of the restart file".to_string()
             }
             _ => {
-                self.world.parts.changed = false;
+                *self.world.changed = false;
                 return Ok(());
             }
         };
@@ -263,7 +261,7 @@ impl Session {
 
     /// State of fixes that the deck has not declared again is dropped, as in LAMMPS.
     fn drop_unclaimed(&mut self, span: Span) {
-        let left = std::mem::take(&mut self.world.parts.restored);
+        let left = std::mem::take(&mut *self.world.restored);
         let state: Vec<String> =
             left.into_iter().filter(|n| !n.starts_with("region/") && !n.starts_with("material/")).collect();
         if state.is_empty() {

@@ -17,6 +17,7 @@ use perigrain_base::gate;
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command, Script, Word};
 use perigrain_output::thermo::{Finish, Section};
+use perigrain_pairs::{PLASTIC_GRAIN, TILES};
 use perigrain_plan::run::{Pace, verlet};
 use perigrain_plan::{OpClass, Stage, StepPlan, When, explain};
 use perigrain_styles::Reading;
@@ -133,7 +134,7 @@ impl Session {
         let mut args = Args::new(cmd);
         let span = args.here();
         let mut steps = args.integer("the number of steps")?;
-        let unsure = self.world.parts.unseen.step;
+        let unsure = self.world.unseen.step;
         let mut out = RunArgs { steps, start: None, stop: None, pre: true, post: true, every: None };
         while let Some(key) = args.next() {
             match key.text.as_str() {
@@ -209,7 +210,7 @@ impl Session {
         let respa = self.respa().filter(|_| !minimizing).cloned();
         self.graph.computes.iter().for_each(|c| c.compute.particles_joined(&mut self.world));
         self.world.bonds.lost = self.graph.thermo.lost_bond;
-        self.world.parts.plastic = None;
+        self.world.facts.remove(*PLASTIC_GRAIN);
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.plan.levels = respa.as_ref().map(|r| r.loops.len() + 1);
@@ -311,7 +312,7 @@ impl Session {
         c.began = None;
         c.onward = self.ran && !pre;
         self.settle_resume(span)?;
-        let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
+        let unchanged = self.ran && !*self.world.changed && (!self.world.settings.lammps() || !pre);
         if self.planning() {
             self.plan_of(span, Pass::Run)?;
             self.world.clock.step += steps;
@@ -320,7 +321,7 @@ impl Session {
             return Ok(());
         }
         let mut plan = self.seal(span)?;
-        self.notes.append(std::mem::take(&mut self.world.parts.notes));
+        self.notes.append(std::mem::take(&mut self.world.notes));
         self.print_notes()?;
         if !unchanged {
             self.world.slots.invalidate();
@@ -346,14 +347,14 @@ impl Session {
             self.vars.set_internal(name.text(), *value);
         }
         // What is put back at the end of a run changes the scene again.
-        self.world.parts.changed &= outcome.is_err();
+        *self.world.changed &= outcome.is_err();
         self.ran |= outcome.is_ok();
         // Before fixes restore what they have changed for the run: a continued run needs those changes.
         let early = outcome.as_ref().is_ok_and(|(o, _)| o.interrupted || self.is_out_of_time());
         let saved = if early { self.save_early(&mut plan) } else { Ok(()) };
         let finished = plan.finish(&mut self.world);
         self.world.fall_back();
-        self.notes.append(std::mem::take(&mut self.world.parts.notes));
+        self.notes.append(std::mem::take(&mut self.world.notes));
         let (outcome, used_up) = outcome.map_err(|e| e.at(span))?;
         saved.and(finished)?;
         let short = self.world.settings.run_style.short_steps();
@@ -371,7 +372,7 @@ impl Session {
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
             let of_bodies = self.world.families.as_ref().map(|families| families.describe_tiles());
-            let of_ops = self.world.parts.tiles.take().unwrap_or_default().join("\n");
+            let of_ops = self.world.facts.remove(*TILES).unwrap_or_default().join("\n");
             let tiles = of_bodies.unwrap_or_default() + &of_ops;
             // A rank knows the times of its own tiles.
             if !tiles.is_empty() && !comm::several() {
@@ -392,11 +393,11 @@ impl Session {
         let timed = self.timer.tables() || self.options.mode == Mode::Measure;
         pace.setup(plan, &mut self.world, unchanged)?;
         // Problems known before the first step are reported before it.
-        self.notes.append(std::mem::take(&mut self.world.parts.notes));
+        self.notes.append(std::mem::take(&mut self.world.notes));
         self.print_notes()?;
         self.options.log.flush()?;
         if self.options.mode == Mode::Measure {
-            self.world.parts.tiles = Some(vec![]);
+            self.world.facts.insert(*TILES, vec![]);
             if let Some(families) = &mut *self.world.families {
                 families.time_tiles();
             }
@@ -484,7 +485,7 @@ impl Session {
         self.record(cmd, Role::Act, None, uses.into_inner(), vec![]);
         if self.looking() {
             let file = cmd.args.get(2).map_or("", |w| &w.text);
-            self.world.parts.promised.keep(file, Promise::Unseen);
+            self.world.promised.keep(file, Promise::Unseen);
             return Ok(());
         }
         self.drew(cmd);

@@ -64,7 +64,7 @@ impl Session {
         let axes = if flat { 0..2 } else { 0..3 };
         let spacings = |d: usize| domain.lengths()[d] / lattice.spacing[d];
         let widest = axes.map(spacings).fold(0.0, f64::max);
-        if widest >= PART_OF_SPACING || self.world.parts.unseen.space {
+        if widest >= PART_OF_SPACING || self.world.unseen.space {
             return;
         }
         let words = |text: &str| text.split_whitespace().map(String::from).collect::<Vec<_>>();
@@ -92,7 +92,7 @@ impl Session {
     /// Warnings of fixes for groups without particles, where nothing will put any there.
     pub(super) fn check_empty_groups(&self, found: &mut Diagnostics) {
         let w = &self.world;
-        if w.n() == 0 || w.parts.unseen.particles {
+        if w.n() == 0 || w.unseen.particles {
             return;
         }
         let taken = w.particles.mask.iter().fold(0, |all, mask| all | mask);

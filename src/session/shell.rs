@@ -46,7 +46,7 @@ impl Session {
         }
         // a deck that is only looked at changes nothing
         if self.looking() {
-            self.world.parts.promised.anything = true;
+            self.world.promised.anything = true;
             return Ok(());
         }
         self.options.log.flush()?;

@@ -3,6 +3,7 @@
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_computes::swing::swinging;
+use perigrain_pairs::DEEP;
 use perigrain_styles::Pair;
 use perigrain_styles::pair::{Deck, Scales, ToCome};
 use perigrain_world::RunStyle;
@@ -106,7 +107,7 @@ impl Session {
         let Some(bond) = self.graph.bond.as_ref().filter(|_| !self.world.bonds.is_empty()) else { return };
         let (w, whole) = (&self.world, self.world.clock.dt);
         // In a continued run the number of bonds can only have fallen.
-        if self.ran && !w.parts.changed && self.checked_step == Some(whole) {
+        if self.ran && !*w.changed && self.checked_step == Some(whole) {
             return;
         }
         let integrated = self.graph.fixes.iter().filter(|f| f.fix.facts(w).integrates());
@@ -217,7 +218,7 @@ impl Session {
 
     /// Warns once of grains that a run has pushed far into each other.
     pub(super) fn warn_of_overlap(&mut self, span: Span) -> Result<()> {
-        let Some(deep) = self.world.parts.deep.as_mut().filter(|d| !d.warned) else { return Ok(()) };
+        let Some(deep) = self.world.facts.get_mut(*DEEP).filter(|d| !d.warned) else { return Ok(()) };
         deep.warned = true;
         let ([i, j], part) = (deep.ids, 100.0 * deep.part);
         let text = format!(

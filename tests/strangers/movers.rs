@@ -3,7 +3,6 @@
 use super::{numbers, run, text};
 use perigrain::graph::catalogue::Tables;
 use perigrain::session::{Options, Session};
-use perigrain::world::columns::under;
 use perigrain::world::field::UNDER;
 use perigrain::world::{Compat, Particles, Under, World};
 use perigrain_base::math::body::{Quat, after, back, turn, turned};
@@ -405,13 +404,13 @@ fn springs_turned(before: &World, now: &World, q: Quat) -> bool {
     })
 }
 
-/// Whether columns hold what their line of the table states. No column is known to keep vectors that matter carries so far.
+/// Whether columns hold what their owners have registered. No style keeps vectors that matter carries so far.
 fn columns_right(before: &World, now: &World) -> bool {
     let (mut old, new) = (before.columns.clone(), &now.columns);
     let mut seen = 0;
     let vectors = old.vectors_mut().all(|(key, was)| {
         seen += 1;
-        match under(key.text()) {
+        match key.under() {
             Some(Under::Anchor | Under::Nothing | Under::Record) => {
                 new.get_vector(key) == Some(was.as_slice())
             }
@@ -490,9 +489,9 @@ fn copies_are_held_to_places_of_their_own() {
     }
     let mut columns = now.columns.clone();
     for (key, column) in columns.vectors_mut() {
-        let far = if under(key.text()) == Some(Under::Anchor) { 10.0 } else { 0.0 };
+        let far = if key.under() == Some(Under::Anchor) { 10.0 } else { 0.0 };
         let fits = |i: usize| near(sub(column[i + 3], column[i]), [far, 0.0, 0.0]);
-        assert!(under(key.text()) == Some(Under::Anew) || (0..3).all(fits), "{key}");
+        assert!(key.under() == Some(Under::Anew) || (0..3).all(fits), "{key}");
     }
     // Rigid bodies of copies are bodies of their own.
     let (_, now) = moved("fix 2 body rigid/small molecule\nrun 10\nreplicate 2 1 1\nrun 10");

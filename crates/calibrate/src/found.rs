@@ -7,13 +7,16 @@ use perigrain_statics::six::{Matrix6, Six};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{Compute, SealCx, Shape};
 use perigrain_world::field::{COLUMNS, MEMO};
-use perigrain_world::{Key, Numbers, SlotId, Vectors, World};
+use perigrain_world::{Key, Numbers, Registration, SlotId, Under, Vectors, World};
 
 /// How many numbers there are of every kind of calibration.
 pub const NUMBERS: usize = 10;
 
 /// Fields that an earlier line of the same ID may have left.
 const MOST_FIELDS: usize = 2;
+
+/// Vectors per particle.
+pub static FIELDS: Registration = Registration::moved("calibrate ", "", Under::Record);
 
 /// The values under an ID.
 #[derive(Clone, Debug)]
@@ -38,7 +41,7 @@ impl Found {
     }
 
     fn field(&self, k: usize) -> Vectors {
-        Key::new(&format!("calibrate {}/{k}", self.id))
+        FIELDS.key(&format!("calibrate {}/{k}", self.id))
     }
 
     /// Keeps the numbers, the coefficients fitted, and the tensor behind them.

@@ -37,6 +37,7 @@ use perigrain_styles::common::{self, populated};
 use perigrain_styles::words::{Forms, Syntax};
 use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Compute, Doc, Style};
 use perigrain_world::GroupId;
+use perigrain_world::Registration;
 use scene::Scene;
 use touch::Hertz;
 use words::{Solver, Words};
@@ -65,6 +66,9 @@ impl Style for Calibrate {
                       calibrate fit c all target K 2.0e4 vary bond 1 k low plate high plate\n\
                       print \"before: $(c_a[1]:%.5g) N/m, estimated $(c_b[1]:%.5g) N/m; now $(c_c[1]:%.5g) N/m with k = $(c_c[11]:%.5g) N/m\"",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&found::FIELDS] }
     }
 }
 

@@ -84,7 +84,7 @@ enum Property {
 impl CommandStyle for MaterialStyle {
     fn parse(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let id = args.expect("the material's ID")?;
-        let again = cx.world.parts.restored.contains(&format!("material/{}", id.text));
+        let again = cx.world.restored.contains(&format!("material/{}", id.text));
         if cx.world.materials.contains_key(&id.text) && !again {
             return fail(Code::DUPLICATE_NAME, id.span, format!("there already is a material `{}`", id.text));
         }
@@ -228,7 +228,7 @@ struct Define {
 
 impl Act for Define {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
-        cx.world.parts.restored.remove(&format!("material/{}", self.id));
+        cx.world.restored.remove(&format!("material/{}", self.id));
         cx.world.materials.insert(self.id, self.material);
         Ok(())
     }

@@ -223,7 +223,7 @@ enum Found {
 
 impl Reading {
     fn text(&self, world: &World) -> Result<Found> {
-        match world.parts.promised.get(&self.file.text) {
+        match world.promised.get(&self.file.text) {
             Some(Promise::Scene(scene, _)) => Ok(Found::Promised(scene.clone())),
             _ => find(world, &self.file, "data file").map(Found::File),
         }

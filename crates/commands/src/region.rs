@@ -159,8 +159,8 @@ impl CommandStyle for RegionCommand {
         let word = a.expect("the region's ID")?;
         let name = free_id(word, "the region's ID")?;
         let (style, span) = (a.peek_text(), a.here());
-        let exists = cx.world.regions.find(&name).is_some()
-            && !cx.world.parts.restored.contains(&format!("region/{name}"));
+        let exists =
+            cx.world.regions.find(&name).is_some() && !cx.world.restored.contains(&format!("region/{name}"));
         if exists && style != "delete" && !a.is_empty() {
             let text = format!("region `{name}` exists already");
             return fail(Code::DUPLICATE_NAME, word.span, text);
@@ -193,7 +193,7 @@ impl CommandStyle for RegionCommand {
         region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
             log.iter().for_each(|line| cx.print(line));
-            cx.world.parts.restored.remove(&format!("region/{name}"));
+            cx.world.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(Key::new(&name), region);
             Ok(())
         }))

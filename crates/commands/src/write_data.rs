@@ -96,17 +96,17 @@ impl Act for Writing {
         // A deck that is checked has no particles to write.
         if self.checking {
             let scene = Promise::Scene(Arc::new(w.clone()), vec![]);
-            w.parts.promised.keep(self.file.text(), scene);
+            w.promised.keep(self.file.text(), scene);
             return Ok(());
         }
         w.spread_type_masses();
         settle(w);
         let path = self.file.at(w.clock.step);
-        if w.parts.promised.instead {
+        if w.promised.instead {
             let mut text = vec![];
             write::write(&mut text, w, self.with).map_err(|e| trouble("write", &path, &e).at(self.span))?;
             let text = String::from_utf8_lossy(&text).into_owned();
-            w.parts.promised.keep(&path.display().to_string(), Promise::Text(text));
+            w.promised.keep(&path.display().to_string(), Promise::Text(text));
             return Ok(());
         }
         replace(&path, |out| write::write(out, w, self.with)).map_err(|e| e.at(self.span))

@@ -1,6 +1,6 @@
 //! compute displace/atom: displacement of each particle since the compute was declared.
 
-use super::origin::Origin;
+use super::origin::{Origin, PLACES};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
@@ -11,7 +11,7 @@ use perigrain_styles::step_op::{StepOp, Wanted, fill};
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Registration, SlotId, World};
 
 /// The style.
 pub struct DisplaceAtom;
@@ -30,6 +30,9 @@ impl Style for DisplaceAtom {
                    that it has come some way.",
             example: "compute u all displace/atom",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&PLACES] }
     }
 }
 

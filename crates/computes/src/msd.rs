@@ -1,6 +1,6 @@
 //! compute msd: mean squared displacement since the compute was declared.
 
-use super::origin::Origin;
+use super::origin::{Origin, PLACES};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
@@ -10,7 +10,7 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
-use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, Registration, SlotId, World};
 
 /// The style.
 pub struct Msd;
@@ -27,6 +27,9 @@ impl Style for Msd {
                    positions unwrapped across periodic faces.",
             example: "compute m all msd com yes",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&PLACES] }
     }
 }
 
@@ -117,7 +120,9 @@ impl Compute for Declared {
             Needs::new()
                 .read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND)
                 .write(SLOTS)
-                .keep(COLUMNS | MEMO),
+                .keep(COLUMNS | MEMO)
+                .only(&[key.text()])
+                .only(&self.origin.names()),
             move |w: &mut World, t| {
                 let (shift, bit) = (me.shift(w), me.group.bit());
                 if me.average {

@@ -1,7 +1,10 @@
 //! Positions of particles at the time a compute was declared: a per-particle column.
 
 use perigrain_styles::matter::unwrapped;
-use perigrain_world::{Key, Numbers, Vectors, World};
+use perigrain_world::{Key, Numbers, Registration, Under, Vectors, World};
+
+/// Where the way of particles is counted from.
+pub static PLACES: Registration = Registration::moved("compute ", " origin", Under::Anchor);
 
 /// The columns of a compute.
 #[derive(Clone, Copy)]
@@ -15,8 +18,13 @@ pub struct Origin {
 impl Origin {
     /// The columns of the compute with this ID.
     pub fn of(id: &str) -> Self {
-        let key = |what| format!("compute {id} {what}");
-        Self { places: Key::new(&key("origin")), known: Key::new(&key("known")) }
+        let own = format!("compute {id}");
+        Self { places: PLACES.key(&own), known: Key::new(&format!("{own} known")) }
+    }
+
+    /// The names of the columns.
+    pub fn names(self) -> [&'static str; 2] {
+        [self.places.text(), self.known.text()]
     }
 
     /// Stores the current unwrapped position of every particle, less `shift`.

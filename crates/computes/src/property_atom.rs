@@ -8,11 +8,12 @@ use perigrain_lang::{Args, Word};
 use perigrain_peri::linked::Strain;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, unwrapped};
+use perigrain_styles::peri_view::BOND_FACTORS;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::columns::{BOND_FACTORS, HEATFLOW, TEMPERATURE};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
     BOX, CHARGE, COLUMNS, F, FAMILIES, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, MU, OMEGA, QUAT, RADIUS,
     SITES, TAG, TORQUE, TYPE_MASS, V, VOLUME, X, X0,

@@ -70,7 +70,7 @@ impl Streams for WithTheBox {
             _ => return Ok(()),
         };
         let at = cx.span();
-        let notes = &mut cx.world().parts.notes;
+        let notes = &mut cx.world().notes;
         // Once per run, for all users of the compute.
         if notes.0.iter().all(|n| n.message != text) {
             notes.push(Diagnostic::warning(Code::SUSPICIOUS, at, text));

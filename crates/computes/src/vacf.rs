@@ -9,7 +9,10 @@ use perigrain_styles::step_op::{Wanted, fill_sums};
 use perigrain_styles::words::{Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, MASK, V};
-use perigrain_world::{GroupId, Key, SlotId, Vectors, World};
+use perigrain_world::{GroupId, Registration, SlotId, Under, Vectors, World};
+
+/// The velocities that the present ones are compared with.
+static FIRST: Registration = Registration::moved("compute ", " velocity", Under::Record);
 
 /// The style.
 pub struct Vacf;
@@ -29,12 +32,15 @@ impl Style for Vacf {
             example: "compute v all vacf",
         }
     }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&FIRST] }
+    }
 }
 
 impl ComputeStyle for Vacf {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         args.finish()?;
-        let key = Key::new(&format!("compute {} velocity", cx.id));
+        let key = FIRST.key(&format!("compute {}", cx.id));
         Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group }))
     }
 }

@@ -181,7 +181,7 @@ impl Dump for Declared {
             |kind: u16| self.options.diameters.iter().rev().find(|(k, _)| *k == kind).map(|(_, d)| *d);
         let own = || self.options.diameter.or(matches!(self.size, Size::ByType).then_some(1.0));
         let most = (1..=w.types as u16).filter_map(|k| by_type(k).or_else(own)).fold(0.0, f64::max);
-        if !matches!(self.size, Size::ByType) || most <= widest || w.parts.unseen.space {
+        if !matches!(self.size, Size::ByType) || most <= widest || w.unseen.space {
             return None;
         }
         let text = format!(

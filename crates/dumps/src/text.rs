@@ -10,6 +10,7 @@ use perigrain_output::binary::Binary;
 use perigrain_output::dump::{Field, Snapshot};
 use perigrain_output::formats::{Formats, Kind};
 use perigrain_output::forms;
+use perigrain_output::table_row::LATEST_ROW;
 use perigrain_plan::Op;
 use perigrain_styles::words::{At, Form as Line, Or, Syntax, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
@@ -204,7 +205,7 @@ impl Dump for Text {
             let (bounds, tilt) = (domain.bounds(), domain.tilt);
             let (step, rows, time) = (shot.step, &shot.rows, dump.time.then(|| w.clock.time()));
             let units = dump.units.then(|| w.settings.units.name());
-            let row = w.parts.row.as_deref().filter(|r| dump.thermo && r.step == step);
+            let row = w.facts.get(*LATEST_ROW).map(|row| &**row).filter(|r| dump.thermo && r.step == step);
             target.write(step, |to| match dump.form {
                 Form::Xyz => forms::xyz(to, step, time, rows, &fields),
                 Form::Cfg(scale) => forms::cfg(to, scale, domain.edges().vectors(), rows, &fields),

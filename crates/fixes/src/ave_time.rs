@@ -147,7 +147,7 @@ impl Output {
         defaults: &[String],
         names: Option<&str>,
     ) -> Result<()> {
-        let Some((path, append)) = self.target().filter(|_| !w.parts.promised.instead) else {
+        let Some((path, append)) = self.target().filter(|_| !w.promised.instead) else {
             return Ok(());
         };
         let mut head = String::new();

@@ -283,7 +283,10 @@ impl Fix for Declared {
             *w.columns.scalar(self.counts, n) = count.0.iter().map(|k| *k as f64).collect();
         }
         let mut access = Needs::new().read(X | BOX | TAG | MASK | KIND | MOLECULE);
-        access = access.write(BONDS | LISTS | SLOTS).keep(MEMO | COLUMNS);
+        access = access
+            .write(BONDS | LISTS | SLOTS)
+            .keep(MEMO | COLUMNS)
+            .only(&[self.key.text(), self.counts.text()]);
         if self.changes_types() {
             access = access.write(KIND);
         }

@@ -116,7 +116,7 @@ impl Fix for Declared {
         let control = cx.value(&self.control, Stage::EndOfStep, &when)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let (fix, key, name) = (self.clone(), self.key(), Key::new(&self.control.name));
-        let access = Needs::new().read(SLOTS).write(SLOTS | CONTROLS).keep(MEMO);
+        let access = Needs::new().read(SLOTS).write(SLOTS | CONTROLS).keep(MEMO).only(&[key.text()]);
         let op = StepOp::new(format!("fix {} controller", self.id), Stage::EndOfStep, access, move |w, t| {
             let error = value.get(w) - fix.setpoint;
             let (sum, change) = match w.memo.get(key).map(Vec::as_slice) {

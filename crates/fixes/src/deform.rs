@@ -12,11 +12,15 @@ use op::{Move, Shape, store_streaming};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Tick, When};
+use perigrain_styles::stretching::RATES;
 use perigrain_styles::words::{self, At, Syntax, Units, Words};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
+use perigrain_world::{Face, GroupId, Key, Numbers, Registration, World};
 use pressure::{Controls, Pressed};
 use track::tracks;
+
+/// How fast a fix deforms the box.
+static RATE: Registration = Registration::role("deform/", "/rates", &RATES);
 
 /// The style.
 pub struct Deform;
@@ -43,6 +47,9 @@ impl Style for Deform {
                    LAMMPS.",
             example: "fix squeeze all deform 1 x scale 0.9999 remap x",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&RATE] }
     }
 }
 
@@ -263,7 +270,7 @@ impl Declared {
 
     /// Key of the deformation rates.
     fn rates(&self) -> Numbers {
-        self.key().with(RATES.text())
+        RATE.key(self.key().text())
     }
 
     /// `volume` needs another dimension with a motion of its own.

@@ -195,7 +195,7 @@ impl Depositing {
         let text =
             format!("new spheres may overlap others: `near {}` is less than {}", self.near, own + widest);
         let d = Diagnostic::warning(Code::SUSPICIOUS, span, text);
-        w.parts.notes.push(d.help(format!("use `near {}` (box units)", own + widest)));
+        w.notes.push(d.help(format!("use `near {}` (box units)", own + widest)));
     }
 }
 
@@ -305,7 +305,7 @@ impl Op for Drop {
         if steps > 0 && !all_in {
             let tries = self.fix.tries;
             let text = format!("at {steps} steps no place was found for a particle in {tries} attempts");
-            w.parts.notes.push(
+            w.notes.push(
                 Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
                     .help("allow more of them with `attempt`, lower `near`, or enlarge the region"),
             );

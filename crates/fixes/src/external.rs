@@ -10,7 +10,11 @@ use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
 use perigrain_world::outside::{Each, HostCall, HostValues};
-use perigrain_world::{GroupId, Key, Numbers, Outside, Vectors, World};
+use perigrain_world::{GroupId, Key, Numbers, Outside, Registration, Under, Vectors, World};
+use std::sync::Arc;
+
+/// Forces and virials from the host.
+static VALUES: Registration = Registration::moved("external/", "", Under::Anew);
 
 /// The style.
 pub struct External;
@@ -18,6 +22,11 @@ pub struct External;
 /// The name under which the world stores a fix's forces and the host program finds them.
 pub fn name(id: &str) -> String {
     format!("external/{id}")
+}
+
+/// Where the facts of a scene have the host program of the fix with this column of forces.
+pub fn program(forces: Vectors) -> Key<Arc<dyn Outside>> {
+    forces.of()
 }
 
 /// The columns of the per-particle values from the host: energies, and virials as two vectors.
@@ -31,7 +40,13 @@ impl Kept {
     /// The columns of a fix.
     pub fn new(id: &str) -> Self {
         let key = Key::<()>::new(&name(id));
-        Self { energy: key.with("/energy"), virial: ["/normal", "/shear"].map(|part| key.with(part)) }
+        let virial = ["/normal", "/shear"].map(|part| VALUES.key(&format!("{key}{part}")));
+        Self { energy: key.with("/energy"), virial }
+    }
+
+    fn names(self) -> [&'static str; 3] {
+        let [normal, shear] = self.virial;
+        [self.energy.text(), normal.text(), shear.text()]
     }
 
     /// Stores the values; those beyond the last particle are ignored.
@@ -134,7 +149,7 @@ impl FixStyle for External {
             Mode::Callback(every) => Some(every),
             Mode::Array => None,
         };
-        let key = Key::new(&name(cx.id));
+        let key = VALUES.key(&name(cx.id));
         let (id, kept) = (cx.id.to_string(), Kept::new(cx.id));
         Ok(Box::new(Declared { id, group: cx.group, key, kept, call, apply, virial: true, length: 0 }))
     }
@@ -167,7 +182,7 @@ impl Fix for Declared {
     fn remove(&self, w: &mut World) {
         w.columns.remove(self.key);
         self.kept.remove(w);
-        w.parts.outside.remove(self.key.of());
+        w.facts.remove(program(self.key));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -180,8 +195,9 @@ impl Fix for Declared {
             Some(_) => access.read(TAG).write(COLUMNS),
             None => access.read(COLUMNS),
         };
+        let access = access.only(&[self.key.text()]).only(&self.kept.names());
         let op = StepOp::new(format!("fix {} external", self.id), Stage::PostForce, access, move |w, t| {
-            let outside = w.parts.outside.get(own.key.of()).cloned();
+            let outside = w.facts.get(program(own.key)).cloned();
             let due = |every: i64| t.step % every == 0;
             if own.call.is_some_and(due) && !t.unchanged {
                 own.call_program(w, t, outside.as_deref()).map_err(|e| e.at(span))?;
@@ -311,7 +327,7 @@ mod tests {
         let mut ops = b.seal(&*fix).unwrap();
         let alone = at_step(&mut b, &mut ops, 2).unwrap_err();
         assert!(alone.to_string().contains("no function to call"), "{alone}");
-        b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
+        b.world.facts.insert(program(Key::new(&name("f"))), Arc::new(Program));
         at_step(&mut b, &mut ops, 2).unwrap();
         assert_eq!(b.world.particles.f, [[3.0, 1.0, 0.0], [3.0, 2.0, 0.0]]);
         // No call in step 3, which would fail: the forces of step 2 are applied again.
@@ -321,10 +337,10 @@ mod tests {
         assert_eq!(b.world.particles.f[1], [7.0, 2.0, 0.0]);
         assert_eq!(b.slot_of("f_f").scalar, 2.5);
         fix.remove(&mut b.world);
-        assert!(b.world.columns.names().is_empty() && b.world.parts.outside.is_empty());
+        assert!(b.world.columns.names().is_empty() && b.world.facts.is_empty());
         fix = b.fix(&External, "pf/callback 1 1").unwrap();
         fix.declare(&mut b.world).unwrap();
-        b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
+        b.world.facts.insert(program(Key::new(&name("f"))), Arc::new(Program));
         let mut ops = b.seal(&*fix).unwrap();
         let failed = at_step(&mut b, &mut ops, 3).unwrap_err();
         assert!(failed.to_string().contains("failed in step 3: three"), "{failed}");
@@ -352,7 +368,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
         let fix = b.fix(&External, "pf/callback 2 2").unwrap();
         fix.declare(&mut b.world).unwrap();
-        b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
+        b.world.facts.insert(program(Key::new(&name("f"))), Arc::new(Program));
         let kept = Kept::new("f");
         let few = kept.keep(&mut b.world, "f", Each { energy: Some(vec![1.0]), virial: None }).unwrap_err();
         assert!(few.to_string().contains("values for 1 particles, and there are 2"), "{few}");

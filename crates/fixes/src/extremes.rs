@@ -107,11 +107,8 @@ struct Watch {
 
 impl Op for Watch {
     fn about(&self) -> About {
-        About {
-            when: self.when.clone(),
-            in_setup: true,
-            ..About::new(&self.name, Stage::EndOfStep, Needs::new().read(SLOTS).write(SLOTS).keep(MEMO))
-        }
+        let needs = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO).only(&[self.memo.text()]);
+        About { when: self.when.clone(), in_setup: true, ..About::new(&self.name, Stage::EndOfStep, needs) }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

@@ -4,6 +4,7 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
+use perigrain_pairs::FROZEN;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::matter::publish_levels;
 use perigrain_styles::step_op::StepOp;
@@ -69,12 +70,14 @@ struct Declared {
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
-        w.parts.frozen.push((self.id.clone(), self.group));
+        w.facts.get_or_default(*FROZEN).push((self.id.clone(), self.group));
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.parts.frozen.retain(|(id, _)| *id != self.id);
+        if let Some(frozen) = w.facts.get_mut(*FROZEN) {
+            frozen.retain(|(id, _)| *id != self.id);
+        }
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -122,7 +125,7 @@ mod tests {
         b.world.particles.mask[2] = 0;
         let fix = b.fix(&Freeze, "").unwrap();
         fix.declare(&mut b.world).unwrap();
-        assert_eq!(b.world.parts.frozen, [("f".to_string(), GroupId::ALL)]);
+        assert_eq!(b.world.facts.get(*FROZEN).unwrap()[..], [("f".to_string(), GroupId::ALL)]);
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();
         let p = &b.world.particles;
@@ -130,8 +133,8 @@ mod tests {
         assert_eq!(p.torque, [[0.0; 3], [0.0; 3], [1.0; 3]]);
         assert_eq!(b.slot_of("f_f").vector, [11.0, 22.0, 33.0]);
         // Another one remains when this one is deleted.
-        b.world.parts.frozen.push(("other".into(), GroupId::ALL));
+        b.world.facts.get_or_default(*FROZEN).push(("other".into(), GroupId::ALL));
         fix.remove(&mut b.world);
-        assert_eq!(b.world.parts.frozen, [("other".to_string(), GroupId::ALL)]);
+        assert_eq!(b.world.facts.get(*FROZEN).unwrap()[..], [("other".to_string(), GroupId::ALL)]);
     }
 }

@@ -94,7 +94,10 @@ impl Fix for Declared {
                 .help("write `fix ID all property/atom temperature heatflow` before the run")
                 .into());
         };
-        let access = Needs::new().read(COLUMNS | MASS | KIND | MASK | TYPE_MASS).keep(COLUMNS);
+        let access = Needs::new()
+            .read(COLUMNS | MASS | KIND | MASK | TYPE_MASS)
+            .keep(COLUMNS)
+            .only(&[temperature.text(), heat.text()]);
         let op =
             StepOp::new(format!("fix {} heat/flow", self.id), Stage::FinalIntegrate, access, move |w, t| {
                 let n = w.n();

@@ -6,6 +6,7 @@ use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_styles::ledger::COUPLED;
 use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{Alternative, At, Kind, PerAtom, Positive, Syntax, Types, Value, Words, read};
@@ -13,7 +14,12 @@ use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
     COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, RANK, SLOTS, TORQUE, TYPE_MASS, V,
 };
-use perigrain_world::{COUPLED, GroupId, Key, Numbers, SlotId, Vectors, World};
+use perigrain_world::{GroupId, Key, Numbers, Registration, SlotId, Under, Vectors, World};
+
+/// The energy taken from particles.
+static TAKEN: Registration = Registration::role("langevin/", "/coupled", &COUPLED);
+/// Columns of the forces and torques of a step.
+static FORCES: Registration = Registration::moved("langevin/", "", Under::Anew);
 
 /// The style.
 pub struct Langevin;
@@ -39,6 +45,9 @@ impl Style for Langevin {
                    `fix_modify ID temp` with a temperature that takes a flow away is refused.",
             example: "fix bath grains langevin 300.0 300.0 1.0e-3 48279 omega yes",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&TAKEN, &FORCES] }
     }
 }
 
@@ -120,7 +129,8 @@ impl FixStyle for Langevin {
         }
         let (id, group) = (cx.id.to_string(), cx.group);
         let key: Numbers = Key::new(&format!("langevin/{id}"));
-        let (coupled, columns) = (key.with(COUPLED.text()), [key.of(), key.with("/torque")]);
+        let columns = ["", "/torque"].map(|what| FORCES.key(&format!("{key}{what}")));
+        let coupled = TAKEN.key(key.text());
         Ok(Box::new(Declared {
             id,
             key,
@@ -213,6 +223,12 @@ fn by_creation(w: &World, group: GroupId) -> Vec<usize> {
 }
 
 impl Declared {
+    /// The names of its state.
+    fn names(&self) -> [&'static str; 4] {
+        let [forces, torques] = self.columns;
+        [self.key.text(), self.coupled.text(), forces.text(), torques.text()]
+    }
+
     /// √T for each of these particles.
     fn roots(&self, w: &World, members: &[usize], start: Reading, span: Span) -> Result<Vec<f64>> {
         if let Param::Number(start) = self.start {
@@ -358,10 +374,11 @@ impl Fix for Declared {
         let access = Needs::new()
             .read(V | OMEGA | MASS | RADIUS | KIND | MASK | RANK | MEMO | TYPE_MASS | SLOTS)
             .add(F | TORQUE)
-            .keep(MEMO | COLUMNS);
+            .keep(MEMO | COLUMNS)
+            .only(&self.names());
         let push = StepOp::new(name.clone(), Stage::PostForce, access, move |w, t| me.act(w, t, start, span));
-        let (me, access) =
-            (self.clone(), Needs::new().read(V | MASK | MEMO | COLUMNS).write(SLOTS).keep(MEMO));
+        let access = Needs::new().read(V | MASK | MEMO | COLUMNS).write(SLOTS).keep(MEMO).only(&self.names());
+        let me = self.clone();
         let count = StepOp::new(name, Stage::EndOfStep, access, move |w, t| {
             match me.tally {
                 true => me.count(w, t, slot),

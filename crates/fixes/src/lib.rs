@@ -55,7 +55,7 @@ mod planeforce;
 mod pour;
 mod print;
 mod property_atom;
-mod python_invoke;
+pub mod python_invoke;
 mod recenter;
 mod resistance;
 pub mod rigid;

@@ -16,8 +16,14 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{Kind, Nullable, PerAtom, Syntax, Units, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, SlotId, Vectors, World};
+use perigrain_world::{Fields, Grip, GroupId, Numbers, Registration, SlotId, Under, Vectors, World};
 use std::f64::consts::PI;
+
+/// Where particles began their path.
+static STARTS: Registration = Registration::moved("move/", "", Under::Anchor);
+/// How particles lay then, which [`Grip`] keeps, and their dipole moments.
+static TURNS: Registration = Registration::moved("move/", "/turn", Under::Nothing);
+static MOMENTS: Registration = Registration::moved("move/", "/turn/moment", Under::Nothing);
 
 /// The style.
 pub struct Move;
@@ -39,6 +45,9 @@ impl Style for Move {
                    makes the particles jump, and so does perigrain under `-compat lammps`.",
             example: "fix grip top move linear 0.0 0.0 3.0 units box",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&TURNS, &MOMENTS, &STARTS] }
     }
 }
 
@@ -125,7 +134,7 @@ impl FixStyle for Move {
                 Path::Variables(Box::new(names))
             }
         };
-        let key = Key::new(&format!("move/{}", cx.id));
+        let key: Numbers = STARTS.key(&format!("move/{}", cx.id));
         let turn = Grip::new(&format!("{key}/turn"));
         Ok(Box::new(Declared { id: cx.id.to_string(), key, turn, group: cx.group, path }))
     }
@@ -200,7 +209,9 @@ impl Fix for Declared {
         let access = Needs::new()
             .read(F | MASS | MASK | BOX | COLUMNS | SLOTS | TYPE_MASS | KIND)
             .write(X | V | OMEGA | SLOTS | lie)
-            .keep(MEMO);
+            .keep(MEMO)
+            .only(&[key.text()])
+            .only(&me.turn.names());
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access, move |w, t| {
             if t.setup {
                 show_starts(w, key.of(), slot, t);

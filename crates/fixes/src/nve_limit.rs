@@ -109,11 +109,12 @@ impl Fix for Declared {
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let half = |stage, drift, me: Self| {
-            let (name, access) = (
-                format!("fix {} nve/limit", me.id),
-                Needs::new().read(F | MASS | MASK | TYPE_MASS | KIND).write(X | V | SLOTS).keep(MEMO),
-            );
-            let key = me.key();
+            let (name, key) = (format!("fix {} nve/limit", me.id), me.key());
+            let access = Needs::new()
+                .read(F | MASS | MASK | TYPE_MASS | KIND)
+                .write(X | V | SLOTS)
+                .keep(MEMO)
+                .only(&[key.text()]);
             StepOp::new(name, stage, access, move |w: &mut World, t: &Tick| {
                 // With two step lengths only solids move in the short steps, and this fix moves none of them.
                 let short = t.phase.solids.is_some() && !t.phase.outermost();

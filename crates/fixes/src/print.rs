@@ -119,7 +119,7 @@ impl Fix for Declared {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         match &self.file {
-            Some((path, append)) if !w.parts.promised.instead => {
+            Some((path, append)) if !w.promised.instead => {
                 Sheet::begin(path, *append, &format!("{}\n", self.title)).map(drop)
             }
             _ => Ok(()),

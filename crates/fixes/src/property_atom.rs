@@ -8,7 +8,11 @@ use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Syntax, Word
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::properties::MOLECULE;
-use perigrain_world::{Numbers, Properties, World};
+use perigrain_world::{Numbers, Properties, Registration, World};
+
+/// How the names of columns begin, before the fix's ID; all others find them by the property.
+const BEGIN: &str = "property/atom/";
+static PROPERTIES: Registration = Registration::roles(BEGIN);
 
 /// The style.
 pub struct PropertyAtomFix;
@@ -29,6 +33,9 @@ impl Style for PropertyAtomFix {
                    reads it. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
             example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&PROPERTIES] }
     }
 }
 
@@ -98,7 +105,10 @@ impl FixStyle for PropertyAtomFix {
         if names.is_empty() {
             args.expect("a name such as i_flag or d_heat")?;
         }
-        Ok(Box::new(Declared(Properties { fix: cx.id.to_string(), names, written })))
+        let column =
+            |name: &String| (name != MOLECULE).then(|| PROPERTIES.key(&format!("{BEGIN}{}/{name}", cx.id)));
+        let columns = names.iter().map(column).collect();
+        Ok(Box::new(Declared(Properties { fix: cx.id.to_string(), names, columns, written })))
     }
 }
 
@@ -154,10 +164,10 @@ fn stem(key: &str) -> Option<&str> {
 
 /// Checks that no property has this name yet, of any kind. A fix with this ID may be declared again.
 fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
-    let own = format!("property/atom/{}/", cx.id);
+    let own = format!("{BEGIN}{}/", cx.id);
     let columns = cx.world.columns.names();
     let others = columns.iter().filter(|full| !full.starts_with(&own));
-    let others = others.filter_map(|full| full.strip_prefix("property/atom/")?.split_once('/'));
+    let others = others.filter_map(|full| full.strip_prefix(BEGIN)?.split_once('/'));
     let mut taken = others.map(|(_, key)| key).chain(before.iter().map(String::as_str));
     match taken.find(|other| *other == key || (stem(other).is_some() && stem(other) == stem(key))) {
         None => Ok(()),
@@ -182,7 +192,7 @@ impl Declared {
     }
 
     fn columns(&self) -> impl Iterator<Item = Numbers> {
-        (0..self.0.names.len()).filter_map(|k| self.0.column(k))
+        self.0.columns.iter().flatten().copied()
     }
 }
 
@@ -233,7 +243,7 @@ mod tests {
         assert_eq!((columns.custom("d2_c[3]"), columns.custom("b")), (None, None));
         fix.remove(&mut b.world);
         assert!(b.world.columns.names().is_empty());
-        b.world.columns.scalar(Key::new("property/atom/other/d_b"), 2);
+        b.world.columns.scalar(PROPERTIES.key("property/atom/other/d_b"), 2);
         for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "q", "ghost maybe", "d_a-b"] {
             assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
         }

@@ -7,9 +7,12 @@ use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::World;
 use perigrain_world::outside::{Host, Invoked};
+use perigrain_world::{Constant, World};
 use std::sync::Arc;
+
+/// The program that hosts the session, in the facts of a scene, if it has functions that can be called within steps.
+pub static HOST: Constant<Arc<dyn Host>> = Constant::new("python/invoke host");
 
 /// The style.
 pub struct PythonInvoke;
@@ -62,7 +65,7 @@ enum Moment {
 impl FixStyle for PythonInvoke {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let Line { every, moment, function } = read(args, cx)?;
-        let Some(host) = cx.world.parts.host.clone() else {
+        let Some(host) = cx.world.facts.get(*HOST).cloned() else {
             let text = "perigrain has no Python inside: `fix python/invoke` works where Python hosts the run";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, cx.span, text);
             return Err(d.help("work the deck off from Python, with `perigrain.lammps().file(…)`").into());
@@ -139,7 +142,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
         let alone = b.fix(&PythonInvoke, "2 end_of_step push").err().unwrap();
         assert!(alone.to_string().contains("no Python inside"), "{alone}");
-        b.world.parts.host = Some(Arc::new(Program));
+        b.world.facts.insert::<Arc<dyn Host>>(*HOST, Arc::new(Program));
         for (words, place) in [("2 end_of_step push", 1.0), ("2 post_force push", 2.0)] {
             let stage = if place == 1.0 { Stage::EndOfStep } else { Stage::PostForce };
             let fix = b.fix(&PythonInvoke, words).unwrap();

@@ -148,7 +148,10 @@ impl Fix for Declared {
         let whole = Whole::mass(cx.world(), self.group);
         let (me, access) = (
             self.clone(),
-            Needs::new().read(IMAGE | MASS | MASK | BOX | TYPE_MASS | MEMO | KIND).write(X | SLOTS),
+            Needs::new()
+                .read(IMAGE | MASS | MASK | BOX | TYPE_MASS | MEMO | KIND)
+                .write(X | SLOTS)
+                .only(&[self.key.text()]),
         );
         let op =
             StepOp::new(format!("fix {} recenter", self.id), Stage::InitialIntegrate, access, move |w, t| {

@@ -22,6 +22,7 @@ use motion::Crew;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_styles::ledger::BODY_ENERGY;
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
@@ -32,11 +33,25 @@ use perigrain_world::field::{
     TORQUE, TRAVEL, TYPE_MASS, V, X,
 };
 use perigrain_world::share::Halo;
-use perigrain_world::{Fields, Grip, GroupId, Key, Numbers, Vectors, World};
+use perigrain_world::{
+    CONTACT_MASS, Fields, Grip, GroupId, Key, Numbers, Registration, Under, Vectors, World,
+};
 use words::{Any, Chosen, Common, Groups, Large, Many, Property, Small, baths};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
 const COLUMNS: usize = 15;
+
+/// The mass of each particle's body.
+static MASS_OF_BODY: Registration = Registration::role("rigid", "/contact mass", &CONTACT_MASS);
+/// Energy of bodies that is not in their particles.
+static ENERGY: Registration = Registration::role("rigid", "/body energy", &BODY_ENERGY);
+/// Positions of particles by the axes of their bodies.
+static PLACE: Registration = Registration::moved("rigid", "/place", Under::Nothing);
+/// Parts of the virial per particle.
+static VIRIALS: [Registration; 2] = [
+    Registration::moved("rigid", "/virial xx", Under::Anew),
+    Registration::moved("rigid", "/virial xy", Under::Anew),
+];
 
 /// `fix rigid`.
 pub struct Rigid;
@@ -79,6 +94,9 @@ impl Style for Rigid {
                    and barostats are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single torque * off off on",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&MASS_OF_BODY, &ENERGY] }
     }
 }
 
@@ -197,7 +215,7 @@ struct Keys {
     mass: Numbers,
     /// Positions of particles in the frames of their bodies.
     place: Vectors,
-    /// Body energy that is not in the particles: see [`BODY_ENERGY`](perigrain_world::BODY_ENERGY).
+    /// Body energy that is not in the particles: see [`BODY_ENERGY`].
     energy: Numbers,
     /// Orientations of particles in the frames of their bodies, if they have any.
     turn: Grip,
@@ -206,12 +224,19 @@ struct Keys {
 impl Keys {
     fn new(style: &str, id: &str) -> Self {
         let bodies = bodies_key(style, id);
-        let [virial, mass, energy] =
-            ["virial", "contact mass", "body energy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
-        let (body, place) = (body_column(style, id), Key::new(&format!("{style}/{id}/place")));
-        let turn = Grip::new(&format!("{style}/{id}/turn"));
-        let virials = ["virial xx", "virial xy"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
+        let own = format!("{style}/{id}");
+        let (virial, body) = (Key::new(&format!("{own}/virial")), body_column(style, id));
+        let (mass, energy, place) = (MASS_OF_BODY.key(&own), ENERGY.key(&own), PLACE.key(&own));
+        let turn = Grip::new(&format!("{own}/turn"));
+        let virials = VIRIALS.each_ref().map(|part| part.key(&own));
         Self { bodies, virial, virials, body, mass, place, energy, turn }
+    }
+
+    fn names(&self) -> [&'static str; 10] {
+        let ([xx, xy], [turn, moment]) = (self.virials.map(Key::text), self.turn.names());
+        let numbers = [self.bodies, self.virial, self.body, self.mass, self.energy].map(Key::text);
+        let [bodies, virial, body, mass, energy] = numbers;
+        [bodies, virial, xx, xy, body, mass, self.place.text(), energy, turn, moment]
     }
 }
 
@@ -336,7 +361,8 @@ impl Fix for Declared {
                         | TYPE_MASS
                         | lie,
                 )
-                .keep(MEMO | RIGID | field::COLUMNS),
+                .keep(MEMO | RIGID | field::COLUMNS)
+                .only(&self.keys.names()),
             move |w, t| {
                 if t.setup && !t.unchanged {
                     me.begin(w, span)?;
@@ -354,6 +380,7 @@ impl Fix for Declared {
         let weight = Weight::find(self, cx)?;
         let pulled = if weight.is_none() { Fields::NONE } else { MASK | SLOTS };
         let (me, mut crew) = (self.clone(), Crew::of(self));
+        let names = self.keys.names();
         let access = || {
             Needs::new()
                 .read(pulled)
@@ -372,6 +399,7 @@ impl Fix for Declared {
                 )
                 .write(X | V | OMEGA | SLOTS | lie)
                 .keep(MEMO | RIGID | field::COLUMNS)
+                .only(&names)
         };
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
             if me.shares(w, t) {

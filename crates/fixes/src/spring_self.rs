@@ -9,7 +9,10 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{At, PerAtom, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, MASK, SLOTS, X};
-use perigrain_world::{GroupId, Key, Vectors, World};
+use perigrain_world::{GroupId, Registration, Under, Vectors, World};
+
+/// Where the springs are fixed.
+static ENDS: Registration = Registration::moved("spring/self/", "", Under::Anchor);
 
 /// The style.
 pub struct SpringSelf;
@@ -27,6 +30,9 @@ impl Style for SpringSelf {
                    `fix_modify ID energy yes` adds to the potential energy.",
             example: "fix hold foot spring/self 10.0 xy",
         }
+    }
+    fn registrations(&self) -> &'static [&'static Registration] {
+        const { &[&ENDS] }
     }
 }
 
@@ -77,7 +83,7 @@ impl FixStyle for SpringSelf {
             return fail(Code::BAD_VALUE, span, text);
         }
         let along = along.unwrap_or(Along::Xyz).directions();
-        let key = Key::new(&format!("spring/self/{}", cx.id));
+        let key = ENDS.key(&format!("spring/self/{}", cx.id));
         Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group, stiffness, along }))
     }
 }
@@ -112,7 +118,8 @@ impl Fix for Declared {
         keep_places(cx.world(), key, self.group, unwrapped);
         let stiffness = cx.param(&self.stiffness, Stage::PostForce, &When::Always)?;
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Needs::new().read(X | IMAGE | MASK | BOX | COLUMNS).add(F).write(SLOTS);
+        let access =
+            Needs::new().read(X | IMAGE | MASK | BOX | COLUMNS).add(F).write(SLOTS).only(&[key.text()]);
         let op =
             StepOp::new(format!("fix {} spring/self", self.id), Stage::PostForce, access, move |w, t| {
                 if t.unchanged {

@@ -106,7 +106,7 @@ impl Fix for Declared {
         let slot = cx.slot(&format!("f_{}", self.id));
         let (most, cols, key) = (self.most, self.values.len(), self.key());
         let (last, list) = (key.with("/last"), key.with("/list"));
-        let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO);
+        let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO).only(&[last.text(), list.text()]);
         let op = StepOp::new(format!("fix {} vector", self.id), Stage::EndOfStep, access, move |w, t| {
             // The setup of a run may be at a step that the previous run has stored already.
             if w.memo.get(last).is_some_and(|s| s.first() == Some(&(t.step as f64))) {

@@ -89,7 +89,7 @@ fn seek<T>(
     printed: impl Fn(&str) -> T,
     load: impl Fn(&Path) -> std::io::Result<T>,
 ) -> Result<T> {
-    let (name, promised) = (&word.text, &w.parts.promised);
+    let (name, promised) = (&word.text, &w.promised);
     match promised.get(name) {
         Some(Promise::Text(text)) => return Ok(printed(text)),
         Some(_) => return Err(unseen(word.span, name)),
@@ -126,7 +126,7 @@ pub fn comes(w: &World, word: &Word, what: &str) -> Result<()> {
         return fail(Code::NOT_ALLOWED, word.span, text);
     }
     let there = || gate::exists(Path::new(name)) || gate::exists(&w.folder.join(name));
-    if w.parts.promised.may_come(name) || there() {
+    if w.promised.may_come(name) || there() {
         return Ok(());
     }
     Err(absent(word, &format!("the {what} `{name}` cannot be read: it is not there")))

@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::dump::{Field, write_rows};
+use crate::table_row::{RowValue, TableRow};
 use perigrain_base::math::cformat::{Format, Value, shortest};
-use perigrain_world::{RowValue, TableRow};
 
 /// A number as `%g`.
 fn g(x: f64) -> String {

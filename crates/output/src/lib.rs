@@ -19,6 +19,7 @@ pub mod restart;
 pub mod rows;
 pub mod sheet;
 pub mod table;
+pub mod table_row;
 pub mod thermo;
 pub mod vtu;
 

@@ -139,7 +139,8 @@ impl Op for Repulsion {
                 .read(X | KIND | BONDS | BOX | TAG | LISTS | RADIUS | MASK | MOLECULE)
                 .add(F)
                 .write(TALLY)
-                .keep(COLUMNS),
+                .keep(COLUMNS)
+                .only(&[VOLUME_PROPERTY.text()]),
         )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

@@ -5,7 +5,7 @@ pub mod force;
 pub mod heating;
 mod images;
 pub mod mdr;
-mod ranks;
+pub mod ranks;
 pub mod reach;
 
 pub use declared::{Declared, classic};

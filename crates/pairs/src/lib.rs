@@ -22,6 +22,11 @@ mod shared;
 mod soft;
 mod zero;
 
+pub use granular::force::TILES;
+pub use granular::mdr::PLASTIC_GRAIN;
+pub use granular::ranks::DEEP;
+pub use shared::FROZEN;
+
 pub use perigrain_styles::pair::{ByPart, Deck, Facts, Mix, Pair, PairStyle, Scales, TypePairs};
 pub use perigrain_styles::probe;
 

@@ -5,7 +5,7 @@ use perigrain_neigh::list::{Pair, View, Wanted, insert, pairs};
 use perigrain_plan::Tick;
 use perigrain_world::index::Index;
 use perigrain_world::tally::add_share;
-use perigrain_world::{Allowed, World};
+use perigrain_world::{Allowed, Constant, GroupId, World};
 
 /// The positions that lists are made from: those of the last rebuild, of which later ones are within half a skin [length].
 pub fn built_at(w: &World) -> &[Vec3] {
@@ -41,10 +41,13 @@ pub fn admit(w: &World, pairs: &[[u32; 2]], wanted: &Wanted, allowed: &Allowed, 
     insert(&view(w, built_at(w)), wanted, w.settings.neighbor.skin, &ends, list);
 }
 
+/// Every fix that freezes grains, by its ID, and its group: contact laws take these grains for infinitely heavy.
+pub static FROZEN: Constant<Vec<(String, GroupId)>> = Constant::new("frozen grains");
+
 /// Which particles fix freeze holds; empty without one.
 pub fn find_frozen(w: &World, out: &mut Vec<bool>) {
     out.clear();
-    let bits = w.parts.frozen.iter().fold(0, |bits, (_, group)| bits | group.bit());
+    let bits = w.facts.get(*FROZEN).into_iter().flatten().fold(0, |bits, (_, group)| bits | group.bit());
     if bits != 0 {
         out.extend(w.particles.mask.iter().map(|m| m & bits != 0));
     }

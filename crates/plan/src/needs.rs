@@ -1,8 +1,8 @@
 //! What an op states about the fields it touches, and whether that is true.
 
-use perigrain_world::field::{CLOCK, RIGID, SITES};
-use perigrain_world::{Fields, Touched};
-use std::collections::BTreeMap;
+use perigrain_world::field::{CLOCK, COLUMNS, MEMO, RIGID, SITES};
+use perigrain_world::{Fields, Numbers, Touched};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::panic::Location;
 use std::sync::Mutex;
@@ -16,6 +16,8 @@ pub struct Needs {
     writes: Fields,
     adds: Fields,
     keeps: Fields,
+    /// The columns and entries of the memo that it uses, by name or by role; `None` where the statement names none of them.
+    names: Option<&'static [&'static str]>,
     /// Where this stands in the program: one place for each kind of op.
     at: &'static Location<'static>,
 }
@@ -32,7 +34,7 @@ impl Needs {
     #[track_caller]
     pub fn new() -> Self {
         let none = Fields::NONE;
-        Self { reads: none, writes: none, adds: none, keeps: none, at: Location::caller() }
+        Self { reads: none, writes: none, adds: none, keeps: none, names: None, at: Location::caller() }
     }
 
     /// The whole scene, to read and to write.
@@ -68,6 +70,21 @@ impl Needs {
     pub fn keep(mut self, fields: Fields) -> Self {
         self.keeps |= fields;
         self
+    }
+
+    /// Of columns and of the memo it uses these alone: entries of these names, and those that play these roles.
+    #[must_use]
+    pub fn only(mut self, names: &[&'static str]) -> Self {
+        let all = self.names.into_iter().flatten().chain(names).copied();
+        self.names = Some(interned(all.collect()));
+        self
+    }
+
+    /// Whether it may use a column or an entry of the memo.
+    fn allows(&self, key: Numbers) -> bool {
+        let role = key.role().map(Numbers::text);
+        let is_named = |names: &[&str]| names.iter().any(|name| *name == key.text() || Some(*name) == role);
+        self.touched().has(COLUMNS | MEMO) && self.names.is_none_or(is_named)
     }
 
     /// Whether it reads one of these without changing it.
@@ -110,6 +127,19 @@ impl Needs {
     }
 }
 
+/// The same list for each set of names: plans are made anew for every run.
+fn interned(names: BTreeSet<&'static str>) -> &'static [&'static str] {
+    static LISTS: Mutex<BTreeSet<&'static [&'static str]>> = Mutex::new(BTreeSet::new());
+    let names: Vec<&str> = names.into_iter().collect();
+    let mut lists = LISTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if let Some(known) = lists.get(&names[..]) {
+        return known;
+    }
+    let list: &[&str] = names.leak();
+    lists.insert(list);
+    list
+}
+
 impl fmt::Display for Needs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts =
@@ -125,7 +155,8 @@ impl fmt::Display for Needs {
                     }
                 })
                 .collect();
-        f.write_str(&parts.join("; "))
+        f.write_str(&parts.join("; "))?;
+        self.names.map_or(Ok(()), |names| write!(f, " ({})", names.join(", ")))
     }
 }
 
@@ -176,6 +207,12 @@ pub fn lie<'a>(ops: impl Iterator<Item = (&'a str, Needs)> + Clone, touched: Tou
     let (reads, changed) = (all(|n| n.reads), all(Needs::changed));
     let read = touched.read.without(reads | changed | CLOCK);
     let written = touched.written.without(changed);
+    let unnamed: Vec<&str> = touched
+        .names
+        .iter()
+        .filter(|key| !ops.clone().any(|(_, n)| n.allows(**key)))
+        .map(|key| key.text())
+        .collect();
     let true_enough = read.is_empty() && written.is_empty();
     if collecting() {
         let mut accounts = ACCOUNTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -192,9 +229,12 @@ pub fn lie<'a>(ops: impl Iterator<Item = (&'a str, Needs)> + Clone, touched: Tou
         }
         return None;
     }
-    (!true_enough).then(|| {
+    (!true_enough || !unnamed.is_empty()).then(|| {
         let names: Vec<String> = ops.map(|(name, n)| format!("`{name}` ({})", n.at)).collect();
-        format!("op {} {} and does not state it", names.join(", "), how([read, written]))
+        let mut what = vec![how([read, written])];
+        what.push(if unnamed.is_empty() { String::new() } else { format!("touches {}", unnamed.join(", ")) });
+        what.retain(|part| !part.is_empty());
+        format!("op {} {} and does not state it", names.join(", "), what.join(" and "))
     })
 }
 
@@ -211,8 +251,12 @@ mod tests {
     use super::*;
     use crate::{About, Op, Placed, Stage, StepPlan, Tick};
     use perigrain_base::diag::Result;
-    use perigrain_world::World;
     use perigrain_world::field::{F, V, X};
+    use perigrain_world::{Constant, World};
+
+    static OWN: Constant<Vec<f64>> = Constant::new("own/1");
+    static LIST: Constant<Vec<f64>> = Constant::new("own/1/list");
+    static OTHER: Constant<Vec<f64>> = Constant::in_role("other/temperature", "temperature");
 
     /// States one thing and does another.
     struct Stated(Needs, fn(&mut World));
@@ -256,6 +300,25 @@ mod tests {
     #[should_panic(expected = "writes x and does not state it")]
     fn an_op_that_writes_what_it_states_to_read_is_stopped() {
         acts(Needs::new().read(X), |w| w.particles.x[0] = [0.0; 3]);
+    }
+
+    #[test]
+    fn an_op_may_use_the_columns_that_it_names() {
+        let own = Needs::new().keep(COLUMNS | MEMO).only(&["own/1"]).only(&["own/1/list"]);
+        assert_eq!(own.to_string(), "keeps columns memo (own/1, own/1/list)");
+        assert_eq!(own.names, Needs::new().only(&["own/1/list", "own/1"]).names, "one list for each set");
+        acts(own, |w| drop(w.memo.insert(*LIST, vec![1.0])));
+        acts(own, |w| w.columns.scalar(*OWN, 1)[0] = 2.0);
+        acts(Needs::new().keep(COLUMNS), |w| w.columns.scalar(*OTHER, 1)[0] = 2.0);
+        // A role stands for all entries that play it.
+        acts(Needs::new().keep(COLUMNS).only(&["temperature"]), |w| w.columns.scalar(*OTHER, 1)[0] = 2.0);
+    }
+
+    #[cfg(debug_assertions)]
+    #[test]
+    #[should_panic(expected = "touches other/temperature and does not state it")]
+    fn an_op_that_uses_a_column_of_another_name_is_stopped() {
+        acts(Needs::new().keep(COLUMNS).only(&["own/1"]), |w| w.columns.scalar(*OTHER, 1)[0] = 2.0);
     }
 
     #[test]

@@ -7,8 +7,8 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::body::principal;
 use perigrain_base::math::vec3::{SIX, Vec3};
 use perigrain_peri::families::{Families, ForceUnit};
-use perigrain_world::World;
 use perigrain_world::contacts::WallSpring;
+use perigrain_world::{Constant, Facts, Named, World};
 
 /// How the step of peridynamic solids is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
@@ -45,17 +45,53 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
     Ok(step.unwrap_or(f64::INFINITY))
 }
 
+/// Interval in steps at which contacts are examined: whether the time step is within their present limit. Walls report the
+/// springs of their contacts then.
+pub const LOOK: i64 = 1000;
+
+/// The springs of wall contacts, as walls have reported them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallSprings {
+    /// Whether walls report at each step (compute and fix dt/critical).
+    pub always: bool,
+    /// By the fix's ID.
+    pub lists: Named<ReportedSprings>,
+}
+
+/// The report of one wall.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReportedSprings {
+    /// When.
+    pub step: i64,
+    /// Of each contact.
+    pub list: Vec<WallSpring>,
+}
+
+/// The springs of wall contacts in the facts of a scene.
+pub static WALL_SPRINGS: Constant<WallSprings> = Constant::new("wall/springs");
+
+/// Whether a wall reports at this step: before a run's first step, now and then, and at least at its last one.
+pub fn walls_report(facts: &Facts, step: i64, setup: bool, last: i64) -> bool {
+    setup || step == last || step % LOOK == 0 || walls_always_report(facts)
+}
+
+/// Whether walls report at each step.
+pub fn walls_always_report(facts: &Facts) -> bool {
+    facts.get(*WALL_SPRINGS).is_some_and(|springs| springs.always)
+}
+
 /// Makes walls report the springs of their contacts, from the next step on.
 pub fn request_wall_springs(w: &mut World) {
-    if !w.parts.wall_springs.always {
-        w.parts.wall_springs.always = true;
+    if !walls_always_report(&w.facts) {
+        w.facts.get_or_default(*WALL_SPRINGS).always = true;
         w.touch();
     }
 }
 
 /// Visits the contacts with walls, as reported last; only those whose step `fresh` accepts.
 pub(crate) fn add_walls(w: &World, fresh: impl Fn(i64) -> bool, mut each: impl FnMut(usize, &WallSpring)) {
-    let reports = || w.parts.wall_springs.lists.values().filter(|report| fresh(report.step));
+    let lists = || w.facts.get(*WALL_SPRINGS).into_iter().flat_map(|springs| springs.lists.values());
+    let reports = || lists().filter(|report| fresh(report.step));
     let springs = || reports().flat_map(|report| &report.list);
     if springs().next().is_none() {
         return;

@@ -8,8 +8,8 @@ use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
-use perigrain_world::contacts::PairWork;
-use perigrain_world::{BODY_ENERGY, Constant, Named, World};
+use perigrain_world::contacts::{PairWork, WallTouch};
+use perigrain_world::{Constant, Named, Under, World};
 use powers::Powers;
 
 /// What does work on particles besides their mutual forces.
@@ -25,15 +25,30 @@ pub enum Channel {
 
 /// Columns of the forces of each channel at the present step.
 static FORCES: [Constant<Vec<Vec3>>; 3] =
-    [Constant::new("ledger/walls"), Constant::new("ledger/gravity"), Constant::new("ledger/imposed")];
+    [forces("ledger/walls"), forces("ledger/gravity"), forces("ledger/imposed")];
 /// And of their torques.
-static TORQUES: [Constant<Vec<Vec3>>; 3] = [
-    Constant::new("ledger/walls torque"),
-    Constant::new("ledger/gravity torque"),
-    Constant::new("ledger/imposed torque"),
-];
+static TORQUES: [Constant<Vec<Vec3>>; 3] =
+    [forces("ledger/walls torque"), forces("ledger/gravity torque"), forces("ledger/imposed torque")];
 /// Forces and torques as they were before the next fix.
-static BEFORE: [Constant<Vec<Vec3>>; 2] = [Constant::new("ledger/force"), Constant::new("ledger/torque")];
+static BEFORE: [Constant<Vec<Vec3>>; 2] = [forces("ledger/force"), forces("ledger/torque")];
+
+const fn forces(name: &'static str) -> Constant<Vec<Vec3>> {
+    Constant::moved(name, Under::Anew)
+}
+
+/// The role of what rigid bodies with masses of their own have beyond their particles: twice their kinetic energies of translation and of
+/// rotation [mass velocity²], and the power of gravity on them.
+pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
+
+/// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
+pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
+
+/// Contacts with each wall at the last step, by the fix's ID; only while there is a ledger.
+pub static WALL_TOUCHES: Constant<Named<Vec<WallTouch>>> = Constant::new("ledger/wall touches");
+
+/// What the contacts of each pair style did at the last step; only while there is a ledger.
+pub static PAIR_WORK: Constant<Named<PairWork>> = Constant::new("ledger/pair work");
+
 /// The name of the book in the world's memory.
 static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 
@@ -82,7 +97,8 @@ struct Pairs {
 impl Pairs {
     /// At the present velocities.
     fn measure(w: &World, step: i64) -> Self {
-        let work = w.parts.pair_work.iter().flat_map(Named::values).filter(|work| work.step == step);
+        let work =
+            w.facts.get(*PAIR_WORK).into_iter().flat_map(Named::values).filter(|work| work.step == step);
         work.fold(Self::default(), |sum, work| sum.plus(Self::of_style(w, work)))
     }
 
@@ -138,7 +154,7 @@ impl Walls {
     /// At the present velocities.
     fn measure(w: &World) -> Self {
         let (p, mut sum) = (&w.particles, Self::default());
-        for c in w.parts.wall_touches.iter().flat_map(Named::values).flatten() {
+        for c in w.facts.get(*WALL_TOUCHES).into_iter().flat_map(Named::values).flatten() {
             let i = c.grain as usize;
             let (true_one, v) = (scale(w, i), sub(p.v[i], c.velocity));
             let (along, central) = (dot(v, c.normal), dot(c.force, c.normal));
@@ -210,8 +226,8 @@ pub fn open(w: &mut World) -> Result<()> {
         families.counts_losses = true;
     }
     w.bonds.counts_losses |= w.memo.contains(*BOOK);
-    w.parts.wall_touches.get_or_insert_default();
-    w.parts.pair_work.get_or_insert_default();
+    w.facts.get_or_default(*WALL_TOUCHES);
+    w.facts.get_or_default(*PAIR_WORK);
     Ok(())
 }
 
@@ -229,9 +245,14 @@ fn of_bodies(w: &World) -> [f64; 3] {
 /// Discards the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
-    w.parts.wall_touches = None;
-    w.parts.pair_work = None;
+    w.facts.remove(*WALL_TOUCHES);
+    w.facts.remove(*PAIR_WORK);
     FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
+}
+
+/// The names of the columns of forces and torques.
+pub fn columns() -> Vec<&'static str> {
+    FORCES.iter().chain(&TORQUES).chain(&BEFORE).map(|key| key.text()).collect()
 }
 
 /// Before the fixes of a step change forces.

@@ -51,6 +51,8 @@ pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
 pub use seal::{FORMULAS, Gravity, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 
+use perigrain_world::Registration;
+
 /// What the manual says of a style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doc {
@@ -70,4 +72,8 @@ pub trait Style: Sync {
     fn name(&self) -> &'static str;
     /// Its page.
     fn doc(&self) -> Doc;
+    /// Its state that has a role for other styles or that a motion of matter changes: of several names that fit the first one counts.
+    fn registrations(&self) -> &'static [&'static Registration] {
+        &[]
+    }
 }

@@ -2,7 +2,11 @@
 
 use perigrain_base::diag::Result;
 use perigrain_peri::families::{Bounds, PeriView};
-use perigrain_world::{Domain, World, excluded};
+use perigrain_world::{Constant, Domain, World, excluded};
+
+/// The columns that hold factors of particles on what their peridynamic bonds bear and on how stiff these are; 0 stands for 1.
+pub static BOND_FACTORS: [Constant<Vec<f64>>; 2] =
+    [Constant::new("peri/strength"), Constant::new("peri/stiffness")];
 
 /// The particle data that families need.
 ///

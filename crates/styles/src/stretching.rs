@@ -1,6 +1,9 @@
 //! How the box is deformed: what fixes deform leave and temperatures read.
 
-use perigrain_world::{RATES, World};
+use perigrain_world::{Constant, World};
+
+/// The role in `memo` of how fast a fix deforms the box.
+pub static RATES: Constant<Vec<f64>> = Constant::new("/rates");
 
 /// How the box is deformed by all fixes deform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -77,8 +77,7 @@ const TIMES: f64 = 100.0;
 
 /// Warns of a surface in its place whose size has nothing to do with that of the box: files are often in millimetres.
 pub fn doubt_size(file: &Word, placed: &[Triangle], cx: &BuildCx) {
-    let Some(domain) =
-        cx.world.domain.as_ref().filter(|_| !placed.is_empty() && !cx.world.parts.unseen.space)
+    let Some(domain) = cx.world.domain.as_ref().filter(|_| !placed.is_empty() && !cx.world.unseen.space)
     else {
         return;
     };
@@ -107,7 +106,7 @@ pub fn doubt_size(file: &Word, placed: &[Triangle], cx: &BuildCx) {
 pub fn read(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
     let bytes = match gate::read(cx.world.to_read(&file.text)) {
         Ok(bytes) => cx.world.read_files.plain_bytes(&file.text, bytes),
-        Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(None),
+        Err(_) if cx.world.promised.may_come(&file.text) => return Ok(None),
         Err(e) => {
             let text = format!("the file `{}` cannot be read: {e}", file.text);
             return fail(gate::code(&e), file.span, text);

@@ -27,11 +27,6 @@ impl Coefficient {
         let (kind, (a, b)) = (if self.bond { "bond" } else { "pair" }, self.types);
         Key::new(&format!("{CHANGES}/{kind}/{}/{}/{a}/{b}", self.style, self.name))
     }
-
-    /// Where a fix keeps what it was when the run began.
-    pub fn kept_by(&self, fix: &str) -> Numbers {
-        Key::new(&format!("adapt/{fix}/{}", self.key()))
-    }
 }
 
 /// Whether something remembered is a coefficient that a fix has made, or their count.

@@ -1,7 +1,8 @@
 //! Named per-particle columns beyond the core ones: they follow every reordering and deletion.
 
+use super::acting::by_name;
 use super::moving::Under;
-use super::named::{self, Constant, Key, Named, Numbers, Vectors};
+use super::named::{Constant, Key, Named, Numbers, Vectors};
 use std::borrow::Cow;
 
 /// The property of fix property/atom that holds temperatures.
@@ -11,48 +12,8 @@ pub static HEATFLOW: Constant<Vec<f64>> = Constant::new("heatflow");
 /// The property that holds the volumes of particles joined by `bond_style bpm/peri`.
 pub static VOLUME_PROPERTY: Constant<Vec<f64>> = Constant::new("d_vfrac");
 
-/// The columns that hold factors of particles on what their peridynamic bonds bear and on how stiff these are; 0 stands for 1.
-pub static BOND_FACTORS: [Constant<Vec<f64>>; 2] =
-    [Constant::new("peri/strength"), Constant::new("peri/stiffness")];
-
-/// How the names of columns of plastic grains begin (normal model `mdr`): decks read them as those of fix property/atom.
-pub const PLASTIC_COLUMNS: &str = "property/atom/mdr/";
-/// Under this name the last step that plastic grains have begun is kept.
-pub static PLASTIC_BEGUN: Constant<Vec<f64>> = Constant::new("mdr/begun");
-
 /// How the names of the columns begin that keep forces and torques of levels of steps between steps.
 pub const LEVEL: &str = "level/";
-
-/// What becomes of vector columns where particles are moved as one piece, by how their names begin and end. Scalar columns hold numbers
-/// that no turn changes.
-const UNDER: &[(&str, &str, Under)] = &[
-    // Where particles began their prescribed path, and how they lay as seen from it.
-    ("move/", "/turn", Under::Nothing),
-    ("move/", "/moment", Under::Nothing),
-    ("move/", "", Under::Anchor),
-    ("spring/self/", "", Under::Anchor),
-    // Where computes count the way of particles from.
-    ("compute ", " origin", Under::Anchor),
-    ("compute ", " velocity", Under::Record),
-    ("store/local/", "/first", Under::Anchor),
-    // Places and orientations by the axes of rigid bodies.
-    ("rigid", "/place", Under::Nothing),
-    ("rigid", "/turn", Under::Nothing),
-    ("rigid", "/moment", Under::Nothing),
-    ("rigid", "/virial xx", Under::Anew),
-    ("rigid", "/virial xy", Under::Anew),
-    ("external/", "", Under::Anew),
-    ("langevin/", "", Under::Anew),
-    (LEVEL, "", Under::Anew),
-    ("ledger/", "", Under::Anew),
-    ("calibrate ", "", Under::Record),
-];
-
-/// What becomes of the vector column of this name where particles are moved as one piece; `None` of one that no line of the table knows.
-pub fn under(name: &str) -> Option<Under> {
-    let fits = |(begin, end, _): &&(&str, &str, Under)| name.starts_with(begin) && name.ends_with(end);
-    UNDER.iter().find(fits).map(|(.., under)| *under)
-}
 
 /// The columns that keep what a level of steps has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +31,7 @@ impl Level {
     /// Those of a level, from 0.
     pub fn new(level: usize) -> Self {
         let of = |what| format!("{LEVEL}{level}/{what}");
-        let vectors = |words: [&'static str; 2]| words.map(|what| Key::new(&of(what)));
+        let vectors = |words: [&'static str; 2]| words.map(|what| Key::new(&of(what)).moved(Under::Anew));
         Self {
             forces: vectors(["force", "torque"]),
             heat: Key::new(&of("heat")),
@@ -96,12 +57,20 @@ impl Columns {
     ///
     /// # Panics
     ///
-    /// Debug builds panic where no rule defines what becomes of a column of this name when particles are moved.
+    /// Debug builds panic where the owner of the column has not registered what a motion of matter does to it.
     pub fn vector(&mut self, key: Vectors, n: usize) -> &mut Vec<[f64; 3]> {
         self.vectors.get_or(key, || {
-            debug_assert!(under(key.text()).is_some(), "columns::UNDER has no rule for a turn of `{key}`");
+            debug_assert!(
+                key.under().is_some(),
+                "the owner of `{key}` has not registered what a turn does to it"
+            );
             vec![[0.0; 3]; n]
         })
+    }
+
+    /// The names of the vector columns.
+    pub fn vector_keys(&self) -> impl Iterator<Item = Vectors> {
+        self.vectors.keys()
     }
 
     /// The vector columns with their names, to be changed.
@@ -116,7 +85,7 @@ impl Columns {
             Some((head, k)) => Cow::Owned(format!("{head}/{k}")),
             None => Cow::Borrowed(word),
         };
-        named::by_name(&name);
+        by_name(&name);
         self.scalars.keys().find(|key| key.role().is_some_and(|role| role.text() == name))
     }
 
@@ -180,6 +149,12 @@ impl Columns {
     pub fn put(&mut self, mut more: Columns) {
         self.scalars.extend(more.scalars.split_off(|_| false));
         self.vectors.extend(more.vectors.split_off(|_| false));
+    }
+
+    /// The names of the columns that were read or written since the last call.
+    #[cfg(debug_assertions)]
+    pub(crate) fn take_touched(&self) -> impl Iterator<Item = Numbers> {
+        self.scalars.take_touched().chain(self.vectors.take_touched())
     }
 
     /// All names.

@@ -1,6 +1,7 @@
 //! Contact history by pair: the state of grains that touch each other or a wall.
 
-use super::named::{Constant, Key, Named};
+use super::moving::Under;
+use super::named::Key;
 use perigrain_base::math::vec3::Vec3;
 
 /// Contacts of the last step in the order of their keys, with the history of each.
@@ -15,31 +16,14 @@ pub struct Contacts {
     pub history: Vec<f64>,
 }
 
-/// Grains that overlap so far that contact laws mean little.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deep {
-    /// When it was first seen.
-    pub step: i64,
-    /// The two grains.
-    pub ids: [u32; 2],
-    /// Overlap over the smaller radius.
-    pub part: f64,
-    /// Whether the warning has been given.
-    pub warned: bool,
-}
-
 /// Turns a contact's history around, from one grain's view to the other's: displacements across the normal, the first three
 /// numbers, change sign; rolling displacements and angles of twisting are the same.
 pub fn mirror(history: &mut [f64]) {
     history.iter_mut().take(3).for_each(|a| *a = -*a);
 }
 
-/// Under this name contacts of plastic grains are kept (normal model `mdr`), besides those of their pair style.
-pub static PLASTIC: Constant<Contacts> = Constant::new("mdr");
-
-/// Turns the history of a contact of plastic grains around, from one grain's view to the other's: first its own side, then the
-/// other's, then what they have in common.
-pub fn turn_plastic(history: &mut [f64]) {
+/// Turns a contact's history of two sides ([`Under::Sides`]) around, from one grain's view to the other's.
+pub fn swap_sides(history: &mut [f64]) {
     let half = history.len() / 2;
     (0..half).for_each(|k| history.swap(k, half + k));
 }
@@ -74,8 +58,7 @@ impl Contacts {
         types: impl Fn([u32; 2]) -> Option<[u16; 2]>,
         turn: impl Fn(Vec3) -> Vec3,
     ) {
-        // The history of plastic grains has no direction.
-        if own == *PLASTIC || self.width < 3 {
+        if own.under() == Some(Under::Sides) || self.width < 3 {
             return;
         }
         for (key, row) in self.keys.iter().zip(self.history.chunks_exact_mut(self.width)) {
@@ -156,35 +139,6 @@ impl Contacts {
     }
 }
 
-/// Interval in steps at which contacts are examined: whether the time step is within their present limit. Walls report the
-/// springs of their contacts then.
-pub const LOOK: i64 = 1000;
-
-/// The springs of wall contacts, as walls have reported them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WallSprings {
-    /// Whether walls report at each step (compute and fix dt/critical).
-    pub always: bool,
-    /// By the fix's ID.
-    pub lists: Named<ReportedSprings>,
-}
-
-/// The report of one wall.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReportedSprings {
-    /// When.
-    pub step: i64,
-    /// Of each contact.
-    pub list: Vec<WallSpring>,
-}
-
-impl WallSprings {
-    /// Whether a wall reports at this step: before a run's first step, now and then, and at least at its last one.
-    pub fn wanted(&self, step: i64, setup: bool, last: i64) -> bool {
-        self.always || setup || step == last || step % LOOK == 0
-    }
-}
-
 /// A particle's contact with a wall, as the ledger of energy books it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WallTouch {
@@ -236,17 +190,6 @@ impl PairWork {
         }
         self.pressing.resize(if flows { n } else { 0 }, [0.0; 3]);
     }
-}
-
-/// The last examination of pressed contacts, and the step they allow.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pressed {
-    /// When.
-    pub step: i64,
-    /// The time step then.
-    pub dt: f64,
-    /// Whether the warning that it is too long has been given.
-    pub warned: bool,
 }
 
 /// The springs of a particle's contact with a wall.

@@ -6,6 +6,7 @@
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod acting;
 pub mod adapted;
 pub mod allowed;
 pub mod angles;
@@ -17,6 +18,7 @@ pub mod contacts;
 pub mod crack;
 pub mod domain;
 pub mod extent;
+pub mod facts;
 pub mod field;
 pub mod groups;
 pub mod images;
@@ -38,6 +40,7 @@ pub mod properties;
 pub mod reading;
 pub mod rebuild;
 pub mod region;
+pub mod registration;
 pub mod resume;
 pub mod settings;
 pub mod share;
@@ -54,6 +57,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use perigrain_base::diag::Diagnostics;
 use perigrain_base::math::periods::Periods;
 use perigrain_peri::families::Families;
 
@@ -66,6 +70,7 @@ pub use columns::Columns;
 pub use crack::Crack;
 pub use domain::{Boundary, Domain, Face};
 pub use extent::Extent;
+pub use facts::Facts;
 pub use field::Fields;
 pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
@@ -81,6 +86,7 @@ pub use promises::{Promise, Promises};
 pub use properties::Properties;
 pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
+pub use registration::Registration;
 pub use resume::{DeclaredLine, Resume};
 pub use settings::{Compat, MOST_SHORT, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use share::{Dealings, Share};
@@ -92,18 +98,8 @@ pub use tracked::{Lent, Tracked};
 pub use travel::{Seen, Travel};
 pub use unseen::Unseen;
 
-/// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
-pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
-
-/// The role in `memo` of how fast a fix deforms the box.
-pub static RATES: Constant<Vec<f64>> = Constant::new("/rates");
-
 /// The role of columns that hold the mass of the rigid body a particle belongs to, 0 for none.
 pub static CONTACT_MASS: Constant<Vec<f64>> = Constant::new("/contact mass");
-
-/// The role of what rigid bodies with masses of their own have beyond their particles: twice their kinetic energies of translation and of
-/// rotation [mass velocity²], and the power of gravity on them.
-pub static BODY_ENERGY: Constant<Vec<f64>> = Constant::new("/body energy");
 
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -173,73 +169,31 @@ pub struct World {
     /// Whether they are to be, and how often they have been.
     #[serde(skip)]
     pub dealings: Dealings,
-    /// State that rooms above own: families, contact histories, materials.
+    /// What styles and the program keep by typed keys.
     #[serde(skip)]
-    pub parts: Tracked<Parts>,
-}
-
-/// State of one kind each, owned by the room that knows it.
-#[derive(Clone, Debug, Default)]
-pub struct Parts {
-    /// Half-open: set when the scene has changed so that forces must be computed anew at the next run.
-    pub changed: bool,
-    /// Forces and torques of the coming step have been set to zero already.
-    pub cleared: bool,
-    /// The first grains seen to overlap by more than a tenth of a radius during a run.
-    pub deep: Option<contacts::Deep>,
-    /// Where a plan is measured, a line for each op that keeps the times of its tiles, as the last run left them.
-    pub tiles: Option<Vec<String>>,
-    /// Springs of the contacts with each wall, as reported last.
-    pub wall_springs: contacts::WallSprings,
-    /// Contacts with each wall at the last step, by the fix's ID; empty without a ledger of energy.
-    pub wall_touches: Option<Named<Vec<contacts::WallTouch>>>,
-    /// The same of the contacts of each pair style.
-    pub pair_work: Option<Named<contacts::PairWork>>,
-    /// All energy of a scene of grains as the run began, where nothing does work on it.
-    pub budget: Option<f64>,
-    /// What walls look like, by the fix's ID.
-    pub outlines: Named<Outline>,
-    /// The last examination of the step that contacts allow.
-    pub pressed: Option<contacts::Pressed>,
-    /// Every fix freeze in force by its ID, and its group: contact laws take these grains for infinitely heavy.
-    pub frozen: Vec<(String, GroupId)>,
-    /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.
-    pub plastic: Option<[f64; 5]>,
+    pub facts: Tracked<Facts>,
+    /// Whether the scene has changed so that forces must be computed anew at the next run.
+    #[serde(skip)]
+    pub changed: Tracked<bool>,
     /// Remarks of ops about the deck; printed when the run is over.
-    pub notes: perigrain_base::diag::Diagnostics,
-    /// While a deck is only looked at: files that its lines so far would have written.
-    pub promised: Promises,
+    #[serde(skip)]
+    pub notes: Tracked<Diagnostics>,
+    /// What walls look like, by the fix's ID.
+    #[serde(skip)]
+    pub outlines: Tracked<Named<Outline>>,
+    /// While a deck is only checked: files that its lines so far would have written.
+    #[serde(skip)]
+    pub promised: Tracked<Promises>,
     /// What only a run determines, while a deck is only checked.
-    pub unseen: Unseen,
-    /// Parts that came from a restart file and that the deck may declare again: `region/ID`, `material/ID`, and state of fixes
-    /// and computes as `STYLE/ID`.
-    pub restored: BTreeSet<String>,
-    /// The latest row of the step table, for dumps that repeat it.
-    pub row: Option<Arc<TableRow>>,
+    #[serde(skip)]
+    pub unseen: Tracked<Unseen>,
+    /// What came from a restart file and the deck may declare again: `region/ID`, `material/ID`, and state of fixes and computes as
+    /// `STYLE/ID`.
+    #[serde(skip)]
+    pub restored: Tracked<BTreeSet<String>>,
     /// The scene as a restart file describes it, until the first run after it.
+    #[serde(skip)]
     pub resume: Option<Arc<Resume>>,
-    /// The program that hosts the session, as each fix external sees it, by the fix's ID.
-    pub outside: Named<Arc<dyn Outside>>,
-    /// The program that hosts the session, if it has functions that can be called within steps.
-    pub host: Option<Arc<dyn outside::Host>>,
-}
-
-/// A row of the step table.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TableRow {
-    /// Its step.
-    pub step: i64,
-    /// The columns' usual names and the numbers.
-    pub values: Vec<(String, RowValue)>,
-}
-
-/// A number of the step table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RowValue {
-    /// A whole number.
-    Whole(i64),
-    /// Any other.
-    Real(f64),
 }
 
 impl World {
@@ -369,6 +323,6 @@ impl World {
 
     /// Marks that forces of the last run no longer belong to this scene.
     pub fn touch(&mut self) {
-        self.parts.changed = true;
+        *self.changed = true;
     }
 }

@@ -1,11 +1,12 @@
 //! How each field changes when particles are moved as one piece, and the functions that move them by that rule.
 //!
-//! [`field`](super::field) states for each field, [`columns::under`] for each named column, what a motion of matter does to it.
+//! [`field`](super::field) states for each field, the [`Registration`](super::Registration) of its owner for each vector column, what a
+//! motion of matter does to it.
 //! All code that moves particles as a whole follows these rules: [`World::carry`] where they are placed elsewhere between two
 //! runs, [`Grip`] where something holds them while it moves, [`World::lay`] where they are created, [`World::shift_copies`] where
 //! a scene is replicated. `docs/decisions/movers.md` has the table.
 
-use super::columns::{self, Columns};
+use super::columns::Columns;
 use super::contacts::{Contacts, Rolls};
 use super::named::Key;
 use super::region::{Angle, turned};
@@ -35,7 +36,9 @@ pub enum Under {
     Anchor,
     /// Values of one moment, kept as they were then.
     Record,
-    /// Columns by name: see [`columns::under`].
+    /// History of pairs without direction, first that of one side, then that of the other, then what both have in common: nothing.
+    Sides,
+    /// Columns: see [`Key::under`].
     Columns,
 }
 
@@ -113,7 +116,14 @@ impl World {
             read_files: _,
             share: _,
             dealings: _,
-            parts: _,
+            facts: _,
+            changed: _,
+            notes: _,
+            outlines: _,
+            promised: _,
+            unseen: _,
+            restored: _,
+            resume: _,
         } = self;
         if turns {
             turn_springs(contacts, particles, turn, rolls, &members);
@@ -188,18 +198,37 @@ impl Columns {
     /// Turns what the members keep in columns: see [`World::carry`].
     fn carry(&mut self, turn: &Turn, members: &[usize]) {
         for (key, column) in self.vectors_mut() {
-            match columns::under(key.text()) {
+            match key.under() {
                 Some(Under::Place) => members.iter().for_each(|&i| column[i] = turn.place(column[i])),
-                Some(Under::Springs) => members.iter().for_each(|&i| column[i] = turn.vector(column[i])),
-                _ => {}
+                Some(Under::Orientation | Under::Springs) => {
+                    members.iter().for_each(|&i| column[i] = turn.vector(column[i]));
+                }
+                // The next run drops names from a restart file that no style registers.
+                None
+                | Some(
+                    Under::Nothing
+                    | Under::Motion
+                    | Under::Anew
+                    | Under::Anchor
+                    | Under::Record
+                    | Under::Sides
+                    | Under::Columns,
+                ) => {}
             }
         }
     }
 
+    /// Whether a vector column turns with matter.
+    fn turn_along(&self) -> bool {
+        let along =
+            |key: Vectors| matches!(key.under(), Some(Under::Place | Under::Orientation | Under::Springs));
+        self.vector_keys().any(along)
+    }
+
     /// Moves what belongs to a place in space: see [`World::shift_copies`].
     fn shift(&mut self, of: std::ops::Range<usize>, shift: Vec3) {
-        let held = |name| matches!(columns::under(name), Some(Under::Anchor | Under::Place));
-        for (_, column) in self.vectors_mut().filter(|(key, _)| held(key.text())) {
+        let held = |key: Vectors| matches!(key.under(), Some(Under::Anchor | Under::Place));
+        for (_, column) in self.vectors_mut().filter(|(key, _)| held(*key)) {
             column[of.clone()].iter_mut().for_each(|x| *x = add(*x, shift));
         }
     }
@@ -236,8 +265,13 @@ pub struct Grip {
 impl Grip {
     /// Under this name.
     pub fn new(name: &str) -> Self {
-        let moment = Key::new(&format!("{name}/moment"));
-        Self { real: Key::new(name), others: Key::new(name), moment }
+        let held = |name: &str| Key::new(name).moved(Under::Nothing);
+        Self { real: Key::new(name), others: held(name), moment: held(&format!("{name}/moment")) }
+    }
+
+    /// The names of its columns.
+    pub fn names(self) -> [&'static str; 2] {
+        [self.real.text(), self.moment.text()]
     }
 
     /// Whether it holds particle `i`.
@@ -274,6 +308,7 @@ impl Grip {
         moments: bool,
         holder: impl Fn(usize) -> Option<Quat> + Sync,
     ) {
+        debug_assert!(!columns.turn_along(), "columns that turn with matter need a grip of their own");
         if let Some(seen) = columns.get_vector(self.moment).filter(|_| moments && particles.style.dipole) {
             par::each(&mut particles.mu[..], |first, mu: &mut [Vec3]| {
                 for (k, mu) in mu.iter_mut().enumerate() {
@@ -300,5 +335,68 @@ impl Grip {
         let [a, b, c] = *columns.get_vector(self.others)?.get(i)?;
         let own = [real, a, b, c];
         (own != [0.0; 4]).then_some(own)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Registration;
+    use std::f64::consts::FRAC_PI_2;
+
+    static PLACES: Registration = Registration::moved("moving/place", "", Under::Place);
+    static VECTORS: Registration = Registration::moved("moving/vector", "", Under::Orientation);
+    static SPRINGS: Registration = Registration::moved("moving/spring", "", Under::Springs);
+    static MOTIONS: Registration = Registration::moved("moving/motion", "", Under::Motion);
+    static ANCHORS: Registration = Registration::moved("moving/anchor", "", Under::Anchor);
+    static RECORDS: Registration = Registration::moved("moving/record", "", Under::Record);
+    static OWN_AXES: Registration = Registration::moved("moving/own", "", Under::Nothing);
+    static MADE_ANEW: Registration = Registration::moved("moving/anew", "", Under::Anew);
+
+    /// A registration of each kind, with what a quarter turn about z through (1, 0, 0) and a copy 10 away in x make of (2, 3, 4).
+    const KINDS: [(&Registration, &str, Vec3, Vec3); 8] = [
+        (&PLACES, "moving/place", [-2.0, 1.0, 4.0], [12.0, 3.0, 4.0]),
+        (&VECTORS, "moving/vector", [-3.0, 2.0, 4.0], [2.0, 3.0, 4.0]),
+        (&SPRINGS, "moving/spring", [-3.0, 2.0, 4.0], [2.0, 3.0, 4.0]),
+        (&MOTIONS, "moving/motion", [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]),
+        (&ANCHORS, "moving/anchor", [2.0, 3.0, 4.0], [12.0, 3.0, 4.0]),
+        (&RECORDS, "moving/record", [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]),
+        (&OWN_AXES, "moving/own", [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]),
+        (&MADE_ANEW, "moving/anew", [2.0, 3.0, 4.0], [2.0, 3.0, 4.0]),
+    ];
+
+    fn scene() -> World {
+        let mut w = World::default();
+        (1..=2).for_each(|tag| w.particles.push(tag, 1, [2.0, 3.0, 4.0]));
+        for (registration, name, ..) in KINDS {
+            *w.columns.vector(registration.key(name), 2) = vec![[2.0, 3.0, 4.0]; 2];
+        }
+        w
+    }
+
+    fn near(a: Vec3, b: Vec3) -> bool {
+        // Roundings of numbers up to 12.
+        (0..3).all(|d| (a[d] - b[d]).abs() < 1e-14)
+    }
+
+    #[test]
+    fn a_turn_does_to_each_column_what_is_registered() {
+        let mut w = scene();
+        w.carry(&Turn::new([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], FRAC_PI_2), &[], |i| i == 1);
+        assert!(near(w.particles.x[1], KINDS[0].2));
+        for (registration, name, moved, _) in KINDS {
+            let column = w.columns.get_vector(registration.key(name)).unwrap();
+            assert!(near(column[1], moved) && column[0] == [2.0, 3.0, 4.0], "{name}: {column:?}");
+        }
+    }
+
+    #[test]
+    fn a_copy_has_in_each_column_what_is_registered() {
+        let mut w = scene();
+        w.shift_copies(1..2, [10.0, 0.0, 0.0]);
+        for (registration, name, _, copied) in KINDS {
+            let column = w.columns.get_vector(registration.key(name)).unwrap();
+            assert!(column == [[2.0, 3.0, 4.0], copied], "{name}: {column:?}");
+        }
     }
 }

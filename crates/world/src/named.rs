@@ -1,6 +1,9 @@
 //! State by name: a name becomes a handle once, outside of steps, and the handle finds its entry by number.
 
-use super::{BODY_ENERGY, CONTACT_MASS, COUPLED, RATES};
+pub use super::acting::Acting;
+use super::acting::by_name;
+use super::moving::Under;
+use super::tracked::Mark;
 use serde::de::Deserialize;
 use serde::ser::SerializeMap;
 use std::collections::BTreeMap;
@@ -12,22 +15,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 struct Name {
     number: usize,
     text: &'static str,
-    role: Option<&'static Name>,
-}
-
-/// How names begin and end whose ends are roles.
-const ROLES: [(&str, &Constant<Vec<f64>>); 4] =
-    [("langevin/", &COUPLED), ("deform/", &RATES), ("rigid/", &CONTACT_MASS), ("rigid/", &BODY_ENERGY)];
-
-/// What entries of several fixes are to all others: `temperature` of `property/atom/ID/temperature`.
-fn role(text: &str) -> Option<&str> {
-    if let Some(property) = text.strip_prefix("property/atom/") {
-        return property.split_once('/').map(|(_, name)| name);
-    }
-    let of = |(begin, end): &(&str, &Constant<_>)| {
-        text.strip_prefix(begin)?.ends_with(end.text).then_some(end.text)
-    };
-    ROLES.iter().find_map(of)
+    /// What entries of several owners are to all others: `temperature` of `property/atom/ID/temperature`. The owner registers it.
+    role: OnceLock<&'static Name>,
+    /// What a motion of matter does to the entry, as the owner registers it.
+    under: OnceLock<Under>,
 }
 
 static NAMES: Mutex<BTreeMap<&'static str, &'static Name>> = Mutex::new(BTreeMap::new());
@@ -57,14 +48,29 @@ impl<T> Key<T> {
         if let Some(name) = NAMES.lock().unwrap_or_else(PoisonError::into_inner).get(text) {
             return Self { name, of: PhantomData };
         }
-        let role = role(text).map(|role| Self::known(role).name);
         let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
         let number = names.len();
+        let new = |text: &&'static str| -> &'static Name {
+            Box::leak(Box::new(Name { number, text, role: OnceLock::new(), under: OnceLock::new() }))
+        };
         // Another thread may have been faster.
-        let name = *names
-            .entry(text.to_string().leak())
-            .or_insert_with_key(|text| Box::leak(Box::new(Name { number, text, role })));
+        let name = *names.entry(text.to_string().leak()).or_insert_with_key(new);
         Self { name, of: PhantomData }
+    }
+
+    /// Registers the role of this name. A name has one role: later registrations have to agree.
+    pub(crate) fn in_role(self, role: &str) -> Self {
+        let role = Self::known(role).name;
+        let first = self.name.role.get_or_init(|| role);
+        debug_assert_eq!(first.number, role.number, "`{self}` has two roles");
+        self
+    }
+
+    /// Registers what a motion of matter does to the entry of this name.
+    pub(crate) fn moved(self, under: Under) -> Self {
+        let first = self.name.under.get_or_init(|| under);
+        debug_assert_eq!(*first, under, "motions of matter change `{self}` in two ways");
+        self
     }
 
     /// The handle of this name with `tail` behind it, for values of any kind.
@@ -79,12 +85,17 @@ impl<T> Key<T> {
 
     /// Whether it is known to others as this.
     pub fn plays(self, role: Self) -> bool {
-        self.name.role.is_some_and(|own| own.number == role.name.number)
+        self.name.role.get().is_some_and(|own| own.number == role.name.number)
     }
 
     /// What it is known as to others, if it is.
     pub fn role(self) -> Option<Self> {
-        self.name.role.map(|name| Self { name, of: PhantomData })
+        self.name.role.get().map(|name| Self { name, of: PhantomData })
+    }
+
+    /// What a motion of matter does to its entry, if its owner has registered that.
+    pub fn under(self) -> Option<Under> {
+        self.name.under.get().copied()
     }
 
     /// The name.
@@ -96,20 +107,36 @@ impl<T> Key<T> {
 /// The handle of a name that the program itself has, for a constant; made when it is first used.
 pub struct Constant<T> {
     text: &'static str,
+    role: Option<&'static str>,
+    under: Option<Under>,
     key: OnceLock<Key<T>>,
 }
 
 impl<T> Constant<T> {
     /// That of this name.
     pub const fn new(text: &'static str) -> Self {
-        Self { text, key: OnceLock::new() }
+        Self { text, role: None, under: None, key: OnceLock::new() }
+    }
+
+    /// That of this name, which has a role.
+    pub const fn in_role(text: &'static str, role: &'static str) -> Self {
+        Self { text, role: Some(role), under: None, key: OnceLock::new() }
+    }
+
+    /// That of this name, whose entry a motion of matter changes as `under` states.
+    pub const fn moved(text: &'static str, under: Under) -> Self {
+        Self { text, role: None, under: Some(under), key: OnceLock::new() }
     }
 }
 
 impl<T> std::ops::Deref for Constant<T> {
     type Target = Key<T>;
     fn deref(&self) -> &Key<T> {
-        self.key.get_or_init(|| Key::known(self.text))
+        self.key.get_or_init(|| {
+            let key = Key::known(self.text);
+            let key = self.role.map_or(key, |role| key.in_role(role));
+            self.under.map_or(key, |under| key.moved(under))
+        })
     }
 }
 
@@ -147,7 +174,7 @@ pub struct Named<T> {
     /// By the number of a name: one more than the place of its entry, 0 for none.
     places: Vec<u32>,
     /// In the order of names. What was taken away leaves its place until another name comes.
-    entries: Vec<(Key<T>, Option<T>)>,
+    entries: Vec<(Key<T>, Option<T>, Mark)>,
 }
 
 impl<T> Default for Named<T> {
@@ -165,27 +192,29 @@ impl<T> Named<T> {
     fn slot(&mut self, key: Key<T>) -> &mut Option<T> {
         if self.place(key).is_none() {
             self.drop_gone();
-            let at = self.entries.partition_point(|(k, _)| k.text() < key.text());
-            self.entries.insert(at, (key, None));
+            let at = self.entries.partition_point(|(k, ..)| k.text() < key.text());
+            self.entries.insert(at, (key, None, Mark::default()));
             self.find_places(at);
         }
         let at = self.place(key).expect("it is there now");
-        &mut self.entries[at].1
+        let (_, value, mark) = &mut self.entries[at];
+        mark.write();
+        value
     }
 
     /// Makes room where values were taken away.
     fn drop_gone(&mut self) {
-        let Some(first) = self.entries.iter().position(|(_, value)| value.is_none()) else { return };
-        for (key, _) in self.entries.iter().filter(|(_, value)| value.is_none()) {
+        let Some(first) = self.entries.iter().position(|(_, value, _)| value.is_none()) else { return };
+        for (key, ..) in self.entries.iter().filter(|(_, value, _)| value.is_none()) {
             self.places[key.name.number] = 0;
         }
-        self.entries.retain(|(_, value)| value.is_some());
+        self.entries.retain(|(_, value, _)| value.is_some());
         self.find_places(first);
     }
 
     /// After entries from `first` on have moved.
     fn find_places(&mut self, first: usize) {
-        for (at, (key, _)) in self.entries.iter().enumerate().skip(first) {
+        for (at, (key, ..)) in self.entries.iter().enumerate().skip(first) {
             let number = key.name.number;
             if number >= self.places.len() {
                 self.places.resize(number + 1, 0);
@@ -196,13 +225,17 @@ impl<T> Named<T> {
 
     /// The value, if there is one.
     pub fn get(&self, key: Key<T>) -> Option<&T> {
-        self.entries[self.place(key)?].1.as_ref()
+        let (_, value, mark) = &self.entries[self.place(key)?];
+        mark.read();
+        value.as_ref()
     }
 
     /// The value, if there is one.
     pub fn get_mut(&mut self, key: Key<T>) -> Option<&mut T> {
         let at = self.place(key)?;
-        self.entries[at].1.as_mut()
+        let (_, value, mark) = &mut self.entries[at];
+        mark.write();
+        value.as_mut()
     }
 
     /// The value, made if there is none.
@@ -212,15 +245,15 @@ impl<T> Named<T> {
 
     /// Whether there is a value.
     pub fn contains(&self, key: Key<T>) -> bool {
-        self.get(key).is_some()
+        self.place(key).is_some_and(|at| self.entries[at].1.is_some())
     }
 
     /// The handle of a name that has a value, for names that come from a text.
     #[track_caller]
     pub fn find(&self, text: &str) -> Option<Key<T>> {
         by_name(text);
-        let at = self.entries.binary_search_by(|(key, _)| key.text().cmp(text)).ok()?;
-        let (key, value) = &self.entries[at];
+        let at = self.entries.binary_search_by(|(key, ..)| key.text().cmp(text)).ok()?;
+        let (key, value, _) = &self.entries[at];
         value.as_ref().map(|_| *key)
     }
 
@@ -238,28 +271,30 @@ impl<T> Named<T> {
     /// Takes a value out.
     pub fn remove(&mut self, key: Key<T>) -> Option<T> {
         let at = self.place(key)?;
-        self.entries[at].1.take()
+        let (_, value, mark) = &mut self.entries[at];
+        mark.write();
+        value.take()
     }
 
     /// Takes all values out.
     pub fn clear(&mut self) {
-        self.entries.iter_mut().for_each(|(_, value)| *value = None);
+        self.entries.iter_mut().for_each(|(_, value, _)| *value = None);
     }
 
     /// Keeps those that `keep` holds.
     pub fn retain(&mut self, keep: impl Fn(Key<T>) -> bool) {
-        self.entries.iter_mut().filter(|(key, _)| !keep(*key)).for_each(|(_, value)| *value = None);
+        self.entries.iter_mut().filter(|(key, ..)| !keep(*key)).for_each(|(_, value, _)| *value = None);
     }
 
     /// Takes out those that `keep` does not hold.
     pub fn split_off(&mut self, keep: impl Fn(Key<T>) -> bool) -> Vec<(Key<T>, T)> {
-        let gone = self.entries.iter_mut().filter(|(key, _)| !keep(*key));
-        gone.filter_map(|(key, value)| Some((*key, value.take()?))).collect()
+        let gone = self.entries.iter_mut().filter(|(key, ..)| !keep(*key));
+        gone.filter_map(|(key, value, _)| Some((*key, value.take()?))).collect()
     }
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.iter().count()
+        self.keys().count()
     }
 
     /// Whether there is none.
@@ -269,17 +304,25 @@ impl<T> Named<T> {
 
     /// All in the order of names.
     pub fn iter(&self) -> impl Iterator<Item = (Key<T>, &T)> {
-        self.entries.iter().filter_map(|(key, value)| Some((*key, value.as_ref()?)))
+        self.chosen(|_| true)
     }
 
     /// Those in a role, in the order of names.
     pub fn playing(&self, role: Key<T>) -> impl Iterator<Item = (Key<T>, &T)> {
-        self.iter().filter(move |(key, _)| key.plays(role))
+        self.chosen(move |key| key.plays(role))
+    }
+
+    fn chosen(&self, which: impl Fn(Key<T>) -> bool) -> impl Iterator<Item = (Key<T>, &T)> {
+        let chosen = self.entries.iter().filter(move |(key, ..)| which(*key));
+        chosen.filter_map(|(key, value, mark)| {
+            mark.read();
+            Some((*key, value.as_ref()?))
+        })
     }
 
     /// The names in their order.
     pub fn keys(&self) -> impl Iterator<Item = Key<T>> {
-        self.iter().map(|(key, _)| key)
+        self.entries.iter().filter_map(|(key, value, _)| value.is_some().then_some(*key))
     }
 
     /// The values in the order of names.
@@ -289,7 +332,16 @@ impl<T> Named<T> {
 
     /// All in the order of names, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (Key<T>, &mut T)> {
-        self.entries.iter_mut().filter_map(|(key, value)| Some((*key, value.as_mut()?)))
+        self.entries.iter_mut().filter_map(|(key, value, mark)| {
+            mark.write();
+            Some((*key, value.as_mut()?))
+        })
+    }
+
+    /// The names of the entries that were read or written since the last call.
+    #[cfg(debug_assertions)]
+    pub(crate) fn take_touched(&self) -> impl Iterator<Item = Numbers> {
+        self.entries.iter().filter(|(.., mark)| mark.take()).map(|(key, ..)| key.of())
     }
 
     /// The values in the order of names, to be changed.
@@ -335,59 +387,10 @@ impl<T: serde::Serialize> serde::Serialize for Named<T> {
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let map = BTreeMap::<String, T>::deserialize(from)?;
-        let entries = map.into_iter().map(|(name, value)| (Key::known(&name), Some(value)));
+        let entries = map.into_iter().map(|(name, value)| (Key::known(&name), Some(value), Mark::default()));
         let mut all = Self { entries: entries.collect(), places: vec![] };
         all.find_places(0);
         Ok(all)
-    }
-}
-
-#[cfg(debug_assertions)]
-thread_local!(static STEP: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
-
-/// Something is found by its name: debug builds stop an op that does so.
-#[inline]
-#[track_caller]
-pub(crate) fn by_name(text: &str) {
-    #[cfg(debug_assertions)]
-    assert!(!STEP.get(), "state is looked up by its name `{text}` inside a step");
-    let _ = text;
-}
-
-/// An op acts as long as this lives, or, inside an op, a text from the deck is read: names are looked up there alone.
-pub struct Acting {
-    #[cfg(debug_assertions)]
-    before: bool,
-}
-
-impl Acting {
-    /// An op begins to act.
-    #[inline]
-    pub fn op() -> Self {
-        Self::begin(true)
-    }
-
-    /// A formula or text of the deck, which names what it wants, begins to be read.
-    #[inline]
-    pub fn text() -> Self {
-        Self::begin(false)
-    }
-
-    #[inline]
-    fn begin(step: bool) -> Self {
-        #[cfg(not(debug_assertions))]
-        let _ = step;
-        Self {
-            #[cfg(debug_assertions)]
-            before: STEP.replace(step),
-        }
-    }
-}
-
-#[cfg(debug_assertions)]
-impl Drop for Acting {
-    fn drop(&mut self) {
-        STEP.set(self.before);
     }
 }
 
@@ -413,7 +416,8 @@ mod tests {
         assert!(!all.contains(a) && !all.contains(b) && !all.is_empty());
         all.clear();
         assert!(all.is_empty() && all == Named::default());
-        let (one, two) = (Key::new("property/atom/f/d_b"), Key::new("property/atom/g/d2_c/1"));
+        let [one, two] = [("test/f/d_b", "d_b"), ("test/g/d2_c/1", "d2_c/1")]
+            .map(|(text, role)| Key::new(text).in_role(role));
         all.extend([(two, 2.0), (one, 1.0), (b, 0.0)]);
         assert!(all.playing(Key::new("d2_c/1")).eq([(two, &2.0)]) && one.role() == Some(Key::new("d_b")));
         assert_eq!((b.role(), all.playing(Key::new("test/b")).count()), (None, 0));

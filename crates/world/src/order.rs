@@ -1,8 +1,9 @@
 //! Which particle stands where: the order of space during runs, deletion and renumbering.
 
 use super::World;
-use super::contacts::{PLASTIC, mirror, turn_plastic};
+use super::contacts::{mirror, swap_sides};
 use super::index::Index;
+use super::moving::Under;
 use std::collections::BTreeMap;
 
 impl World {
@@ -85,7 +86,7 @@ impl World {
             Some(([a.min(b), a.max(b)], a > b))
         };
         for (key, c) in self.contacts.iter_mut() {
-            c.rename(pair, if key == *PLASTIC { turn_plastic } else { mirror });
+            c.rename(pair, if key.under() == Some(Under::Sides) { swap_sides } else { mirror });
         }
         for c in self.wall_contacts.values_mut() {
             c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)), mirror);

@@ -61,5 +61,5 @@ impl Pose {
 
 /// The triangles of all walls, in the order of their names.
 pub fn walls(w: &World) -> Vec<Triangle> {
-    w.parts.outlines.values().flat_map(|outline| outline.triangles(w)).collect()
+    w.outlines.values().flat_map(|outline| outline.triangles(w)).collect()
 }

@@ -1,6 +1,6 @@
 //! What a fix property/atom gives particles, as sections of data files have it.
 
-use super::{Key, Numbers, Particles};
+use super::{Numbers, Particles};
 
 /// The name of molecule IDs among properties.
 pub const MOLECULE: &str = "mol";
@@ -12,15 +12,16 @@ pub struct Properties {
     pub fix: String,
     /// Their names in the order of the fix's line: `i_flag`, `d2_heat/1` for a column of several, `mol`, `temperature` …
     pub names: Vec<String>,
+    /// Their columns; `None` for molecule IDs, which particles have by themselves.
+    pub columns: Vec<Option<Numbers>>,
     /// Whether data files get them.
     pub written: bool,
 }
 
 impl Properties {
-    /// The column of property `k`; `None` for molecule IDs, which particles have by themselves.
+    /// The column of property `k`; `None` for molecule IDs.
     pub fn column(&self, k: usize) -> Option<Numbers> {
-        let name = self.names.get(k).filter(|name| *name != MOLECULE)?;
-        Some(Key::new(&format!("property/atom/{}/{name}", self.fix)))
+        self.columns.get(k).copied().flatten()
     }
 
     /// Whether property `k` is a whole number.

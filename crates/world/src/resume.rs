@@ -1,6 +1,6 @@
 //! What passes from one run of the program to the next: declarations, and state that waits for its fix.
 
-use super::{Lattice, World};
+use super::{Lattice, Tracked, World};
 use perigrain_base::diag::Result;
 
 /// The scene as a restart file describes it: as long as all of it still holds, its forces are valid.
@@ -27,6 +27,20 @@ pub struct DeclaredLine {
 }
 
 impl World {
+    /// The scene as a restart file holds it, with what is known of it while a deck is only checked.
+    pub fn stored(&self) -> World {
+        World {
+            facts: Tracked::default(),
+            changed: Tracked::default(),
+            notes: Tracked::default(),
+            outlines: Tracked::default(),
+            promised: Tracked::default(),
+            restored: Tracked::default(),
+            resume: None,
+            ..self.clone()
+        }
+    }
+
     /// Calls `declare`, which makes the state that belongs to `key` (a fix as `STYLE/ID`, a compute as `compute ID`, both perhaps followed by a name), and puts back what
     /// a restart file had under this key.
     ///
@@ -35,9 +49,9 @@ impl World {
     pub fn inherit(&mut self, key: &str, declare: impl FnOnce(&mut World) -> Result<()>) -> Result<()> {
         let belongs =
             |name: &str| name.strip_prefix(key).is_some_and(|r| r.is_empty() || r.starts_with(['/', ' ']));
-        let before = self.parts.restored.len();
-        self.parts.restored.retain(|name| !belongs(name));
-        if self.parts.restored.len() == before {
+        let before = self.restored.len();
+        self.restored.retain(|name| !belongs(name));
+        if self.restored.len() == before {
             return declare(self);
         }
         let columns = self.columns.split_off(|name| !belongs(name));

@@ -1,17 +1,20 @@
 //! Which fields of a scene were read and written since the last query; only debug builds record this.
 
+use super::Numbers;
 use super::World;
 #[cfg(debug_assertions)]
 use super::field;
 use super::field::Fields;
 
 /// What was read and what was written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Touched {
     /// Read.
     pub read: Fields,
     /// Written, or borrowed to be written.
     pub written: Fields,
+    /// The columns and entries of the memo among these.
+    pub names: Vec<Numbers>,
 }
 
 impl World {
@@ -57,14 +60,25 @@ impl World {
             (field::LISTS, self.rebuild.take_marks()),
             (field::TRAVEL, self.travel.take_marks()),
             (field::CLOCK, self.clock.take_marks()),
-            (field::FACTS, self.parts.take_marks()),
+            (field::FACTS, self.facts.take_marks()),
+            (field::FACTS, self.changed.take_marks()),
+            (field::FACTS, self.notes.take_marks()),
+            (field::FACTS, self.outlines.take_marks()),
+            (field::FACTS, self.promised.take_marks()),
+            (field::FACTS, self.unseen.take_marks()),
+            (field::FACTS, self.restored.take_marks()),
         ];
-        debug_assert_eq!(fields.len(), field::FIELDS.len());
+        debug_assert_eq!(fields.iter().fold(Fields::NONE, |all, (field, _)| all | *field), Fields::ALL);
         let mut all = Touched::default();
         for (field, (read, written)) in fields {
             all.read |= if read { field } else { Fields::NONE };
             all.written |= if written { field } else { Fields::NONE };
         }
+        // Entries looked at without a trace of their field have marks as well.
+        let fields = all.read | all.written;
+        let columns = self.columns.past().take_touched().filter(|_| fields.has(field::COLUMNS));
+        all.names = columns.collect();
+        all.names.extend(self.memo.past().take_touched().filter(|_| fields.has(field::MEMO)));
         all
     }
 }

@@ -10,6 +10,41 @@ const READ: u8 = 1;
 #[cfg(debug_assertions)]
 const WRITTEN: u8 = 2;
 
+/// Whether an entry of a part was touched; nothing in release builds. A copy was not.
+#[derive(Debug, Default)]
+pub(crate) struct Mark {
+    #[cfg(debug_assertions)]
+    marks: AtomicU8,
+}
+
+impl Mark {
+    /// The entry is read.
+    #[inline(always)]
+    pub fn read(&self) {
+        #[cfg(debug_assertions)]
+        mark(&self.marks, READ);
+    }
+
+    /// The entry is written.
+    #[inline(always)]
+    pub fn write(&self) {
+        #[cfg(debug_assertions)]
+        mark(&self.marks, WRITTEN);
+    }
+
+    /// Whether the entry was touched since the last call.
+    #[cfg(debug_assertions)]
+    pub fn take(&self) -> bool {
+        self.marks.load(Ordering::Relaxed) != 0 && self.marks.swap(0, Ordering::Relaxed) != 0
+    }
+}
+
+impl Clone for Mark {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
 /// A part of the scene that records accesses to it. Its length may be read without a trace; so may all of it, by
 /// [`Tracked::past`].
 #[cfg_attr(not(debug_assertions), repr(transparent))]

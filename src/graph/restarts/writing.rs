@@ -4,12 +4,14 @@ use super::{Restarts, Rhythm};
 use crate::graph::node::{FixNode, Graph};
 use crate::graph::seal::Sealer;
 use perigrain_base::diag::Result;
+use perigrain_contact::mdr;
 use perigrain_output::file::Pattern;
 use perigrain_output::restart::{Saving, write};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_styles::peri_view::BOND_FACTORS;
 use perigrain_styles::{SealCx, Use, UseKind};
 use perigrain_world::adapted;
-use perigrain_world::columns::{BOND_FACTORS, LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
+use perigrain_world::columns::LEVEL;
 use perigrain_world::field::{Fields, MEMO};
 use perigrain_world::{Constant, DeclaredLine, World};
 use std::collections::BTreeSet;
@@ -96,7 +98,7 @@ impl Op for Write {
 /// The disk's.
 pub fn save(path: &Path, w: &World, ran: bool, pair: &[DeclaredLine], declared: &[String]) -> Result<()> {
     let ran = ran && !w.clock.minimizing;
-    let standing = ran && (w.clock.running || !w.parts.changed);
+    let standing = ran && (w.clock.running || !*w.changed);
     write(path, &Saving { world: w, ran, standing, pair, declared })
 }
 
@@ -106,8 +108,8 @@ pub fn claimable(name: &str) -> bool {
     // steps belong to the run style, which is a setting.
     name != NEXT.text()
         && !adapted::is(name)
-        && name != PLASTIC_BEGUN.text()
-        && !name.starts_with(PLASTIC_COLUMNS)
+        && name != mdr::BEGUN.text()
+        && !name.starts_with(mdr::BEGIN)
         && !name.starts_with(LEVEL)
         && BOND_FACTORS.iter().all(|factors| name != factors.text())
 }

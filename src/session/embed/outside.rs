@@ -18,13 +18,14 @@ impl Session {
             let text = format!("fix `{id}` is a fix {style}, not a fix external");
             return fail(Code::WRONG_KIND, None, text);
         }
-        self.world.parts.outside.insert(Key::new(&external::name(id)), program);
+        self.world.facts.insert(external::program(Key::new(&external::name(id))), program);
         Ok(())
     }
 
     /// Whether a fix external talks to this program.
     pub fn talks(&self, id: &str, program: &Arc<dyn Outside>) -> bool {
-        self.world.parts.outside.look_up(&external::name(id)).is_some_and(|now| Arc::ptr_eq(now, program))
+        let key = external::program(Key::new(&external::name(id)));
+        self.world.facts.get(key).is_some_and(|now| Arc::ptr_eq(now, program))
     }
 
     /// Sets the values of a fix external for each particle, in the order of the particles.

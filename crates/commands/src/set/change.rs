@@ -7,11 +7,12 @@ use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, masses_from_density};
+use perigrain_styles::peri_view::BOND_FACTORS;
 use perigrain_styles::words::{
     At, Fraction, Given, Kind, MarsagliaSeed, Nullable, Or, PerAtom, Seed, Types, Value, Words,
 };
 use perigrain_styles::{ActCx, BuildCx};
-use perigrain_world::columns::{BOND_FACTORS, TEMPERATURE};
+use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::{Numbers, World};
 use std::collections::BTreeSet;
 

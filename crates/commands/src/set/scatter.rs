@@ -126,8 +126,8 @@ pub fn set(w: &mut World, chosen: &[usize], column: Numbers, factors: &[f64]) {
 #[cfg(test)]
 mod tests {
     use crate::testing::{more, refused, scene};
+    use perigrain_styles::peri_view::BOND_FACTORS;
     use perigrain_world::World;
-    use perigrain_world::columns::BOND_FACTORS;
 
     fn solid() -> World {
         let mut w = scene("units si\natom_style peri\nregion b block 0 8 0 8 0 8 units box\ncreate_box 2 b");

@@ -168,7 +168,7 @@ impl Declared {
             return Ok(vec![]);
         }
         let span = cx.span();
-        let ids: Vec<String> = cx.world().parts.outlines.keys().map(|k| Key::text(k).to_string()).collect();
+        let ids: Vec<String> = cx.world().outlines.keys().map(|k| Key::text(k).to_string()).collect();
         if ids.is_empty() {
             let text = "`boundary/fix` needs a wall, and there is none";
             return Err(Diagnostic::error(Code::INCOMPLETE, span, text)

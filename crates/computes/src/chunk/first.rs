@@ -134,7 +134,11 @@ impl Compute for SinceFirst {
         let op = StepOp::new(
             name,
             stage,
-            Needs::new().read(X | V | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).write(SLOTS).keep(MEMO),
+            Needs::new()
+                .read(X | V | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND)
+                .write(SLOTS)
+                .keep(MEMO)
+                .only(&[key.text()]),
             move |w: &mut World, t| {
                 let now = weighted(w, me.group, &Chunks::of(w, chunks, kind), me.of);
                 let now: Vec<Vec3> = now.into_iter().map(mean).collect();

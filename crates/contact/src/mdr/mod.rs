@@ -17,7 +17,7 @@ mod walls;
 pub use deeds::Sum;
 pub use pairs::Meetings;
 pub use side::{Pressed, Side};
-pub use state::{State, begin, begun};
+pub use state::{BEGIN, BEGUN, SIDES, State, begin, begun};
 pub use walls::{far_pushed, gather, press};
 
 use perigrain_base::math::elementary::exp;

@@ -1,13 +1,28 @@
 //! State of plastic grains: original and current size, free surface, strain, mean stress.
 
 use super::Material;
-use perigrain_world::columns::{Columns, PLASTIC_BEGUN};
-use perigrain_world::{Constant, World};
+use perigrain_world::columns::Columns;
+use perigrain_world::contacts::Contacts;
+use perigrain_world::{Constant, Under, World};
 use std::f64::consts::PI;
 
+/// How the names of the columns begin: decks read them as those of a fix property/atom.
+pub const BEGIN: &str = "property/atom/mdr/";
+
 macro_rules! columns {
-    ($($name:ident)*) => { [$(Constant::new(concat!("property/atom/mdr/d_", stringify!($name)))),*] };
+    ($($name:ident)*) => {
+        [$(Constant::in_role(
+            concat!("property/atom/mdr/d_", stringify!($name)),
+            concat!("d_", stringify!($name)),
+        )),*]
+    };
 }
+
+/// The name in `memo` of the last step that plastic grains have begun.
+pub static BEGUN: Constant<Vec<f64>> = Constant::new("mdr/begun");
+
+/// The name of the contacts of plastic grains, besides those of their pair style: the history of each side, and what both have in common.
+pub static SIDES: Constant<Contacts> = Constant::moved("mdr", Under::Sides);
 
 /// The columns, named as in LAMMPS' decks.
 static COLUMNS: [Constant<Vec<f64>>; 21] = columns![
@@ -118,9 +133,10 @@ impl State {
         state
     }
 
-    /// Creates the columns.
+    /// Creates the columns; contacts from a restart file are known by their name from now on.
     pub fn declare(w: &mut World) {
         let n = w.n();
+        debug_assert_eq!(SIDES.under(), Some(Under::Sides));
         for key in COLUMNS.iter() {
             w.columns.scalar(**key, n);
         }
@@ -195,7 +211,7 @@ impl State {
 
 /// Whether this step has been begun (`at` as for [`begin`]).
 pub fn begun(w: &World, at: (i64, bool)) -> bool {
-    !at.1 && w.memo.get(*PLASTIC_BEGUN).is_some_and(|s| s[..] == [at.0 as f64])
+    !at.1 && w.memo.get(*BEGUN).is_some_and(|s| s[..] == [at.0 as f64])
 }
 
 /// Begins step `at.0` for all grains, unless that has been done in this step; in the setup (`at.1`) grains
@@ -207,7 +223,7 @@ pub fn begin(w: &mut World, at: (i64, bool), m: &Material) -> State {
     state.add_grains(&w.particles.radius);
     if !setup && !begun(w, at) {
         state.begin(m, &mut w.particles.radius);
-        w.memo.insert(*PLASTIC_BEGUN, vec![step]);
+        w.memo.insert(*BEGUN, vec![step]);
     }
     state
 }

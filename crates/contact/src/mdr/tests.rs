@@ -127,7 +127,7 @@ fn a_side_survives_its_memory() {
     side.write(&mut memory);
     assert_eq!(Side::read(&memory), side);
     let mut both: Vec<f64> = memory.iter().copied().chain([7.0; side::WIDTH]).chain([0.1]).collect();
-    perigrain_world::contacts::turn_plastic(&mut both);
+    perigrain_world::contacts::swap_sides(&mut both);
     assert_eq!((both[0], both[side::WIDTH], both[PAIR - 1]), (7.0, memory[0], 0.1));
 }
 

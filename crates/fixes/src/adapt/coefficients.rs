@@ -8,7 +8,7 @@ use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{MEMO, SLOTS};
-use perigrain_world::{Numbers, World};
+use perigrain_world::{Key, Numbers, World};
 
 /// `pair STYLE PARAMETER I J v_name` or `bond STYLE PARAMETER I v_name`.
 #[derive(Clone)]
@@ -156,7 +156,7 @@ struct Before {
 impl Before {
     /// The saved value of a run that a restart file interrupted, or the current one.
     fn of(w: &World, id: &str, of: &Coefficient, declared: f64) -> Self {
-        let keys @ [key, kept] = [of.key(), of.kept_by(id)];
+        let keys @ [key, kept] = [of.key(), Key::new(&format!("adapt/{id}/{}", of.key()))];
         match (w.memo.get(kept).map(Vec::as_slice), w.adapted(key)) {
             (Some(&[value, adapted]), _) => Before { value, adapted: adapted != 0.0, keys },
             (_, now) => Before { value: now.unwrap_or(declared), adapted: now.is_some(), keys },

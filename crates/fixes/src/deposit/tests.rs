@@ -58,9 +58,9 @@ fn heights_and_directions() {
     // The bench's test accepts only positions with positive x.
     let (x, _) = first(&mut b, "5 1 10 44 region slab units box var e set x e attempt 50").unwrap();
     assert!(x[0] > 0.0);
-    assert!(b.world.parts.notes.is_empty());
+    assert!(b.world.notes.is_empty());
     assert!(first(&mut b, "5 1 10 44 region slab units box near 30").is_none());
-    assert!(b.world.parts.notes.0[0].message.starts_with("at 1 steps"));
+    assert!(b.world.notes.0[0].message.starts_with("at 1 steps"));
 }
 
 #[test]

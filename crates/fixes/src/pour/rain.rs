@@ -208,7 +208,7 @@ impl Op for Rain {
         if let Some((count, step)) = failed.filter(|(count, _)| *count > 0) {
             let text =
                 format!("fewer insertions than planned: {count} spheres found no place, from step {step} on");
-            w.parts.notes.push(
+            w.notes.push(
                 Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
                     .help("lower the volume fraction of `vol` (0.2 to 0.4 is usual), or allow more attempts")
                     .help("or see that what was poured before has left the region: a larger or higher one, a larger vz"),

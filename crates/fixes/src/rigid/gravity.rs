@@ -65,7 +65,7 @@ impl Weight {
             Some(_) => named.filter(shares).map(|g| twice(g, span)),
             None => pulling.iter().copied().find(shares).map(|g| mass_warning(fix, g, lammps, span)),
         };
-        note.into_iter().for_each(|note| w.parts.notes.push(note));
+        note.into_iter().for_each(|note| w.notes.push(note));
         // LAMMPS leaves gravity on particles unchanged.
         let kept = if lammps { vec![] } else { pulling };
         Ok(Self {

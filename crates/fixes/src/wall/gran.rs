@@ -340,7 +340,7 @@ impl Running {
             (Motion::Wiggle(axis, amplitude, omega), _) => {
                 self.offset = amplitude - amplitude * (omega * time).cos();
                 self.velocity[axis] = amplitude * omega * (omega * time).sin();
-                if let Some(outline) = w.parts.outlines.get_mut(self.outline) {
+                if let Some(outline) = w.outlines.get_mut(self.outline) {
                     outline.pose.shift[axis] = self.offset;
                 }
             }
@@ -361,7 +361,7 @@ impl Surface for Running {
         if let Stands::Planes(planes) = &mut self.stands {
             let (gone, look) = planes.follow(w, t)?;
             way += gone;
-            if let (Some(look), Some(outline)) = (look, w.parts.outlines.get_mut(self.outline)) {
+            if let (Some(look), Some(outline)) = (look, w.outlines.get_mut(self.outline)) {
                 *outline = look;
             }
         }

@@ -17,6 +17,8 @@ use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::Param;
 use perigrain_pairs::contact::durations;
 use perigrain_plan::{Op, Tick};
+use perigrain_styles::critical::WALL_SPRINGS;
+use perigrain_styles::ledger::WALL_TOUCHES;
 use perigrain_styles::pair::Deck;
 use perigrain_styles::{BuildCx, SealCx, Shape};
 use perigrain_world::contacts::Contacts;
@@ -110,7 +112,7 @@ impl<F: Form> Fix for Declared<F> {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         self.form.declare(w, self.common.key(F::STYLE));
-        w.parts.outlines.insert(Key::new(&self.common.id), self.form.outline());
+        w.outlines.insert(Key::new(&self.common.id), self.form.outline());
         Ok(())
     }
 
@@ -121,9 +123,11 @@ impl<F: Form> Fix for Declared<F> {
         let contacts: Key<Contacts> = Key::new(&self.common.id);
         w.wall_contacts.remove(contacts);
         w.wall_contacts.remove(plastic::key(&self.common.id));
-        w.parts.wall_springs.lists.remove(contacts.of());
-        w.parts.outlines.remove(contacts.of());
-        if let Some(all) = &mut w.parts.wall_touches {
+        if let Some(springs) = w.facts.get_mut(*WALL_SPRINGS) {
+            springs.lists.remove(contacts.of());
+        }
+        w.outlines.remove(contacts.of());
+        if let Some(all) = w.facts.get_mut(*WALL_TOUCHES) {
             all.remove(contacts.of());
         }
     }

@@ -11,9 +11,11 @@ use perigrain_contact::driver::DEEP;
 use perigrain_contact::walls::{Meeting, Spheres, WallSweep};
 use perigrain_contact::{Advance, Granular};
 use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way, When};
+use perigrain_styles::critical::{ReportedSprings, WALL_SPRINGS, walls_always_report, walls_report};
+use perigrain_styles::ledger::WALL_TOUCHES;
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::contacts::{Contacts, ReportedSprings};
+use perigrain_world::contacts::Contacts;
 use perigrain_world::field::{
     self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL, V,
     WALL_CONTACTS, X,
@@ -405,8 +407,8 @@ impl Op for WallOp {
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
-        let parts = w.parts.past();
-        let asked = parts.wall_touches.is_some() || parts.wall_springs.wanted(t.step, t.setup, t.last);
+        let facts = w.facts.past();
+        let asked = facts.has(*WALL_TOUCHES) || walls_report(facts, t.step, t.setup, t.last);
         match asked || t.setup || self.plastic.is_some() || self.warmth.is_some() {
             true => Rows::All,
             false => Rows::Own,
@@ -437,14 +439,15 @@ impl Op for WallOp {
         let grains = Spheres { x: &p.x, v, omega, radius: &p.radius, mass: &masses, tag: &p.tag };
         let step = Advance { dt: t.dt, history: !t.setup };
         self.sweep.act(&grains, &self.law, &mut memory, step);
-        let asked = w.parts.wall_springs.wanted(t.step, t.setup, t.last);
+        let asked = walls_report(&w.facts, t.step, t.setup, t.last);
         let springs = asked.then(|| self.sweep.springs(&grains, &self.law, &memory));
-        let booked = w.parts.wall_touches.is_some();
+        let booked = w.facts.has(*WALL_TOUCHES);
         let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
         if let Some(list) = springs {
-            w.parts.wall_springs.lists.insert(self.key.of(), ReportedSprings { step: t.step, list });
+            let report = ReportedSprings { step: t.step, list };
+            w.facts.get_or_default(*WALL_SPRINGS).lists.insert(self.key.of(), report);
         }
-        if let Some((all, touches)) = w.parts.wall_touches.as_mut().zip(touches) {
+        if let Some((all, touches)) = w.facts.get_mut(*WALL_TOUCHES).zip(touches) {
             all.insert(self.key.of(), touches);
         }
         give(w, self.key, self.kept.take().unwrap_or(memory));
@@ -462,7 +465,7 @@ impl Op for WallOp {
             && !t.unchanged
             && self.peace.lasts(*w.travel)
             && self.generation == Some(w.rebuild.generation)
-            && !w.parts.wall_springs.always;
+            && !walls_always_report(&w.facts);
         if rests {
             w.slots.get_mut(self.slot).step = Some(t.step);
             debug_assert!(self.room(w) > 0.0, "{} rests and is touched", self.name);
@@ -481,7 +484,7 @@ impl Op for WallOp {
                  10 %",
                 self.name
             );
-            w.parts.notes.push(
+            w.notes.push(
                 Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
                     .help("look for particles that were created inside it, or take a stiffer wall and a shorter step")
                     .help("only the first step at which it is so is reported"),

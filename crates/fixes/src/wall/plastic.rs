@@ -5,8 +5,10 @@ use perigrain_contact::Model;
 use perigrain_contact::mdr::{self, Manner, Material, PRECOMPUTED, State, WALL};
 use perigrain_contact::normal::{plastic, plastic_grain};
 use perigrain_contact::walls::WallSweep;
+use perigrain_pairs::PLASTIC_GRAIN;
 use perigrain_plan::Tick;
 use perigrain_styles::SealCx;
+use perigrain_styles::ledger::WALL_TOUCHES;
 use perigrain_world::contacts::Contacts;
 use perigrain_world::{Key, World};
 
@@ -19,7 +21,7 @@ const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
 /// # Errors
 /// Another normal model, or another parameter.
 pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
-    let Some(grains) = cx.world().parts.plastic else { return Ok(()) };
+    let Some(grains) = cx.world().facts.get(*PLASTIC_GRAIN).copied() else { return Ok(()) };
     let Some(wall) = plastic_grain(&model.normal) else {
         let text = format!("the grains are plastic (`mdr`), the wall is `{}`", model.normal.name());
         let d = Diagnostic::error(Code::CONFLICT, cx.span(), text);
@@ -89,7 +91,7 @@ impl Plastic {
         let (touching, keys) = sweep.touching();
         memory.carry(keys, WALL, &mut self.spare);
         let manner =
-            Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
+            Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.facts.has(*WALL_TOUCHES) };
         let width = contacts.width;
         let before = t.setup.then(|| memory.history.clone());
         let rows = memory.history.chunks_exact_mut(WALL).zip(contacts.history.chunks_exact_mut(width));

@@ -113,7 +113,7 @@ pub fn open(w: &World, word: &Word, array: Option<&Word>) -> Result<Box<dyn Imag
 
 /// Where a file is that is read as it is needed.
 fn locate(w: &World, word: &Word) -> Result<PathBuf> {
-    if w.parts.promised.get(&word.text).is_some() {
+    if w.promised.get(&word.text).is_some() {
         return Err(unseen(word.span, &word.text));
     }
     let path = w.to_read(&word.text);
@@ -121,7 +121,7 @@ fn locate(w: &World, word: &Word) -> Result<PathBuf> {
     if gate::exists(&path) {
         return Ok(path);
     }
-    if w.parts.promised.anything {
+    if w.promised.anything {
         return Err(unseen(word.span, &word.text));
     }
     Err(absent(word, &format!("the image `{}` cannot be read: it is not there", word.text)))

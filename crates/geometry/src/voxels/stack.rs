@@ -87,7 +87,7 @@ fn find(w: &World, word: &Word) -> Result<Vec<PathBuf>> {
             return Ok(found.into_iter().map(|(_, path)| path).collect());
         }
     }
-    if w.parts.promised.anything {
+    if w.promised.anything {
         return Err(perigrain_base::diag::unseen(word.span, &word.text));
     }
     Err(absent(word, &format!("no image `{}` is there, with digits for the `*`", word.text)))

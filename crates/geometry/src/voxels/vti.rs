@@ -47,7 +47,7 @@ pub fn open(w: &World, word: &Word, array: Option<&Word>) -> Result<Box<dyn Imag
 /// The tags of a file whose arrays stand raw behind them, and the file. Files that cannot be opened or understood are left to the
 /// reader of the whole file.
 fn head(w: &World, word: &Word) -> Option<(File, fs::File)> {
-    if w.parts.promised.get(&word.text).is_some() {
+    if w.promised.get(&word.text).is_some() {
         return None;
     }
     let path = w.to_read(&word.text);

@@ -6,10 +6,13 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{Fix, SealCx, Shape};
 use perigrain_world::field::{COLUMNS, Fields, MEMO, SLOTS, X};
-use perigrain_world::{Key, Numbers, Slot, Vectors, World};
+use perigrain_world::{Key, Numbers, Registration, Slot, Under, Vectors, World};
 
 /// The style's name among fixes.
 pub const NAME: &str = "store/local";
+
+/// Columns of places in the setup of the first run.
+static FIRST: Registration = Registration::moved("store/local/", "/first", Under::Anchor);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Value {
@@ -68,7 +71,8 @@ impl Store {
                 format!("`store/local` needs the values to keep of bonds that break: {}", known.join(" "));
             return fail(Code::INCOMPLETE, args.here(), text);
         }
-        let (rows, first) = (Key::new(&format!("{NAME}/{id}")), Key::new(&format!("{NAME}/{id}/first")));
+        let own = format!("{NAME}/{id}");
+        let (rows, first) = (Key::new(&own), FIRST.key(&own));
         Ok(Self { id, every, values, rows, first })
     }
 
@@ -129,7 +133,7 @@ impl Fix for Store {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let slot = cx.slot(&format!("f_{}", self.id));
-        let mut access = Needs::new().write(SLOTS).keep(MEMO);
+        let mut access = Needs::new().write(SLOTS).keep(MEMO).only(&[self.rows.text(), self.first.text()]);
         if self.looks_back() {
             access = access.read(X).keep(COLUMNS);
         }

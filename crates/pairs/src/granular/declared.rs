@@ -2,6 +2,7 @@
 
 use super::force::Force;
 use super::heating::conducts;
+use super::mdr::PLASTIC_GRAIN;
 use super::mdr::Press;
 use crate::contact::{Coeff, durations, words};
 use crate::contact_probe::{ContactProbe, Own};
@@ -211,7 +212,9 @@ impl Pair for Declared {
         let press = self.mdr()?.map(|(material, span)| Press::new(material, span));
         if press.is_some() {
             // Walls look it up: pair styles are sealed before fixes.
-            cx.world().parts.plastic = self.given.values().find_map(|c| plastic_grain(&c.model.normal));
+            if let Some(grain) = self.given.values().find_map(|c| plastic_grain(&c.model.normal)) {
+                cx.world().facts.insert(*PLASTIC_GRAIN, grain);
+            }
         }
         let types = cx.world().types;
         Ok(vec![(0, Box::new(Force::new(self.name, rules, wanted, types, press)))])

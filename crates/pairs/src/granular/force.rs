@@ -5,6 +5,7 @@ mod lists;
 use super::super::shared::{add_virial, find_frozen};
 use super::heating::{Heating, conducts};
 use super::mdr::Press;
+use super::ranks::{DEEP, Deep};
 use super::ranks::{agree_on_deep, contacts_of_all, virial_of_all};
 use perigrain_base::diag::Result;
 use perigrain_base::math::periods::Periods;
@@ -16,13 +17,15 @@ use perigrain_contact::mdr::Manner;
 use perigrain_contact::{Advance, Arm, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_plan::{About, Needs, Op, Span, Stage, Tick};
+use perigrain_styles::ledger::{PAIR_WORK, WALL_TOUCHES};
 use perigrain_world::Fields;
-use perigrain_world::contacts::{Contacts, Deep, PairWork};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::contacts::{Contacts, PairWork};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
 };
-use perigrain_world::{Key, World};
+use perigrain_world::{CONTACT_MASS, Constant, Key, World};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -155,7 +158,7 @@ impl Force {
         (period, store, anew): (Periods, bool, bool),
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
-        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && w.parts.pair_work.is_none();
+        let plain = !t.virial && !t.contacts && !conducts(&self.rules) && !w.facts.has(*PAIR_WORK);
         let alone = self.lent.is_none();
         let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_tile());
         let Some(fast) = fast else { return Ok(false) };
@@ -197,7 +200,7 @@ impl Force {
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
         let renewed =
             stale || self.generation != Some(w.rebuild.generation) || self.deal != self.wanted_deal(w);
-        if w.parts.tiles.is_some() {
+        if w.facts.has(*TILES) {
             self.fast.iter_mut().for_each(Fast::time_tiles);
         }
         if renewed {
@@ -232,7 +235,7 @@ impl Force {
         let mut memory = w.contacts.remove(self.key).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let manner =
-            Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.parts.wall_touches.is_some() };
+            Manner { lammps: w.settings.lammps(), setup: t.setup, booked: w.facts.has(*WALL_TOUCHES) };
         let deeds = begin_pair_work(w, t, self.key, &self.rules);
         let (plain, press) = (&mut self.plain, &mut self.press);
         let (mass, [v, omega]) = (masses(&self.lent, w), t.phase.motion(w));
@@ -319,6 +322,7 @@ impl Op for Force {
                 )
                 .add(F | TORQUE)
                 .write(FACTS | CONTACTS | TALLY)
+                .only(&[CONTACT_MASS.text(), TEMPERATURE.text(), HEATFLOW.text()])
         };
         About::new(&self.name, Stage::Force, needs)
     }
@@ -356,7 +360,7 @@ impl Op for Force {
         if self.wanted_deal(w).is_some() {
             return Span::Requested;
         }
-        let asked = t.virial || t.atom_virial || t.contacts || w.parts.past().pair_work.is_some();
+        let asked = t.virial || t.atom_virial || t.contacts || w.facts.past().has(*PAIR_WORK);
         let plain = !asked && !t.setup && self.press.is_none() && !conducts(&self.rules);
         let listed = self.generation == Some(w.rebuild.past().generation);
         if !plain || !listed || w.grains_dealt().is_some() {
@@ -372,7 +376,7 @@ impl Op for Force {
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
-        if let Some(lines) = &mut w.parts.tiles
+        if let Some(lines) = w.facts.get_mut(*TILES)
             && let Some(line) = self.fast.as_ref().and_then(Fast::describe_tiles)
         {
             lines.push(format!("{}: {line}", self.name));
@@ -437,12 +441,15 @@ pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [b
     })
 }
 
+/// Where a plan is measured: a line for each pair style that keeps the times of its tiles, as the last run left them.
+pub static TILES: Constant<Vec<String>> = Constant::new("granular/tiles");
+
 /// Room for what contacts report to the ledger of energy, where there is one.
 fn begin_pair_work(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -> Option<PairWork> {
     // Opening a memory that does not exist writes it.
-    w.parts.pair_work.as_ref()?;
+    w.facts.get(*PAIR_WORK)?;
     let n = w.n();
-    let all = w.parts.pair_work.as_mut()?;
+    let all = w.facts.get_mut(*PAIR_WORK)?;
     let mut own = std::mem::take(all.get_or(key.of(), PairWork::default));
     own.begin(n, t.step, rules.any(|r| r.law.flows()));
     Some(own)
@@ -450,14 +457,14 @@ fn begin_pair_work(w: &mut World, t: &Tick, key: Key<Contacts>, rules: &Rules) -
 
 /// Books what they reported in the ledger.
 fn keep_pair_work(w: &mut World, key: Key<Contacts>, own: PairWork) {
-    if let Some(all) = &mut w.parts.pair_work {
+    if let Some(all) = w.facts.get_mut(*PAIR_WORK) {
         all.insert(key.of(), own);
     }
 }
 
 /// Keeps the first grains that were seen too deep in each other.
 fn report(w: &mut World, t: &Tick, deep: Option<([u32; 2], f64)>) {
-    if let (Some((ids, part)), None) = (deep, &w.parts.deep) {
-        w.parts.deep = Some(Deep { step: t.step, ids, part, warned: false });
+    if let (Some((ids, part)), None) = (deep, w.facts.get(*DEEP)) {
+        w.facts.insert(*DEEP, Deep { step: t.step, ids, part, warned: false });
     }
 }

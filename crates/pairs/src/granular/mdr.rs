@@ -2,10 +2,13 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Grains, Sweep};
-use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, PRECOMPUTED, State, begin, undo};
+use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, PRECOMPUTED, SIDES, State, begin, undo};
 use perigrain_plan::Tick;
-use perigrain_world::World;
-use perigrain_world::contacts::{Contacts, PLASTIC};
+use perigrain_world::contacts::Contacts;
+use perigrain_world::{Constant, World};
+
+/// What the plastic grains of the pair style in force are made of: E, ν, Y, ψ_b and restitution.
+pub static PLASTIC_GRAIN: Constant<[f64; 5]> = Constant::new("mdr/material");
 
 /// Plastic grains of one pair style.
 pub struct Press {
@@ -28,7 +31,7 @@ impl Press {
 
     /// Begins a step: grains grow.
     pub fn begin(&mut self, w: &mut World, t: &Tick) {
-        self.plastic = w.contacts.remove(*PLASTIC).unwrap_or_default();
+        self.plastic = w.contacts.remove(*SIDES).unwrap_or_default();
         self.state = begin(w, (t.step, t.setup), &self.material);
     }
 
@@ -57,7 +60,7 @@ impl Press {
 
     /// Ends a step: the history of grains and contacts goes back into the world.
     pub fn end(&mut self, w: &mut World) {
-        w.contacts.insert(*PLASTIC, std::mem::take(&mut self.plastic));
+        w.contacts.insert(*SIDES, std::mem::take(&mut self.plastic));
         std::mem::take(&mut self.state).put(&mut w.columns);
     }
 

@@ -2,9 +2,25 @@
 
 use perigrain_base::comm::{self, rows};
 use perigrain_contact::fast::{Dealt, Fast, Own};
-use perigrain_world::World;
-use perigrain_world::contacts::{Contacts, Deep};
+use perigrain_world::contacts::Contacts;
 use perigrain_world::share::joined_of_all;
+use perigrain_world::{Constant, World};
+
+/// Grains that overlap so far that contact laws mean little.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deep {
+    /// When it was first seen.
+    pub step: i64,
+    /// The two grains.
+    pub ids: [u32; 2],
+    /// Overlap over the smaller radius.
+    pub part: f64,
+    /// Whether the warning has been given.
+    pub warned: bool,
+}
+
+/// The first grains seen to overlap by more than a tenth of a radius during a run.
+pub static DEEP: Constant<Deep> = Constant::new("granular/deep");
 
 /// Contact history of all ranks.
 pub fn contacts_of_all(fast: &Fast) -> Contacts {
@@ -31,11 +47,13 @@ pub fn virial_of_all(fast: &Fast) -> [f64; 6] {
 
 /// Lets all ranks know which grains overlapped too far first: those of smallest ids in the first step in which some did on any rank.
 pub fn agree_on_deep(w: &mut World) {
-    let own = w.parts.deep;
+    let own = w.facts.get(*DEEP).copied();
     if own.is_some_and(|deep| deep.warned) {
         return;
     }
     let all = rows::of_all(own.map(|deep| (deep.ids, [deep.step as f64, deep.part])));
     let deep = |(ids, [step, part]): rows::Row<2, 2>| Deep { step: step as i64, ids, part, warned: false };
-    w.parts.deep = all.into_iter().map(deep).min_by_key(|deep| (deep.step, deep.ids));
+    if let Some(first) = all.into_iter().map(deep).min_by_key(|deep| (deep.step, deep.ids)) {
+        w.facts.insert(*DEEP, first);
+    }
 }

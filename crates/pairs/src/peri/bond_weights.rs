@@ -146,7 +146,7 @@ pub fn note(style: &Solid, families: &Families, w: &mut World) {
             factors.most,
             factors.mean
         );
-        w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
+        w.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
         if factors.cut > TOO_MANY {
             let text = format!(
                 "{:.0} % of the bonds would need factors beyond {:.1} to {:.0} for whole families, as in bodies of one or two layers",
@@ -155,7 +155,7 @@ pub fn note(style: &Solid, families: &Families, w: &mut World) {
                 factors.most
             );
             let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
-            w.parts.notes.push(d.help("take three particles or more across the body, or a smaller horizon"));
+            w.notes.push(d.help("take three particles or more across the body, or a smaller horizon"));
         }
     }
 }
@@ -172,7 +172,7 @@ fn horizons(style: &Solid, families: &Families, w: &mut World) {
         "peridynamic bonds: horizons count in the spacing around each particle (`horizon own`): {least:.4e} to {most:.4e}, mean \
          {mean:.4e}; the smallest family has {fewest} partners"
     );
-    w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
+    w.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
 }
 
 /// What partial volumes take from families.
@@ -187,5 +187,5 @@ fn partial(rule: VolumeRule, weighed: Weighed, w: &mut World) {
         100.0 * weighed.in_part,
         weighed.mean
     );
-    w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
+    w.notes.push(Diagnostic::note(Code::MATERIAL, None, text));
 }

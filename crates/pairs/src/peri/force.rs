@@ -207,7 +207,7 @@ impl Force {
                 self.scatter.note(w);
                 bond_weights::note(&self.style, &families, w);
                 let notes = pulled::notes(&self.style, &families, &view(w)?);
-                notes.into_iter().for_each(|note| w.parts.notes.push(note));
+                notes.into_iter().for_each(|note| w.notes.push(note));
                 families
             }
         };
@@ -246,7 +246,7 @@ impl Force {
         let text =
             format!("particle {tag} (type {kind}){more} no partner within the horizon: no bond holds it");
         let horizon = self.style.table.get(kind, kind).map_or(0.0, |c| c.horizon);
-        w.parts.notes.push(
+        w.notes.push(
             Diagnostic::warning(Code::SUSPICIOUS, None, text)
                 .help(format!("the horizon is {horizon}: compare it with the distance of particles"))
                 .help("particles that shall only touch others need no peridynamic coefficients of their own"),
@@ -272,7 +272,7 @@ impl Force {
             a.min(b),
             a.max(b)
         );
-        w.parts.notes.push(
+        w.notes.push(
             Diagnostic::warning(Code::SUSPICIOUS, None, text)
                 .help("`delete_atoms overlap` takes away one of two such particles before the run"),
         );
@@ -319,7 +319,7 @@ fn note_almost(w: &mut World, families: &Families) {
          distance of neighbours off their sites: bonds are computed one by one, as a list",
         worst.off
     );
-    w.parts.notes.push(
+    w.notes.push(
         Diagnostic::warning(Code::SUSPICIOUS, None, text)
             .help("results are as good; on a lattice (sites hit to 1e-10 of that distance) steps take a fraction of the time")
             .help("places with more digits, or particles made by `create_atoms`, are on their lattice"),

@@ -3,8 +3,8 @@
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions};
+use perigrain_styles::peri_view::BOND_FACTORS;
 use perigrain_world::World;
-use perigrain_world::columns::BOND_FACTORS;
 
 /// Which factors the scene has.
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,7 +88,7 @@ impl Scatter {
         let strength = self.strength.then(|| one(0, "the critical stretch"));
         let stiffness = self.stiffness.then(|| one(1, "the micro-modulus"));
         let notes = strength.into_iter().chain(stiffness);
-        notes.for_each(|text| w.parts.notes.push(Diagnostic::note(Code::MATERIAL, None, text)));
+        notes.for_each(|text| w.notes.push(Diagnostic::note(Code::MATERIAL, None, text)));
     }
 }
 

@@ -192,7 +192,7 @@ impl Running {
             Motion::Rotate(_, _, omega) => self.angle = omega * time,
             Motion::Variable(_) => self.follow(w, t)?,
         }
-        if let Some(outline) = w.parts.outlines.get_mut(self.outline) {
+        if let Some(outline) = w.outlines.get_mut(self.outline) {
             outline.pose = self.pose();
         }
         Ok(length(sub(self.shift, before.0)) + self.arm * (self.angle - before.1).abs())

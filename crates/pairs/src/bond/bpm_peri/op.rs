@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
+use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, FAMILIES, KIND, MASS, TAG, TALLY, V, X};
 use perigrain_world::{Constant, Numbers, World};
 
@@ -36,7 +37,8 @@ impl Op for Force {
                 .read(MASS | X | V | KIND | BONDS | BOX | TAG)
                 .add(F)
                 .write(BONDS | FAMILIES | TALLY)
-                .keep(COLUMNS),
+                .keep(COLUMNS)
+                .only(&[DAMAGE.text(), DILATATION.text(), MULTIPLIER.text(), VOLUME_PROPERTY.text()]),
         )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -113,7 +115,7 @@ impl Force {
         let text = format!(
             "the time step {dt} is far beyond the stable {stable:.3e}: bond_style bpm/peri has forces per volume, as LAMMPS' manual states them"
         );
-        w.parts.notes.push(
+        w.notes.push(
             Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
                 .help("where masses are density times volume write `bond_style bpm/peri force newton`"),
         );

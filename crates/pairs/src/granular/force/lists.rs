@@ -10,6 +10,7 @@ use perigrain_base::comm::{self, rows};
 use perigrain_base::diag::Result;
 use perigrain_contact::driver::Grains;
 use perigrain_contact::fast::{Dealt, Fast, Frame, Own};
+use perigrain_styles::ledger::PAIR_WORK;
 use perigrain_world::field::{F, OMEGA, TORQUE, V, X};
 use perigrain_world::index::Index;
 use perigrain_world::share::Halo;
@@ -19,7 +20,7 @@ impl Force {
     /// The present deal of grains to ranks, where contacts can be shared out with it.
     pub(super) fn wanted_deal(&self, w: &World) -> Option<u64> {
         let plain = self.fast.is_some() && self.press.is_none() && !conducts(&self.rules);
-        w.grains_dealt().filter(|_| plain && w.parts.past().pair_work.is_none())
+        w.grains_dealt().filter(|_| plain && !w.facts.past().has(*PAIR_WORK))
     }
 
     /// Whether the lists are those of one of several ranks.
