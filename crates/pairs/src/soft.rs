@@ -21,12 +21,14 @@ impl Style for SoftStyle {
         Doc {
             syntax: Syntax::Written("pair_style soft CUTOFF\npair_coeff I J A [CUTOFF]"),
             summary: "A soft push that takes points apart which lie in each other.",
-            text: "E = A (1 + cos(π r/rc)) for r < rc, and F = A (π/rc) sin(π r/rc) apart: at most 2 A however near two points are, so that what was \
-                   placed at random can be taken apart before a harder law acts. As in LAMMPS, A of two types without a line of their own is the \
-                   geometric mean; their cutoff is mixed as `pair_modify mix geometric|arithmetic|sixthpower` says. A is an energy, CUTOFF a \
-                   distance; without one the style's own holds. `fix adapt … pair soft a I J v_name` raises A during a run, with `ramp()` in the variable. \
-                   Beside it `fix nve/limit` limits how far particles go in a step; `minimize` works as well. Weights of \
-                   `special_bonds` between 0 and 1 count in part. Points at one place feel no force: `displace_atoms … random` parts them.",
+            text: "E = A (1 + cos(π r/rc)) for r < rc, and F = A (π/rc) sin(π r/rc) apart: at most 2 A however near two points \
+                   are, so that what was placed at random can be taken apart before a harder law acts. Points at one place feel \
+                   no force: `displace_atoms … random` parts them.\n\n\
+                   As in LAMMPS, A of two types without a line of their own is the geometric mean; their cutoff is mixed as \
+                   `pair_modify mix geometric|arithmetic|sixthpower` says. A is an energy, CUTOFF a distance; without one the \
+                   style's own holds. Weights of `special_bonds` between 0 and 1 count in part.\n\n\
+                   `fix adapt … pair soft a I J v_name` raises A during a run, with `ramp()` in the variable. Beside it `fix \
+                   nve/limit` limits how far particles go in a step; `minimize` works as well.",
             example: "pair_style soft 0.002\npair_coeff * * 1e-6\nvariable push equal ramp(0,1e-5)\nfix harder all adapt 1 pair soft a * * v_push",
         }
     }

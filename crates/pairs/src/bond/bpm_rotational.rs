@@ -33,25 +33,7 @@ impl Style for BpmRotational {
                      bond_coeff T kr ks kt kb frc fsc ttc tbc gn gs gr gt",
             ),
             summary: "Bonds between spheres that stretch, shear, twist, bend and break.",
-            text: with_store!(
-                "A run notes length and direction of each bond when it first meets it. Against them stand the stretch r − r0, the shear angle γ \
-                   between the direction then, as the end with the higher ID carries it along, and now, the twist ψ about the bond and the bending \
-                   angle θ: kr (r − r0) along the bond, ks r γ across it, the torques kt ψ and kb θ. With `normalize yes` kr and ks are divided by r0. \
-                   B = F/frc + |Fs|/fsc + |Tt|/ttc + |Tb|/tbc counts how near a bond is to its end (pressure counts as negative, B not below 0): at \
-                   B ≥ 1 it exerts no force any more and is gone, and pair forces act between its ends from the next step on. So it is too in the \
-                   setup of a run, where LAMMPS (and `compat lammps`) lets nothing break: bonds beyond their limit there pull with 1 − B⁴ below zero. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is given; `break no` needs that, and frc … tbc are any numbers then. Dashpots gn along \
-                   the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
-                   `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
-                   has none. Forces come from no energy, so that without \
-                   dashpots bodies that swing freely gain some until they fly apart (twelve spheres in steps of a tenth \
-                   of the limit after 6·10⁴ steps, in LAMMPS too): say gn … gt in long runs. Restart files hold length and direction at rest. For `compute bond/local`: `b1` is r0, `b2 b3 b4` the direction at rest towards the end \
-                   that is listed first, `b5 b6 b7` the force on it; `force` there is what acts along the bond (LAMMPS, and `compat lammps`, multiply it with r, and the direction with r0). `frame particle` and `damping dem` of newer LAMMPS say what this is; \
-                   `frame average` and `damping derivative` are refused.\n\
-                   LAMMPS takes the first direction for one of particles that have not turned, and lets a bond whose end with the lower ID stands \
-                   exactly below the other neither bend nor twist; so does `compat lammps`. Its limits of torque stand in this order, twist first, \
-                   though its manual has them the other way round.\n\
-                   Wang, Acta Geotechnica 4, 117 (2009); Clemmer, Monti and Lechman, Soft Matter 20, 1702 (2024)."
-            ),
+            text: with_store!("bpm_rotational.md"),
             example: "units lj\natom_style bpm/sphere\nlattice sc 1.0\nregion b block 0 3 0 3 0 3\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/rotational\n\

@@ -30,16 +30,7 @@ impl Style for BpmSpring {
                 "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [volume/factor yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma [av]",
             ),
             summary: "Damped springs that break at a strain.",
-            text: with_store!(
-                "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
-                   unless `smooth no` is given. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
-                   from the next step on, and pair forces act between its ends then; also in the setup of a run, where LAMMPS (and `compat lammps`) lets it push its ends \
-                   apart with w below zero. `break no` lets no bond break and needs `smooth no`. \
-                   The energy is k (r − r0)²/2, with `normalize yes` k (r − r0)²/(2 r0). Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \
-                   `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not; `b1` of compute bond/local is r0. `volume/factor yes` pushes the ends apart by a further av ((ΣV/ΣV0)^(1/3) − r/r0), with V the sum of r³ of the bonds of a particle, V0 \
-                   that of r0³, both of the two ends (in flat scenes r² and the square root): it sets Poisson's ratio. \
-                   Clemmer and Robbins, Phys. Rev. Lett. 129, 078002 (2022)."
-            ),
+            text: with_store!("bpm_spring.md"),
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/spring\n\

@@ -32,13 +32,7 @@ impl Style for BpmSpringPlastic {
                      bond_coeff T k ec gamma ep",
             ),
             summary: "Damped springs that yield at one strain and break at another.",
-            text: with_store!(
-                "F = w (k (r − req) + γ r̂·v) as `bond_style bpm/spring` has it, with a length at rest req that begins as the distance r0 at which a run first \
-                   met the bond, and follows where |r − req| would exceed ep r0: a bond that is pulled on and on grows with a constant force. It breaks at a strain \
-                   (r − r0)/r0 beyond ±ec, and w = 1 − ((r − r0)/(r0 ec))⁸ unless `smooth no` is given. `normalize yes` divides k by r0. The energy is counted as 0. \
-                   `b1 b2` of compute bond/local are r0 and req; restart files hold both. All else as for bpm/spring. \
-                   (LAMMPS' page says ep req; its program does what is said here.) Clemmer and Lechman, Powder Technology (2025)."
-            ),
+            text: with_store!("bpm_spring_plastic.md"),
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/spring/plastic\n\
