@@ -1,9 +1,10 @@
 //! `pair_style gran/hooke`: the older granular style, one model for all pairs of types.
 
+use super::contact::classic::Line;
 use super::{Pair, PairStyle, granular};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -16,8 +17,8 @@ impl Style for GranHooke {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "pair_style gran/hooke Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] [arms radius|middle]",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed("pair_coeff I J", Grammar::NONE)] },
             ),
             summary: "Contacts of spheres: linear spring, damping, Coulomb friction without memory.",
             text: "F_n = Kn δ − m̄ gamma_n v_n along the normal for an overlap δ > 0, m̄ = m_i m_j/(m_i + m_j); across \
@@ -31,9 +32,5 @@ impl Style for GranHooke {
 impl PairStyle for GranHooke {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         granular::classic(self.name(), false, false, args, cx)
-    }
-
-    fn options(&self) -> &'static [&'static str] {
-        &["limit_damping", "arms"]
     }
 }

@@ -49,7 +49,7 @@ pub const EEPA: Style = Style {
         Number { name: "the exponent n", ..EXPONENT },
         Number { word: "chi", name: "the exponent chi", ..EXPONENT },
     ],
-    formula: "plastic and adhesive, below",
+    formula: "Plastic and adhesive grains, below.",
     text: include_str!("eepa.md"),
     exponent: |numbers| numbers[6],
     pulls: |numbers| numbers[4] > 0.0 || numbers[5] > 0.0,

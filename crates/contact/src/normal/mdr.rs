@@ -32,7 +32,7 @@ pub const MDR: Style = Style {
         },
         Number::own("e", "the damping coefficient", Role::Eta),
     ],
-    formula: "plastic grains, below",
+    formula: "Plastic grains, below.",
     text: include_str!("mdr.md"),
     in_grains: true,
     force: |pair| Mdr { elastic: Hertz { stiffness: 4.0 / 3.0 * pair.young } }.into(),

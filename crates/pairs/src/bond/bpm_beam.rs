@@ -14,7 +14,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Swing};
 use perigrain_styles::matter::Masses;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, KIND, MASS, OMEGA, QUAT, RADIUS, TYPE_MASS};
 use perigrain_world::{Bond, World};
@@ -30,9 +30,8 @@ impl Style for BpmBeam {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no] [store/local ID N value …]\n\
-                     bond_coeff T E nu radius R|ratio L [strength S1 S2 [moment B] [weibull M SEED]] [damping Z|ZN ZS ZT ZB]",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(words::Style::GRAMMAR), Form::headed("bond_coeff T", words::Own::GRAMMAR)] },
             ),
             summary: "Cylindrical beams between spheres whose forces and torques derive from an energy.",
             text: with_store!("bpm_beam/page.md"),
@@ -48,7 +47,7 @@ impl Style for BpmBeam {
 impl BondStyle for BpmBeam {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
         needs_orientations(self.name(), cx)?;
-        let (options, law) = words::style(args)?;
+        let (options, law) = read::<words::Style>(args, cx)?.options()?;
         Ok(Box::new(Declared { options, law, types: BTreeMap::new() }))
     }
 }
@@ -124,8 +123,8 @@ impl BondForce for Declared {
         "bpm/beam"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let line = Line::read(args)?;
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let line = read::<words::Own>(args, cx)?.line(args.name_span())?;
         self.types.extend(kinds.iter().map(|&k| (k, line)));
         Ok(())
     }

@@ -6,13 +6,13 @@ mod table;
 use super::{BondForce, BondStyle, Pull, Stretched, breaking_weights};
 use crate::peri::{beyond_elastic, lasting, stiffness, written};
 use op::Force;
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_base::math::cformat::general;
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_peri::families::{Moduli, PmbCoeff};
 use perigrain_peri::law::{LAWS, PMB, Style as BondLaw};
 use perigrain_plan::Op;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::columns::VOLUME_PROPERTY;
@@ -67,34 +67,44 @@ impl BondStyle for BpmPeri {
                 .help("put `fix vol all property/atom d_vfrac ghost yes` and `set group all d_vfrac …` before it")
                 .into());
         }
-        let mut newton = false;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "force" => newton = args.choice("unit of forces", &["density", "newton"])? == "newton",
-                "store/local" => {
-                    return refused(
-                        word.span,
-                        "broken bonds are no table here",
-                        "`d_damage`, `compute damage/atom` and thermo's `bonds` count them",
-                    );
-                }
-                "write/history" | "write/reference" | "read/history" | "read/reference" => {
-                    return refused(
-                        word.span,
-                        "the undeformed state is kept with the particles",
-                        "`write_restart` and `read_restart` carry it over",
-                    );
-                }
-                _ => return Err(args.unknown(word, &["force"])),
-            }
-        }
+        let Line { force } = read_or(args, cx, foreign)?;
+        let newton = force == Unit::Newton;
         Ok(Box::new(Declared { newton, coeffs: BTreeMap::new() }))
     }
 }
 
-fn refused<T>(span: Span, why: &str, instead: &str) -> Result<T> {
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    #[word(keyword, default = Unit::Density)]
+    force: Unit,
+}
+
+/// What forces are.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "unit of forces")]
+enum Unit {
+    /// Forces per volume of the particle that they act on, as in LAMMPS.
+    Density,
+    /// True forces: multiplied by the particle's own volume.
+    Newton,
+}
+
+/// The refusal of a keyword that LAMMPS has here.
+fn foreign(word: &Word) -> Option<Diagnostics> {
+    let (why, instead) = match word.text.as_str() {
+        "store/local" => (
+            "broken bonds are no table here",
+            "`d_damage`, `compute damage/atom` and thermo's `bonds` count them",
+        ),
+        "write/history" | "write/reference" | "read/history" | "read/reference" => (
+            "the undeformed state is kept with the particles",
+            "`write_restart` and `read_restart` carry it over",
+        ),
+        _ => return None,
+    };
     let text = format!("this keyword of bond_style bpm/peri is not in perigrain: {why}");
-    Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help(instead.to_string()).into())
+    Some(Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).help(instead).into())
 }
 
 /// The options of a line for bonds.
