@@ -22,8 +22,7 @@ impl Style for GranHooke {
             ),
             summary: "Contacts of spheres: linear spring, damping, Coulomb friction without memory.",
             text: "F_n = Kn δ − m̄ gamma_n v_n along the normal for an overlap δ > 0, m̄ = m_i m_j/(m_i + m_j); across \
-                   it F_t = −m̄ gamma_t v_t, at most xmu F_n and nothing where F_n pulls (`compat lammps`: xmu |F_n|). Kt has no meaning here.\n\nThe numbers, `limit_damping`, `arms` \
-                   and `pair_coeff` are those of pair_style gran/hooke/history.",
+                   it F_t = −m̄ gamma_t v_t, at most xmu F_n and nothing where F_n pulls (`compat lammps`: xmu |F_n|). Kt has no meaning here.\n\n`pair_coeff` and `arms` are as under pair_style gran/hooke/history.",
             example: "pair_style gran/hooke 200000.0 NULL 50.0 NULL 0.5 1\npair_coeff * *",
         }
     }
